@@ -11,10 +11,13 @@ from itertools import groupby
 
 import numpy as np
 
+from app.reports.patient_report.answer import answer_of
+from app.reports.patient_report.facts import Facts
+from app.reports.patient_report.request import AnalysedVisit
 from app.reports.status import NO_ZERO, WITH_HEIGHT, WITHHELD, all_that_is_said, is_slipped, joint_status, why
 from core.body import Joint, Side
 from core.results import Analysis, RecordingAnalysis
-from core.samples import BoolArray, FloatArray
+from core.samples import BoolArray, FloatArray, Session
 
 
 class Place(StrEnum):
@@ -68,11 +71,21 @@ def name_of_view(analysis: Analysis, joint: Joint) -> str:
     return f"{name}: shape, no zero" if Place.SHAPE in found else f"{name}: {WITHHELD}"
 
 
-def document(analysis: Analysis, timelines: Mapping[str, str]) -> str:
-    """Every verdict with its reasons, a table per recording, in Markdown; recordings are called as their timelines."""
+def document(session: Session, analysis: Analysis, timelines: Mapping[str, str]) -> str:
+    """Every verdict with its reasons, a table per recording, in Markdown; recordings are called as their timelines.
+
+    Walks come first, each with its answer in the words of the report.
+    """
     lines = ["# What may be read"]
-    for recording, said in groupby(all_that_is_said(analysis), key=lambda one: one.recording):
-        lines += ["", f"## {timelines[recording]}", "", "| of | what | verdict | why |", "|---|---|---|---|"]
+    visit = AnalysedVisit(session, analysis)
+    walks = visit.walk_names()
+    in_order = sorted(all_that_is_said(analysis), key=lambda one: one.recording not in walks)
+    for recording, said in groupby(in_order, key=lambda one: one.recording):
+        lines += ["", f"## {timelines[recording]}", ""]
+        if recording in walks:
+            found = answer_of(Facts(visit, visit.walk(recording)))
+            lines += [f"**{found.first}** {found.then}".strip(), ""]
+        lines += ["| of | what | verdict | why |", "|---|---|---|---|"]
         for one in said:
             verdict = one.assessment.verdict.replace("_", " ")
             lines.append(f"| {one.subject} | {one.quantity} | {verdict} | {why(one.assessment)} |")

@@ -19,6 +19,7 @@ import numpy as np
 import pyarrow as pa
 import rerun as rr
 import rerun.blueprint as rrb
+from rerun import ComponentColumnList
 from rerun.chunk import Chunk, RrdReader
 from rerun_bindings import PyMemorySinkStorage, new_blueprint, save
 
@@ -28,7 +29,7 @@ from app.review.drawn_legs import FRAMES_HZ, HIPS, SHANK, THIGH, DrawnLeg, draw_
 from app.review.may_be_read import Place, document, is_pose, name_of_view, pieces_of, places
 from app.review.rrd_file import remove_chance
 from core.body import Joint, Side, Site, ankle_of, knee_of
-from core.gait.phases import PHASES
+from core.gait.phases import PHASES, Phase
 from core.results import Analysis, RecordingAnalysis
 from core.samples import FloatArray, ImuBlock, IntArray, RecordingKind, Session
 
@@ -38,11 +39,19 @@ BLUEPRINT = b"rec_" + b"0" * 32  # as long as the name that Rerun draws by chanc
 ROWS_PER_CHUNK = 100_000  # 4 MB of three axes with their times
 BAND_SD = 2.0
 LEGS_HEIGHT, CURVES_HEIGHT = 2, 3  # shares of the layout
-CURVE_HEIGHT, LANE_HEIGHT = 2, 1  # shares of a column of curves
+LEGS_WIDTH, VERDICTS_WIDTH = 3, 2
+CURVE_HEIGHT, LANE_HEIGHT = 5, 4  # shares of a column of curves
 COLOURS = DARK  # the viewer is dark unless its user turns that
 SIDE_COLOUR = {Side.LEFT: COLOURS.left, Side.RIGHT: COLOURS.right}
 PALE_COLOUR = {Side.LEFT: COLOURS.left_soft, Side.RIGHT: COLOURS.right_soft}
-LEG_RADIUS_M = 0.025
+PHASE_COLOUR = {  # greys: a colour is a leg's alone
+    Phase.LOADING: COLOURS.ink3,
+    Phase.FOOT_FLAT: COLOURS.control,
+    Phase.PRE_SWING: COLOURS.ink3,
+    Phase.SWING: COLOURS.sunken,
+}
+RADII_M = {"thigh": 0.06, "shank": 0.045, "foot": 0.035}  # of the bodies that stand for a leg; drawn, not measured
+HIP_RADIUS_M = 0.03
 DRAWN = "Legs: drawn, not measured"
 
 
@@ -76,7 +85,7 @@ def _timelines(session: Session) -> dict[str, str]:
 def _chunks(session: Session, analysis: Analysis, timelines: dict[str, str]) -> Iterator[Chunk]:
     yield from _labels(session, analysis)
     if analysis.recordings:
-        yield _document("/may_be_read", document(analysis, timelines), rr.MediaType.MARKDOWN)
+        yield _document("/may_be_read", document(session, analysis, timelines), rr.MediaType.MARKDOWN)
     for recording in session.recordings:
         for site in recording.imu if recording.is_kept else ():
             yield from _raw_chunks(timelines[recording.name], site, recording.imu[site])
@@ -103,7 +112,11 @@ def _labels(session: Session, analysis: Analysis) -> Iterator[Chunk]:
             names = [f"2 sd below{place} °", f"2 sd above{place} °"]
             yield _label(place.entity(joint, "certainty"), names, grey or PALE_COLOUR[joint.side])
     words = [str(phase) for phase in PHASES if phase]
-    columns = rr.StateConfiguration.columns(values=words, labels=[word.replace("_", " ") for word in words])
+    columns = rr.StateConfiguration.columns(
+        values=words,
+        labels=[word.replace("_", " ") for word in words],
+        colors=np.array([_rgba(PHASE_COLOUR[Phase(word)]) for word in words], dtype=np.uint32),
+    )
     for side in _sides_with_gait(analysis):
         yield Chunk.from_columns(f"/phases/{side}", indexes=[], columns=columns.partition([len(words)]))
     if analysis.is_simulated:
@@ -139,18 +152,18 @@ def _leg_labels(session: Session, sides: list[Side]) -> Iterator[Chunk]:
     hips = rr.LineStrips3D.columns(
         strips=np.array([[[0.0, aside_m, up_m], [0.0, -aside_m, up_m]]], dtype=np.float32),
         colors=[_rgba(COLOURS.control)],
-        radii=[LEG_RADIUS_M],
+        radii=[HIP_RADIUS_M / 2],
     )
     yield Chunk.from_columns("/legs/hips", indexes=[], columns=hips)
     for side in sides:
-        colours, radii = [_rgba(SIDE_COLOUR[side])], [LEG_RADIUS_M]
-        for part, grey in (("leg", "withheld_leg"), ("foot", "withheld_foot")):
-            for name, colour in ((part, colours), (grey, [_rgba(COLOURS.control)])):
-                looks = rr.LineStrips3D.columns(colors=colour, radii=radii)
+        colours = [_rgba(SIDE_COLOUR[side])]
+        for part in RADII_M:
+            for name, colour in ((part, colours), (f"withheld_{part}", [_rgba(COLOURS.control)])):
+                looks = rr.Capsules3D.columns(colors=colour, fill_mode=[rr.components.FillMode.Solid])
                 yield Chunk.from_columns(f"/legs/{side}/{name}", indexes=[], columns=looks)
         hip_m = (0.0, aside_m if side is Side.LEFT else -aside_m, up_m)
         letter = rr.Points3D.columns(
-            positions=[hip_m], colors=colours, radii=radii, labels=[side[0].upper()], show_labels=[True]
+            positions=[hip_m], colors=colours, radii=[HIP_RADIUS_M], labels=[side[0].upper()], show_labels=[True]
         )
         yield Chunk.from_columns(f"/legs/{side}/hip", indexes=[], columns=letter)
     is_typed = session.patient.height_m is not None
@@ -166,18 +179,37 @@ def _leg_labels(session: Session, sides: list[Side]) -> Iterator[Chunk]:
 
 
 def _leg_chunks(timeline: str, side: Side, leg: DrawnLeg, recording: RecordingAnalysis) -> Iterator[Chunk]:
-    """Yield what of a leg is known at each frame, grey where it is no pose; nothing is drawn where it is not."""
+    """Yield the bodies of a leg at each frame, grey where it is no pose; nothing is drawn where it is not known."""
     index = rr.TimeColumn(timeline, duration=leg.time_s)
     is_bent = is_pose(recording, knee_of(side), leg.time_s)
     is_lifted = is_bent & is_pose(recording, ankle_of(side), leg.time_s)
-    for part, points_m, is_told in (("leg", leg.leg_m, is_bent), ("foot", leg.foot_m, is_lifted)):
+    ends_m = {"thigh": leg.leg_m[:, :2], "shank": leg.leg_m[:, 1:], "foot": leg.foot_m}
+    for part, points_m in ends_m.items():
+        is_told = is_lifted if part == "foot" else is_bent
         is_known = np.isfinite(points_m).all(axis=(1, 2))
         for name, is_here in ((part, is_known & is_told), (f"withheld_{part}", is_known & ~is_told)):
             if is_here.any():
-                columns = rr.LineStrips3D.columns(strips=points_m[is_here].astype(np.float32))
+                columns = bodies(points_m[is_here], RADII_M[part])
                 yield Chunk.from_columns(
                     f"/legs/{side}/{name}", indexes=[index], columns=columns.partition(is_here.astype(np.int64))
                 )
+
+
+def bodies(ends_m: FloatArray, radius_m: float) -> ComponentColumnList:
+    """Capsules from the first to the second of two points (n, 2, 3)."""
+    along_m = ends_m[:, 1] - ends_m[:, 0]
+    length_m = np.linalg.norm(along_m, axis=1)
+    x, y, z = (along_m / length_m[:, None]).T
+    # the least turn that takes up (0, 0, 1), along which a capsule lies, to the segment; straight down is half a turn
+    is_down = z < -1 + 1e-9
+    turn = np.stack([np.where(is_down, 1.0, -y), np.where(is_down, 0.0, x), np.zeros_like(x), 1 + z], axis=1)
+    turn /= np.linalg.norm(turn, axis=1, keepdims=True)
+    return rr.Capsules3D.columns(
+        lengths=length_m.astype(np.float32),
+        radii=np.full(len(ends_m), radius_m, dtype=np.float32),
+        translations=ends_m[:, 0].astype(np.float32),
+        quaternions=turn.astype(np.float32),
+    )
 
 
 def _raw_chunks(timeline: str, site: Site, block: ImuBlock) -> Iterator[Chunk]:
@@ -249,14 +281,15 @@ def _sides_with_knee(analysis: Analysis) -> list[Side]:
 
 
 def _blueprint(session: Session, analysis: Analysis, timeline: str | None) -> rrb.Blueprint:
-    columns = [column for side in Side if (column := _side_views(analysis, side)) is not None]
+    columns = [column for side in Side if (column := side_views(analysis, side)) is not None]
     tabs: list[rrb.Container | rrb.View] = []
     if columns:
         name, curves = "Angles and phases", rrb.Horizontal(*columns)
         legs = _leg_view(session, analysis) if _sides_with_knee(analysis) else None
-        shares = [LEGS_HEIGHT, CURVES_HEIGHT]
-        tabs += [rrb.Vertical(legs, curves, row_shares=shares, name=name) if legs else rrb.Vertical(curves, name=name)]
-    if analysis.recordings:
+        verdicts = rrb.TextDocumentView(origin="/may_be_read", name="What may be read")
+        above = rrb.Horizontal(legs, verdicts, column_shares=[LEGS_WIDTH, VERDICTS_WIDTH]) if legs else verdicts
+        tabs += [rrb.Vertical(above, curves, row_shares=[LEGS_HEIGHT, CURVES_HEIGHT], name=name)]
+    elif analysis.recordings:
         tabs += [rrb.TextDocumentView(origin="/may_be_read", name="What may be read")]
     if _sides_with_gait(analysis):
         tabs += [rrb.TextLogView(origin="/events", name="Events")]
@@ -280,19 +313,24 @@ def _leg_view(session: Session, analysis: Analysis) -> rrb.Spatial3DView:
         name=f"SIMULATED. {DRAWN}" if analysis.is_simulated else DRAWN,
         background=[int(COLOURS.ground[k : k + 2], 16) for k in (1, 3, 5)],
         eye_controls=rrb.EyeControls3D(
-            position=(0.35 * height_m, -0.6 * height_m, 0.35 * height_m),
+            position=(0.4 * height_m, -0.85 * height_m, 0.4 * height_m),
             look_target=(0.0, 0.0, middle_m),
             eye_up=(0.0, 0.0, 1.0),
         ),
     )
 
 
-def _side_views(analysis: Analysis, side: Side) -> rrb.Vertical | None:
+def side_views(analysis: Analysis, side: Side) -> rrb.Vertical | None:
     """Stack a side's knee, ankle and, under the curves and on their axis of time, the lane of its phases."""
     axis = rrb.archetypes.TimeAxis(link=rrb.components.LinkAxis.LinkToGlobal)
     joints = [joint for joint in (knee_of(side), ankle_of(side)) if joint in _joints(analysis)]
     views: list[rrb.View] = [
-        rrb.TimeSeriesView(origin=f"/angles/{joint}", name=name_of_view(analysis, joint), axis_x=axis)
+        rrb.TimeSeriesView(
+            origin=f"/angles/{joint}",
+            name=_titled(analysis, joint),
+            axis_x=axis,
+            plot_legend=rrb.PlotLegend(visible=False),
+        )
         for joint in joints
     ]
     heights = [CURVE_HEIGHT] * len(views)
@@ -300,6 +338,14 @@ def _side_views(analysis: Analysis, side: Side) -> rrb.Vertical | None:
         views.append(rrb.StateTimelineView(origin=f"/phases/{side}", name=f"{side} phases", time_view=axis))
         heights.append(LANE_HEIGHT)
     return rrb.Vertical(*views, row_shares=heights, name=str(side)) if views else None
+
+
+def _titled(analysis: Analysis, joint: Joint) -> str:
+    """What stands above a joint's curves, and which line is which: a legend would lie on them."""
+    name = name_of_view(analysis, joint)
+    if Place.HEIGHT not in places(analysis, joint) and Place.SHAPE not in places(analysis, joint):
+        return name
+    return f"{name}, °. Thick: result; pale: 2 sd; thin white: published; thin grey: orientation"
 
 
 def _parts(part: rrb.Container | rrb.View) -> Iterator[rrb.Container | rrb.View]:

@@ -272,10 +272,50 @@ def test_at_each_sample_the_lane_is_in_the_phase_of_the_walk(walk: tuple[Path, A
 def test_the_lanes_lie_under_the_curves_of_their_side(walk: tuple[Path, Analysis]) -> None:
     _, analysis = walk
     for side in Side:
-        column = rerun_log._side_views(analysis, side)
+        column = rerun_log.side_views(analysis, side)
         assert column is not None
         origins = [view.origin for view in column.contents if isinstance(view, rrb.View)]
         assert origins == [f"/angles/{side}_knee", f"/angles/{side}_ankle", f"/phases/{side}"]
+
+
+def ends_of(turns: np.ndarray, lengths: np.ndarray) -> np.ndarray:
+    """Where the far end of a body lies that is drawn upwards and turned by quaternions (x, y, z, w)."""
+    x, y, z, w = turns.T
+    return lengths[:, None] * np.stack([2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)], axis=1)
+
+
+@pytest.mark.parametrize("straight", [(0.0, 0.0, -0.4), (0.0, 0.0, 0.4), (0.3, -0.1, -0.2), (1e-7, 0.0, -0.4)])
+def test_a_body_lies_along_its_segment_wherever_that_points(straight: tuple[float, float, float]) -> None:
+    ends_m = np.array([[[0.1, 0.2, 0.9], np.add([0.1, 0.2, 0.9], straight)]])
+    found = {str(one.component_descriptor()).split(":")[-1]: one for one in rerun_log.bodies(ends_m, 0.05)}
+    (turn,) = [one for name, one in found.items() if "quaternions" in name]
+    (length,) = [one for name, one in found.items() if "lengths" in name]
+    turns, lengths = (np.array(one.as_arrow_array().to_pylist(), dtype=float) for one in (turn, length))
+    np.testing.assert_allclose(ends_of(turns.reshape(1, 4), lengths.reshape(1))[0], straight, atol=1e-6)
+
+
+def test_the_panel_begins_with_the_walk_and_its_answer(walk: tuple[Path, Analysis]) -> None:
+    folder, _ = walk
+    chunks = [c for c in RrdReader(folder / "session.rrd").stream() if c.entity_path == "/may_be_read"]
+    ((text,),) = [row for c in chunks for row in c.to_record_batch().column("TextDocument:text").to_pylist()]
+    head, _, rest = text.partition("## ")
+    assert head.strip() == "# What may be read"
+    assert rest.startswith("walking_1\n\n**")
+    assert text.count("**") == 2  # one walk, one answer
+
+
+def test_names_of_lines_stand_above_the_curves_and_no_legend_on_them(walk: tuple[Path, Analysis]) -> None:
+    _, analysis = walk
+    column = rerun_log.side_views(analysis, Side.LEFT)
+    assert column is not None
+    curves = [view for view in column.contents if isinstance(view, rrb.TimeSeriesView)]
+    assert len(curves) == 2
+    for view in curves:
+        legend = view.properties["PlotLegend"]
+        assert isinstance(legend, rrb.PlotLegend)
+        assert legend.visible is not None
+        assert legend.visible.as_arrow_array().to_pylist() == [False]
+        assert str(view.name).endswith("Thick: result; pale: 2 sd; thin white: published; thin grey: orientation")
 
 
 def test_two_legs_walk_above_the_curves_and_say_that_they_are_drawn(walk: tuple[Path, Analysis]) -> None:
@@ -284,16 +324,27 @@ def test_two_legs_walk_above_the_curves_and_say_that_they_are_drawn(walk: tuple[
     legs = draw_legs(session, analysis, analysis.recordings[0])
     reader = RrdReader(folder / "session.rrd")
     for side in Side:
-        chunks = [c for c in reader.stream() if c.entity_path == f"/legs/{side}/leg"]
-        (moving,) = [c.to_record_batch() for c in chunks if not c.is_static]
-        strips = [row for row in moving.column("LineStrips3D:strips").to_pylist() if row]
-        np.testing.assert_allclose(np.array(strips)[:, 0], legs[side].leg_m, atol=1e-6)
-        (look,) = [c.to_record_batch().to_pydict() for c in chunks if c.is_static]
-        assert look["LineStrips3D:colors"] == [[int(getattr(DARK, side)[1:] + "FF", 16)]]
+        for number, part in enumerate(("thigh", "shank")):
+            chunks = [c for c in reader.stream() if c.entity_path == f"/legs/{side}/{part}"]
+            (moving,) = [c.to_record_batch() for c in chunks if not c.is_static]
+            found = {
+                name: np.array([row[0] for row in moving.column(f"Capsules3D:{name}").to_pylist() if row])
+                for name in ("translations", "lengths", "quaternions", "radii")
+            }
+            np.testing.assert_allclose(found["translations"], legs[side].leg_m[:, number], atol=1e-6)
+            ends_m = found["translations"] + ends_of(found["quaternions"], found["lengths"])
+            np.testing.assert_allclose(ends_m, legs[side].leg_m[:, number + 1], atol=1e-5)
+            assert (found["radii"] > 0.03).all()  # bodies, not sticks
+            (look,) = [c.to_record_batch().to_pydict() for c in chunks if c.is_static]
+            assert look["Capsules3D:colors"] == [[int(getattr(DARK, side)[1:] + "FF", 16)]]
     first = next(iter(rerun_log._blueprint(session, analysis, None).root_container.contents))
     assert isinstance(first, rrb.Vertical)
-    view, curves = list(first.contents)
+    above, curves = list(first.contents)
+    assert isinstance(above, rrb.Horizontal)
+    view, verdicts = list(above.contents)
     assert isinstance(view, rrb.Spatial3DView)
+    assert isinstance(verdicts, rrb.TextDocumentView)
+    assert verdicts.origin == "/may_be_read"
     assert view.name == "SIMULATED. Legs: drawn, not measured"
     assert isinstance(curves, rrb.Horizontal)
     text = "".join(str(c.to_record_batch().to_pydict()) for c in reader.stream() if c.entity_path == "/about_legs")
@@ -312,12 +363,12 @@ def test_a_leg_is_grey_where_an_angle_that_bends_it_is_no_pose(walk: tuple[Path,
     chunks = list(RrdReader(tmp_path / "session.rrd").stream())
     drawn = {c.entity_path for c in chunks if "walking_1" in c.timeline_names and c.entity_path.startswith("/legs")}
     assert drawn == {
-        *("/legs/left/withheld_leg", "/legs/left/withheld_foot"),
-        *("/legs/right/leg", "/legs/right/withheld_foot"),
+        *(f"/legs/left/withheld_{part}" for part in ("thigh", "shank", "foot")),
+        *("/legs/right/thigh", "/legs/right/shank", "/legs/right/withheld_foot"),
     }
     for name in drawn:
         (look,) = [c.to_record_batch().to_pydict() for c in chunks if c.is_static and c.entity_path == name]
-        is_grey = look["LineStrips3D:colors"] == [[int(DARK.control[1:] + "FF", 16)]]
+        is_grey = look["Capsules3D:colors"] == [[int(DARK.control[1:] + "FF", 16)]]
         assert is_grey == ("withheld" in name)
 
 
