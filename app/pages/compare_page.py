@@ -69,12 +69,14 @@ BORROWED = later("For the ankle the knee's figure is borrowed.")
 UNVERIFIED = later("\N{DAGGER} rests on a figure whose source could not be verified.")
 OTHER_ZERO = later("No common zero: range and shape hold, height does not. 0° is the mean of the stride.")
 NO_COMMON_CONDITION = later(
-    "This visit has no condition in common with an earlier one, so they are not compared. {walked}"
+    "This visit has no condition in common with an earlier one, so they are not compared. {walked} “Any visits and "
+    "conditions” compares two that you choose."
 )
 NOTHING = {
     Contrast.CONDITIONS: later("One walk has strides. Record a second one to compare."),
     Contrast.VISITS: later("No earlier visit of this patient has a walk to compare."),
     Contrast.SIDES: later("One leg was measured, so there is nothing to compare it with."),
+    Contrast.CHOSEN: later("No earlier visit of this patient has a walk to compare."),
 }
 
 
@@ -94,6 +96,7 @@ class ComparePage(Themed):
         self._look = look
         self._conditions: tuple[Part, ...] = ()
         self._visits: tuple[ComparedVisits, ...] | None = None
+        self._every: tuple[Part, ...] = ()  # each condition of each visit
         self._walked = ""  # under which conditions each visit was
         self._affected: Side | None = None
         self._affected_words = ""
@@ -132,7 +135,7 @@ class ComparePage(Themed):
         self, analysis: Analysis, parts: Sequence[Part], is_prosthetic: bool, who: AgeAndHeight
     ) -> None:
         """Show the walks of one session, `who` walked them; what was known of other visits is forgotten."""
-        self._conditions, self._visits = tuple(parts), None
+        self._conditions, self._visits, self._every = tuple(parts), None, ()
         self._analysis, self._who = analysis, who
         affected = analysis.affected_side
         self._affected, self._is_simulated = affected, analysis.is_simulated
@@ -157,9 +160,13 @@ class ComparePage(Themed):
         self._has_visits = has_visits
         self._offer_kinds()
 
-    def show_visits(self, visits: Sequence[ComparedVisits], walked: str = "") -> None:
-        """Show the conditions that visits up to this one share; `walked` says which of them each visit has."""
+    def show_visits(self, visits: Sequence[ComparedVisits], walked: str = "", every: Sequence[Part] = ()) -> None:
+        """Show the conditions that visits up to this one share; `walked` says which of them each visit has.
+
+        `every`: all conditions of all visits, any two or more of which can be chosen.
+        """
         self._visits, self._walked, self._is_reading = tuple(visits), walked, False
+        self._every = tuple(every)
         self._offer_kinds()
 
     def set_band_shown(self, is_shown: bool) -> None:
@@ -294,6 +301,8 @@ class ComparePage(Themed):
         for number, visits in enumerate(self._visits or ()):  # the first keeps the data of them all
             said = tr("Visits, {condition}").format(condition=condition_in_words(visits.condition))
             self.kinds.addItem(said, f"{Contrast.VISITS} {number}" if number else Contrast.VISITS)
+        if len(self._every) > 1:
+            self.kinds.addItem(tr("Any visits and conditions"), Contrast.CHOSEN)
         self.kinds.addItem(self._affected_words, Contrast.SIDES)
         first = Contrast.CONDITIONS if len(self._conditions) > 1 else Contrast.SIDES
         self.kinds.setCurrentIndex(max(self.kinds.findData(before if before is not None else first), 0))
@@ -313,13 +322,14 @@ class ComparePage(Themed):
     def _parts(self) -> tuple[Part, ...]:
         if self.kind is Contrast.VISITS:
             return self._of_visits.parts if self._of_visits is not None else ()
-        return self._conditions
+        return self._every if self.kind is Contrast.CHOSEN else self._conditions
 
     def _make_chips(self, parts: Sequence[Part]) -> None:
         chips = Chips(
             self._look, tr("What is compared"), [(part.letter, part_in_words(part)) for part in parts] or [("", " ")]
         )
-        chips.choose([part.letter for part in parts])
+        ends = [*parts[:1], *parts[-1:]]  # of many, the oldest and the latest to begin with
+        chips.choose([part.letter for part in (ends if self.kind is Contrast.CHOSEN else parts)])
         chips.turned.connect(self._on_turned)
         self._left.replaceWidget(self.chips, chips)
         self.chips.hide()

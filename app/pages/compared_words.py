@@ -25,6 +25,7 @@ from core.verdicts.model import Verdict
 MINUS = "\N{MINUS SIGN}"
 DASH = "\N{EN DASH}"
 DAGGER = "\N{DAGGER}"
+WALK_FIRST = {"speed_m_s": 0, "cadence_steps_min": 1, "stride_length_m": 2}  # the rows of a table
 
 
 def part_in_words(part: Part) -> str:
@@ -58,16 +59,13 @@ def table_columns(heads: Sequence[str], *, has_sides: bool) -> list[TableColumn]
 def table_rows(found: Comparison, heads: Sequence[str]) -> list[TableRow]:
     """Every measure of each leg: the values of all parts, then their differences."""
     rows: dict[tuple[str, Side], list[Compared]] = {}
-    for row in found.rows:
+    for row in sorted(found.rows, key=lambda row: WALK_FIRST.get(row.measure.column, len(WALK_FIRST))):
         rows.setdefault((row.measure.column, row.side), []).append(row)
     lines = []
     for (_, side), compared in rows.items():
         measure = compared[0].measure
-        values = [
-            _value(part.value(side, measure.column), _verdict(part, side, measure), measure.decimals)
-            for part in found.parts
-        ]
-        changes = [_changed(row) for row in compared]
+        values = [_value(*part.figure(measure, side), measure.decimals) for part in found.parts]
+        changes = [_changed(row, found.against) for row in compared]
         lines.append(_table_row(tr(measure.name), None if measure.is_of_walk else side, heads, (*values, *changes)))
     return lines
 
@@ -116,14 +114,9 @@ def _figure(value: str, small: str = "", *, is_marked: bool = False, is_grey: bo
     )
 
 
-def _verdict(part: Part, side: Side, measure: Measure) -> Verdict:
-    is_measured = part.is_measured(side, measure)
-    return part.assessment(side, measure.column).verdict if is_measured else Verdict.NOT_MEASURED
-
-
 def _value(value: MeanAndSd, verdict: Verdict, decimals: int) -> TextCell:
     if verdict is Verdict.WITHHELD:
-        return _figure(verdict_word(verdict), is_grey=True)
+        return TextCell(small=verdict_word(verdict), align=RIGHT, mark=Icon.WITHHELD)
     if not value.n:
         return _figure(DASH, is_grey=True)
     spread = f"± {fixed(value.sd, decimals)}" if is_spread_enough(value.n) else ""
@@ -131,11 +124,15 @@ def _value(value: MeanAndSd, verdict: Verdict, decimals: int) -> TextCell:
     return _figure(fixed(value.mean, decimals), spread, is_grey=not is_mean_enough(value.n))
 
 
-def _changed(row: Compared | SideRow) -> TextCell:
+def _changed(row: Compared | SideRow, against: Part | None = None) -> TextCell:
+    """A difference; where it is not told against the part that the others are, that is said beside it."""
     if not row.is_told:
         return _figure(DASH, is_grey=True)  # the values beside it say why
     words = change_in_words(row.difference.difference, row.measure)
-    return _figure(words, _doubt(row.difference), is_marked=row.exceeds)
+    doubt = _doubt(row.difference)
+    if against is not None and isinstance(row, Compared) and row.against is not against:
+        doubt = " ".join(filter(None, [tr("from {letter}").format(letter=row.against.letter), doubt]))
+    return _figure(words, doubt, is_marked=row.exceeds)
 
 
 def _doubt(found: Difference) -> str:

@@ -51,12 +51,23 @@ def visits_by_condition(visits: Sequence[WalkedVisit]) -> tuple[ComparedVisits, 
     found = []
     for condition in each[-1][2] if each else ():
         parts = [
-            replace(walked[condition], letter=letter, name=name) for letter, name, walked in each if condition in walked
+            replace(walked[condition], letter=letter, name=name, visit=int(letter))
+            for letter, name, walked in each
+            if condition in walked
         ]
         without = tuple(name for _, name, walked in each if condition not in walked)
         if len(parts) > 1:
             found.append(ComparedVisits(condition, tuple(parts), without))
     return tuple(found)
+
+
+def parts_of_visits(visits: Sequence[WalkedVisit]) -> tuple[Part, ...]:
+    """Every condition of every visit, in order of time, to be compared as somebody chooses: 1A, 1B, 2A and so on."""
+    return tuple(
+        replace(part, name=f"{name}, {condition_in_words(condition)}", visit=number)
+        for number, (name, analysis, recordings) in enumerate(visits, start=1)
+        for condition, part in by_condition(analysis, recordings, str(number)).items()
+    )
 
 
 def conditions_in_words(visits: Sequence[WalkedVisit]) -> str:

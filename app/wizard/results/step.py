@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QWidget
 from app.icons import Icon
 from app.pages.correct_page import CorrectPage, JointLine, WalkLine
 from app.pages.sentence_page import SentencePage
-from app.reports.visits import conditions_in_words, visits_by_condition
+from app.reports.visits import conditions_in_words, parts_of_visits, visits_by_condition
 from app.theme import ThemeNotifier
 from app.widgets.action_bar import BarAction, BarState
 from app.widgets.page_stack import PageStack
@@ -348,7 +348,9 @@ class ResultsStep(Step):
             return
         visits = [*found, (session, self._shown)]
         named = [(told.started[:10], analysis, told.recordings) for told, analysis in visits]
-        self.page.results().compare.show_visits(visits_by_condition(named), conditions_in_words(named))
+        self.page.results().compare.show_visits(
+            visits_by_condition(named), conditions_in_words(named), parts_of_visits(named)
+        )
 
     def _is_in_sight(self) -> bool:
         return self._frame is not None and self._frame.isVisible()

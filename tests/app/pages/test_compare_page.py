@@ -13,7 +13,7 @@ from pytestqt.qtbot import QtBot
 
 from app.icons import Icon
 from app.pages.compare_page import CURVES, PLOT, TABLE
-from app.pages.compared_words import side_table_row
+from app.pages.compared_words import side_table_row, table_rows
 from app.pages.result_page import COMPARE, ResultPage
 from app.reports.comparison import Comparison, Contrast, Part, compare_sides, conditions_of, first_and_second
 from app.reports.differences import (
@@ -26,7 +26,7 @@ from app.reports.differences import (
     write_sides,
 )
 from app.reports.patient_report.request import AnalysedVisit
-from app.reports.visits import ComparedVisits, WalkedVisit, conditions_in_words, visits_by_condition
+from app.reports.visits import ComparedVisits, WalkedVisit, conditions_in_words, parts_of_visits, visits_by_condition
 from app.theme import ThemeNotifier, load_fonts
 from app.widgets.table_cells import TextCell
 from app.widgets.text import SEMIBOLD
@@ -288,6 +288,39 @@ def test_one_condition_after_the_other_is_chosen_on_the_screen(
     assert "Not compared" not in compare.conclusion.text()
 
 
+def test_any_conditions_of_any_visits_can_be_chosen(page: ResultPage, analysis: Analysis, session: Session) -> None:
+    """The first and the last to begin with; between visits by the error of a new strapping and another day."""
+    compare = page.compare
+    compare.set_has_visits(True)
+    compare.kinds.setCurrentIndex(compare.kinds.findData(Contrast.VISITS))
+    visits = [walked("May", analysis, session, walk_1="A", walk_3="B"), walked("July", analysis, session, walk_1="C")]
+    compare.show_visits(visits_by_condition(visits), conditions_in_words(visits), parts_of_visits(visits))
+    compare.choose_kind(Contrast.CHOSEN)
+    assert compare.comparison is not None
+    assert [part.name for part in compare.comparison.parts] == ["May, A", "July, C"]
+    assert {compare.comparison.error_kind(part) for part in compare.comparison.others} == {ComparisonKind.VISITS}
+    assert compare.title.text() == "Change from 1A"
+    compare.chips.choose(["1A", "1B"])
+    compare.chips.turned.emit()
+    assert [part.name for part in compare.comparison.parts] == ["May, A", "May, B"]
+    assert {compare.comparison.error_kind(part) for part in compare.comparison.others} == {ComparisonKind.ATTACHED}
+
+
+def test_speed_cadence_and_stride_length_stand_first_and_are_judged(
+    page: ResultPage, analysis: Analysis, session: Session
+) -> None:
+    compare = page.compare
+    compare.set_has_visits(True)
+    compare.kinds.setCurrentIndex(compare.kinds.findData(Contrast.VISITS))
+    visits = [walked("May", analysis, session, walk_1="A"), walked("July", analysis, session, walk_3="A")]
+    compare.show_visits(visits_by_condition(visits))
+    assert compare.comparison is not None
+    heads = [letter for part in compare.comparison.parts for letter in part.letter]
+    rows = table_rows(compare.comparison, [*heads, "2 \N{MINUS SIGN} 1"])
+    names = list(dict.fromkeys(str(row.cells[1].words) for row in rows))
+    assert names[:3] == ["Walking speed, m/s", "Cadence, steps/min", "Stride length, m"]
+
+
 def test_visits_without_a_common_condition_are_not_compared_and_that_is_said(
     page: ResultPage, analysis: Analysis, session: Session
 ) -> None:
@@ -298,7 +331,7 @@ def test_visits_without_a_common_condition_are_not_compared_and_that_is_said(
     compare.show_visits(visits_by_condition(visits), conditions_in_words(visits))
     assert compare.nothing.text() == (
         "This visit has no condition in common with an earlier one, so they are not compared. "
-        "May: A, no condition stated. July: B."
+        "May: A, no condition stated. July: B. “Any visits and conditions” compares two that you choose."
     )
     assert not compare.plot.isVisible()
     assert compare.kinds.itemText(compare.kinds.currentIndex()) == "Visits"
@@ -374,10 +407,11 @@ def test_every_cell_of_the_table_says_leg_measure_and_part(
     cells, said = page.compare.table.cells, Qt.ItemDataRole.AccessibleTextRole
     shown(page, analysis, session, Contrast.CONDITIONS)
     assert not page.compare.table.isColumnHidden(0)
-    assert (cells.index(0, 0).data(), cells.index(0, 0).data(said)) == ("L", "left")
-    heard = str(cells.index(0, 4).data(said))
-    assert heard.startswith(f"L {cells.index(0, 1).data()}, B \N{MINUS SIGN} A: ")
-    assert heard.endswith(f": {cells.index(0, 4).data()}")
+    length = 2  # the first row of a leg: speed and cadence are of both
+    assert (cells.index(length, 0).data(), cells.index(length, 0).data(said)) == ("L", "left")
+    heard = str(cells.index(length, 4).data(said))
+    assert heard.startswith(f"L {cells.index(length, 1).data()}, B \N{MINUS SIGN} A: ")
+    assert heard.endswith(f": {cells.index(length, 4).data()}")
     shown(page, analysis, session, Contrast.SIDES)
     assert page.compare.table.isColumnHidden(0)
     assert str(cells.index(0, 2).data(said)).startswith(f"{cells.index(0, 1).data()}, L: ")
