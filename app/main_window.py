@@ -283,6 +283,7 @@ class MainWindow(QWidget):
             self._home.demonstration_wished.connect(self.open_demonstration)
             self._home.own_library_wished.connect(self._log_out)
             self._home.help_wished.connect(self._show_help)
+            self._home.lock_wished.connect(self.idle.lock_now)
             self._home.settings_left.connect(self._on_settings_left)
         return self._home
 

@@ -62,6 +62,7 @@ class Home(Themed):
     session_opened = Signal(object)  # UUID
     demonstration_wished = Signal()
     own_library_wished = Signal()  # from the demonstration back
+    lock_wished = Signal()
     help_wished = Signal(str)
     settings_left = Signal()
 
@@ -312,7 +313,7 @@ class Home(Themed):
             if is_demonstration
             else tr("Everything stays on this computer, encrypted.")
         )
-        self.rail.show_below(home_below(), note)
+        self.rail.show_below(home_below(can_lock=not is_demonstration), note)
         self.bar.show_state(self._bar())
         self.bar.setVisible(current is not self.working)
 
@@ -440,6 +441,8 @@ class Home(Themed):
     def _on_below_pressed(self, name: str) -> None:
         if name == "look":
             self._settings.scheme = Scheme.LIGHT if self._look.theme.is_dark else Scheme.DARK
+        elif name == "lock":
+            self.lock_wished.emit()
         elif name == "settings" and self.current is not self.working:
             self.show_settings()
         elif name == "help":

@@ -23,6 +23,7 @@ from core.verdicts.measurement_error import Difference, Judgement
 from core.verdicts.model import Verdict
 
 MINUS = "\N{MINUS SIGN}"
+LONGEST_LETTER = 4  # of parts: "C", "12", "12A"
 DASH = "\N{EN DASH}"
 DAGGER = "\N{DAGGER}"
 WALK_FIRST = {"speed_m_s": 0, "cadence_steps_min": 1, "stride_length_m": 2}  # the rows of a table
@@ -143,9 +144,9 @@ def _doubt(found: Difference) -> str:
     return DAGGER if found.is_unverified else ""
 
 
-def weight(row: Compared) -> tuple[int, float]:
+def weight(row: Compared) -> tuple[list[int], float]:
     """What is said first: of the latest part what lies furthest beyond the error."""
-    return -ord(row.part.letter), -row.difference.ratio
+    return [-ord(one) for one in row.part.letter.rjust(LONGEST_LETTER)], -row.difference.ratio
 
 
 def side_weight(row: SideRow) -> float:

@@ -16,11 +16,11 @@ from app.theme import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.field import Field
+from app.widgets.key_groups import KeyGroups
 from app.widgets.text import SEMIBOLD, Text
 from app.wording import tr, tr_n
 
 LONGEST_CODE = 12
-GROUPS = 3  # of the recovery key in a line
 
 
 class FirstStartPage(EntryPage):
@@ -79,7 +79,7 @@ class FirstStartPage(EntryPage):
             tone="ink2",
             wraps=True,
         )
-        self._key_words = Text(look, size=20, weight=SEMIBOLD, is_code=True, wraps=True)
+        self._key_words = KeyGroups(look)
         self.print = Button(look, tr("Print"), ButtonKind.SECONDARY, Icon.PRINT)
         self.save = Button(look, tr("Save as a file"), ButtonKind.SECONDARY, Icon.IMPORT)
         self.typed = Field(look, tr("Type it back from the paper or the file"), is_code=True)
@@ -125,8 +125,7 @@ class FirstStartPage(EntryPage):
         """Show the key, once, and forget the passphrase."""
         self.recovery_key, self._is_asking = key, False
         groups = key.split("-")
-        lines = [groups[k : k + GROUPS] for k in range(0, len(groups), GROUPS)]
-        self._key_words.setText("\n".join("   ".join(line) for line in lines))
+        self._key_words.show_groups(groups)
         for field in (self.passphrase, self.again, self.typed):
             field.set_text("")
         self._show()
@@ -273,7 +272,7 @@ class FirstStartPage(EntryPage):
             self.typed.setFocus()
             return
         self.recovery_key = ""
-        self._key_words.setText("")
+        self._key_words.show_groups([])
         self.typed.set_text("")
         self.done.emit()
 

@@ -36,6 +36,12 @@ class IdleLock:
             self._is_locked = True  # first: `lock` may let the timer poll again before it returns
             self._lock()
 
+    def lock_now(self) -> None:
+        """Lock without waiting, as somebody who leaves the desk asks for it."""
+        if not self._is_locked:
+            self._is_locked = True
+            self._lock()
+
     def note_activity(self) -> None:
         """A key or the mouse was used. It does not unlock."""
         self.poll()  # the mouse that wakes the machine must not come before the timer

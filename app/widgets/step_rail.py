@@ -28,8 +28,10 @@ def wizard_below() -> tuple[BelowRow, ...]:
     )
 
 
-def home_below() -> tuple[BelowRow, ...]:
+def home_below(*, can_lock: bool) -> tuple[BelowRow, ...]:
+    lock = (BelowRow("lock", tr("Lock"), Icon.LOCK),) if can_lock else ()  # a demonstration keeps nobody's secrets
     return (
+        *lock,
         BelowRow("look", tr("Light or dark"), Icon.LIGHT_OR_DARK),
         BelowRow("settings", tr("Settings"), Icon.SETTINGS),
         BelowRow("help", tr("Help"), Icon.HELP, tr("F1")),

@@ -350,6 +350,17 @@ def test_the_wait_after_wrong_passphrases_outlives_the_program(qtbot: QtBot, ope
     assert page.go.isEnabled()
 
 
+def test_who_leaves_the_desk_locks_the_library_at_once(qtbot: QtBot, open_window: Open, folder: Path) -> None:
+    window = open_window(folder)
+    logged_in(qtbot, window)
+    assert window.home is not None
+    (row,) = [one for one in window.home.rail.below if one.accessibleName() == "Lock"]
+    row.click()
+    assert window.is_covered
+    assert window.idle.is_locked
+    assert SECRET_CODE not in words_in_sight(window)
+
+
 def test_five_minutes_without_anybody_cover_the_library(qtbot: QtBot, open_window: Open, folder: Path) -> None:
     window = open_window(folder)
     logged_in(qtbot, window)

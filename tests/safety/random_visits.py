@@ -36,7 +36,7 @@ class SensibleUser(Hands):
 
     def _on_first_start(self, page: Any) -> str:
         if page.typed.isVisible():
-            self.recovery_key = "-".join(page._key_words.text().split())
+            self.recovery_key = "-".join(page._key_words.text.split())
             self.type_into(page.typed.line_edit, self.recovery_key)
             self.press(Key.Key_Return)
             return "types the key back"

@@ -54,10 +54,13 @@ def unplaced_hint() -> Hint:
 
 
 def last_hint(motion: FreeMotionState) -> Hint:
-    """When nothing is left to do: all ready, or some only as good as the motion gave."""
+    """When nothing is left to do: enough motion, or some joints only as good as it gave.
+
+    How well each joint is known is the walk's verdict: an ankle's axis comes from walking, too.
+    """
     if all(state.is_closed for state in motion.joints.values()):
-        how = tr("Walking comes next, by itself.")
-        return Hint(tr("All joints are ready"), how, how, Icon.CHECK)
+        how = tr("Walking comes next, by itself. It settles the ankles.")
+        return Hint(tr("Enough motion"), how, tr("Walking comes next."), Icon.CHECK)
     how = tr("Go on to walking, or repeat one leg.")
     return Hint(tr("As good as it gets"), how, how, Icon.INFO)
 

@@ -113,7 +113,7 @@ class FreeMotionStep(Step):
             return tr("cut short") if self._is_cut_short else ""
         ready = sum(state.is_closed for state in joints.values())
         if ready == len(joints):
-            return tr("All {count} ready").format(count=ready)
+            return tr("enough motion")
         return tr("{ready} of {count} ready").format(ready=ready, count=len(joints))
 
     @property

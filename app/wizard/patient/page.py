@@ -234,8 +234,8 @@ class PatientPage(Themed):
             self._row(self.birth_year, self.height_cm, self.mass_kg),
             self._row(side),
             self._row(self._limb_box, self.device),
-            self._row(self._ankle_box),
             self._row(aids),
+            self._row(self._ankle_box),  # last: where it comes and goes, nothing under the pointer moves
         ]
         for number, row in enumerate(self._rows):
             if number == 2:

@@ -119,3 +119,15 @@ def test_a_recording_goes_on_when_the_screen_locks_and_the_key_is_forgotten(tmp_
     records, damages, report = read_all(summary.path, KEY)
     assert [record.payload for record in records if record.kind is RecordKind.MARK] == [b'"seen"', b'"unseen"']
     assert (damages, report.is_whole) == ([], True)
+
+
+def test_who_leaves_the_desk_locks_at_once_and_only_once() -> None:
+    locked: list[None] = []
+    idle = IdleLock(lambda: 0.0, lambda: locked.append(None))
+    idle.lock_now()
+    idle.lock_now()
+    assert idle.is_locked
+    assert len(locked) == 1
+    idle.unlock()
+    idle.lock_now()
+    assert len(locked) == 2

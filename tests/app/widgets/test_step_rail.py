@@ -118,7 +118,7 @@ def test_home_has_icons_instead_of_numbers_and_no_line(rail: StepRail) -> None:
         RailRow("Import recordings", icon=Icon.IMPORT),
     )
     rail.show_rows(rows)
-    rail.show_below(home_below(), "Everything stays on this computer, encrypted.")
+    rail.show_below(home_below(can_lock=False), "Everything stays on this computer, encrypted.")
     assert [row.accessibleName() for row in rail.rows] == [
         "Patients, current",
         "Open demonstration",

@@ -108,7 +108,7 @@ def test_a_hint_goes_at_once_when_its_joint_is_settled(is_closed: bool, is_plate
 
 def test_at_the_end_it_says_whether_all_are_ready_or_only_as_good_as_they_get() -> None:
     ready = state(1, 8, None, is_closed=True)
-    assert last_hint(motion({Joint.LEFT_KNEE: ready})).sentence == "All joints are ready"
+    assert last_hint(motion({Joint.LEFT_KNEE: ready})).sentence == "Enough motion"
     mixed = motion({Joint.LEFT_KNEE: ready, Joint.RIGHT_KNEE: state(4, 8, is_plateau=True)})
     assert HintHold().ask(mixed, 0.0).hint.sentence == "As good as it gets"
 
@@ -132,7 +132,7 @@ def test_what_is_ready_the_second_time_is_asked_for_no_longer() -> None:
         asked = hold.ask(left, float(now_s))
     assert asked.joint is Joint.LEFT_KNEE
     ready = motion({Joint.LEFT_KNEE: state(1, 8, None, is_closed=True)})
-    assert hold.ask(ready, RESTS_S + 1.0).hint.sentence == "All joints are ready"
+    assert hold.ask(ready, RESTS_S + 1.0).hint.sentence == "Enough motion"
 
 
 def test_stopping_costs_nothing_when_all_are_ready() -> None:

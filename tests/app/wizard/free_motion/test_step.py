@@ -77,7 +77,7 @@ def test_it_records_at_once_and_goes_on_by_itself_when_all_gauges_are_closed(
     assert moved is not None
     assert moved.read_back is not None
     assert set(moved.read_back.imu) == set(Site)
-    assert (step.state, step.note) == (StepState.DONE, "All 4 ready")
+    assert (step.state, step.note) == (StepState.DONE, "enough motion")
 
 
 def test_a_plateau_is_said_and_left_to_the_therapist(

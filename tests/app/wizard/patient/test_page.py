@@ -3,7 +3,7 @@
 from datetime import date
 
 import pytest
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QAbstractButton, QLabel, QLineEdit
 from pytestqt.qtbot import QtBot
@@ -87,6 +87,19 @@ def test_a_prosthetic_side_is_asked_about_its_ankle(page: PatientPage, edits: li
     assert edits[-1].without_ankle == {Side.RIGHT}
     page.limb.segments[0].click()
     assert edits[-1] == PatientDraft(Patient(affected_side="right", prosthetic_side="none"))
+
+
+def test_where_the_prosthetic_foot_is_asked_about_nothing_else_moves_down(page: PatientPage, qtbot: QtBot) -> None:
+    """Its row came under the pointer that had just chosen it, and pushed down what was there."""
+    page.side.segments[2].click()
+    controls = [page.code, page.sex, page.side, page.limb, page.device, page.aids]
+    qtbot.wait(20)
+    before = [one.mapTo(page, QPoint(0, 0)).y() for one in controls]
+    assert not page.ankles[Side.RIGHT].isVisible()
+    page.limb.segments[1].click()
+    qtbot.waitUntil(page.ankles[Side.RIGHT].isVisible)
+    qtbot.wait(20)
+    assert [one.mapTo(page, QPoint(0, 0)).y() for one in controls] == before
 
 
 def test_aids_are_chosen_by_arrows_and_space(page: PatientPage, edits: list[PatientDraft]) -> None:
