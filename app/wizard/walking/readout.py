@@ -1,8 +1,8 @@
 """A walk as seen live: the last seconds of angles, phases and steps. The estimator makes it, the page draws it."""
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field, replace
 
 from core.body import Joint, Side, Site
 from core.gait.phases import Phase
@@ -46,7 +46,7 @@ class WalkingReadout:
     Attributes
     ----------
     now_s
-        The newest sample of any sensor, NaN before the first. When all are silent, it stands still.
+        The newest sample of any sensor, NaN before the first; while all are silent, the time that goes on meanwhile.
     joints
         Of every joint with a calibration whose two sensors are worn.
     lanes, strides
@@ -72,3 +72,17 @@ class WalkingReadout:
     @property
     def ankles(self) -> dict[Side, LiveTrace]:
         return {joint.side: trace for joint, trace in self.joints.items() if not joint.is_knee}
+
+    def while_silent(self, now_s: float, sites: Collection[Site]) -> "WalkingReadout":
+        """The same at `now_s` while no sensor is heard: time goes on, what came last ends there, nothing is made up."""
+        if math.isnan(self.now_s) or now_s <= self.now_s:
+            return self
+        lanes = {side: _silent_since(lane, self.now_s) for side, lane in self.lanes.items()}
+        missing = tuple(site for site in Site if site in sites)
+        return replace(self, now_s=now_s, lanes=lanes, cadence_steps_min=math.nan, missing=missing)
+
+
+def _silent_since(lane: LiveLane, from_s: float) -> LiveLane:
+    spans = tuple(replace(span, end_s=from_s) if span.end_s is None else span for span in lane.spans)
+    is_silent = any(end_s is None for _, end_s in lane.silent_s)
+    return LiveLane(spans, lane.silent_s if is_silent else (*lane.silent_s, (from_s, None)))

@@ -161,7 +161,9 @@ class WalkingStep(Step):
         self._ticks += 1
         if self._estimator is None or not self._visit.recordings.is_recording:
             return
-        view = self._estimator.state
+        view, sensors = self._estimator.state, self._visit.sensors
+        if sensors.are_silent and sensors.acquisition is not None:
+            view = view.while_silent(sensors.acquisition.now_s, sensors.site_of.values())
         if view is self._shown or math.isnan(view.now_s):
             return
         self._shown = view

@@ -12,6 +12,7 @@ from app.theme import ThemeNotifier, load_fonts
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.results.step import ResultsStep
 from app.wizard.visit import Visit
+from app.wizard.walking.readout import WalkingReadout
 from app.wizard.walking.step import WalkingStep
 from app.wizard.walking.walk_list import WalkState
 from core.body import Joint, Site
@@ -174,6 +175,21 @@ def test_sensors_strapped_anew_go_back_to_standing(qtbot: QtBot, step: WalkingSt
     assert visit.recordings.is_restrapped
     assert step.cannot_enter
     assert not step.on_intent(Intent(KeyAction.KEEP))
+
+
+def test_while_no_sensor_is_heard_the_charts_go_on_with_a_gap(
+    qtbot: QtBot, step: WalkingStep, visit: Visit, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    step.on_primary()
+    qtbot.waitUntil(lambda: visit.recordings.is_recording, timeout=10_000)
+    acquisition, shown = visit.sensors.acquisition, list[WalkingReadout]()
+    assert acquisition is not None
+    monkeypatch.setattr(step.page, "show_view", shown.append)
+    silent = {name: replace(status, silent_s=4.0) for name, status in acquisition.status().items()}
+    monkeypatch.setattr(acquisition, "status", lambda: silent)
+    qtbot.waitUntil(lambda: len(shown) > 3 and set(shown[-1].missing) == set(visit.sensors.site_of.values()))
+    assert shown[-1].now_s > shown[-2].now_s
+    assert all(lane.silent_s[-1][1] is None for lane in shown[-1].lanes.values())
 
 
 def test_while_no_sensor_is_heard_no_walk_is_started(
