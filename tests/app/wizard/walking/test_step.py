@@ -190,6 +190,9 @@ def test_while_no_sensor_is_heard_the_charts_go_on_with_a_gap(
     qtbot.waitUntil(lambda: len(shown) > 3 and set(shown[-1].missing) == set(visit.sensors.site_of.values()))
     assert shown[-1].now_s > shown[-2].now_s
     assert all(lane.silent_s[-1][1] is None for lane in shown[-1].lanes.values())
+    with qtbot.waitSignal(visit.recordings.ended, timeout=10_000):
+        step.on_intent(RUN)
+    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=20_000)
 
 
 def test_while_no_sensor_is_heard_no_walk_is_started(
