@@ -189,4 +189,37 @@ MOUSE: tuple[Stop, ...] = (
     Stop("16-leave", at_step("ReportStep"), ("click All patients",)),
     Stop("17-home-again", offers("New session"), lingers_s=1.0),
 )
-TOURS = {"keyboard": KEYBOARD, "mouse": MOUSE}
+SECOND_BY_KEYS: tuple[Stop, ...] = (  # the same patient comes back: nothing is typed, one condition is walked
+    Stop("21-second-visit", offers("New session"), ("press Return",), lingers_s=1.0),
+    Stop("22-patient", offers("Same set-up"), ("to Same set-up", "press Return"), lingers_s=1.0),
+    Stop("23-source", at_step("SensorsStep"), ("press Return",), lingers_s=1.0),
+    Stop("23a-placed", says("All six are worn"), ("press Return",), lingers_s=1.0),
+    Stop("24a-stand-still", at_step("StandStillStep"), ("press space",), lingers_s=1.0),
+    Stop("24b-free-motion", lambda seen: at_step("FreeMotionStep")(seen) and seen.is_recording, lingers_s=7.0),
+    *walk(15, ("press 1", "press space"), "press space"),
+    Stop("24d-keep", offers("Keep 1"), ("press k",), lingers_s=1.0),
+    Stop("24e-kept", offers("Results"), ("press Return",), lingers_s=1.0),
+    Stop("25a-results", offers("Legs", "Data"), ("press ctrl+7",), lingers_s=2.0, patience_s=60.0),
+    Stop("26a-report", at_step("ReportStep"), ("press ctrl+s",), lingers_s=2.0),
+    Stop("26b-where", offers("Save"), ("press ctrl+a", "type {home}/second", "press Return"), lingers_s=1.0),
+    Stop("26c-saved", says("Saved as"), ("to Step 7", "press Down", "press Return"), lingers_s=1.0),
+    Stop("27-home-again", offers("New session"), lingers_s=2.0),
+)
+SECOND_BY_MOUSE: tuple[Stop, ...] = (
+    Stop("21-second-visit", offers("New session"), ("click New session",), lingers_s=1.0),
+    Stop("22-patient", offers("Same set-up"), ("click Same set-up",), lingers_s=1.0),
+    Stop("23-source", at_step("SensorsStep"), ("click Simulated patient",), lingers_s=1.0),
+    Stop("23a-placed", says("All six are worn"), ("click Stand still",), lingers_s=1.0),
+    Stop("24a-stand-still", at_step("StandStillStep"), ("click Start the count",), lingers_s=1.0),
+    Stop("24b-free-motion", lambda seen: at_step("FreeMotionStep")(seen) and seen.is_recording, lingers_s=7.0),
+    *walk(15, ("click Shoes", "click Start walk"), "click Stop walk"),
+    Stop("24d-keep", offers("Keep 1"), ("click Keep 1",), lingers_s=1.0),
+    Stop("24e-kept", offers("Results"), ("click Results",), lingers_s=1.0),
+    Stop("25a-results", offers("Legs", "Data"), ("click Compare",), lingers_s=2.0, patience_s=60.0),
+    Stop("25b-compare", offers("Differences"), ("click Go to the report",), lingers_s=1.0),
+    Stop("26a-report", at_step("ReportStep"), ("click Save the report",), lingers_s=2.0),
+    Stop("26b-where", offers("Save"), ("click Save",), lingers_s=1.0),
+    Stop("26c-saved", says("Saved as"), ("click All patients",), lingers_s=1.0),
+    Stop("27-home-again", offers("New session"), lingers_s=2.0),
+)
+TOURS = {"keyboard": (*KEYBOARD, *SECOND_BY_KEYS), "mouse": (*MOUSE, *SECOND_BY_MOUSE)}

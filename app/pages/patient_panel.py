@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from PySide6.QtCore import QPoint, Qt, Signal
 from PySide6.QtGui import QAction
-from PySide6.QtWidgets import QHBoxLayout, QMenu, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QMenu, QSizePolicy, QVBoxLayout, QWidget
 
 from app.icons import Icon
 from app.pages.home_course import CourseCard
@@ -152,6 +152,11 @@ class PatientPanel(Themed):
         chosen = self.condition.currentData()
         shown = lanes(self._visits, None if chosen in (ALL, None) else chosen)
         self.course.show_course(self._visits, shown, list(conditions_of_visits(self._visits)))
+        has_lanes = any(lane.lines for lane in shown)  # without any there is a line of words, and no room is taken
+        self._column.setStretchFactor(self.course, int(has_lanes))
+        self._column.setStretch(self._column.count() - 1, int(not has_lanes))
+        policy = QSizePolicy.Policy.Preferred if has_lanes else QSizePolicy.Policy.Maximum
+        self.course.setSizePolicy(QSizePolicy.Policy.Preferred, policy)
 
     def _on_more(self) -> None:
         self.menu.popup(self.more.mapToGlobal(QPoint(0, self.more.height())))
