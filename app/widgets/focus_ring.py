@@ -2,7 +2,7 @@
 
 from PySide6.QtCore import QEvent, QObject, QPoint, QRect, QRectF, Qt
 from PySide6.QtGui import QPainter, QPaintEvent, QRegion
-from PySide6.QtWidgets import QApplication, QWidget
+from PySide6.QtWidgets import QAbstractScrollArea, QApplication, QWidget
 from shiboken6 import isValid
 
 from app.theme import ThemeNotifier
@@ -51,7 +51,7 @@ class FocusRing(QWidget):
         self._follow()
 
     def _follow(self) -> None:
-        seen = self._chain[0].visibleRegion().boundingRect() if self._chain else QRect()
+        seen = _seen_of(self._chain[0]) if self._chain else QRect()
         if seen.isEmpty() or self._chain[0].property(NO_RING):
             self.hide()
             return
@@ -62,3 +62,12 @@ class FocusRing(QWidget):
         self.setMask(QRegion(self.rect()) - QRegion(inside))  # so that it is not painted with what moves inside it
         self.raise_()
         self.show()
+
+
+def _seen_of(widget: QWidget) -> QRect:
+    """What is in sight of a control; of one that scrolls, its content as well, which Qt counts as another widget."""
+    seen = widget.visibleRegion().boundingRect()
+    if isinstance(widget, QAbstractScrollArea):
+        inside = widget.viewport()
+        seen = seen.united(inside.visibleRegion().boundingRect().translated(inside.pos()))
+    return seen

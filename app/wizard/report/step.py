@@ -59,6 +59,12 @@ def folder_name(code: str, started: str) -> str:
     return f"{safe or 'session'}_{started[:10]}"
 
 
+def free_name(place: Path, name: str) -> str:
+    """A name that is not taken in a folder: a second session of a day stands beside the first."""
+    names = (name, *(f"{name}_{number}" for number in range(2, 1000)))
+    return next((one for one in names if not (place / one).exists()), name)
+
+
 class ReportStep(Step):
     def __init__(
         self, look: ThemeNotifier, visit: "Visit", controller: LibraryController, parent: QObject | None = None
@@ -158,7 +164,8 @@ class ReportStep(Step):
         self.dialog.setFileMode(QFileDialog.FileMode.AnyFile)
         if self._visit.session is not None:
             told = self._visit.session.details
-            self.dialog.selectFile(folder_name(told.patient.code, told.started))
+            place = Path(self.dialog.directory().absolutePath())
+            self.dialog.selectFile(free_name(place, folder_name(told.patient.code, told.started)))
         self.dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.dialog.fileSelected.connect(self.save_in)
         self.dialog.open()

@@ -16,7 +16,7 @@ from app.theme import ThemeNotifier
 from app.widgets.rail_row import StepState
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.report.leaving_dialog import LeavingDialog
-from app.wizard.report.step import ReportStep, folder_name
+from app.wizard.report.step import ReportStep, folder_name, free_name
 from app.wizard.visit import Visit
 from app.workers.library_controller import LibraryController
 from core.analysis import analyse
@@ -235,3 +235,10 @@ def test_ctrl_s_saves_as_its_cap_says(qtbot: QtBot, visit: Visit, monkeypatch: p
 )
 def test_the_folder_proposed_is_named_by_code_and_day_and_by_nothing_a_system_refuses(code: str, name: str) -> None:
     assert folder_name(code, "2026-11-20T10:00:00+00:00") == name
+
+
+def test_a_second_session_of_a_day_is_proposed_a_folder_of_its_own(tmp_path: Path) -> None:
+    assert free_name(tmp_path, "P-1_2026-11-23") == "P-1_2026-11-23"
+    for taken in ("P-1_2026-11-23", "P-1_2026-11-23_2"):
+        (tmp_path / taken).mkdir()
+    assert free_name(tmp_path, "P-1_2026-11-23") == "P-1_2026-11-23_3"
