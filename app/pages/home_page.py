@@ -5,7 +5,7 @@ from uuid import UUID
 
 from PySide6.QtCore import QEvent, QModelIndex, QObject, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QFontMetrics, QKeyEvent, QKeySequence, QPainter, QPaintEvent
-from PySide6.QtWidgets import QHBoxLayout, QLineEdit, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QApplication, QHBoxLayout, QLineEdit, QSizePolicy, QVBoxLayout, QWidget
 
 from app.icons import Icon, paint_icon
 from app.pages.home_empty import EmptyLibrary
@@ -100,8 +100,12 @@ class HomePage(Themed):
 
     def show_patients(self, lines: Sequence[PatientLine], chosen: UUID | None = None) -> None:
         """Show all patients there are, with one of them chosen, else the first that the search lets through."""
+        focused = QApplication.focusWidget()
+        is_left = focused is not None and self.empty.isAncestorOf(focused)
         self._patients = tuple(lines)
         self._filter(chosen)
+        if is_left and not self.is_empty:  # what had the focus has gone, and Qt would give it to what is next to it
+            self.focus()
 
     def show_patient(self, code: str, person: str) -> None:
         """Say whose sessions stand at the right; nobody's where there is no code."""

@@ -89,6 +89,17 @@ def test_an_empty_library_offers_a_patient_and_the_demonstration(qtbot: QtBot, p
     assert not page.empty.isVisible()
 
 
+def test_the_first_patient_puts_the_focus_into_the_search(qtbot: QtBot, page: HomePage) -> None:
+    """It went to the button beside, and Enter began another patient."""
+    page.activateWindow()
+    qtbot.waitUntil(page.isActiveWindow)
+    page.show_patients([])
+    page.focus()
+    assert page.empty.new_patient.hasFocus()
+    page.show_patients([patient(1)])
+    assert page.search.hasFocus()
+
+
 def test_a_line_says_all_of_itself_to_a_reader_of_screens(page: HomePage) -> None:
     page.show_patients([patient(147)])
     said = page.patients.cells.data(page.patients.cells.index(0, 0), Qt.ItemDataRole.AccessibleTextRole)
