@@ -46,6 +46,7 @@ class Icon(StrEnum):
     SEARCH = "search"
     DELETE = "delete"
     LOCK = "lock"
+    EDIT = "edit"
     PRINT = "print"
     LIGHT = "light"
     GRIP = "grip"

@@ -48,6 +48,8 @@ class WalkingPage(Themed):
         What the next walk is called.
     keep_pressed, discard_pressed, undo_pressed
         With the walk's id; undo takes back that it was discarded.
+    renamed
+        The id of a walk that was kept, and the condition that somebody typed for it.
     restrapped_pressed
         The sensors were taken off and put on again.
     """
@@ -56,6 +58,7 @@ class WalkingPage(Themed):
     keep_pressed = Signal(str)
     discard_pressed = Signal(str)
     undo_pressed = Signal(str)
+    renamed = Signal(str, str)
     restrapped_pressed = Signal()
 
     keeps_place_for_messages = True
@@ -93,7 +96,7 @@ class WalkingPage(Themed):
     def tab_order(self) -> list[QWidget]:
         """The controls in the order of reading, those of this moment only."""
         controls: list[QWidget] = [*self.tabs.segments, self.stopped.keep, self.stopped.discard]
-        controls += [*self.walks.undo_buttons, self.walks.restrapped]
+        controls += [*self.walks.buttons, self.walks.restrapped]
         controls += [*self.next.chooser.buttons, self.next.chooser.own.line_edit]
         return [one for one in controls if one.isVisibleTo(self)]
 
@@ -216,6 +219,7 @@ class WalkingPage(Themed):
         self.stopped.keep.clicked.connect(self._on_keep_clicked)
         self.stopped.discard.clicked.connect(self._on_discard_clicked)
         self.walks.undo_pressed.connect(self.undo_pressed)
+        self.walks.renamed.connect(self.renamed)
         self.walks.restrapped_pressed.connect(self.restrapped_pressed)
         self.tabs.chosen.connect(self._arrange)
 

@@ -77,6 +77,7 @@ class WalkingStep(Step):
             page.keep_pressed.connect(self._on_keep_pressed)
             page.discard_pressed.connect(self._on_discard_pressed)
             page.undo_pressed.connect(self._on_undo_pressed)
+            page.renamed.connect(self._on_renamed)
             page.restrapped_pressed.connect(self._on_restrapped_pressed)
         return self._page
 
@@ -506,6 +507,11 @@ class WalkingStep(Step):
     @Slot(str)
     def _on_undo_pressed(self, identity: str) -> None:
         self._on_keep_pressed(identity)
+
+    @Slot(str, str)
+    def _on_renamed(self, identity: str, condition: str) -> None:
+        if (recording := self._recording(UUID(identity))) is not None:
+            self._visit.recordings.change(recording, lambda told: replace(told, condition=condition))
 
     @Slot()
     def _on_restrapped_pressed(self) -> None:

@@ -19,6 +19,7 @@ from app.theme import ThemeNotifier
 from app.tokens import CHIP_RADIUS, CONTROL_RADIUS
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
+from app.widgets.field import Field
 from app.widgets.icons import IconMark
 from app.widgets.painted_button import PaintedButton
 from app.widgets.painted_text import CENTRE, PaintedText, height_for
@@ -69,6 +70,7 @@ class WalkList(Card):
     """The newest walk is in sight. Below the list: what to press when the sensors came off."""
 
     undo_pressed = Signal(str)
+    renamed = Signal(str, str)  # a walk that was kept, and the condition that somebody typed
     restrapped_pressed = Signal()
 
     def __init__(self, look: ThemeNotifier) -> None:
@@ -99,8 +101,10 @@ class WalkList(Card):
         self.restrapped.clicked.connect(self.restrapped_pressed)
 
     @property
-    def undo_buttons(self) -> list[QWidget]:
-        return [row.undo for row in self._rows if not row.undo.isHidden()]
+    def buttons(self) -> list[QWidget]:
+        """Of the rows, from above to below."""
+        every = [control for row in self._rows for control in (row.edit, row.field, row.undo)]
+        return [control for control in every if not control.isHidden()]
 
     def show_walks(self, rows: tuple[WalkRow, ...]) -> None:
         """Show these, in the order of recording; a row that stays keeps the focus."""
@@ -142,47 +146,57 @@ class WalkList(Card):
         self._fit()
 
 
+MARKS = {
+    WalkState.KEPT: Icon.CHECK,
+    WalkState.RECORDING: Icon.RECORDING,
+    WalkState.RECOVERED: Icon.WARNING,
+    WalkState.ASKING: Icon.UNCHECKED,
+}
+
+
 class _ListedWalk(Themed):
     def __init__(self, look: ThemeNotifier, owner: WalkList) -> None:
         super().__init__()
         self._look, self._owner = look, owner
         self._walk = WalkRow("", "", "", WalkState.KEPT)
+        self._is_edited = False
         self._label = Text(look, size=15, weight=MEDIUM, wraps=True)
         self._note = Text(look, size=12, tone="ink2", wraps=True)
         self._mark = IconMark(look, Icon.CHECK, size=20)
         self.undo = Button(look, tr("Undo"), ButtonKind.QUIET, height=44)
+        self.edit = Button(look, "", ButtonKind.QUIET, Icon.EDIT, height=44)
+        self.field = Field(look, tr("Condition of this walk"), has_label=False)
         self._words = QVBoxLayout()
         self._words.addStretch(1)
+        self._words.addWidget(self.field)
         self._words.addWidget(self._label)
         self._words.addWidget(self._note)
         self._words.addStretch(1)
         self._row = QHBoxLayout(self)
         self._row.addLayout(self._words, 1)
         self._row.addWidget(self._mark)
+        self._row.addWidget(self.edit)
         self._row.addWidget(self.undo)
         self.undo.clicked.connect(self._on_undo_clicked)
+        self.edit.clicked.connect(self._on_edit_clicked)
+        self.field.committed.connect(self._on_committed)
+        self.field.line_edit.editingFinished.connect(self._on_left)
         self._on_look_changed()
 
     def show_walk(self, walk: WalkRow) -> None:
+        is_same = (walk.id, walk.label, walk.state) == (self._walk.id, self._walk.label, self._walk.state)
+        self._is_edited &= is_same  # strides that are counted meanwhile take nobody's words away
         self._walk = walk
         self._label.setText(walk.label)
         self._note.setText(walk.note)
-        self._note.setVisible(bool(walk.note))
+        self.edit.setAccessibleName(tr("Rename {label}").format(label=walk.label))
         had_focus = self.undo.hasFocus()
-        self.undo.setVisible(walk.state is WalkState.DISCARDED)
         self.undo.setAccessibleName(tr("Keep {label} after all").format(label=walk.label))
         if had_focus and walk.state is not WalkState.DISCARDED:
             self._owner.setFocus()
-        marks = {
-            WalkState.KEPT: Icon.CHECK,
-            WalkState.RECORDING: Icon.RECORDING,
-            WalkState.RECOVERED: Icon.WARNING,
-            WalkState.ASKING: Icon.UNCHECKED,
-        }
-        mark = marks.get(walk.state)
-        self._mark.setVisible(mark is not None)
-        if mark is not None:
+        if (mark := MARKS.get(walk.state)) is not None:
             self._mark.set_icon(mark)
+        self._show_parts()
         self._label.set_tone("ink2" if walk.state is WalkState.DISCARDED else "ink")
         state = tr("kept") if walk.state is WalkState.KEPT else ""
         self.setAccessibleName(", ".join(filter(None, [walk.letter, walk.label, walk.note, state])))
@@ -211,6 +225,36 @@ class _ListedWalk(Themed):
 
     def _on_undo_clicked(self) -> None:
         self._owner.undo_pressed.emit(self._walk.id)
+
+    def _on_edit_clicked(self) -> None:
+        self._is_edited = True
+        self.field.set_text(self._walk.label)
+        self._show_parts()
+        self.field.line_edit.setFocus()
+        self.field.line_edit.selectAll()
+
+    def _on_committed(self) -> None:
+        label = self.field.text.strip()
+        if label and label != self._walk.label:
+            self._owner.renamed.emit(self._walk.id, label)
+
+    def _on_left(self) -> None:
+        """Show the walk again instead of the field, the focus on what opened it."""
+        if self._is_edited:
+            had_focus = self.field.line_edit.hasFocus()
+            self._is_edited = False
+            self._show_parts()
+            if had_focus:
+                self.edit.setFocus()
+
+    def _show_parts(self) -> None:
+        walk, is_edited = self._walk, self._is_edited
+        self.field.setVisible(is_edited)
+        self._label.setVisible(not is_edited)
+        self._note.setVisible(bool(walk.note) and not is_edited)
+        self._mark.setVisible(walk.state in MARKS and not is_edited)
+        self.edit.setVisible(walk.state is WalkState.KEPT and not is_edited)
+        self.undo.setVisible(walk.state is WalkState.DISCARDED)
 
     def _on_look_changed(self) -> None:
         px = self._look.theme.px

@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QAbstractButton, QApplication, QLabel, QPushButton
 from pytestqt.qtbot import QtBot
 
 from app.theme import ThemeNotifier, load_fonts
+from app.widgets.field import Field
 from app.wizard.walking.page import WalkingPage
 from app.wizard.walking.readout import LiveLane, LiveTrace, PhaseSpan, WalkingReadout
 from app.wizard.walking.walk_list import WalkRow, WalkState
@@ -44,6 +45,38 @@ def page(qtbot: QtBot, look: ThemeNotifier, request: pytest.FixtureRequest) -> W
     page.show_labels(LABELS, "Shoes")
     page.show()
     return page
+
+
+def test_a_kept_walk_is_renamed_where_it_was_made(qtbot: QtBot, page: WalkingPage) -> None:
+    page.show_walks((KEPT, DISCARDED))
+    (edit,) = [one for one in page.walks.buttons if one.accessibleName() == "Rename Barefoot"]
+    assert isinstance(edit, QAbstractButton)
+    edit.click()
+    field = page.walks.findChildren(Field)[0]
+    assert field.isVisible()
+    assert not edit.isVisible()
+    QTest.keyClicks(field.line_edit, "Own shoes")
+    page.show_walks((replace(KEPT, strides=19), DISCARDED))  # counted meanwhile
+    assert field.isVisible()
+    with qtbot.waitSignal(page.renamed) as renamed:
+        QTest.keyClick(field.line_edit, Qt.Key.Key_Return)
+    assert renamed.args == ["1", "Own shoes"]
+    page.show_walks((replace(KEPT, label="Own shoes"), DISCARDED))
+    assert not field.isVisible()
+    assert [one.accessibleName() for one in page.walks.buttons] == ["Rename Own shoes", "Keep Shoes after all"]
+
+
+def test_a_name_that_stays_or_is_empty_renames_nothing(qtbot: QtBot, page: WalkingPage) -> None:
+    page.show_walks((KEPT,))
+    (edit,) = page.walks.buttons
+    assert isinstance(edit, QAbstractButton)
+    for keys in ("Barefoot", " "):
+        edit.click()
+        field = page.walks.findChildren(Field)[0]
+        QTest.keyClicks(field.line_edit, keys)
+        with qtbot.assertNotEmitted(page.renamed):
+            QTest.keyClick(field.line_edit, Qt.Key.Key_Return)
+        assert not field.isVisible()
 
 
 def live(now_s: float = 5.0, knee_deg: float = 30.4, is_provisional: bool = False) -> WalkingReadout:
@@ -113,7 +146,7 @@ def test_a_stopped_walk_is_kept_or_discarded(page: WalkingPage, qtbot: QtBot) ->
 
 def test_what_was_discarded_can_come_back(page: WalkingPage, qtbot: QtBot) -> None:
     page.show_walks((KEPT, DISCARDED))
-    (undo,) = page.walks.undo_buttons
+    (undo,) = [one for one in page.walks.buttons if one.accessibleName().startswith("Keep")]
     assert undo.accessibleName() == "Keep Shoes after all"
     with qtbot.waitSignal(page.undo_pressed) as undone:
         QTest.keyClick(undo, Qt.Key.Key_Return)
@@ -215,7 +248,7 @@ def test_a_provisional_ankle_is_said(page: WalkingPage) -> None:
 
 def test_rows_are_read_with_their_state(page: WalkingPage) -> None:
     page.show_walks((KEPT, DISCARDED, RECORDING))
-    names = [row.accessibleName() for row in page.walks.findChildren(QWidget) if hasattr(row, "undo")]
+    names = [row.accessibleName() for row in page.walks.findChildren(QWidget) if hasattr(row, "field")]
     assert names == ["A, Barefoot, 18 strides, kept", "B, Shoes, discarded", "C, AFO, recording"]
 
 
