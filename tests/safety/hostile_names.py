@@ -121,7 +121,9 @@ def numbers_and_figures(data: dict[str, Any]) -> list[Any]:
     first = data["first_page"]
     found: list[Any] = [first[name] for name in ("readable", "curves", "quality")]
     for block in (*first["key_numbers"], *(block for page in data["pages"] for block in page)):
-        if block["kind"] == "table":
+        if block["kind"] == "table" and block["columns"][0]["title"] == "":  # of what is compared, by its names
+            found.append([[cell for k, cell in enumerate(row["cells"]) if k != 1] for row in block["rows"]])
+        elif block["kind"] == "table":
             found.append(block)
         elif block["kind"] == "figures":
             found.append(block["pictures"])

@@ -42,7 +42,7 @@ from app.reports.visits import by_condition, condition_in_words
 from app.wording import capitalised, joined, tr
 from core.body import Side
 from core.verdicts.measurement_error import ComparisonKind, sigma_of
-from core.verdicts.model import Verdict
+from core.verdicts.model import Verdict, worst
 from core.verdicts.quantities import EXCURSIONS_BY_COLUMN
 
 PLOT_WIDTH = 53 * MM  # with the table of three parts, or a line more of words, this fills a Letter page
@@ -112,9 +112,9 @@ def _day_of(started: str) -> str:
 def comparison_page(comparison: Comparison, shown: Facts) -> list[Block]:
     """`shown` is the walk that the other pages are of: it belongs to the last part."""
     title = tr("Comparison of visits") if comparison.kind is Contrast.VISITS else tr("Comparison of conditions")
-    items = [_legend_entry(comparison, k) for k in range(len(comparison.parts))]
+    sides = [side for side in shown.first_and_second if side in comparison.sides]
     kinds = [kind for kind in KINDS if any(joint_of(kind, side) in comparison.joints for side in Side)]
-    pictures = [_panel(comparison, shown, side, kind) for kind in kinds for side in comparison.sides]
+    pictures = [_panel(comparison, shown, side, kind) for kind in kinds for side in sides]
     band = (
         panels.band_swatches()
         if any(_band(comparison, shown, kind, side) is not None for kind in kinds for side in comparison.sides)
@@ -123,17 +123,44 @@ def comparison_page(comparison: Comparison, shown: Facts) -> list[Block]:
     return [
         heading(title),
         paragraph(_what_else_changed(comparison)),
-        legend([*items, *band], columns=2 if len(items) == 2 else 3),
+        _parts_table(comparison),
+        *([legend(band, columns=3)] if band else []),
         figures(pictures, columns=2),
-        _table(comparison, shown, [side for side in shown.first_and_second if side in comparison.sides]),
+        _table(comparison, shown, sides),
         note(" ".join(filter(None, [_how_judged(comparison), left_out_of_parts(comparison.parts)]))),
     ]
 
 
-def _legend_entry(comparison: Comparison, k: int) -> tuple[Picture, str]:
-    looks = [(side, *compared_look(k, len(comparison.parts), side)) for side in comparison.sides]
-    part = comparison.parts[k]
-    return panels.pair_swatch(part.letter, looks), typed(part.name, CONDITION_LENGTH)
+def _parts_table(comparison: Comparison) -> Block:
+    """What is compared: the lines of each, its strides and speed, and what may be read of it."""
+    is_visits = comparison.kind is Contrast.VISITS
+    columns = [
+        Column("", is_number=False),
+        Column(tr("Visit") if is_visits else tr("Condition"), "1fr", is_number=False),
+        Column(tr("Strides")),
+        Column(tr("Speed, m/s")),
+        *(Column(head, "25mm", is_number=False) for head in (tr("Shape, range"), tr("Height"), tr("Timing"))),
+    ]
+    rows: list[Row] = []
+    for k, part in enumerate(comparison.parts):
+        looks = [(side, *compared_look(k, len(comparison.parts), side)) for side in comparison.sides]
+        joints = [part.verdicts.joint(joint) for joint in part.joints]
+        worst_of = (
+            worst(found.shape.verdict for found in joints),
+            worst(found.height.verdict for found in joints),
+            worst(part.verdicts.leg(side).timing.verdict for side in part.sides),
+        )
+        strides = ", ".join(f"{side[0].upper()}\u00a0{part.strides(side)}" for side in part.sides)
+        rows.append(
+            [
+                Cell(part.letter, picture=panels.pair_swatch(part.letter, looks)),
+                typed(part.name, CONDITION_LENGTH),
+                strides,
+                fixed(part.of_both("speed_m_s"), 2),
+                *map(verdict_word, worst_of),
+            ]
+        )
+    return table(columns, rows, is_dense=True)
 
 
 def _panel(comparison: Comparison, shown: Facts, side: Side, kind: str) -> Picture:
@@ -200,22 +227,29 @@ def _table(comparison: Comparison, shown: Facts, sides: Sequence[Side]) -> Block
         rows.append(tr("{side}: strides {counts}").format(side=capitalised(role(shown, side)), counts=counts))
         for measure in MEASURES:
             joint = measure.joint(side)
-            if joint is None or joint in comparison.joints:
+            if not measure.is_of_walk and (joint is None or joint in comparison.joints):
                 rows.append(_row(comparison, side, measure))
+    rows.append(tr("Both legs"))
+    rows += [_row(comparison, sides[0], measure) for measure in MEASURES if measure.is_of_walk]
     return table(columns, rows, is_dense=True)
 
 
 def _row(comparison: Comparison, side: Side, measure: Measure) -> list[Cell | str]:
     cells: list[Cell | str] = [_measure(measure.column)]
     for part in comparison.parts:
-        value, verdict = part.value(side, measure.column), part.assessment(side, measure.column).verdict
+        value, verdict = part.figure(measure, side)
         figures = marked(spread(value, measure.decimals), verdict)
-        shown = tr("no peak") if part.is_no_peak(side, measure.column) else figures
+        is_no_peak = not measure.is_of_walk and part.is_no_peak(side, measure.column)
+        shown = tr("no peak") if is_no_peak else figures
         if verdict is Verdict.WITHHELD:
             shown = verdict_word(verdict)
         cells.append(Cell(shown, is_grey=not is_spread_enough(value.n)))
     for part in comparison.others:
-        compared = comparison.compare(measure, side, part)
+        compared = (
+            comparison.compare_walks(measure, part, comparison.against)
+            if measure.is_of_walk
+            else comparison.compare(measure, side, part)
+        )
         found, is_told = compared.difference, compared.is_told
         words = Cell(judged_in_words(found), is_bold=found.exceeds) if is_told else _why_not(compared)
         decimals = measure.decimals
