@@ -61,7 +61,7 @@ def paint(painter: QPainter, theme: Theme, frame: Frame, width: float, chart: St
                 _fill(painter, frame, curve.angle_deg, curve.sd_deg, theme.band(curve.side))
         for curve in chart.curves:
             _paint_strides(painter, theme, frame, curve)
-        for curve in chart.curves:
+        for curve in (*chart.beside, *chart.curves):
             if curve.is_known:
                 _paint_mean(painter, theme, frame, curve)
         if chart.chosen is not None:

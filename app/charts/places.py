@@ -88,7 +88,7 @@ class MarkPlace:
 
 def ground_of(frame: Frame, chart: StrideChart, taken: Sequence[Box] = ()) -> Ground:
     """What a chart draws before its marks."""
-    curves = [line_of(frame, PERCENT, curve.angle_deg) for curve in chart.curves if curve.is_known]
+    curves = [line_of(frame, PERCENT, curve.angle_deg) for curve in (*chart.beside, *chart.curves) if curve.is_known]
     edges = []
     if (band := chart.band) is not None:
         reach = BAND_SDS * band.sd_deg

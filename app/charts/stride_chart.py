@@ -62,13 +62,15 @@ class StrideChart:
     """One joint over 0 to 100 % of the stride.
 
     `chosen` is one stride (101,) over all others. `withheld` says why nothing of it may be read, and is
-    empty where something may. `alt` are the chart's words, for who cannot see it.
+    empty where something may. `alt` are the chart's words, for who cannot see it. `beside`: another walk's means, which
+    the screen draws thin, without spread and toe-off.
     """
 
     axis: Axis
     curves: tuple[StrideCurve, ...]
     band: Band | None
     is_simulated: bool
+    beside: tuple[StrideCurve, ...] = ()
     title: str = ""
     alt: str = ""
     chosen: tuple[Side, FloatArray] | None = None

@@ -160,6 +160,17 @@ class ComparePage(Themed):
         self._has_visits = has_visits
         self._offer_kinds()
 
+    @property
+    def visits(self) -> tuple[ComparedVisits, ...] | None:
+        """The conditions shared with earlier visits; None until these were read."""
+        return self._visits
+
+    def wish_visits(self) -> None:
+        """Ask for the earlier visits, if nobody did."""
+        if self._visits is None and not self._is_reading:
+            self._is_reading = True
+            self.visits_wished.emit()
+
     def show_visits(self, visits: Sequence[ComparedVisits], walked: str = "", every: Sequence[Part] = ()) -> None:
         """Show the conditions that visits up to this one share; `walked` says which of them each visit has.
 
@@ -311,9 +322,8 @@ class ComparePage(Themed):
         self._on_kind_changed()
 
     def _on_kind_changed(self) -> None:
-        if self.kind is Contrast.VISITS and self._visits is None and not self._is_reading:
-            self._is_reading = True
-            self.visits_wished.emit()
+        if self.kind is Contrast.VISITS:
+            self.wish_visits()
         parts = self._parts()
         self._make_chips(parts)
         self._offer_bases(parts)

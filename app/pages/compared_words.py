@@ -65,7 +65,7 @@ def table_rows(found: Comparison, heads: Sequence[str]) -> list[TableRow]:
     lines = []
     for (_, side), compared in rows.items():
         measure = compared[0].measure
-        values = [_value(*part.figure(measure, side), measure.decimals) for part in found.parts]
+        values = [value_cell(*part.figure(measure, side), measure.decimals) for part in found.parts]
         changes = [_changed(row, found.against) for row in compared]
         lines.append(_table_row(tr(measure.name), None if measure.is_of_walk else side, heads, (*values, *changes)))
     return lines
@@ -90,7 +90,7 @@ def side_table_row(row: SideRow, heads: Sequence[str]) -> TableRow:
     """One measure of both legs, their difference and symmetry."""
     symmetry = f"{row.symmetry_percent:+.1f}".replace("-", MINUS) if math.isfinite(row.symmetry_percent) else DASH
     each = zip((row.first, row.second), row.verdicts, strict=True)
-    values = [_value(value, verdict, row.measure.decimals) for value, verdict in each]
+    values = [value_cell(value, verdict, row.measure.decimals) for value, verdict in each]
     return _table_row(tr(row.measure.name), None, heads, (*values, _changed(row), _figure(symmetry)))
 
 
@@ -115,7 +115,8 @@ def _figure(value: str, small: str = "", *, is_marked: bool = False, is_grey: bo
     )
 
 
-def _value(value: MeanAndSd, verdict: Verdict, decimals: int) -> TextCell:
+def value_cell(value: MeanAndSd, verdict: Verdict, decimals: int) -> TextCell:
+    """A mean with its spread, grey from few strides; where it may not be told, that alone."""
     if verdict is Verdict.WITHHELD:
         return TextCell(small=verdict_word(verdict), align=RIGHT, mark=Icon.WITHHELD)
     if not value.n:

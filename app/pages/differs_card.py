@@ -5,6 +5,8 @@ from collections.abc import Sequence
 
 from app.charts.cycles import is_mean_enough, is_spread_enough
 from app.icons import Icon
+from app.pages.beside_words import beside_columns, beside_rows
+from app.reports.comparison import Comparison
 from app.reports.patient_report.facts import Facts
 from app.reports.patient_report.numbers_in_words import DAGGER, NOTHING, fixed, in_words, judged_in_words, signed
 from app.reports.patient_report.what_differs import LegsRow, what_differs
@@ -30,15 +32,19 @@ class DiffersCard(Card):
 
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__(look, padding=16)
-        self._facts: Facts | None = None
-        self._rows: Sequence[LegsRow] = ()
+        self._columns: Sequence[TableColumn] = ()
+        self._rows: Sequence[TableRow] = ()
         self._most = 0
         self.table = CellTable(look, tr("What differs most"), row=ROW, head=HEAD)
         self.column.addWidget(self.table)
 
-    def show_facts(self, facts: Facts) -> None:
-        self._facts = facts
-        self._rows = what_differs(facts) if len(facts.gait) == len(Side) else ()
+    def show_facts(self, facts: Facts, found: Comparison | None = None) -> None:
+        """What the legs differ in, or else this walk and what it stands beside."""
+        if found is not None:
+            self._columns, self._rows = beside_columns(found), beside_rows(found)
+        else:
+            rows = what_differs(facts) if len(facts.gait) == len(Side) else ()
+            self._columns, self._rows = _columns(facts), [_row(facts, row) for row in rows]
         self._show()
 
     def _on_look_changed(self) -> None:
@@ -47,7 +53,7 @@ class DiffersCard(Card):
 
     @property
     def has_rows(self) -> bool:
-        """Whether both legs were measured, so that there is anything to compare."""
+        """Whether there is anything to compare: both legs, or a walk beside this one."""
         return bool(self._rows)
 
     def set_room(self, height: float) -> None:
@@ -58,8 +64,8 @@ class DiffersCard(Card):
             self._show()
 
     def _show(self) -> None:
-        if self._facts is not None:
-            self.table.show_rows(_columns(self._facts), [_row(self._facts, row) for row in self._rows[: self._most]])
+        if self._columns:
+            self.table.show_rows(self._columns, self._rows[: self._most])
 
 
 def _columns(facts: Facts) -> list[TableColumn]:

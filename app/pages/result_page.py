@@ -1,6 +1,6 @@
 """What came of one session: the answer to a walk first, then its curves, what differs most, and how sure that is."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from enum import Enum, auto
 
 import numpy as np
@@ -10,16 +10,19 @@ from PySide6.QtWidgets import QBoxLayout, QGridLayout, QHBoxLayout, QVBoxLayout,
 
 from app.icons import Icon
 from app.pages.answer_words import door_words, figures_in_short, key_figures, strides_in_short
+from app.pages.beside_words import key_figures_beside
 from app.pages.differs_card import DiffersCard
 from app.pages.result_parts import PageRoom, ResultParts
 from app.plots.angle_chart import Curve
-from app.reports.comparison import Contrast, conditions_of
+from app.reports.beside import beside_last_visit, beside_walk, changes_on_curves, walks_alone
+from app.reports.comparison import Comparison, Part, conditions_of
 from app.reports.patient_report.answer import Outcome, answer_of
 from app.reports.patient_report.data_quality import data_quality, quality_without_walk
 from app.reports.patient_report.facts import Facts
 from app.reports.patient_report.marks_on_curves import deviations_of, gaps_of
 from app.reports.patient_report.request import AnalysedVisit
 from app.reports.reference_bands import age_and_height, sides_with_band
+from app.reports.visits import ComparedVisits
 from app.review.mean_legs import mean_legs
 from app.theme import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
@@ -63,12 +66,11 @@ EVENT_KEYS = later("[ ] step through contacts and toe-offs. Pre-swing is heel ri
 
 
 class Beside(Enum):
-    """What the legs' curves stand beside."""
+    """What the legs' curves stand beside; another walk of the session is chosen by its name."""
 
     BAND = auto()
     LEGS = auto()  # each other alone
-    CONDITIONS = auto()  # leads to Compare
-    VISITS = auto()  # leads to Compare
+    LAST_VISIT = auto()
 
 
 class Behind(Enum):
@@ -89,6 +91,7 @@ class ResultPage(Themed):
         parts = parts or ResultParts(look)
         self._look = look
         self._visit: AnalysedVisit | None = None
+        self._walks: Mapping[str, Part] = {}  # of this session, each alone
         self._can_choose = self._is_live = False
         self._stride: Mapping[Joint, FloatArray] = {}  # in force
         self._room = PageRoom()
@@ -152,6 +155,7 @@ class ResultPage(Themed):
         is_prosthetic = session.patient.prosthetic_side in set(Side)
         parts = conditions_of(analysis, session.recordings)
         self.compare.show_conditions(analysis, parts, is_prosthetic, age_and_height(session))
+        self._walks = walks_alone(analysis, session.recordings)
         names = [recording.name for recording in analysis.recordings]
         walks = [i for i, recording in enumerate(analysis.recordings) if recording.kind is RecordingKind.WALKING]
         self.recordings.blockSignals(True)
@@ -162,12 +166,17 @@ class ResultPage(Themed):
         self.recordings.blockSignals(False)
         self.recordings.updateGeometry()
         self.recordings.setVisible(bool(names))
-        self._offer_beside(has_conditions=len(parts) > 1)
         self._on_recording_changed()
 
     def set_has_visits(self, has_visits: bool) -> None:
         """Offer earlier visits to compare with."""
         self.compare.set_has_visits(has_visits)
+
+    def show_visits(self, visits: Sequence[ComparedVisits], walked: str = "", every: Sequence[Part] = ()) -> None:
+        """Show earlier visits, which `compare` wished for, as `ComparePage.show_visits` says."""
+        self.compare.show_visits(visits, walked, every)
+        if self.beside.currentData() is Beside.LAST_VISIT:
+            self._show_beside()
 
     def set_room(self, width: float, height: float) -> None:
         """Fold the page as far as its room, in px of the design, asks for it.
@@ -360,7 +369,8 @@ class ResultPage(Themed):
         self._tell_answer()
         self._offer()
 
-    def _offer_beside(self, *, has_conditions: bool) -> None:
+    def _offer_beside(self) -> None:
+        shown = self.recordings.currentText()
         before = self.beside.currentData()
         self.beside.blockSignals(True)
         self.beside.clear()
@@ -369,10 +379,12 @@ class ResultPage(Themed):
             0, tr("The band's inner part is 1 SD, its outer part 2 SD."), Qt.ItemDataRole.ToolTipRole
         )
         self.beside.addItem(tr("The legs alone"), Beside.LEGS)
-        if has_conditions:
-            self.beside.addItem(tr("Another walk \u2026"), Beside.CONDITIONS)
-        if self.compare.has_visits:
-            self.beside.addItem(tr("An earlier visit \u2026"), Beside.VISITS)
+        for name in self._walks if shown in self._walks else ():
+            if name != shown:
+                words = ", ".join(filter(None, [name, self._condition(name)]))
+                self.beside.addItem(tr("Beside {walk}").format(walk=words), name)
+        if self.compare.has_visits and shown in self._walks:
+            self.beside.addItem(tr("Beside the last visit"), Beside.LAST_VISIT)
         self.beside.setCurrentIndex(max(self.beside.findData(before), 0))
         self.beside.blockSignals(False)
         self.beside.updateGeometry()
@@ -462,16 +474,51 @@ class ResultPage(Themed):
         who = age_and_height(visit.session)
         self.cycles.show_walk(recording, analysis.is_simulated, who, sides_with_band(recording))
         self.strides.show_walk(recording, self._can_choose)
-        if recording.kind is RecordingKind.WALKING:
-            self._show_facts(Facts(visit, recording))
+        self._offer_beside()
+        self._show_beside()
         self._tell_answer()
         self._on_method_chosen()
         self._offer()
 
-    def _show_facts(self, facts: Facts) -> None:
-        self.key_figures.show_figures(key_figures(facts))
-        self.differs.show_facts(facts)
-        self.cycles.charts.show_marks(deviations_of(facts), gaps_of(facts))
+    def _condition(self, name: str) -> str:
+        """Under which condition a recording was walked; empty where none was stated."""
+        recordings = self._visit.session.recordings if self._visit is not None else ()
+        return next((one.condition for one in recordings if one.name == name), "")
+
+    def _compared(self) -> tuple[Comparison | None, str]:
+        """The walk against what was chosen to stand beside it, or why there is nothing to compare it with."""
+        chosen, name, visit = self.beside.currentData(), self.recordings.currentText(), self._visit
+        shown = self._walks.get(name)
+        if visit is None or shown is None:
+            return None, ""
+        is_simulated = visit.analysis.is_simulated
+        if chosen is Beside.LAST_VISIT:
+            self.compare.wish_visits()
+            if self.compare.visits is None:
+                return None, tr("The earlier visits are being read.")
+            condition = self._condition(name)
+            found = beside_last_visit(shown, condition, self.compare.visits, is_simulated=is_simulated)
+            return found, "" if found is not None else tr("No earlier visit was walked in this condition.")
+        other = self._walks.get(chosen) if isinstance(chosen, str) else None
+        return (None, "") if other is None else (beside_walk(shown, other, is_simulated=is_simulated), "")
+
+    def _show_beside(self) -> None:
+        """Show the walk with what it stands beside: its curves, what differs and the key figures."""
+        recording, visit = self.recording, self._visit
+        if recording is None or visit is None or recording.kind is not RecordingKind.WALKING:
+            return
+        facts = Facts(visit, recording)
+        found, words = self._compared()
+        charts = self.cycles.charts
+        charts.set_band_shown(self.beside.currentData() is Beside.BAND)
+        charts.show_beside(found, words)
+        if found is None:
+            self.key_figures.show_figures(key_figures(facts))
+            charts.show_marks(deviations_of(facts), gaps_of(facts))
+        else:
+            self.key_figures.show_figures(key_figures_beside(key_figures(facts), found))
+            charts.show_marks(changes_on_curves(found))
+        self.differs.show_facts(facts, found)
         self._fit_table()
         if self.show_legs.isChecked():
             self._show_moving_legs()
@@ -544,16 +591,8 @@ class ResultPage(Themed):
             self.strides.choose_nearest(is_knee, percent, angle_deg, self.cycles.charts.heights_deg)
 
     def _on_beside_changed(self) -> None:
-        beside = self.beside.currentData()
-        if beside in (Beside.CONDITIONS, Beside.VISITS):
-            self.beside.blockSignals(True)
-            self.beside.setCurrentIndex(0)
-            self.beside.blockSignals(False)
-            self.compare.choose_kind(Contrast.CONDITIONS if beside is Beside.CONDITIONS else Contrast.VISITS)
-            self.view.choose(COMPARE)
-        is_band = self.beside.currentData() is Beside.BAND
-        self.cycles.charts.set_band_shown(is_band)
-        self.told.emit()
+        self._show_beside()
+        self._show_parts()
 
     def _on_view_changed(self, is_whole: bool, words: str) -> None:
         self.shown.setText(words)

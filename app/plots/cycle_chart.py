@@ -36,6 +36,7 @@ from app.charts.stride_chart import (
     usual_range_deg,
 )
 from app.icons import Icon
+from app.reports.comparison import Comparison
 from app.reports.walk_figures import MAY_BE_MIRRORED, NO_HEIGHT, NO_ZERO, WITHHELD, doubt_in, verdict_of, why_in_words
 from app.theme import ThemeNotifier
 from app.widgets.card import Card
@@ -52,6 +53,7 @@ from core.samples import FloatArray
 from core.verdicts.model import JointVerdicts, Verdict
 
 LEAST_SIZE = (284, 156)
+EARLIER = (0, 2)  # the thin one of two curves, as in every comparison
 DOUBTS = {
     NO_ZERO: later("{sides}: no zero. Range and shape hold, height does not."),
     NO_HEIGHT: later("{sides}: the height cannot be read. Range and shape hold."),
@@ -107,6 +109,12 @@ class CycleCharts(Themed):
             frame.chart.band = Band(*reference.mean_and_sd_deg(kind)) if reference is not None else None
             frame.chart.redraw()
 
+    def show_beside(self, found: Comparison | None, words: str = "") -> None:
+        """Draw thin what the walk stands beside, or say why nothing; marks are to be shown anew, and the next walk is
+        without."""
+        for frame in self.frames:
+            frame.show_beside(found, words)
+
     def show_stride(self, curves_deg: Mapping[Joint, FloatArray]) -> None:
         """Draw one stride (101,) over all others, bold; none: no stride is in force."""
         for frame, is_knee in ((self.knee, True), (self.ankle, False)):
@@ -161,6 +169,8 @@ class CycleFrame(Card):
         self.chips = {side: VerdictChip(look, side) for side in Side}
         self._mark = IconMark(look, Icon.WARNING, size=18)
         self._note = Text(look, size=12, weight=MEDIUM, wraps=True)
+        self.beside = Text(look, size=12, tone="ink2", wraps=True)
+        self._walk: tuple[Mapping[Side, SideCycle], Mapping[Side, JointVerdicts], bool] = ({}, {}, False)
         self.withheld = {side: WithheldPanel(look, side) for side in Side}
         self.heights_deg: dict[Side, float] = {}
         super().__init__(look, padding=12, spacing=2)
@@ -179,6 +189,7 @@ class CycleFrame(Card):
         notes.addWidget(self._note, 1)
         self.column.addLayout(head)
         self.column.addLayout(notes)
+        self.column.addWidget(self.beside)
         for panel in self.withheld.values():
             self.column.addWidget(panel)
         self.column.addWidget(chart, 3)
@@ -191,13 +202,28 @@ class CycleFrame(Card):
         self, cycles: Mapping[Side, SideCycle], verdicts: Mapping[Side, JointVerdicts], is_simulated: bool
     ) -> None:
         """Draw what may be seen; without a height of every leg that is drawn, all are drawn about their own mean."""
-        doubts = {side: why for side, found in verdicts.items() if side in cycles and (why := doubt_in(found))}
-        reasons = {side: why_in_words(found) for side, found in verdicts.items() if side in cycles}
-        is_about_mean = any(why != WITHHELD for why in doubts.values())
+        self._walk = cycles, verdicts, is_simulated
+        self.show_beside(None)
+
+    def show_beside(self, found: Comparison | None, words: str = "") -> None:
+        """Draw the walk anew, thin beside it what it is compared with, or say in `words` why nothing is."""
+        cycles, verdicts, is_simulated = self._walk
+        doubts = {side: why for side, judged in verdicts.items() if side in cycles and (why := doubt_in(judged))}
+        reasons = {side: why_in_words(judged) for side, judged in verdicts.items() if side in cycles}
+        joints = [joint for joint in (found.joints if found is not None else ()) if joint.is_knee is self._is_knee]
+        has_other_zero = found is not None and not all(_has_common_height(found, joint) for joint in joints)
+        is_about_mean = has_other_zero or any(why != WITHHELD for why in doubts.values())
         self.heights_deg = {side: cycle.height_deg for side, cycle in cycles.items()} if is_about_mean else {}
         drawn = {side: cycle.about_mean() for side, cycle in cycles.items()} if is_about_mean else cycles
         withheld = frozenset(side for side, why in doubts.items() if why == WITHHELD)
-        self.chart.show_cycles(drawn, is_simulated, withheld, is_about_mean)
+        beside = {
+            joint.side: found.against.curve(joint, is_about_mean=is_about_mean)
+            for joint in joints
+            if found is not None and all(joint in part.joints and part.is_drawn(joint) for part in found.parts)
+        }
+        self.chart.show_cycles(drawn, is_simulated, withheld, is_about_mean, beside)
+        self.beside.setText(words if found is None else self._beside_in_words(found, has_other_zero))
+        self._show_beside_words()
         for side, chip in self.chips.items():
             chip.setVisible(side in cycles)
             chip.tell(verdict_of(verdicts[side]) if side in verdicts else Verdict.READ, has_line=side not in withheld)
@@ -240,8 +266,26 @@ class CycleFrame(Card):
 
     def set_strides_shown(self, is_shown: bool) -> None:
         self.chart.has_strides = is_shown
+        self._show_beside_words()
         self._show_chart()
         self.chart.redraw()
+
+    def _show_beside_words(self) -> None:
+        self.beside.setVisible(bool(self.beside.text()) and not self.chart.has_strides)
+
+    def _beside_in_words(self, found: Comparison, has_other_zero: bool) -> str:
+        """Name the thin curves, and say of whom there is none."""
+        against = found.against
+        said = [tr("Thin: {walk}.").format(walk=against.name)] if self.chart.beside else []
+        worn = {joint_of(side, self._is_knee) for side in self.chart.cycles}
+        for joint in sorted(worn, key=list(Joint).index):
+            if joint not in against.joints:
+                said.append(tr("{side}: not measured in {walk}.").format(side=LETTERS[joint.side], walk=against.name))
+            elif not against.is_drawn(joint):
+                said.append(tr("{side}: withheld in {walk}.").format(side=LETTERS[joint.side], walk=against.name))
+        if has_other_zero and self.chart.beside:
+            said.append(tr("No common zero: range and shape hold, height does not."))
+        return " ".join(said)
 
     def _show_chart(self) -> None:
         """Leave it away where nothing of it could be seen: the panels then take its place."""
@@ -280,7 +324,7 @@ class CycleFrame(Card):
                 said.append(f"{capitalised(chip.accessibleName())}.")
         said += [deviation.in_words() for deviation in self.chart.deviations]
         said += [gap.in_words() for gap in self.chart.gaps]
-        said += [self.note] if self.note else []
+        said += [text for text in (self.beside.text(), self.note) if text]
         return " ".join(said) or nothing_in_words(self._is_knee)
 
     def _notes(self, cycles: Mapping[Side, SideCycle], doubts: Mapping[Side, str]) -> list[str]:
@@ -300,6 +344,14 @@ class CycleFrame(Card):
         return notes
 
 
+def _has_common_height(found: Comparison, joint: Joint) -> bool:
+    """Whether the curves of a joint can be laid over one another as high as they were measured."""
+    drawn = [part for part in found.parts if joint in part.joints and part.is_drawn(joint)]
+    return len(drawn) < 2 or (
+        found.has_one_zero(joint) and all(part.verdicts.joint(joint).height.is_told for part in drawn)
+    )
+
+
 class CycleChart(Themed):
     """One joint over 0 to 100 % of the stride; its axis stays unless a mean curve leaves it."""
 
@@ -315,6 +367,7 @@ class CycleChart(Themed):
         self.has_band, self.has_strides = True, False
         self.is_about_mean = False
         self.withheld: frozenset[Side] = frozenset()  # of whom no mean is drawn
+        self.beside: tuple[StrideCurve, ...] = ()  # of another walk, of legs whose mean is drawn
         self.stride: tuple[Side, FloatArray] | None = None
         self.readings: Mapping[Side, float] = {}  # percent of each leg's own stride
         self.deviations: tuple[Deviation, ...] = ()
@@ -343,12 +396,18 @@ class CycleChart(Themed):
         is_simulated: bool,
         withheld: frozenset[Side] = frozenset(),
         is_about_mean: bool = False,
+        beside: Mapping[Side, StrideCurve] | None = None,
     ) -> None:
-        """Draw each side's strides, and widen the axis where their mean leaves it."""
+        """Draw each side's strides, `beside` them another walk's means, and widen the axis where a mean leaves it."""
         self.cycles, self.is_simulated = cycles, is_simulated
         self.withheld, self.is_about_mean = withheld, is_about_mean
         self.deviations, self.gaps = (), ()
+        drawn = self.sides_with_mean
+        self.beside = tuple(
+            replace(curve, order=EARLIER) for side, curve in (beside or {}).items() if side in drawn and curve.is_known
+        )
         means = [cycle.mean.mean for side, cycle in cycles.items() if side not in withheld]
+        means += [curve.angle_deg for curve in self.beside]
         self.range_deg = range_for(self._usual_deg, means)
         self.redraw()
 
@@ -360,6 +419,7 @@ class CycleChart(Themed):
             curves=self._curves(),
             band=self.band if self.has_band and not self.is_about_mean else None,
             is_simulated=self.is_simulated,
+            beside=() if self.has_strides else self.beside,
             chosen=self.stride,
             deviations=self.deviations,
             gaps=self.gaps,

@@ -90,11 +90,11 @@ def _on_leg(facts: Facts, row: LegsRow, kind: str) -> Deviation:
 def _extremes(facts: Facts, row: LegsRow, kind: str, side: Side) -> tuple[Point, Point]:
     """The lowest and the highest point of a leg's mean curve that a movement goes between."""
     joint, curve = joint_of(kind, side), facts.mean_curve_deg(side, kind)
-    high, low = _windows(row.column)
+    high, low = windows_of(row.column)
     return extreme_of(joint, curve, *low, is_maximum=False), extreme_of(joint, curve, *high, is_maximum=True)
 
 
-def _windows(column: str) -> tuple[tuple[float, float], tuple[float, float]]:
+def windows_of(column: str) -> tuple[tuple[float, float], tuple[float, float]]:
     """Where an excursion has its highest and its lowest angle; a range has them anywhere."""
     if column not in EXCURSIONS_BY_COLUMN:
         return ALL, ALL

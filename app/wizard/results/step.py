@@ -348,9 +348,7 @@ class ResultsStep(Step):
             return
         visits = [*found, (session, self._shown)]
         named = [(told.started[:10], analysis, told.recordings) for told, analysis in visits]
-        self.page.results().compare.show_visits(
-            visits_by_condition(named), conditions_in_words(named), parts_of_visits(named)
-        )
+        self.page.results().show_visits(visits_by_condition(named), conditions_in_words(named), parts_of_visits(named))
 
     def _is_in_sight(self) -> bool:
         return self._frame is not None and self._frame.isVisible()

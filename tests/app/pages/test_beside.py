@@ -1,0 +1,199 @@
+"""The answer beside another walk or the last visit: thin curves, changes with their verdict, and nothing forbidden."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from PySide6.QtWidgets import QApplication
+from pytestqt.qtbot import QtBot
+
+from app.pages.result_page import STRIDES, Beside, ResultPage
+from app.reports.beside import beside_last_visit, beside_walk, changes_on_curves, walks_alone
+from app.reports.patient_report.request import AnalysedVisit
+from app.reports.visits import WalkedVisit, conditions_in_words, visits_by_condition
+from app.theme import ThemeNotifier, load_fonts
+from core.analysis import analyse
+from core.body import Joint, Side
+from core.results import Analysis, ZeroKind
+from core.samples import Session
+from core.verdicts.measurement_error import ComparisonKind
+from devices.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
+from devices.walker_body import Tissue
+from tests.app.changed_analysis import recalibrated
+
+MINUS = "\N{MINUS SIGN}"
+
+
+@pytest.fixture(scope="module")
+def session() -> Session:
+    """Two walks of one strapping, the second slower and with an orthosis."""
+    walks = (Walk(strides=13), Walk("walk 2", strides=13, speed_m_s=0.8))
+    played: tuple[Standing | FreeMotion | Walk, ...] = (Standing(), FreeMotion(), *walks)
+    found = simulate(replace(DEMONSTRATION, tissue=Tissue.RIGID, recordings=played)).session
+    return with_conditions(found, walk_1="shoes", walk_2="AFO")
+
+
+def with_conditions(session: Session, **conditions: str) -> Session:
+    named = {name.replace("_", " "): condition for name, condition in conditions.items()}
+    recordings = tuple(replace(one, condition=named.get(one.name, "")) for one in session.recordings)
+    return replace(session, recordings=recordings)
+
+
+@pytest.fixture(scope="module")
+def analysis(session: Session) -> Analysis:
+    return analyse(session)
+
+
+@pytest.fixture
+def page(qtbot: QtBot, qapp: QApplication, analysis: Analysis, session: Session) -> ResultPage:
+    load_fonts()
+    look = ThemeNotifier()
+    look.set_dark(False)
+    page = ResultPage(look)
+    qtbot.addWidget(page)
+    page.resize(1064, 672)
+    page.set_room(1064, 672)
+    page.set_has_visits(True)
+    page.show_visit(AnalysedVisit(session, analysis))
+    page.show()
+    return page
+
+
+def choose(page: ResultPage, beside: Beside | str) -> None:
+    page.beside.setCurrentIndex(page.beside.findData(beside))
+
+
+def give_visits(page: ResultPage, visits: Sequence[WalkedVisit]) -> None:
+    page.show_visits(visits_by_condition(visits), conditions_in_words(visits))
+
+
+def words_beside(page: ResultPage) -> list[str]:
+    return [frame.beside.text() if frame.beside.isVisible() else "" for frame in page.cycles.charts.frames]
+
+
+def test_another_walk_is_offered_with_its_condition_and_the_shown_one_is_not(page: ResultPage) -> None:
+    offered = [page.beside.itemText(row) for row in range(page.beside.count())]
+    assert offered == ["Beside the band", "The legs alone", "Beside walk 2, AFO", "Beside the last visit"]
+    page.recordings.setCurrentText("walk 2")
+    assert page.beside.itemText(2) == "Beside walk 1, shoes"
+
+
+def test_the_other_walk_is_drawn_thin_and_named(page: ResultPage, analysis: Analysis, session: Session) -> None:
+    chart = page.cycles.charts.knee.chart
+    assert (chart.described.beside, words_beside(page)) == ((), ["", ""])
+    choose(page, "walk 2")
+    other = walks_alone(analysis, session.recordings)["walk 2"]
+    assert [curve.side for curve in chart.described.beside] == list(Side)
+    for curve in chart.described.beside:
+        assert np.allclose(curve.angle_deg, other.cycle(Joint(f"{curve.side}_knee")).mean)
+    assert words_beside(page) == ["Thin: walk 2.", "Thin: walk 2."]
+    assert "Thin: walk 2." in chart.accessibleDescription()
+    assert chart.described.band is None
+    choose(page, Beside.BAND)
+    assert (chart.described.beside, words_beside(page)) == ((), ["", ""])
+    assert chart.described.band is not None or chart.band is None
+
+
+def test_single_strides_are_chosen_without_another_walk(page: ResultPage) -> None:
+    choose(page, "walk 2")
+    page.view.choose(STRIDES)
+    assert page.cycles.charts.knee.chart.described.beside == ()
+    assert words_beside(page) == ["", ""]
+
+
+def test_the_table_and_the_key_figures_tell_the_change_with_its_verdict(
+    page: ResultPage, analysis: Analysis, session: Session
+) -> None:
+    choose(page, "walk 2")
+    alone = walks_alone(analysis, session.recordings)
+    found = beside_walk(alone["walk 1"], alone["walk 2"], is_simulated=True)
+    speed = next(row for row in found.rows if row.measure.column == "speed_m_s")
+    assert speed.exceeds  # 0.8 m/s is far off
+    assert {found.error_kind(part) for part in found.others} == {ComparisonKind.ATTACHED}
+    (told,) = (figure for figure in page.key_figures.figures if figure.name == "Walking speed")
+    assert told.note == f"+{speed.difference.difference:.2f} exceeds error"
+    assert told.words.endswith("beside walk 2.")
+    rows = {str(row.cells[1].words): [str(cell.words) for cell in row.cells] for row in page.differs.table.cells.rows}
+    first = page.differs.table.cells.rows[0]
+    assert str(first.cells[-1].words) == "exceeds error"
+    assert rows
+    choose(page, Beside.BAND)
+    (told,) = (figure for figure in page.key_figures.figures if figure.name == "Walking speed")
+    assert "error" not in told.note
+
+
+def test_the_marks_are_those_of_the_change(page: ResultPage, analysis: Analysis, session: Session) -> None:
+    choose(page, "walk 2")
+    alone = walks_alone(analysis, session.recordings)
+    marked = changes_on_curves(beside_walk(alone["walk 1"], alone["walk 2"], is_simulated=True))
+    shown = [*page.cycles.charts.knee.chart.deviations, *page.cycles.charts.ankle.chart.deviations]
+    assert [one.words for one in shown] == [one.words for one in marked]
+    assert all(one.more.endswith("than walk 2") for one in marked)
+    same = beside_walk(alone["walk 1"], replace(alone["walk 1"], name="again"), is_simulated=True)
+    assert changes_on_curves(same) == []
+
+
+def test_a_withheld_joint_has_no_thin_curve_and_no_difference(
+    page: ResultPage, analysis: Analysis, session: Session
+) -> None:
+    gated = recalibrated(analysis, [Joint.LEFT_KNEE], axis_sd_rad=np.deg2rad(11.0))
+    page.show_visit(AnalysedVisit(session, gated))
+    choose(page, "walk 2")
+    knee, ankle = page.cycles.charts.frames
+    assert [curve.side for curve in knee.chart.described.beside] == [Side.RIGHT]
+    assert words_beside(page) == ["Thin: walk 2. L: withheld in walk 2.", "Thin: walk 2."]
+    assert [curve.side for curve in ankle.chart.described.beside] == list(Side)
+    alone = walks_alone(gated, session.recordings)
+    found = beside_walk(alone["walk 1"], alone["walk 2"], is_simulated=True)
+    assert not any(row.is_told for row in found.rows if row.measure.kind == "knee" and row.side is Side.LEFT)
+
+
+def test_without_a_common_zero_shapes_are_laid_over_one_another_and_that_is_said(
+    page: ResultPage, analysis: Analysis, session: Session
+) -> None:
+    choose(page, Beside.LAST_VISIT)
+    other = recalibrated(analysis, [Joint.LEFT_KNEE], zero=ZeroKind.GONIOMETER)
+    give_visits(page, [("2026-06-20", other, session.recordings), ("2026-11-14", analysis, session.recordings)])
+    knee, ankle = words_beside(page)
+    assert knee == "Thin: 2026-06-20. No common zero: range and shape hold, height does not."
+    assert ankle == "Thin: 2026-06-20."
+    assert page.cycles.charts.knee.chart.is_about_mean
+    for curve in page.cycles.charts.knee.chart.described.beside:
+        assert np.mean(curve.angle_deg) == pytest.approx(0.0, abs=1e-9)
+
+
+def test_the_last_visit_is_asked_for_once_and_judged_as_between_visits(
+    qtbot: QtBot, page: ResultPage, analysis: Analysis, session: Session
+) -> None:
+    with qtbot.waitSignal(page.compare.visits_wished):
+        choose(page, Beside.LAST_VISIT)
+    assert words_beside(page) == ["The earlier visits are being read."] * 2
+    with qtbot.assertNotEmitted(page.compare.visits_wished):
+        choose(page, Beside.BAND)
+        choose(page, Beside.LAST_VISIT)
+    older = with_conditions(session, walk_1="AFO", walk_2="shoes")
+    visits = [
+        ("2026-05-01", analysis, session.recordings),
+        ("2026-06-20", analysis, older.recordings),
+        ("2026-11-14", analysis, session.recordings),
+    ]
+    give_visits(page, visits)
+    assert words_beside(page) == ["Thin: 2026-06-20."] * 2
+    shown = walks_alone(analysis, session.recordings)["walk 1"]
+    found = beside_last_visit(shown, "shoes", visits_by_condition(visits), is_simulated=True)
+    assert found is not None
+    assert [walk.name for walk in found.against.walks] == ["walk 2"]  # what was walked in shoes then
+    assert {found.error_kind(part) for part in found.others} == {ComparisonKind.VISITS}
+
+
+def test_a_condition_that_no_earlier_visit_has_stands_beside_nothing(
+    page: ResultPage, analysis: Analysis, session: Session
+) -> None:
+    choose(page, Beside.LAST_VISIT)
+    older = with_conditions(session, walk_1="stick", walk_2="AFO")
+    give_visits(page, [("June", analysis, older.recordings), ("July", analysis, session.recordings)])
+    assert words_beside(page) == ["No earlier visit was walked in this condition."] * 2
+    assert page.cycles.charts.knee.chart.described.beside == ()
+    page.recordings.setCurrentText("walk 2")
+    assert words_beside(page) == ["Thin: June."] * 2
