@@ -5,7 +5,8 @@ from dataclasses import replace
 
 from app.icons import Icon
 from app.pages.compared_words import change_in_words, value_cell, why_not_told
-from app.reports.comparison import CADENCE, Compared, Comparison
+from app.reports.comparison import CADENCE, Compared, Comparison, Measure
+from app.reports.patient_report.answer import Answer, Outcome
 from app.reports.patient_report.numbers_in_words import DAGGER, NOTHING, fixed, in_words, judged_in_words
 from app.widgets.chip import LETTERS
 from app.widgets.fact_strip import KeyFigure
@@ -57,6 +58,53 @@ def key_figures_beside(figures: Sequence[KeyFigure], found: Comparison) -> list[
         )
         told.append(replace(figure, note=note, words=words))
     return told
+
+
+def answer_beside(found: Comparison) -> Answer:
+    """What differs by most errors as a sentence, or that nothing does; the legs' answer is of this walk alone."""
+    walk = found.against.name
+    told = [row for row in found.rows if row.is_told and _is_judged(row)]
+    worth = [row for row in told if row.difference.is_worth_a_sentence]
+    if worth:
+        most = max(worth, key=lambda row: row.difference.ratio)
+        error = fixed(most.difference.error, most.measure.decimals) + _unit(most.measure)
+        return Answer(Outcome.DIFFERS, _sentence(most), tr("Larger than its error ({error}).").format(error=error))
+    if not told:
+        return Answer(Outcome.OPEN, tr("Nothing can be compared with {walk}.").format(walk=walk), "")
+    if any(row.exceeds for row in told):
+        first = tr("No change from {walk} is far larger than its error.").format(walk=walk)
+        return Answer(Outcome.OPEN, first, tr("The table marks those that exceed it."))
+    return Answer(Outcome.NOTHING, tr("No change from {walk} is larger than its error.").format(walk=walk), "")
+
+
+def _sentence(row: Compared) -> str:
+    """Subtracted before rounding; where rounded figures disagree with that, all have a decimal more."""
+    measure, change = row.measure, row.difference.difference
+    value, other = row.value.mean, row.other.mean
+    decimals = measure.decimals
+    if round(round(value, decimals) - round(other, decimals), decimals) != round(change, decimals):
+        decimals += 1
+    name = tr(measure.name)
+    name = name.rpartition(",")[0] if _unit(measure) and not measure.kind else name  # the unit is with the figure
+    pattern = (
+        tr("{measure}: {size} less than {walk}, {value} against {other}.")
+        if change < 0
+        else tr("{measure}: {size} more than {walk}, {value} against {other}.")
+    )
+    return pattern.format(
+        measure=name if measure.is_of_walk else f"{LETTERS[row.side]} {name}",
+        size=fixed(abs(change), decimals) + _unit(measure),
+        walk=row.against.name,
+        value=fixed(value, decimals),
+        other=fixed(other, decimals),
+    )
+
+
+def _unit(measure: Measure) -> str:
+    """As it stands behind a figure; a share of the stride is named before it, since "3 % more" means another thing."""
+    if measure.unit == "%":
+        return ""
+    return measure.unit if measure.unit == "°" else f"\N{NO-BREAK SPACE}{measure.unit}"
 
 
 def _in_short(row: Compared) -> str:

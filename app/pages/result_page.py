@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QBoxLayout, QGridLayout, QHBoxLayout, QVBoxLayout,
 
 from app.icons import Icon
 from app.pages.answer_words import door_words, figures_in_short, key_figures, strides_in_short
-from app.pages.beside_words import key_figures_beside
+from app.pages.beside_words import answer_beside, key_figures_beside
 from app.pages.differs_card import DiffersCard
 from app.pages.result_parts import PageRoom, ResultParts
 from app.plots.angle_chart import Curve
@@ -476,7 +476,6 @@ class ResultPage(Themed):
         self.strides.show_walk(recording, self._can_choose)
         self._offer_beside()
         self._show_beside()
-        self._tell_answer()
         self._on_method_chosen()
         self._offer()
 
@@ -506,6 +505,7 @@ class ResultPage(Themed):
         """Show the walk with what it stands beside: its curves, what differs and the key figures."""
         recording, visit = self.recording, self._visit
         if recording is None or visit is None or recording.kind is not RecordingKind.WALKING:
+            self._tell_answer()
             return
         facts = Facts(visit, recording)
         found, words = self._compared()
@@ -519,6 +519,7 @@ class ResultPage(Themed):
             self.key_figures.show_figures(key_figures_beside(key_figures(facts), found))
             charts.show_marks(changes_on_curves(found))
         self.differs.show_facts(facts, found)
+        self._tell_answer()
         self._fit_table()
         if self.show_legs.isChecked():
             self._show_moving_legs()
@@ -547,7 +548,9 @@ class ResultPage(Themed):
             self.answer.tell(None, "")
             return
         facts = Facts(visit, recording)
-        answer = answer_of(facts)
+        answer, (found, _) = answer_of(facts), self._compared()
+        if found is not None and answer.outcome is not Outcome.UNREADABLE:
+            answer = answer_beside(found)
         then = [answer.then, figures_in_short(facts) if self._room.is_compact else ""]
         self.answer.tell(ANSWER_ICONS[answer.outcome], answer.first, " ".join(filter(None, then)))
 

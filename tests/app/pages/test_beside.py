@@ -8,8 +8,10 @@ import pytest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
+from app.pages.beside_words import answer_beside
 from app.pages.result_page import STRIDES, Beside, ResultPage
 from app.reports.beside import beside_last_visit, beside_walk, changes_on_curves, walks_alone
+from app.reports.comparison import Comparison
 from app.reports.patient_report.request import AnalysedVisit
 from app.reports.visits import WalkedVisit, conditions_in_words, visits_by_condition
 from app.theme import ThemeNotifier, load_fonts
@@ -17,7 +19,7 @@ from core.analysis import analyse
 from core.body import Joint, Side
 from core.results import Analysis, ZeroKind
 from core.samples import Session
-from core.verdicts.measurement_error import ComparisonKind
+from core.verdicts.measurement_error import ComparisonKind, Judgement
 from devices.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
 from devices.walker_body import Tissue
 from tests.app.changed_analysis import recalibrated
@@ -114,10 +116,9 @@ def test_the_table_and_the_key_figures_tell_the_change_with_its_verdict(
     (told,) = (figure for figure in page.key_figures.figures if figure.name == "Walking speed")
     assert told.note == f"+{speed.difference.difference:.2f} exceeds error"
     assert told.words.endswith("beside walk 2.")
-    rows = {str(row.cells[1].words): [str(cell.words) for cell in row.cells] for row in page.differs.table.cells.rows}
     first = page.differs.table.cells.rows[0]
-    assert str(first.cells[-1].words) == "exceeds error"
-    assert rows
+    assert [cell.words for cell in first.cells[1:5:3]] == ["Walking speed, m/s", f"+{speed.difference.difference:.2f}"]
+    assert first.cells[-1].words == "exceeds error"
     choose(page, Beside.BAND)
     (told,) = (figure for figure in page.key_figures.figures if figure.name == "Walking speed")
     assert "error" not in told.note
@@ -197,3 +198,72 @@ def test_a_condition_that_no_earlier_visit_has_stands_beside_nothing(
     assert page.cycles.charts.knee.chart.described.beside == ()
     page.recordings.setCurrentText("walk 2")
     assert words_beside(page) == ["Thin: June."] * 2
+
+
+def test_the_sentence_is_of_what_stands_beside_and_never_of_the_legs(page: ResultPage) -> None:
+    of_legs = page.answer.text
+    choose(page, "walk 2")
+    assert page.answer.text.startswith("Walking speed: 0.39\N{NO-BREAK SPACE}m/s more than walk 2, ")
+    assert "Larger than its error (0.08\N{NO-BREAK SPACE}m/s)." in page.answer.text
+    assert of_legs not in page.answer.text
+    page.recordings.setCurrentText("walk 2")
+    choose(page, "walk 1")
+    assert page.answer.text.startswith("Walking speed: 0.39\N{NO-BREAK SPACE}m/s less than walk 1, ")
+    page.recordings.setCurrentText("walk 1")
+    choose(page, Beside.BAND)
+    assert page.answer.text == of_legs
+
+
+def told(found: Comparison, **changed: float | bool | Judgement) -> str:
+    """The answer when every difference that is told is changed so."""
+    rows = [
+        replace(row, difference=replace(row.difference, **changed)) if row.is_told else row  # type: ignore[arg-type] # of any field
+        for row in found.rows
+    ]
+    vars(found)["rows"] = tuple(rows)
+    answer = answer_beside(found)
+    return " ".join(filter(None, [answer.first, answer.then]))
+
+
+def test_where_no_change_can_be_told_as_one_that_is_said(analysis: Analysis, session: Session) -> None:
+    alone = walks_alone(analysis, session.recordings)
+
+    def found() -> Comparison:
+        return beside_walk(alone["walk 1"], alone["walk 2"], is_simulated=True)
+
+    inside, beyond = Judgement.INSIDE_ERROR, Judgement.EXCEEDS_ERROR
+    none = "No change from walk 2 is larger than its error."
+    assert told(found(), judgement=inside, is_worth_a_sentence=False) == none
+    near = "No change from walk 2 is far larger than its error. The table marks those that exceed it."
+    assert told(found(), judgement=beyond, is_worth_a_sentence=False) == near
+    nothing = "Nothing can be compared with walk 2."
+    assert told(found(), judgement=Judgement.TOO_FEW_STRIDES, is_worth_a_sentence=False) == nothing
+
+
+def test_a_figure_is_subtracted_before_it_is_rounded(analysis: Analysis, session: Session) -> None:
+    """Where 1.18 less 0.80 would be told as 0.39, all three have a decimal more."""
+    alone = walks_alone(analysis, session.recordings)
+    found = beside_walk(alone["walk 1"], alone["walk 2"], is_simulated=True)
+    (speed,) = (row for row in found.rows if row.measure.column == "speed_m_s")
+
+    def first(value: float, other: float) -> str:
+        means = {"value": replace(speed.value, mean=value), "other": replace(speed.other, mean=other)}
+        row = replace(speed, **means, difference=replace(speed.difference, difference=value - other))
+        vars(found)["rows"] = (row,)
+        return answer_beside(found).first.replace("\N{NO-BREAK SPACE}", " ")
+
+    assert first(1.184, 0.796) == "Walking speed: 0.388 m/s more than walk 2, 1.184 against 0.796."
+    assert first(1.19, 0.80) == "Walking speed: 0.39 m/s more than walk 2, 1.19 against 0.80."
+
+
+def test_a_leg_that_the_other_walk_has_not_measured_is_named(
+    page: ResultPage, analysis: Analysis, session: Session
+) -> None:
+    walk = next(one for one in analysis.recordings if one.name == "walk 2")
+    gait = walk.gait[Side.LEFT]
+    cycles = {joint: cycle for joint, cycle in gait.cycles.items() if joint is not Joint.LEFT_KNEE}
+    bare = replace(walk, gait={**walk.gait, Side.LEFT: replace(gait, cycles=cycles)})
+    recordings = tuple(bare if one is walk else one for one in analysis.recordings)
+    page.show_visit(AnalysedVisit(session, replace(analysis, recordings=recordings)))
+    choose(page, "walk 2")
+    assert words_beside(page) == ["Thin: walk 2. L: not measured in walk 2.", "Thin: walk 2."]
