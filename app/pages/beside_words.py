@@ -68,6 +68,7 @@ def answer_beside(found: Comparison) -> Answer:
     if worth:
         most = max(worth, key=lambda row: row.difference.ratio)
         error = fixed(most.difference.error, most.measure.decimals) + _unit(most.measure)
+        error += DAGGER if most.difference.is_unverified else ""
         return Answer(Outcome.DIFFERS, _sentence(most), tr("Larger than its error ({error}).").format(error=error))
     if not told:
         return Answer(Outcome.OPEN, tr("Nothing can be compared with {walk}.").format(walk=walk), "")

@@ -13,7 +13,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QFileDialog
 from pytestqt.qtbot import QtBot
 
-from app.pages.result_page import STRIDES
+from app.pages.result_page import STRIDES, Beside
 from app.reports.comparison import Contrast
 from app.storage.exchange import import_session
 from app.storage.opened import OpenedLibrary
@@ -183,6 +183,18 @@ def test_an_earlier_visit_is_compared_as_worn_anew(qtbot: QtBot, visit: Visit, s
     knees = [row.difference for row in found.rows if row.measure.column == "knee_range_deg"]
     assert [knee.difference for knee in knees] == [0.0, 0.0]
     assert all(ErrorSource.DAYS in knee.sources and knee.error > 9.2 for knee in knees)
+
+
+def test_the_last_visit_is_read_from_the_library_to_stand_beside_the_walk(
+    qtbot: QtBot, visit: Visit, step: ResultsStep
+) -> None:
+    results = step.page.results()
+    with qtbot.waitSignal(visit.earlier_read, timeout=60_000):
+        results.beside.setCurrentIndex(results.beside.findData(Beside.LAST_VISIT))
+        assert results.cycles.charts.knee.beside.text() == "The earlier visits are being read."  # nobody waits for it
+    assert results.cycles.charts.knee.beside.text() == "Thin: 2026-09-01."
+    assert results.answer.text.startswith("No change from 2026-09-01 is larger than its error.")
+    assert results.cycles.charts.knee.chart.described.beside
 
 
 def test_rerun_that_is_missing_is_told(
