@@ -150,11 +150,6 @@ class ComparePage(Themed):
         """Whether earlier visits are offered."""
         return self._has_visits
 
-    def choose_kind(self, kind: Contrast) -> None:
-        """Compare this with that; nothing where it is not offered."""
-        if (found := self.kinds.findData(kind)) >= 0:
-            self.kinds.setCurrentIndex(found)
-
     def set_has_visits(self, has_visits: bool) -> None:
         """Offer earlier visits, which `visits_wished` asks for."""
         self._has_visits = has_visits

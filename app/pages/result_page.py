@@ -223,7 +223,7 @@ class ResultPage(Themed):
     def band_words(self) -> str:
         """Whose band stands behind the curves and how fast this walk was; empty where no curve stands on one."""
         is_shown = self.view.choice == ANSWER and self._behind is not Behind.QUALITY
-        return self.cycles.band_words if is_shown else ""
+        return self.cycles.band_words if is_shown and self.beside.currentData() is Beside.BAND else ""
 
     @property
     def tab_order(self) -> list[QWidget]:
