@@ -481,3 +481,24 @@ def test_without_a_zero_curves_are_compared_about_their_mean(
     assert "0° is the mean of the stride." in frame.note
     assert frame.chart.described.band is None
     assert "mean of the stride" not in page.compare.frames[Side.RIGHT, True].note
+
+
+def test_a_change_counts_from_the_first_visit_that_can_be_read_and_says_so(
+    analysis: Analysis, session: Session
+) -> None:
+    gated = recalibrated(analysis, [Joint.LEFT_KNEE], axis_sd_rad=np.deg2rad(11.0))
+    days = (("May", gated), ("June", analysis), ("July", analysis))
+    (visits,) = visits_by_condition([walked(name, found, session, walk_1="A") for name, found in days])
+    found = Comparison(Contrast.VISITS, visits.parts)
+    rows = table_rows(found, ["1", "2", "3", "2 - 1", "3 - 1"])
+    ranges = [row.cells for row in rows if row.cells[1].words == "Knee range"]
+    of_range = {cells[0].side: cells for cells in ranges if isinstance(cells[0], TextCell)}
+    first, second, third = (of_range[Side.LEFT][k] for k in (2, 5, 6))
+    assert isinstance(first, TextCell)
+    assert isinstance(second, TextCell)
+    assert isinstance(third, TextCell)
+    assert (first.mark, first.small) == (Icon.WITHHELD, "withheld")
+    assert second.words == "–"  # of the visit that the others are told against
+    assert third.small.startswith("from 2")
+    assert "from 2" in third.words
+    assert not any("from" in str(cell.words) for cell in of_range[Side.RIGHT])
