@@ -8,6 +8,7 @@ from PySide6.QtGui import QColor, QHideEvent, QKeyEvent, QMouseEvent, QPainter, 
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy
 
 from app.icons import Icon
+from app.review.drawn_legs import HALF_WIDTHS_M
 from app.review.mean_legs import MeanLegs
 from app.theme import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
@@ -29,7 +30,6 @@ SPEEDS = (
     ("one", "1\u00a0\N{MULTIPLICATION SIGN}", 1.0),
 )
 LANE, LANE_GAP, LANES_HEIGHT = 18, 8, 84
-WIDTHS_M = ((0.075, 0.055), (0.055, 0.035), (0.05, 0.025))  # of thigh, shank and foot at either end, half of them
 NO_LEGS = later("Legs are drawn where a thigh was heard and a knee's height can be read.")
 APART = later("The clocks of both legs are not known to agree: drawn half a stride apart.")
 DRAWN = later("Drawn from angles and the thighs' inclination, not measured.")
@@ -217,7 +217,7 @@ class _LegsPicture(Themed):
         theme = self._look.theme
         painter.setPen(theme.side_pen(side, 2))
         painter.setBrush(theme.pale(side))
-        for k, (first, last) in enumerate(WIDTHS_M):
+        for k, (first, last) in enumerate(HALF_WIDTHS_M):
             if all(math.isfinite(one.x()) for one in points[k : k + 2]):
                 painter.drawPolygon(_segment(points[k], points[k + 1], scale * first, scale * last))
         painter.setBrush(QColor(theme.colours.surface))

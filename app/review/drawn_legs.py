@@ -20,6 +20,7 @@ from core.tracks import blocks_of, even_tracks, nominal_step_s
 # shares of the height (Drillis & Contini 1966, Body segment parameters)
 THIGH, SHANK, FOOT, HIPS = 0.245, 0.246, 0.152, 0.191
 UNKNOWN_HEIGHT_M = 1.70
+HALF_WIDTHS_M = ((0.075, 0.055), (0.055, 0.035), (0.05, 0.025))  # of thigh, shank and foot at either end
 MAX_LENGTH_RATIO = 1.3  # a shank further from what its height lets expect comes of centres that were not found
 FRAMES_HZ = 50.0  # smooth to the eye
 
@@ -38,6 +39,20 @@ class DrawnLeg:
 def height_of(session: Session) -> float:
     """The patient's height in metres, or a common one."""
     return session.patient.height_m or UNKNOWN_HEIGHT_M
+
+
+def how_drawn(session: Session) -> str:
+    """Say what of the drawing is measured, what is a share of the height, and what is not known."""
+    height_m, is_typed = height_of(session), session.patient.height_m is not None
+    return (
+        f"The legs are drawn, not measured. Knee and ankle bend as the angles say and each thigh is inclined as its "
+        f"sensor was; thigh, foot and hips are shares of a height of {height_m:.2f} m"
+        f"{'' if is_typed else ', which nobody typed'} (Drillis & Contini 1966), as is the shank where the centres of "
+        f"knee and ankle are not both known. How thick they are says nothing. The hips stay side by side in one place, "
+        f"and every knee's axis points sideways: where the patient walked to is not known. {FRAMES_HZ:.0f} pictures a "
+        f"second at most. A leg or foot is grey where the angle that bends it is withheld, has no zero, or may be "
+        f"mirrored."
+    )
 
 
 def draw_legs(session: Session, analysis: Analysis, recording: RecordingAnalysis) -> dict[Side, DrawnLeg]:

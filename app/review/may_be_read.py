@@ -6,6 +6,7 @@ for. The same holds of every angle once a strap of its leg has slipped.
 """
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from enum import StrEnum
 from itertools import groupby
 
@@ -17,7 +18,7 @@ from app.reports.patient_report.request import AnalysedVisit
 from app.reports.status import NO_ZERO, WITH_HEIGHT, WITHHELD, all_that_is_said, is_slipped, joint_status, why
 from core.body import Joint, Side
 from core.results import Analysis, RecordingAnalysis
-from core.samples import BoolArray, FloatArray, Session
+from core.samples import BoolArray, FloatArray, RecordingKind, Session
 
 
 class Place(StrEnum):
@@ -64,11 +65,13 @@ def is_pose(recording: RecordingAnalysis, joint: Joint, time_s: FloatArray) -> B
 
 
 def name_of_view(analysis: Analysis, joint: Joint) -> str:
-    """What stands above a joint's curves: its name, and what is missing where no recording has more."""
-    found, name = places(analysis, joint), joint.replace("_", " ")
+    """What stands above a joint's curves: its name, and what is missing where no walk has more."""
+    walks = tuple(r for r in analysis.recordings if r.kind is RecordingKind.WALKING and joint in r.joints)
+    found = places(replace(analysis, recordings=walks or analysis.recordings), joint)
+    name = joint.replace("_", " ")
     if Place.HEIGHT in found:
-        return name
-    return f"{name}: shape, no zero" if Place.SHAPE in found else f"{name}: {WITHHELD}"
+        return f"{name}: {'flexion' if joint.is_knee else 'dorsiflexion'}, °"
+    return f"{name}: shape, no zero, °" if Place.SHAPE in found else f"{name}: {WITHHELD}"
 
 
 def document(session: Session, analysis: Analysis, timelines: Mapping[str, str]) -> str:

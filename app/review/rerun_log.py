@@ -1,9 +1,10 @@
 """How can a session be looked at again, sample by sample? One Rerun log of what was measured and what was computed.
 
 Every recording is a timeline of its own, named by its kind and number (`walking_1`); choosing another timeline shows
-another recording in the same views. Nothing is left out between samples, and nobody's words are inside. Beside them
-two legs walk, which are drawn and say so. What may be read stands in a view of its own, and what may not is not shown
-until it is looked for (`may_be_read`).
+another recording in the same views. Nothing is left out between samples, and nobody's words are inside. Above the
+curves two legs walk, which are drawn and say so, and beside them stands the answer with a verdict for each joint
+(`answer_panel`). Every verdict stands in a view of its own, and what may not be read is not shown until it is looked
+for (`may_be_read`).
 
 The same session gives the same bytes: Rerun numbers its chunks and rows by the clock and by chance, so they are
 numbered here, and `rrd_file` does the rest.
@@ -25,8 +26,10 @@ from rerun_bindings import PyMemorySinkStorage, new_blueprint, save
 
 from app.colours import DARK
 from app.reports.gait_csv import events_of
-from app.review.drawn_legs import FRAMES_HZ, HIPS, SHANK, THIGH, DrawnLeg, draw_legs, height_of
+from app.review.answer_panel import panel
+from app.review.drawn_legs import HALF_WIDTHS_M, HIPS, SHANK, THIGH, DrawnLeg, draw_legs, height_of, how_drawn
 from app.review.may_be_read import Place, document, is_pose, name_of_view, pieces_of, places
+from app.review.phase_lane import lanes_of
 from app.review.rrd_file import remove_chance
 from core.body import Joint, Side, Site, ankle_of, knee_of
 from core.gait.phases import PHASES, Phase
@@ -39,18 +42,12 @@ BLUEPRINT = b"rec_" + b"0" * 32  # as long as the name that Rerun draws by chanc
 ROWS_PER_CHUNK = 100_000  # 4 MB of three axes with their times
 BAND_SD = 2.0
 LEGS_HEIGHT, CURVES_HEIGHT = 2, 3  # shares of the layout
-LEGS_WIDTH, VERDICTS_WIDTH = 3, 2
-CURVE_HEIGHT, LANE_HEIGHT = 5, 4  # shares of a column of curves
+LEGS_WIDTH, PANEL_WIDTH = 2, 3
 COLOURS = DARK  # the viewer is dark unless its user turns that
 SIDE_COLOUR = {Side.LEFT: COLOURS.left, Side.RIGHT: COLOURS.right}
 PALE_COLOUR = {Side.LEFT: COLOURS.left_soft, Side.RIGHT: COLOURS.right_soft}
-PHASE_COLOUR = {  # greys: a colour is a leg's alone
-    Phase.LOADING: COLOURS.ink3,
-    Phase.FOOT_FLAT: COLOURS.control,
-    Phase.PRE_SWING: COLOURS.ink3,
-    Phase.SWING: COLOURS.sunken,
-}
-RADII_M = {"thigh": 0.06, "shank": 0.045, "foot": 0.035}  # of the bodies that stand for a leg; drawn, not measured
+LANE_PX = {Phase.LOADING: 7.0, Phase.FOOT_FLAT: 7.0, Phase.PRE_SWING: 3.0, Phase.SWING: 1.0}  # wide
+RADII_M = {part: sum(ends) / 2 for part, ends in zip(("thigh", "shank", "foot"), HALF_WIDTHS_M, strict=True)}
 HIP_RADIUS_M = 0.03
 DRAWN = "Legs: drawn, not measured"
 
@@ -90,9 +87,13 @@ def _chunks(session: Session, analysis: Analysis, timelines: dict[str, str]) -> 
         for site in recording.imu if recording.is_kept else ():
             yield from _raw_chunks(timelines[recording.name], site, recording.imu[site])
     for analysed in analysis.recordings:
+        legs = draw_legs(session, analysis, analysed)
+        text = panel(session, analysis, analysed, legs)
+        yield from _panel_chunk(timelines[analysed.name], session, analysed, text)
         for joint in analysed.joints:
             yield from _angle_chunks(timelines[analysed.name], joint, analysed)
-        for side, leg in draw_legs(session, analysis, analysed).items():
+            yield from _lane_chunks(timelines[analysed.name], joint, analysed)
+        for side, leg in legs.items():
             yield from _leg_chunks(timelines[analysed.name], side, leg, analysed)
         for side, gait in analysed.gait.items():
             yield from _phase_chunk(timelines[analysed.name], side, analysed.time_s, gait.phase)
@@ -111,13 +112,15 @@ def _labels(session: Session, analysis: Analysis) -> Iterator[Chunk]:
                 yield _label(place.entity(joint, curve), [f"{curve}{place} °"], grey or colour, width)
             names = [f"2 sd below{place} °", f"2 sd above{place} °"]
             yield _label(place.entity(joint, "certainty"), names, grey or PALE_COLOUR[joint.side])
+        for phase, width in LANE_PX.items():
+            yield _label(_lane(joint, phase), [phase.replace("_", " ")], _phase_colour(joint.side, phase), width)
     words = [str(phase) for phase in PHASES if phase]
-    columns = rr.StateConfiguration.columns(
-        values=words,
-        labels=[word.replace("_", " ") for word in words],
-        colors=np.array([_rgba(PHASE_COLOUR[Phase(word)]) for word in words], dtype=np.uint32),
-    )
     for side in _sides_with_gait(analysis):
+        columns = rr.StateConfiguration.columns(
+            values=words,
+            labels=[word.replace("_", " ") for word in words],
+            colors=np.array([_rgba(_phase_colour(side, phase)) for phase in PHASES if phase], dtype=np.uint32),
+        )
         yield Chunk.from_columns(f"/phases/{side}", indexes=[], columns=columns.partition([len(words)]))
     if analysis.is_simulated:
         yield _document("/simulated", "SIMULATED: nobody was measured.")
@@ -166,16 +169,7 @@ def _leg_labels(session: Session, sides: list[Side]) -> Iterator[Chunk]:
             positions=[hip_m], colors=colours, radii=[HIP_RADIUS_M], labels=[side[0].upper()], show_labels=[True]
         )
         yield Chunk.from_columns(f"/legs/{side}/hip", indexes=[], columns=letter)
-    is_typed = session.patient.height_m is not None
-    yield _document(
-        "/about_legs",
-        f"The legs are drawn, not measured. Knee and ankle bend as the angles say and each thigh is inclined as its "
-        f"sensor was; thigh, foot and hips are shares of a height of {height_m:.2f} m"
-        f"{'' if is_typed else ', which nobody typed'} (Drillis & Contini 1966), as is the shank where the centres of "
-        f"knee and ankle are not both known. The hips stay side by side in one place, and every knee's axis points "
-        f"sideways: where the patient walked to is not known. {FRAMES_HZ:.0f} pictures a second at most. A leg or foot "
-        f"is grey where the angle that bends it is withheld, has no zero, or may be mirrored.",
-    )
+    yield _document("/about_legs", how_drawn(session))
 
 
 def _leg_chunks(timeline: str, side: Side, leg: DrawnLeg, recording: RecordingAnalysis) -> Iterator[Chunk]:
@@ -231,6 +225,33 @@ def _angle_chunks(timeline: str, joint: Joint, recording: RecordingAnalysis) -> 
                 yield from _series(place.entity(joint, curve), timeline, time_s[rows], values_deg)
 
 
+def _lane_chunks(timeline: str, joint: Joint, recording: RecordingAnalysis) -> Iterator[Chunk]:
+    """Yield the phases as a lane below a joint's curve, in its own axes, so that they cannot come apart."""
+    for phase, (time_s, height_deg) in lanes_of(recording, joint).items():
+        yield from _series(_lane(joint, phase), timeline, time_s, height_deg)
+
+
+def _lane(joint: Joint, phase: Phase) -> str:
+    return f"/angles/{joint}/phases/{phase}"
+
+
+def _phase_colour(side: Side, phase: Phase) -> str:
+    """As in the lanes of the results page: the heel's loading full, the flat foot pale, swing a base line."""
+    if phase is Phase.SWING:
+        return COLOURS.control
+    return PALE_COLOUR[side] if phase is Phase.FOOT_FLAT else SIDE_COLOUR[side]
+
+
+def _panel_chunk(timeline: str, session: Session, recording: RecordingAnalysis, text: str) -> Iterator[Chunk]:
+    """Yield the answer to a walk from its first sample on, raw or computed."""
+    raw = [block for r in session.recordings if r.name == recording.name for block in r.imu.values()]
+    starts_s = [time_s[0] for time_s in (recording.time_s, *(block.time_s for block in raw)) if len(time_s)]
+    if starts_s:
+        columns = rr.TextDocument.columns(text=[text], media_type=[rr.MediaType.MARKDOWN])
+        index = rr.TimeColumn(timeline, duration=[min(starts_s)])
+        yield Chunk.from_columns("/answer", indexes=[index], columns=columns)
+
+
 def _phase_chunk(timeline: str, side: Side, time_s: FloatArray, phase: IntArray) -> Iterator[Chunk]:
     """Yield each phase at the sample it begins with, as in angles.csv; an empty word ends the lane until the next."""
     begins = np.flatnonzero(np.diff(phase, prepend=-1))
@@ -282,17 +303,19 @@ def _sides_with_knee(analysis: Analysis) -> list[Side]:
 
 def _blueprint(session: Session, analysis: Analysis, timeline: str | None) -> rrb.Blueprint:
     columns = [column for side in Side if (column := side_views(analysis, side)) is not None]
-    tabs: list[rrb.Container | rrb.View] = []
+    simulated, tabs = "SIMULATED. " if analysis.is_simulated else "", list[rrb.Container | rrb.View]()
     if columns:
         name, curves = "Angles and phases", rrb.Horizontal(*columns)
-        legs = _leg_view(session, analysis) if _sides_with_knee(analysis) else None
-        verdicts = rrb.TextDocumentView(origin="/may_be_read", name="What may be read")
-        above = rrb.Horizontal(legs, verdicts, column_shares=[LEGS_WIDTH, VERDICTS_WIDTH]) if legs else verdicts
-        tabs += [rrb.Vertical(above, curves, row_shares=[LEGS_HEIGHT, CURVES_HEIGHT], name=name)]
-    elif analysis.recordings:
+        top: rrb.Container | rrb.View = rrb.TextDocumentView(origin="/answer", name=f"{simulated}Answer")
+        if _sides_with_knee(analysis):
+            top = rrb.Horizontal(_leg_view(session, analysis), top, column_shares=[LEGS_WIDTH, PANEL_WIDTH])
+        tabs += [rrb.Vertical(top, curves, row_shares=[LEGS_HEIGHT, CURVES_HEIGHT], name=name)]
+    if analysis.recordings:
         tabs += [rrb.TextDocumentView(origin="/may_be_read", name="What may be read")]
-    if _sides_with_gait(analysis):
-        tabs += [rrb.TextLogView(origin="/events", name="Events")]
+    if sides := _sides_with_gait(analysis):
+        axis = rrb.archetypes.TimeAxis(link=rrb.components.LinkAxis.LinkToGlobal)
+        lanes = [rrb.StateTimelineView(origin=f"/phases/{s}", name=f"{s} phases", time_view=axis) for s in sides]
+        tabs += [rrb.Vertical(*lanes, rrb.TextLogView(origin="/events", name="events"), name="Phases and events")]
     for signal in ("angular_rate", "specific_force"):
         views = [rrb.TimeSeriesView(origin=f"/raw/{s}/{signal}", name=s.replace("_", " ")) for s in _sites(session)]
         tabs += [rrb.Grid(*views, name=signal.replace("_", " ").capitalize(), grid_columns=2)]
@@ -313,7 +336,7 @@ def _leg_view(session: Session, analysis: Analysis) -> rrb.Spatial3DView:
         name=f"SIMULATED. {DRAWN}" if analysis.is_simulated else DRAWN,
         background=[int(COLOURS.ground[k : k + 2], 16) for k in (1, 3, 5)],
         eye_controls=rrb.EyeControls3D(
-            position=(0.4 * height_m, -0.85 * height_m, 0.4 * height_m),
+            position=(0.37 * height_m, -0.68 * height_m, 0.37 * height_m),
             look_target=(0.0, 0.0, middle_m),
             eye_up=(0.0, 0.0, 1.0),
         ),
@@ -321,31 +344,19 @@ def _leg_view(session: Session, analysis: Analysis) -> rrb.Spatial3DView:
 
 
 def side_views(analysis: Analysis, side: Side) -> rrb.Vertical | None:
-    """Stack a side's knee, ankle and, under the curves and on their axis of time, the lane of its phases."""
+    """Stack a side's knee and ankle, each with its phases; what the lines are says the answer's panel, not a legend."""
     axis = rrb.archetypes.TimeAxis(link=rrb.components.LinkAxis.LinkToGlobal)
-    joints = [joint for joint in (knee_of(side), ankle_of(side)) if joint in _joints(analysis)]
-    views: list[rrb.View] = [
+    views = [
         rrb.TimeSeriesView(
             origin=f"/angles/{joint}",
-            name=_titled(analysis, joint),
+            name=name_of_view(analysis, joint),
             axis_x=axis,
             plot_legend=rrb.PlotLegend(visible=False),
         )
-        for joint in joints
+        for joint in (knee_of(side), ankle_of(side))
+        if joint in _joints(analysis)
     ]
-    heights = [CURVE_HEIGHT] * len(views)
-    if side in _sides_with_gait(analysis):
-        views.append(rrb.StateTimelineView(origin=f"/phases/{side}", name=f"{side} phases", time_view=axis))
-        heights.append(LANE_HEIGHT)
-    return rrb.Vertical(*views, row_shares=heights, name=str(side)) if views else None
-
-
-def _titled(analysis: Analysis, joint: Joint) -> str:
-    """What stands above a joint's curves, and which line is which: a legend would lie on them."""
-    name = name_of_view(analysis, joint)
-    if Place.HEIGHT not in places(analysis, joint) and Place.SHAPE not in places(analysis, joint):
-        return name
-    return f"{name}, °. Thick: result; pale: 2 sd; thin white: published; thin grey: orientation"
+    return rrb.Vertical(*views, name=str(side)) if views else None
 
 
 def _parts(part: rrb.Container | rrb.View) -> Iterator[rrb.Container | rrb.View]:

@@ -14,9 +14,15 @@ import rerun.blueprint as rrb
 from rerun.chunk import Chunk, RrdReader
 
 from app.colours import DARK
+from app.gates_in_words import verdict_word
 from app.reports.gait_csv import write_gait
+from app.reports.patient_report.answer import answer_of
+from app.reports.patient_report.facts import Facts
+from app.reports.patient_report.request import AnalysedVisit
+from app.reports.walk_figures import verdict_of
 from app.review import rerun_log
 from app.review.drawn_legs import draw_legs
+from app.review.may_be_read import name_of_view
 from app.review.rerun_log import write_log
 from core.analysis import analyse
 from core.body import Joint, Side, Site
@@ -229,12 +235,14 @@ def test_an_unwritable_file_is_an_os_error(tmp_path: Path) -> None:
         write_log(*visit(), tmp_path / "missing" / "session.rrd")
 
 
+WALKED = simulate(WalkerSettings(seed=4, recordings=(Standing(), Walk(strides=5)))).session
+
+
 @pytest.fixture(scope="module")
 def walk(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Analysis]:
     """Log and tables of a simulated walk, in one folder."""
     folder = tmp_path_factory.mktemp("walk")
-    session = simulate(WalkerSettings(seed=4, recordings=(Standing(), Walk(strides=5)))).session
-    analysis = analyse(session)
+    session, analysis = WALKED, analyse(WALKED)
     write_log(session, analysis, folder / "session.rrd")
     write_gait(analysis.recordings[0], folder)
     return folder, analysis
@@ -269,13 +277,158 @@ def test_at_each_sample_the_lane_is_in_the_phase_of_the_walk(walk: tuple[Path, A
     assert found[-1][1] == ""  # the lane ends with the last event
 
 
-def test_the_lanes_lie_under_the_curves_of_their_side(walk: tuple[Path, Analysis]) -> None:
-    _, analysis = walk
+def entities(path: Path, timeline: str) -> set[str]:
+    return {chunk.entity_path for chunk in RrdReader(path).stream() if timeline in chunk.timeline_names}
+
+
+@pytest.mark.parametrize("joint", Joint)
+def test_the_phases_lie_in_the_axes_of_each_curve_and_below_it(walk: tuple[Path, Analysis], joint: Joint) -> None:
+    path, (recording,) = walk[0] / "session.rrd", walk[1].recordings
+    lowest_deg = np.nanmin(np.rad2deg(recording.joints[joint].angle_rad))
+    for number, phase in enumerate(PHASES[1:], start=1):
+        time_s, height_deg = curve(path, f"/angles/{joint}/phases/{phase}", "walking_1")
+        begins_s, ends_s, gaps = time_s[::3], time_s[1::3], height_deg[2::3]
+        assert np.isnan(gaps).all()  # so that no line joins two stretches
+        assert (height_deg[::3] < lowest_deg - 2).all()
+        is_inside = (recording.time_s[:, None] >= begins_s) & (recording.time_s[:, None] < ends_s)
+        np.testing.assert_array_equal(is_inside.any(axis=1), recording.gait[joint.side].phase == number)
+    column = rerun_log.side_views(walk[1], joint.side)
+    assert column is not None
+    views = [view for view in column.contents if isinstance(view, rrb.View)]
+    assert [view.origin for view in views] == [f"/angles/{joint.side}_knee", f"/angles/{joint.side}_ankle"]
+    assert [view.name for view in views] == [f"{joint.side} knee: flexion, °", f"{joint.side} ankle: dorsiflexion, °"]
+    for view in views:
+        legend = view.properties["PlotLegend"]
+        assert isinstance(legend, rrb.PlotLegend)
+        assert legend.visible is not None
+        assert legend.visible.as_arrow_array().to_pylist() == [False]
+
+
+def test_phases_and_curves_are_in_the_colours_of_their_side(walk: tuple[Path, Analysis]) -> None:
+    chunks = [c for c in RrdReader(walk[0] / "session.rrd").stream() if c.is_static]
+    colours = {c.entity_path: c.to_record_batch().to_pydict().get("SeriesLines:colors") for c in chunks}
     for side in Side:
-        column = rerun_log.side_views(analysis, side)
-        assert column is not None
-        origins = [view.origin for view in column.contents if isinstance(view, rrb.View)]
-        assert origins == [f"/angles/{side}_knee", f"/angles/{side}_ankle", f"/phases/{side}"]
+        full, pale = getattr(DARK, side), getattr(DARK, f"{side}_soft")
+        expected = {"result": full, "phases/loading": full, "phases/foot_flat": pale, "phases/swing": DARK.control}
+        for name, colour in expected.items():
+            assert colours[f"/angles/{side}_knee/{name}"] == [[int(colour[1:] + "FF", 16)]]
+
+
+def doubtful(analysis: Analysis, **said: Assessment) -> Analysis:
+    """The walk with another verdict of the left knee, or of the left leg's timing."""
+    (recording,) = analysis.recordings
+    verdicts = recording.verdicts
+    joints, legs = dict(verdicts.joints), dict(verdicts.legs)
+    if "timing" in said:
+        legs[Side.LEFT] = replace(verdicts.leg(Side.LEFT), timing=said["timing"])
+    else:
+        joints[Joint.LEFT_KNEE] = replace(verdicts.joint(Joint.LEFT_KNEE), **said)
+    return replace(analysis, recordings=(replace(recording, verdicts=replace(verdicts, joints=joints, legs=legs)),))
+
+
+@pytest.mark.parametrize(
+    ("said", "gone"),
+    [
+        ({}, set()),
+        ({"shape": BAD}, {Joint.LEFT_KNEE}),
+        ({"sign": SIGN}, {Joint.LEFT_KNEE}),
+        ({"timing": assess([GateReason("strides", Verdict.WITHHELD, 1, 3)])}, {Joint.LEFT_KNEE, Joint.LEFT_ANKLE}),
+    ],
+)
+def test_no_lane_where_the_times_or_the_curve_may_not_be_told(
+    walk: tuple[Path, Analysis], tmp_path: Path, said: dict[str, Assessment], gone: set[Joint]
+) -> None:
+    write_log(WALKED, doubtful(walk[1], **said), tmp_path / "session.rrd")
+    found = entities(tmp_path / "session.rrd", "walking_1")
+    assert {joint for joint in Joint if f"/angles/{joint}/phases/swing" not in found} == gone
+
+
+def panel_of(session: Session, analysis: Analysis, path: Path) -> str:
+    write_log(session, analysis, path)
+    ((_, text),) = words(path, "/answer", "TextDocument:text")
+    return text
+
+
+def test_beside_the_legs_stands_the_answer_with_a_verdict_for_each_joint(walk: tuple[Path, Analysis]) -> None:
+    folder, analysis = walk
+    ((time_s, text),) = words(folder / "session.rrd", "/answer", "TextDocument:text")
+    assert time_s == pytest.approx(WALKED.recordings[-1].imu[Site.LEFT_THIGH].time_s[0])  # there from the beginning
+    facts = Facts(AnalysedVisit(WALKED, analysis), analysis.recordings[0])
+    answer = answer_of(facts)
+    assert text.startswith(f"### {answer.first}\n\n{answer.then}\n")
+    for joint in Joint:
+        verdict = verdict_word(verdict_of(facts.verdicts.joint(joint)))
+        assert f"- **{joint.replace('_', ' ').capitalize()}: {verdict}.**" in text
+    assert "grey." not in text
+    assert "slipped" not in text
+
+
+@pytest.mark.parametrize(
+    ("said", "row", "is_grey"),
+    [
+        (
+            {"shape": SIGN},
+            "- **Left knee: withheld.** The left leg and foot are grey. The motion does not tell flexion",
+            True,
+        ),
+        ({"height": BAD}, "- **Left knee: no zero.** The left leg and foot are grey. No zero was set", True),
+        (
+            {"sign": SIGN},
+            "- **Left knee: sign unsure.** The left leg and foot are grey. The motion does not tell flexion",
+            True,
+        ),
+        (
+            {"height": assess([GateReason("drift", Verdict.CARE, 4.0, 3.0, "deg")])},
+            "- **Left knee: read with care.**",
+            False,
+        ),
+    ],
+)
+def test_the_panel_says_what_is_withheld_why_and_that_it_is_grey(
+    walk: tuple[Path, Analysis], tmp_path: Path, said: dict[str, Assessment], row: str, is_grey: bool
+) -> None:
+    text = panel_of(WALKED, doubtful(walk[1], **said), tmp_path / "session.rrd")
+    assert row in text
+    assert ("The left leg and foot are grey." in text) == is_grey
+    assert "The right" not in text
+
+
+def test_a_foot_alone_is_grey_where_only_its_ankle_is_no_pose(walk: tuple[Path, Analysis], tmp_path: Path) -> None:
+    (recording,), said = walk[1].recordings, dict(walk[1].recordings[0].verdicts.joints)
+    said[Joint.RIGHT_ANKLE] = replace(said[Joint.RIGHT_ANKLE], height=BAD)
+    doubted = replace(recording, verdicts=replace(recording.verdicts, joints=said))
+    text = panel_of(WALKED, replace(walk[1], recordings=(doubted,)), tmp_path / "session.rrd")
+    assert "- **Right ankle: no zero.** The right foot is grey." in text
+    assert "leg and foot are grey" not in text
+
+
+def test_the_panel_says_when_a_strap_slipped(walk: tuple[Path, Analysis], tmp_path: Path) -> None:
+    (recording,) = walk[1].recordings
+    slipped = replace(walk[1], recordings=(replace(recording, slipped_from_s={Side.RIGHT: 3.25}),))
+    text = panel_of(WALKED, slipped, tmp_path / "session.rrd")
+    assert "A strap of the right leg slipped: from 3.2 s on its curves are withheld, the leg is grey." in text
+    assert "the left leg slipped" not in text
+    for joint in (Joint.RIGHT_KNEE, Joint.LEFT_KNEE):
+        time_s, _ = curve(tmp_path / "session.rrd", f"/angles/{joint}/phases/swing", "walking_1")
+        assert (time_s.max() <= 3.26) == (joint is Joint.RIGHT_KNEE)
+
+
+def test_nobodys_name_is_in_the_panel(walk: tuple[Path, Analysis], tmp_path: Path) -> None:
+    called = "walk of Mr Miller"
+    *others, last = WALKED.recordings
+    session = replace(
+        WALKED, recordings=(*others, replace(last, name=called)), patient=Patient(code="Miller"), notes="Miller"
+    )
+    analysis = replace(walk[1], recordings=(replace(walk[1].recordings[0], name=called),))
+    assert "iller" not in panel_of(session, analysis, tmp_path / "session.rrd")
+
+
+def test_a_view_is_called_withheld_where_no_walk_shows_its_curve(walk: tuple[Path, Analysis]) -> None:
+    withheld = doubtful(walk[1], shape=BAD)
+    free = replace(walk[1].recordings[0], kind=RecordingKind.FREE_MOTION)
+    both = replace(withheld, recordings=(free, *withheld.recordings))
+    assert name_of_view(both, Joint.LEFT_KNEE) == "left knee: withheld"
+    assert name_of_view(both, Joint.RIGHT_KNEE) == "right knee: flexion, °"
 
 
 def ends_of(turns: np.ndarray, lengths: np.ndarray) -> np.ndarray:
@@ -294,7 +447,7 @@ def test_a_body_lies_along_its_segment_wherever_that_points(straight: tuple[floa
     np.testing.assert_allclose(ends_of(turns.reshape(1, 4), lengths.reshape(1))[0], straight, atol=1e-6)
 
 
-def test_the_panel_begins_with_the_walk_and_its_answer(walk: tuple[Path, Analysis]) -> None:
+def test_the_table_of_verdicts_begins_with_the_walk_and_its_answer(walk: tuple[Path, Analysis]) -> None:
     folder, _ = walk
     chunks = [c for c in RrdReader(folder / "session.rrd").stream() if c.entity_path == "/may_be_read"]
     ((text,),) = [row for c in chunks for row in c.to_record_batch().column("TextDocument:text").to_pylist()]
@@ -304,23 +457,9 @@ def test_the_panel_begins_with_the_walk_and_its_answer(walk: tuple[Path, Analysi
     assert text.count("**") == 2  # one walk, one answer
 
 
-def test_names_of_lines_stand_above_the_curves_and_no_legend_on_them(walk: tuple[Path, Analysis]) -> None:
-    _, analysis = walk
-    column = rerun_log.side_views(analysis, Side.LEFT)
-    assert column is not None
-    curves = [view for view in column.contents if isinstance(view, rrb.TimeSeriesView)]
-    assert len(curves) == 2
-    for view in curves:
-        legend = view.properties["PlotLegend"]
-        assert isinstance(legend, rrb.PlotLegend)
-        assert legend.visible is not None
-        assert legend.visible.as_arrow_array().to_pylist() == [False]
-        assert str(view.name).endswith("Thick: result; pale: 2 sd; thin white: published; thin grey: orientation")
-
-
 def test_two_legs_walk_above_the_curves_and_say_that_they_are_drawn(walk: tuple[Path, Analysis]) -> None:
     folder, analysis = walk
-    session = simulate(WalkerSettings(seed=4, recordings=(Standing(), Walk(strides=5)))).session
+    session = WALKED
     legs = draw_legs(session, analysis, analysis.recordings[0])
     reader = RrdReader(folder / "session.rrd")
     for side in Side:
@@ -341,10 +480,11 @@ def test_two_legs_walk_above_the_curves_and_say_that_they_are_drawn(walk: tuple[
     assert isinstance(first, rrb.Vertical)
     above, curves = list(first.contents)
     assert isinstance(above, rrb.Horizontal)
-    view, verdicts = list(above.contents)
+    view, answer = list(above.contents)
     assert isinstance(view, rrb.Spatial3DView)
-    assert isinstance(verdicts, rrb.TextDocumentView)
-    assert verdicts.origin == "/may_be_read"
+    assert isinstance(answer, rrb.TextDocumentView)
+    assert answer.origin == "/answer"
+    assert answer.name == "SIMULATED. Answer"
     assert view.name == "SIMULATED. Legs: drawn, not measured"
     assert isinstance(curves, rrb.Horizontal)
     text = "".join(str(c.to_record_batch().to_pydict()) for c in reader.stream() if c.entity_path == "/about_legs")
@@ -354,7 +494,7 @@ def test_two_legs_walk_above_the_curves_and_say_that_they_are_drawn(walk: tuple[
 
 def test_a_leg_is_grey_where_an_angle_that_bends_it_is_no_pose(walk: tuple[Path, Analysis], tmp_path: Path) -> None:
     _, analysis = walk
-    session = simulate(WalkerSettings(seed=4, recordings=(Standing(), Walk(strides=5)))).session
+    session = WALKED
     (recording,), said = analysis.recordings, dict(analysis.recordings[0].verdicts.joints)
     said[Joint.LEFT_KNEE] = replace(said[Joint.LEFT_KNEE], height=BAD)
     said[Joint.RIGHT_ANKLE] = replace(said[Joint.RIGHT_ANKLE], sign=SIGN)

@@ -1,0 +1,55 @@
+"""What does a walk say? Its answer and a verdict for each joint, beside the legs, in the words of the results page."""
+
+from collections.abc import Collection, Iterator
+
+from app.gates_in_words import verdict_word
+from app.reports.patient_report.answer import answer_of
+from app.reports.patient_report.facts import Facts
+from app.reports.patient_report.request import AnalysedVisit
+from app.reports.status import WITH_HEIGHT, joint_status, why
+from app.reports.walk_figures import MAY_BE_MIRRORED, doubt_in, reason_in_words, verdict_of
+from app.wording import capitalised, later, name_of, side_name, tr
+from core.body import Joint, Side
+from core.results import Analysis, RecordingAnalysis
+from core.samples import RecordingKind, Session
+
+KEY = later(
+    "Lines: thick in the leg's colour, the result; thin around it, 2 SD of its certainty; thin and light, the "
+    "published method; thin and grey, orientation. Below them the phases: full, loading; pale, foot flat; narrow, "
+    "pre-swing; thin grey, swing."
+)
+
+
+def panel(session: Session, analysis: Analysis, recording: RecordingAnalysis, drawn: Collection[Side]) -> str:
+    """The answer and the verdicts of one recording in Markdown; `drawn` are the sides whose legs are."""
+    lines: list[str] = []
+    if recording.kind is RecordingKind.WALKING:
+        answer = answer_of(Facts(AnalysedVisit(session, analysis), recording))
+        lines += [f"### {answer.first}", "", answer.then, ""]
+    joints = [joint for joint in Joint if joint in recording.joints]
+    lines += [_line(recording, joint, is_drawn=joint.side in drawn) for joint in joints]
+    for side in Side:
+        lines += [f"- {said}" for said in _slipped(recording, side)]
+    return "\n".join([*lines, "", *([tr(KEY)] if joints else [])])
+
+
+def _line(recording: RecordingAnalysis, joint: Joint, is_drawn: bool) -> str:
+    """A joint's verdict, why it is no better, and what is drawn grey for it; no table, whose cells would not wrap."""
+    found = recording.verdicts.joint(joint)
+    doubt = doubt_in(found)
+    verdict = tr(doubt) if doubt else verdict_word(verdict_of(found))
+    reason = why(found.sign) if doubt == MAY_BE_MIRRORED else reason_in_words(found)
+    grey = ""
+    if is_drawn and joint_status(recording, joint) not in WITH_HEIGHT:
+        said = tr("The {side} leg and foot are grey.") if joint.is_knee else tr("The {side} foot is grey.")
+        grey = said.format(side=side_name(joint.side))
+    pattern = tr("{part}: {verdict}.")
+    said = pattern.format(part=capitalised(name_of(joint)), verdict=verdict)
+    return " ".join(filter(None, [f"- **{said}**", grey, reason]))
+
+
+def _slipped(recording: RecordingAnalysis, side: Side) -> Iterator[str]:
+    from_s = recording.slipped_from_s.get(side)
+    if from_s is not None and len(recording.time_s) and from_s <= recording.time_s[-1]:
+        said = tr("A strap of the {side} leg slipped: from {time:.1f} s on its curves are withheld, the leg is grey.")
+        yield said.format(side=side_name(side), time=from_s)

@@ -1,0 +1,48 @@
+"""Where do a foot's phases lie beside the curve of a joint? As a lane below it, on the same axes."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from app.review.may_be_read import Place, pieces_of
+from core.body import Joint
+from core.gait.phases import PHASES, Phase
+from core.results import RecordingAnalysis
+from core.samples import FloatArray
+
+BELOW, LEAST_BELOW_DEG = 0.15, 5.0  # of the curve's range
+
+
+def lanes_of(recording: RecordingAnalysis, joint: Joint) -> Mapping[Phase, tuple[FloatArray, FloatArray]]:
+    """Each phase's times and heights in degrees (k,): a stretch for each time the foot is in it, NaN behind each.
+
+    None while the curve of the joint is not shown, or where the times of the leg may not be told.
+    """
+    gait, shown_deg = recording.gait.get(joint.side), _shown_deg(recording, joint)
+    known_deg = shown_deg[np.isfinite(shown_deg)]
+    if gait is None or not len(known_deg) or not recording.verdicts.leg(joint.side).timing.is_told:
+        return {}
+    height_deg = float(known_deg.min() - max(BELOW * np.ptp(known_deg), LEAST_BELOW_DEG))
+    shown_phase = np.where(np.isfinite(shown_deg), gait.phase, PHASES.index(Phase.UNKNOWN))
+    borders = np.flatnonzero(np.diff(shown_phase)) + 1
+    first = np.concatenate([[0], borders])
+    last = np.concatenate([borders, [len(shown_phase) - 1]])
+    lanes = {}
+    for number, phase in enumerate(PHASES):
+        runs = shown_phase[first] == number
+        if phase and runs.any():
+            begins_s, ends_s = recording.time_s[first[runs]], recording.time_s[last[runs]]
+            time_s = np.stack([begins_s, ends_s, ends_s], axis=1).ravel()
+            lanes[phase] = time_s, np.tile([height_deg, height_deg, np.nan], len(begins_s))
+    return lanes
+
+
+def _shown_deg(recording: RecordingAnalysis, joint: Joint) -> FloatArray:
+    """A joint's curve (n,) as it is shown, a shape about its own mean; NaN where it is withheld."""
+    shown = np.full(len(recording.time_s), np.nan)
+    for place, rows in pieces_of(recording, joint):
+        if place is not Place.WITHHELD:
+            shown[rows] = np.rad2deg(recording.joints[joint].angle_rad[rows])
+            if place is Place.SHAPE and np.isfinite(shown[rows]).any():
+                shown[rows] -= np.nanmean(shown[rows])
+    return shown
