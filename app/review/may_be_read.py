@@ -12,13 +12,10 @@ from itertools import groupby
 
 import numpy as np
 
-from app.reports.patient_report.answer import answer_of
-from app.reports.patient_report.facts import Facts
-from app.reports.patient_report.request import AnalysedVisit
 from app.reports.status import NO_ZERO, WITH_HEIGHT, WITHHELD, all_that_is_said, is_slipped, joint_status, why
 from core.body import Joint, Side
 from core.results import Analysis, RecordingAnalysis
-from core.samples import BoolArray, FloatArray, RecordingKind, Session
+from core.samples import BoolArray, FloatArray, RecordingKind
 
 
 class Place(StrEnum):
@@ -74,21 +71,16 @@ def name_of_view(analysis: Analysis, joint: Joint) -> str:
     return f"{name}: shape, no zero, °" if Place.SHAPE in found else f"{name}: {WITHHELD}"
 
 
-def document(session: Session, analysis: Analysis, timelines: Mapping[str, str]) -> str:
+def document(analysis: Analysis, timelines: Mapping[str, str]) -> str:
     """Every verdict with its reasons, a table per recording, in Markdown; recordings are called as their timelines.
 
-    Walks come first, each with its answer in the words of the report.
+    Walks come first.
     """
     lines = ["# What may be read"]
-    visit = AnalysedVisit(session, analysis)
-    walks = visit.walk_names()
+    walks = {recording.name for recording in analysis.recordings if recording.kind is RecordingKind.WALKING}
     in_order = sorted(all_that_is_said(analysis), key=lambda one: one.recording not in walks)
     for recording, said in groupby(in_order, key=lambda one: one.recording):
-        lines += ["", f"## {timelines[recording]}", ""]
-        if recording in walks:
-            found = answer_of(Facts(visit, visit.walk(recording)))
-            lines += [f"**{found.first}** {found.then}".strip(), ""]
-        lines += ["| of | what | verdict | why |", "|---|---|---|---|"]
+        lines += ["", f"## {timelines[recording]}", "", "| of | what | verdict | why |", "|---|---|---|---|"]
         for one in said:
             verdict = one.assessment.verdict.replace("_", " ")
             lines.append(f"| {one.subject} | {one.quantity} | {verdict} | {why(one.assessment)} |")

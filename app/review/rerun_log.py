@@ -65,9 +65,13 @@ def write_log(session: Session, analysis: Analysis, path: Path) -> None:
     layout, layout_name = _layout(session, analysis, next(iter(timelines.values()), None))
     log = rr.RecordingStream(APPLICATION, recording_id=RECORDING, send_properties=False)
     save(str(path), layout, log.to_native())
+    waiting_rows = 0
     for number, chunk in enumerate(_chunks(session, analysis, timelines), start=1):
         rr.send_chunks(_numbered(chunk, number), recording=log)
-        log.flush()  # or the chunks would pile up in memory
+        waiting_rows += chunk.num_rows
+        if waiting_rows >= ROWS_PER_CHUNK:  # or the chunks would pile up in memory
+            log.flush()
+            waiting_rows = 0
     log.disconnect()
     remove_chance(path, layout_name, BLUEPRINT)
 
@@ -82,7 +86,7 @@ def _timelines(session: Session) -> dict[str, str]:
 def _chunks(session: Session, analysis: Analysis, timelines: dict[str, str]) -> Iterator[Chunk]:
     yield from _labels(session, analysis)
     if analysis.recordings:
-        yield _document("/may_be_read", document(session, analysis, timelines), rr.MediaType.MARKDOWN)
+        yield _document("/may_be_read", document(analysis, timelines), rr.MediaType.MARKDOWN)
     for recording in session.recordings:
         for site in recording.imu if recording.is_kept else ():
             yield from _raw_chunks(timelines[recording.name], site, recording.imu[site])

@@ -138,7 +138,8 @@ def checksum(data: bytes, seed: int = CHECKSUM_SEED) -> int:
     lanes = [seed + primes[0] + primes[1], seed + primes[1], seed, seed - primes[0]]
     for number, lane in enumerate(lanes):
         for word in words[number::4]:
-            lane = turned(lane + word * primes[1] & mask, 13) * primes[0] & mask
+            lane = lane + word * primes[1] & mask  # turned here, not by a call: there are many words
+            lane = (lane << 13 | lane >> 19) * primes[0] & mask
         lanes[number] = lane
     value = sum(map(turned, lanes, (1, 7, 12, 18))) if whole else seed + primes[4]
     value = value + len(data) & mask
