@@ -147,15 +147,17 @@ class Facts:
             return MeanAndSd(math.nan, math.nan, 0)
         return mean_and_sd(peak_percent(self.walk, side, column)[self.gait[side].strides.is_used])
 
-    def mean_curve_deg(self, side: Side, kind: str) -> FloatArray:
-        """The mean over the strides used (101,), about its own mean where there is no zero; NaN from too few."""
+    def measured_curve_deg(self, side: Side, kind: str) -> FloatArray:
+        """The mean over the strides used (101,) as it was measured, with or without a zero; NaN from too few."""
         joint = joint_of(kind, side)
         if not self.is_measured(joint):
             return np.full(POINTS, np.nan)
         found = mean_curve(self.walk, joint)
-        if not is_mean_enough(found.n):
-            return np.full(POINTS, np.nan)
-        curve_deg = np.rad2deg(found.mean)
+        return np.rad2deg(found.mean) if is_mean_enough(found.n) else np.full(POINTS, np.nan)
+
+    def mean_curve_deg(self, side: Side, kind: str) -> FloatArray:
+        """The same (101,), about its own mean where there is no zero."""
+        curve_deg = self.measured_curve_deg(side, kind)
         return curve_deg - np.mean(curve_deg) if self.has_no_zero(kind) else curve_deg
 
     def strides_deg(self, side: Side, kind: str) -> FloatArray:

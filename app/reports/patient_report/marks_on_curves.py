@@ -25,7 +25,10 @@ CONTACT, ALL = (0.0, 0.0), (0.0, 100.0)  # percent of the stride
 
 
 def deviations_of(facts: Facts) -> list[Deviation]:
-    """Of each kind of joint the excursion between the legs that the findings tell first, on the first leg."""
+    """Of each kind of joint the excursion between the legs that the findings tell first, on the first leg.
+
+    Degrees as measured: the screen takes away the height of a curve without a zero, and of its marks with it.
+    """
     rows = {row.column: row for row in what_differs(facts)}
     told = [rows[one.column] for one in ranked_findings(facts, None, BANDS_ON_SCREEN) if one.column in rows]
     found: list[Deviation] = []
@@ -51,7 +54,7 @@ def brackets_of(facts: Facts, comparison: Comparison | None) -> dict[Joint, Devi
         for side in facts.first_and_second:
             if np.isfinite(facts.mean_curve_deg(side, kind)).all():
                 size = fixed(row.values[side].mean, row.decimals) + row.unit
-                low, high = _extremes(facts, row, kind, side)
+                low, high = _extremes(row, joint_of(kind, side), facts.mean_curve_deg(side, kind))
                 is_first = side is facts.first_and_second[0]
                 words = f"{side[0].upper()} {size}"
                 found[joint_of(kind, side)] = Deviation(
@@ -73,7 +76,7 @@ def _has_extremes(row: LegsRow, kind: str) -> bool:
 def _on_leg(facts: Facts, row: LegsRow, kind: str) -> Deviation:
     """The extremes of the first leg's mean curve; the sizes are means of the strides, as everywhere."""
     first, second = facts.first_and_second
-    low, high = _extremes(facts, row, kind, first)
+    low, high = _extremes(row, joint_of(kind, first), facts.measured_curve_deg(first, kind))
     size = fixed(row.values[first].mean, row.decimals) + row.unit
     pattern = tr("{size} less than {other}") if row.difference.difference < 0 else tr("{size} more than {other}")
     apart = fixed(abs(row.difference.difference), row.decimals) + row.unit
@@ -87,9 +90,8 @@ def _on_leg(facts: Facts, row: LegsRow, kind: str) -> Deviation:
     )
 
 
-def _extremes(facts: Facts, row: LegsRow, kind: str, side: Side) -> tuple[Point, Point]:
-    """The lowest and the highest point of a leg's mean curve that a movement goes between."""
-    joint, curve = joint_of(kind, side), facts.mean_curve_deg(side, kind)
+def _extremes(row: LegsRow, joint: Joint, curve: FloatArray) -> tuple[Point, Point]:
+    """The lowest and the highest point of a leg's mean curve (101,), degrees, that a movement goes between."""
     high, low = windows_of(row.column)
     return extreme_of(joint, curve, *low, is_maximum=False), extreme_of(joint, curve, *high, is_maximum=True)
 
@@ -117,7 +119,7 @@ def gaps_of(facts: Facts) -> list[Gap]:
     for side in Side:
         for kind in KINDS:
             joint = joint_of(kind, side)
-            curve = facts.mean_curve_deg(side, kind)
+            curve = facts.measured_curve_deg(side, kind)
             is_judged = side in facts.sides_with_band and facts.verdicts.joint(joint).height.is_told
             if is_judged and np.isfinite(curve).all() and is_mean_enough(facts.strides(side)):
                 found += _beyond(joint, curve, Band(*group.mean_and_sd_deg(kind)))

@@ -23,7 +23,6 @@ from core.verdicts.model import Verdict
 
 SWATCH_WIDTH, SWATCH_HEIGHT = 30.0, 9.0
 DOT = 6.4
-HEIGHT_GATES = ("zero", "plausible_height")  # these leave the shape alone
 PEAK_COLUMNS = {
     "knee": ("knee_loading_peak_deg", "knee_swing_peak_deg"),
     "ankle": ("ankle_stance_dorsiflexion_deg", "ankle_push_off_plantarflexion_deg"),
@@ -131,7 +130,7 @@ def why_withheld(facts: Facts, joint: Joint) -> str:
     if np.isfinite(facts.mean_curve_deg(joint.side, kind)).any() or len(facts.strides_deg(joint.side, kind)):
         return ""
     for cause in quality.causes(facts, (Verdict.WITHHELD,), is_of_joints=True):
-        if joint in cause.places and cause.gate not in HEIGHT_GATES:
+        if joint in cause.places and cause.gate not in quality.HEIGHT_GATES:
             return cause.words.why
     return tr("No stride of this joint could be used.")
 

@@ -18,6 +18,7 @@ from core.verdicts.model import GateReason, Verdict, Verdicts, worst
 
 MAX_SENTENCES = 3  # more would push a page over its foot
 MAX_TO_DO = 2  # beside a panel
+HEIGHT_GATES = ("zero", "plausible_height")  # these leave the shape alone
 Place = Joint | Side | None
 """What a reason is about: a joint, a leg, or what lies between both legs."""
 
@@ -75,7 +76,7 @@ def causes(
         # what one reason withholds names it; what it leaves to be read with care beside that is in the table
         where = tuple(place for place, verdict in known.items() if verdict is gravest)
         if gravest in wanted:
-            found.append(Cause(gate, gravest, where, _where(facts, where), words))
+            found.append(Cause(gate, gravest, where, _named(gate, _where(facts, where)), words))
     return sorted(found, key=lambda one: wanted.index(one.verdict))
 
 
@@ -85,6 +86,14 @@ def _reasons(verdicts: Verdicts) -> Iterator[tuple[Place, GateReason]]:
     for side, leg in verdicts.legs.items():
         yield from ((side, reason) for part in (leg.timing, leg.distance) for reason in part.reasons)
     yield from ((None, reason) for reason in verdicts.between.reasons)
+
+
+def _named(gate: str, where: str) -> str:
+    """What of a place a gate is about, where that is not all of it."""
+    inside = where[:1].lower() + where[1:]
+    if gate in HEIGHT_GATES:
+        return tr("Height of {joints}").format(joints=inside)
+    return tr("All of {joints} but the range").format(joints=inside) if gate == "sign" else where
 
 
 def _where(facts: Facts, places: Sequence[Place]) -> str:

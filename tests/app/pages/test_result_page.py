@@ -20,7 +20,7 @@ from app.widgets.table_cells import TextCell
 from core.analysis import analyse
 from core.body import Joint, Side
 from core.norms import AgeAndHeight, NoBand
-from core.results import Analysis, SideGait
+from core.results import Analysis, SideGait, ZeroKind
 from core.samples import Session
 from core.verdicts.model import Verdict
 from core.verdicts.quantities import raw_values
@@ -341,6 +341,27 @@ def test_the_answer_stands_over_the_mean_cycle_and_nothing_scrolls_for_it(page: 
     page.view.choose(WHOLE)
     assert page.answer.isVisible()
     assert page.answer.text.startswith("Nothing can be read of this walk")
+
+
+@pytest.mark.parametrize("joints", [tuple(Joint), (Joint.RIGHT_KNEE,)])
+def test_without_a_zero_marks_stand_on_the_curves_as_they_are_drawn(
+    page: ResultPage, analysis: Analysis, joints: tuple[Joint, ...]
+) -> None:
+    """Their height was taken away twice."""
+    found = with_more(analysis, Side.LEFT, "knee_stance_to_swing_rad", -20.0)
+    show(page, recalibrated(found, joints, zero=ZeroKind.NONE))
+    chart = page.cycles.charts.knee.chart
+    (marked,) = chart.deviations
+    for point in marked.points:
+        drawn = chart.cycles[point.joint.side].mean.mean
+        assert point.angle_deg == pytest.approx(drawn[round(point.percent)], abs=1e-6)
+
+
+def test_where_heights_alone_are_withheld_no_joint_is_called_so(page: ResultPage, analysis: Analysis) -> None:
+    show(page, recalibrated(analysis, tuple(Joint), zero=ZeroKind.NONE))
+    assert page.door.words == "Height of all joints: withheld."
+    show(page, recalibrated(analysis, tuple(Joint), is_same_joint=False, sign_margin=1.05))
+    assert page.door.words == "All joints: withheld."
 
 
 def test_that_a_living_joint_is_no_hinge_is_no_finding(page: ResultPage, analysis: Analysis) -> None:

@@ -73,7 +73,7 @@ def test_without_a_zero_no_height_is_told(request_of_demonstration: ReportReques
     request = without_zero(request_of_demonstration)
     pages = shown(request)
     assert readable(request)["Left knee"] == [READ, WITHHELD, READ]
-    assert "All joints: No zero was set, so heights say nothing." in pages[0]
+    assert "Height of all joints: No zero was set, so heights say nothing." in pages[0]
     assert "none: heights are not shown" in pages[0]
     assert "Knee range over the stride" in pages[0]
     assert "from band" not in pages[0]
@@ -179,7 +179,7 @@ def test_an_axis_beyond_its_limit_is_marked_and_a_worse_one_withheld(request_of_
 
 def test_an_uncertain_sign_leaves_the_range_alone(request_of_demonstration: ReportRequest) -> None:
     pages = shown(with_joints(request_of_demonstration, Joint.LEFT_KNEE, is_sign_certain=False))
-    assert "Left knee: The motion does not tell flexion from extension" in pages[0]
+    assert "All of left knee but the range: The motion does not tell flexion from extension" in pages[0]
     assert "Not drawn: left knee, withheld." in pages[1]
     assert "loading (5–30 %) withheld 14.0" in pages[1]
     assert re.search(r"Range over the stride 61\.7 ± 0\.8 63\.0", pages[1])
