@@ -359,9 +359,9 @@ def test_without_a_zero_marks_stand_on_the_curves_as_they_are_drawn(
 
 def test_where_heights_alone_are_withheld_no_joint_is_called_so(page: ResultPage, analysis: Analysis) -> None:
     show(page, recalibrated(analysis, tuple(Joint), zero=ZeroKind.NONE))
-    assert page.door.words == "Height of all joints: withheld."
+    assert page.door.words.startswith("Height of all joints: withheld.")
     show(page, recalibrated(analysis, tuple(Joint), is_same_joint=False, sign_margin=1.05))
-    assert page.door.words == "All joints: withheld."
+    assert page.door.words.startswith("All joints: withheld.")
 
 
 def test_that_a_living_joint_is_no_hinge_is_no_finding(page: ResultPage, analysis: Analysis) -> None:
