@@ -56,7 +56,7 @@ WORDS = {
         later("Use one receiver for all sensors, then record again."),
     ),
     "strap": GateWords(later("A strap slipped from {value} on; later strides are left out."), _FREE_MOTION),
-    "strides": GateWords(later("{value} strides were used ({limit} wanted)."), later("Let the patient walk longer.")),
+    "strides": GateWords(later("Few strides ({value} used, {limit} wanted)."), later("Let the patient walk longer.")),
     "halves": GateWords(later("The second half of the walk differs from the first by {value} ({limit} at most).")),
     "halves_time": GateWords(
         later("The stride time of the second half differs from the first by {value} ({limit} at most).")

@@ -98,12 +98,6 @@ def laid_at_height_of(curve_deg: FloatArray, band: Band) -> Band:
     return replace(band, mean_deg=band.mean_deg + float(np.median(curve_deg - band.mean_deg)))
 
 
-def gaps_outside_band(joint: Joint, curve_deg: FloatArray, band: Band) -> tuple[Gap, ...]:
-    """Where a curve (101,) leaves two standard deviations of the band as it is drawn."""
-    reach = BAND_SDS * band.sd_deg
-    return gaps_outside(joint, curve_deg, band.mean_deg - reach, band.mean_deg + reach, tr("outside 2 SD of the band"))
-
-
 def gaps_outside(
     joint: Joint, curve_deg: FloatArray, low_deg: FloatArray, high_deg: FloatArray, words: str
 ) -> tuple[Gap, ...]:

@@ -173,14 +173,6 @@ class Facts:
             strides_deg = strides_deg - np.mean(strides_deg)
         return strides_deg
 
-    def mean_stride_sd_deg(self, side: Side, kind: str) -> MeanAndSd:
-        """The SD between strides, averaged over the stride."""
-        joint = joint_of(kind, side)
-        if not self.is_measured(joint):
-            return MeanAndSd(math.nan, math.nan, 0)
-        found = mean_curve(self.walk, joint)
-        return MeanAndSd(math.degrees(float(np.mean(found.sd))), math.nan, found.n)
-
     def band(self, column: str) -> Band | None:
         """1 SD about the mean of band [1] for a joint's column of strides.csv, where its source has it."""
         group = self.curves_group

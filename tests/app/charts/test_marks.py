@@ -4,13 +4,19 @@ import numpy as np
 import pytest
 
 from app.charts.cycles import PERCENT, Band
-from app.charts.marks import Deviation, Point, extreme_of, gaps_outside, gaps_outside_band, laid_at_height_of
+from app.charts.marks import BAND_SDS, Deviation, Gap, Point, extreme_of, gaps_outside, laid_at_height_of
 from core.body import Joint
 from core.samples import FloatArray
 
 KNEE: FloatArray = 50 * np.exp(-(((PERCENT - 72) / 12) ** 2))
 BAND = Band(KNEE, np.full(101, 3.0))
 POINT = Point(Joint.LEFT_KNEE, 72.0, 50.0)
+
+
+def outside(curve: FloatArray, band: Band) -> tuple[Gap, ...]:
+    """Where a curve of a left knee leaves two standard deviations of a band."""
+    reach = BAND_SDS * band.sd_deg
+    return gaps_outside(Joint.LEFT_KNEE, curve, band.mean_deg - reach, band.mean_deg + reach, "outside the band")
 
 
 def test_an_extreme_is_looked_for_inside_its_window_alone() -> None:
@@ -21,21 +27,21 @@ def test_an_extreme_is_looked_for_inside_its_window_alone() -> None:
 
 
 def test_a_curve_inside_its_band_has_no_gap() -> None:
-    assert gaps_outside_band(Joint.LEFT_KNEE, KNEE + 5.9, BAND) == ()
-    assert gaps_outside_band(Joint.LEFT_KNEE, np.full(101, np.nan), BAND) == ()
+    assert outside(KNEE + 5.9, BAND) == ()
+    assert outside(np.full(101, np.nan), BAND) == ()
 
 
 def test_a_gap_lasts_as_long_as_the_curve_is_out_and_keeps_the_limit_it_left() -> None:
     curve = KNEE.copy()
     curve[66:85] -= 7.0
     curve[10:15] += 6.5
-    above, below = gaps_outside_band(Joint.LEFT_KNEE, curve, BAND)
+    above, below = outside(curve, BAND)
     assert (above.first_percent, above.last_percent) == (10, 14)
     assert (below.first_percent, below.last_percent) == (66, 84)
     np.testing.assert_allclose(above.limit_deg, KNEE + 6.0)
     np.testing.assert_allclose(below.limit_deg, KNEE - 6.0)
     np.testing.assert_allclose(below.lowered(4.0).limit_deg, KNEE - 10.0)
-    assert below.in_words() == "Left knee, 66 to 84 %: outside 2 SD of the band."
+    assert below.in_words() == "Left knee, 66 to 84 %: outside the band."
 
 
 def test_a_gap_that_is_hardly_seen_is_none() -> None:
@@ -50,10 +56,10 @@ def test_a_gap_that_is_hardly_seen_is_none() -> None:
 
 def test_a_band_laid_at_the_curves_height_judges_shape_alone() -> None:
     curve = KNEE + 20.0
-    assert gaps_outside_band(Joint.LEFT_KNEE, curve, BAND) != ()
+    assert outside(curve, BAND) != ()
     laid = laid_at_height_of(curve, BAND)
     np.testing.assert_allclose(laid.mean_deg, curve)
-    assert gaps_outside_band(Joint.LEFT_KNEE, curve, laid) == ()
+    assert outside(curve, laid) == ()
 
 
 def test_only_what_is_larger_than_the_error_is_said_to_be() -> None:

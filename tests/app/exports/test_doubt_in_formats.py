@@ -175,7 +175,7 @@ def test_under_ten_strides_nothing_is_final(
     assert {one["status"] for one in told.values()} == {status}
     for one in told.values():
         notes = [note["text"] for note in one["note"]]
-        assert any(text.startswith(f"{used} strides were used (10 wanted)") for text in notes) == (status != "final")
+        assert any(text.startswith(f"Few strides ({used} used, 10 wanted)") for text in notes) == (status != "final")
         assert component(one, "strides_used")["valueInteger"] == used
 
 

@@ -161,7 +161,7 @@ def test_of_fewer_than_three_strides_each_is_drawn_in_grey_and_no_mean(
     charts.set_band_shown(False)
     charts.show_cycles({Joint.LEFT_KNEE: cycle(2)}, {Joint.LEFT_KNEE: judged_as(FEW, FEW)}, is_simulated=False)
     chart = charts.knee.chart
-    assert "2 strides were used (3 wanted)" in charts.knee.withheld[Side.LEFT].text
+    assert "Few strides (2 used, 3 wanted)" in charts.knee.withheld[Side.LEFT].text
     highest = float(chart.cycles[Side.LEFT].strides_deg.max())
     assert colour_at(chart, 72, highest).name() != look.theme.colours.surface.lower()
     assert colour_at(chart, 72, 60).name() == look.theme.colours.surface.lower()

@@ -81,7 +81,7 @@ def test_legs_whose_clocks_are_not_known_to_agree_can_each_be_read(visit: Analys
 def test_too_few_strides_withhold_a_leg(visit: AnalysedVisit) -> None:
     found = quality_of(visit, with_few_strides(visit.analysis, left=2))
     assert found.lines[0].where == "Left leg"
-    assert found.lines[0].why == "2 strides were used (3 wanted)."
+    assert found.lines[0].why == "Few strides (2 used, 3 wanted)."
     assert "2 of 4 joints can be read." in found.first
 
 

@@ -117,7 +117,7 @@ def test_two_strides_make_no_mean_and_no_number(request_of_demonstration: Report
     request = with_strides(request_of_demonstration, 2)
     pages = shown(request)
     assert readable(request)["Right knee"] == [WITHHELD] * 3
-    assert "Both legs: 2 strides were used (3 wanted). Let the patient walk longer." in pages[0]
+    assert "Both legs: Few strides (2 used, 3 wanted). Let the patient walk longer." in pages[0]
     assert "±" not in pages[1].split("Range over the stride")[1].split("Windows in brackets")[0]
     assert "Range over the stride withheld withheld – – – " in pages[1]
     assert "exceeds" not in pages[1].split("Windows in brackets")[0]
@@ -141,7 +141,7 @@ def test_five_strides_make_a_mean_without_a_spread(request_of_demonstration: Rep
     assert swing[1]["grey"] is swing[2]["grey"] is True
     assert "±" not in swing[1]["said"]
     assert swing[1]["said"].endswith("*")
-    assert "Both legs: 5 strides were used (10 wanted)." in shown(request)[0]
+    assert "Both legs: Few strides (5 used, 10 wanted)." in shown(request)[0]
 
 
 def test_one_short_leg_does_not_hide_the_other(request_of_demonstration: ReportRequest) -> None:
@@ -149,7 +149,7 @@ def test_one_short_leg_does_not_hide_the_other(request_of_demonstration: ReportR
     pages = shown(request)
     assert readable(request)["Left knee"] == [WITHHELD] * 3
     assert readable(request)["Right knee"] == [READ] * 3
-    assert "Left leg: 2 strides were used (3 wanted)." in pages[0]
+    assert "Left leg: Few strides (2 used, 3 wanted)." in pages[0]
     assert re.search(r"Range over the stride withheld \d+\.\d ± \d\.\d – – –", pages[1])
 
 
