@@ -60,6 +60,8 @@ def import_foreign(
 ) -> "ImportedFiles":
     """The samples of one recording of another program, as its importer in `devices.files` gives them.
 
+    `format_name` empty: told by the content.
+
     Raises
     ------
     FileRefusedError

@@ -8,7 +8,7 @@ from app.terminal import finding_lines, one_of, positive
 
 # as core.samples.RecordingKind and devices.files.child.IMPORTERS have them, whose imports would cost half a second here
 KINDS = ("standing", "free_motion", "walking")
-FORMATS = ("xsens-mtmanager",)
+FORMATS = ("xsens-mtmanager", "apdm")
 
 Report = Callable[[float, str], None]
 
@@ -17,7 +17,11 @@ def add_import_arguments(parser: argparse.ArgumentParser) -> None:
     parser.description = "Make one recording of files of another program and add it to a session folder."
     parser.add_argument("files", metavar="FILES", type=Path, nargs="+", help="the files of one recording")
     parser.add_argument(
-        "--as", dest="format", type=one_of(FORMATS), required=True, metavar="FORMAT", help=", ".join(FORMATS)
+        "--as",
+        dest="format",
+        type=one_of(FORMATS),
+        metavar="FORMAT",
+        help=f"{', '.join(FORMATS)}; without it, told by the content",
     )
     parser.add_argument(
         "--map",
@@ -51,7 +55,9 @@ def import_files(wanted: argparse.Namespace, progress: Report) -> list[str]:
     session = Session(()) if is_new else read_foreign_session(wanted.out, lambda: progress(0.0, str(wanted.out)))
     name = wanted.recording or free_name(session, kind)
     progress(0.0, name)
-    imported = import_foreign(wanted.format, wanted.files, placement, name, wanted.rate, lambda: progress(0.0, name))
+    imported = import_foreign(
+        wanted.format or "", wanted.files, placement, name, wanted.rate, lambda: progress(0.0, name)
+    )
     recording = Recording(name, kind, folder_for(name), imported.imu)
     session = add_recording(session, recording, imported.sensors, imported.findings)
     progress(0.5, str(wanted.out))

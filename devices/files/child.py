@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from devices.files.answers import Array, Details
 
 TOML, SITE, IMPORT = "toml", "site", "import"
-IMPORTERS = ("xsens-mtmanager",)
+IMPORTERS = ("xsens-mtmanager", "apdm")
 READ, REFUSED, MEMORY, UNFORESEEN = "read", "refused", "memory", "unforeseen"
 
 
@@ -44,9 +44,10 @@ def main() -> None:
 
 def importers() -> "dict[str, Callable[..., Any]]":
     """What reads each of `IMPORTERS`."""
+    from devices.files.apdm import import_apdm
     from devices.files.xsens_mtmanager import import_mtmanager  # here: SciPy takes longer to import than most files
 
-    return {"xsens-mtmanager": import_mtmanager}
+    return {"xsens-mtmanager": import_mtmanager, "apdm": import_apdm}
 
 
 def _answer(asked: "Details", arrays: "list[Array]") -> "Details":
@@ -84,9 +85,11 @@ def _read(asked: "Details", arrays: "list[Array]") -> object:
             Path(asked["path"]), asked["where"], asked["place"], asked["sensor"], asked["is_rate_derived"]
         )
         return {"block": details_of_block(block, arrays), "findings": details_of_findings(findings)}
+    from devices.files.recognition import recognised  # here, for SciPy comes with it
+
     placement = {Site(site): value for site, value in asked["placement"].items()}
     files = [Path(path) for path in asked["files"]]
-    imported = importers()[asked["format"]](files, placement, asked["recording"], asked["rate_hz"])
+    imported = importers()[asked["format"] or recognised(files)](files, placement, asked["recording"], asked["rate_hz"])
     return details_of_import(imported, arrays)
 
 

@@ -60,6 +60,14 @@ class MtFile:
     rate_hz: float | None
 
 
+def is_mtmanager(head: bytes) -> bool:
+    """Whether a file that begins so is one of these texts, with the comments MT Manager heads them with.
+
+    Columns alone do not tell: those of Movella DOT have the same names, and other ticks of time.
+    """
+    return head.lstrip(b"\xef\xbb\xbf").startswith(b"//") and COUNTER.encode() in head
+
+
 def read_mtmanager(path: Path) -> MtFile:
     """Read one file.
 

@@ -489,6 +489,24 @@ def test_an_import_makes_a_session_and_a_second_one_adds_to_it(
     assert analyse(out, tmp_path / "out", "--no-rrd") == 0
 
 
+def test_an_import_tells_the_program_by_the_content(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    mt = mt_file(tmp_path, "00B42D4B", 0).rename(tmp_path / "opal.csv")
+    apdm = tmp_path / "MT_01-000_00B42D4B.txt"
+    heads = ["Format=7,17,,,Left Thigh,,", "Time,Accelerometer,,,Gyroscope,,", ",X,Y,Z,X,Y,Z"]
+    apdm.write_text("\n".join([*heads, *(f"{1_000_000 + 10_000 * k},0,0,9.81,0.1,0,0" for k in range(400)), ""]))
+    where = ["--map", "left_thigh=17", "--out", str(tmp_path / "session")]
+    assert main(["import", str(apdm), *where]) == 0
+    assert main(["import", str(mt), "--map", "left_thigh=opal.csv", "--out", str(tmp_path / "other")]) == 0
+    capsys.readouterr()
+    assert main(["import", str(mt), "--as", "apdm", "--map", "left_thigh=A", "--out", str(tmp_path / "third")]) == 2
+    assert "opal.csv: this is no export of APDM's programs" in refusal(capsys)
+    strange = tmp_path / "taxes.csv"
+    strange.write_text("year,amount\n2026,1\n")
+    assert main(["import", str(strange), *where]) == 2
+    assert "taxes.csv: no format that can be imported is recognised in it" in refusal(capsys)
+    assert len(files_in(tmp_path / "session")) == 2
+
+
 def test_an_import_of_the_same_name_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert imported(tmp_path, tmp_path / "session", "--recording", "walk A") == 0
     before = files_in(tmp_path / "session")

@@ -122,10 +122,31 @@ def read_folder(reader: LimitedReader, folder: Path) -> object:
     return read_session(folder, LimitedReading(reader, nobody))
 
 
+def apdm() -> bytes:
+    quantities = {"Acceleration": "XYZ", "Angular Velocity": "XYZ", "Magnetic Field": "XYZ", "Orientation": "SXYZ"}
+    columns = [(name, axis.replace("S", "Scalar")) for name, axes in quantities.items() for axis in axes]
+    units = {"Acceleration": "m/s^2", "Angular Velocity": "rad/s", "Magnetic Field": "uT", "Orientation": ""}
+    lines = [
+        "Test Name:,a walk",
+        "Sample Rate:,128,Hz",
+        ",".join(["Time", *(f"A/{one}/{axis}" for one, axis in columns)]),
+    ]
+    lines.append(",".join(["s", *(units[name] for name, _ in columns)]))
+    lines += [f"{k / 128:.6f},0.1,0.2,9.8,0.01,0.02,0.03,40.0,5.0,6.0,1.0,0.0,0.0,0.0" for k in range(ROWS)]
+    return "\n".join([*lines, ""]).encode()
+
+
 def read_export(reader: LimitedReader, folder: Path) -> object:
     files = [folder / "export.txt"]
     return LimitedReading(reader, nobody).import_files(
         "xsens-mtmanager", files, {Site.LEFT_THIGH: "export.txt"}, "walk 1", None
+    )
+
+
+def read_unnamed(reader: LimitedReader, folder: Path) -> object:
+    """The format told by the content, as without --as."""
+    return LimitedReading(reader, nobody).import_files(
+        "", [folder / "export.csv"], {Site.LEFT_THIGH: "A"}, "walk 1", None
     )
 
 
@@ -138,6 +159,7 @@ def importers() -> dict[str, Spoilable]:
         "parquet": Spoilable(parquet(), "walk_1/left_thigh.parquet", read_folder, may_be_a_link=True),
         "session.toml": Spoilable(TOML.encode(), "session.toml", read_folder, may_be_a_link=True),
         "xsens-mtmanager": Spoilable(mtmanager(), "export.txt", read_export, may_be_a_link=False),
+        "apdm": Spoilable(apdm(), "export.csv", read_unnamed, may_be_a_link=False),
     }
 
 

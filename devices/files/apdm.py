@@ -1,0 +1,306 @@
+"""CSV exports of APDM's Opal sensors: one file with all sensors of a trial, their columns side by side.
+
+Two dialects. "Format=7" of Motion Studio: three lines of heads, sensors by number and name, time in microseconds since
+1970, no units stated. That of Moveo and Mobility Lab: a test's name and rate, columns called `Sensor/Quantity/Axis`, a
+line of units. In both the orientation is earth from sensor, scalar first, earth z up, and rates are of the instants of
+their stamps, as files of both show: the orientation turns the specific force of a sensor at rest to earth z, and its
+slope is the rate.
+"""
+
+import csv
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import islice
+from pathlib import Path
+
+import numpy as np
+
+from core.body import Site
+from core.findings import Finding, Severity
+from core.samples import FloatArray, ImuBlock, RateKind, SensorInfo
+from devices.files.imports import MAP, ImportedFiles
+from devices.files.refusal import FileRefusedError, quoted
+
+MONITORS, TEST_NAME, TIME = "Format=", "Test Name:", "Time"
+HEAD_LINES = 5  # at most, of either dialect
+EXPORT_AGAIN = "Export it again as CSV, from Moveo, Mobility Lab or Motion Studio"
+WITH_IT = "Export it again, with it"
+PER_MONITOR = {"Accelerometer": 3, "Gyroscope": 3, "Magnetometer": 3, "Orientation": 4}
+NAMED = {"Acceleration": "XYZ", "Angular Velocity": "XYZ", "Magnetic Field": "XYZ", "Orientation": "SXYZ"}
+UNITS = {"Acceleration": ("m/s^2", "m/s²"), "Angular Velocity": ("rad/s",)}
+ACC, GYR, MAG, ORIENTATION = 0, 1, 2, 3  # both dialects name the same four quantities in this order
+LARGEST_RATE_RAD_S = 70.0  # twice the widest range of these sensors, 2000 deg/s: beyond, the unit is another
+GRAVITY_M_S2 = (7.0, 14.0)  # the middle of what a sensor on a walking leg feels
+Columns = tuple[tuple[int, ...], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ApdmFile:
+    """One trial: `rows` (n, m) as numbers, NaN where a cell is empty; `columns` of each sensor by its name.
+
+    `ids`: by what else a sensor may be called.
+    """
+
+    path: Path
+    time_s: FloatArray
+    rows: FloatArray
+    columns: Mapping[str, Columns]
+    ids: Mapping[str, str]
+    rate_hz: float | None
+
+
+def is_apdm(head: bytes) -> bool:
+    """Whether a file that begins so is one of these exports."""
+    lines = head.decode("utf-8", "replace").lstrip("\ufeff").splitlines()
+    if not lines:
+        return False
+    return bool(re.match(r"Format=\d+,", lines[0])) or (
+        lines[0].startswith(TEST_NAME) and any("/Acceleration/" in line for line in lines[:HEAD_LINES])
+    )
+
+
+def read_apdm(path: Path) -> ApdmFile:
+    """Read one file.
+
+    Raises
+    ------
+    FileRefusedError
+        None of the dialects, sensors without acceleration or rates, other units, what is no number, times that step
+        back.
+    """
+    where = path.name
+    with path.open(encoding="utf-8-sig", newline="") as file:
+        reader = csv.reader(file)
+        try:
+            head = list(islice(reader, HEAD_LINES))
+            first = head[0][0].strip() if head and head[0] else ""
+            if first.startswith(MONITORS):
+                columns, ids = _monitors(head, where)
+                first_row, tick_s, rate_hz = 3, 1e-6, None
+            elif first == TEST_NAME:
+                columns, first_row, rate_hz = _named(head, where)
+                ids, tick_s = {}, 1.0
+            else:
+                raise FileRefusedError(where, "this is no export of APDM's programs", EXPORT_AGAIN)
+            rows = _numbers([*head[first_row:], *reader], len(head[first_row - 1]), first_row, where)
+        except (csv.Error, UnicodeDecodeError) as error:
+            raise FileRefusedError(where, "this is no text of comma-separated values", EXPORT_AGAIN) from error
+    time_s = _times(rows[:, 0], tick_s, first_row, where)
+    found = ApdmFile(path, time_s, rows, columns, ids, rate_hz)
+    _check_units(found)
+    return found
+
+
+def import_apdm(
+    files: Sequence[Path], placement: Mapping[Site, str], recording: str, rate_hz: float | None = None
+) -> ImportedFiles:
+    """The sensors of one trial as the samples of one recording; all share the stamps of the file.
+
+    Parameters
+    ----------
+    placement
+        Per site a sensor's name or number as the file has it; `imports.parse_map`.
+    recording
+        The recording's name in findings.
+    rate_hz
+        Not needed: the file tells its times.
+
+    Returns
+    -------
+    ImportedFiles
+        SI units, sensor axes; seconds since the trial's first sample.
+
+    Raises
+    ------
+    FileRefusedError
+        What `read_apdm` refuses, several files, a site whose sensor is none of the file's.
+    """
+    if len(files) != 1:
+        raise FileRefusedError(
+            recording, "an export of APDM holds all sensors of a trial in one file", "Import one file at a time"
+        )
+    file = read_apdm(files[0])
+    sensors = {site: _sensor_of(file, site, value) for site, value in placement.items()}
+    for site, name in sensors.items():
+        if list(sensors.values()).count(name) > 1:
+            raise FileRefusedError(
+                f"{MAP} {site}", "{name} is at two sites", "Name each sensor once", name=quoted(name)
+            )
+    told_hz = rate_hz or file.rate_hz or _rate_of(file.time_s)
+    imu = {site: _block(file, name) for site, name in sensors.items()}
+    info = {
+        site: SensorInfo(serial=file.ids.get(name, name), rate_hz=told_hz, rate_kind=RateKind.INSTANTANEOUS)
+        for site, name in sensors.items()
+    }
+    left_out = [name for name in file.columns if name not in sensors.values()]
+    findings = [Finding("file_left_out", Severity.INFO, recording, {"name": name}) for name in left_out]
+    return ImportedFiles(imu, info, tuple(findings))
+
+
+def _monitors(head: list[list[str]], where: str) -> tuple[dict[str, Columns], dict[str, str]]:
+    """Columns and numbers of the sensors of "Format=7", by their names."""
+    if len(head) < 3:
+        raise FileRefusedError(where, "its head is cut off", EXPORT_AGAIN)
+    sensors, quantities = head[0], head[1]
+    cells = [k for k in range(1, len(sensors)) if sensors[k].strip()]
+    columns: dict[str, Columns] = {}
+    ids: dict[str, str] = {}
+    for number, name in zip(cells[::2], cells[1::2], strict=False):
+        nxt = next((k for k in cells[::2] if k > number), len(sensors))
+        starts = {quantities[k].strip(): k for k in range(number, min(nxt, len(quantities))) if quantities[k].strip()}
+        called = sensors[name].strip()
+        columns[called] = _found(
+            [tuple(range(starts[one], starts[one] + n)) if one in starts else () for one, n in PER_MONITOR.items()],
+            called,
+            where,
+        )
+        ids[called] = sensors[number].strip()
+    if not columns:
+        raise FileRefusedError(where, "it names no sensor", EXPORT_AGAIN)
+    return columns, ids
+
+
+def _named(head: list[list[str]], where: str) -> tuple[dict[str, Columns], int, float | None]:
+    """Columns of the sensors of the other dialect, the first line with numbers, and the rate."""
+    at = next((k for k, line in enumerate(head) if line and line[0].strip() == TIME), None)
+    if at is None or at + 1 >= len(head):
+        raise FileRefusedError(where, "there is no line of columns that begins with {name}", EXPORT_AGAIN, name=TIME)
+    names, units = [cell.strip() for cell in head[at]], [cell.strip() for cell in head[at + 1]]
+    places = {name: k for k, name in enumerate(names)}
+    columns = {}
+    for sensor in dict.fromkeys(name.split("/")[0] for name in names if name.count("/") == 2):
+        found = []
+        for quantity, axes in NAMED.items():
+            parts = [f"{sensor}/{quantity}/{'Scalar' if axis == 'S' else axis}" for axis in axes]
+            found.append(tuple(places[part] for part in parts) if all(part in places for part in parts) else ())
+            for part in parts if found[-1] and quantity in UNITS else ():
+                unit = units[places[part]] if places[part] < len(units) else ""
+                if unit not in UNITS[quantity]:
+                    raise FileRefusedError(
+                        where,
+                        "{name} is in {unit}, expected {wanted}",
+                        "Export it again in SI units",
+                        name=quoted(part),
+                        unit=quoted(unit),
+                        wanted=UNITS[quantity][0],
+                    )
+        columns[sensor] = _found(found, sensor, where)
+    rate = next((line[1] for line in head[:at] if line and line[0].startswith("Sample Rate") and len(line) > 1), "")
+    try:
+        rate_hz = float(rate)
+    except ValueError:
+        rate_hz = 0.0
+    return columns, at + 2, rate_hz if rate_hz > 0 else None
+
+
+def _found(columns: Sequence[tuple[int, ...]], sensor: str, where: str) -> Columns:
+    if not columns[ACC]:
+        raise FileRefusedError(where, "{sensor} has no acceleration", WITH_IT, sensor=quoted(sensor))
+    if not columns[GYR]:
+        raise FileRefusedError(where, "{sensor} has no angular rates", WITH_IT, sensor=quoted(sensor))
+    return tuple(columns)
+
+
+def _numbers(lines: list[list[str]], width: int, first_row: int, where: str) -> FloatArray:
+    """(n, width) cells as numbers, NaN where one is empty."""
+    lines = [line for line in lines if any(cell.strip() for cell in line)]
+    if not lines:
+        return np.empty((0, width))
+    for number, line in enumerate(lines, start=first_row + 1):
+        if len(line) != width:
+            raise FileRefusedError(
+                f"{where}, line {number}",
+                "it has {count} cells, the heads {width}",
+                "The file is cut off or damaged; export it again",
+                count=len(line),
+                width=width,
+            )
+    try:
+        return np.array([[float(cell) if cell else np.nan for cell in line] for line in lines], dtype=np.float64)
+    except ValueError:
+        for number, line in enumerate(lines, start=first_row + 1):
+            for cell in line:
+                try:
+                    float(cell or "nan")
+                except ValueError:
+                    raise FileRefusedError(
+                        f"{where}, line {number}", "{cell} is no number", EXPORT_AGAIN, cell=quoted(cell)
+                    ) from None
+        raise
+
+
+def _times(stamps: FloatArray, tick_s: float, first_row: int, where: str) -> FloatArray:
+    """Seconds since the first stamp (n,), ascending."""
+    is_wrong = ~np.isfinite(stamps)
+    is_wrong[1:] |= ~(np.diff(stamps) > 0)
+    if is_wrong.any():
+        raise FileRefusedError(
+            f"{where}, line {int(np.argmax(is_wrong)) + first_row + 1}",
+            "its time does not come after that of the line before",
+            EXPORT_AGAIN,
+        )
+    return (stamps - stamps[:1]) * tick_s
+
+
+def _sensor_of(file: ApdmFile, site: Site, value: str) -> str:
+    """The sensor of a name or number, whatever its case."""
+    wanted = value.strip().casefold()
+    for name in file.columns:
+        if wanted in (name.casefold(), file.ids.get(name, "").casefold()):
+            return name
+    known = ", ".join(f"{name} ({file.ids[name]})" if name in file.ids else name for name in file.columns)
+    raise FileRefusedError(
+        f"{MAP} {site}",
+        "{name} has no sensor {value}",
+        "The sensors there are {sensors}",
+        name=file.path.name,
+        value=quoted(value),
+        sensors=known,
+    )
+
+
+def _block(file: ApdmFile, name: str) -> ImuBlock:
+    parts = [file.rows[:, list(columns)] if columns else None for columns in file.columns[name]]
+    gyr, acc = parts[GYR], parts[ACC]
+    assert gyr is not None  # `_found` refuses a sensor without
+    assert acc is not None
+    return ImuBlock(
+        sensor=file.ids.get(name, name),
+        time_s=file.time_s,
+        gyr_rad_s=gyr,
+        acc_m_s2=acc,
+        q_earth_from_sensor=parts[ORIENTATION],
+        mag=parts[MAG],
+    )
+
+
+def _rate_of(time_s: FloatArray) -> float | None:
+    steps_s = np.diff(time_s)
+    return round(1.0 / float(np.median(steps_s)), 1) if len(steps_s) else None
+
+
+def _check_units(file: ApdmFile) -> None:
+    """By magnitude: one dialect states no units."""
+    for name, columns in file.columns.items():
+        if not len(file.rows):
+            return
+        felt = np.linalg.norm(file.rows[:, list(columns[ACC])], axis=1)
+        middle = float(np.nanmedian(felt)) if np.isfinite(felt).any() else np.nan
+        least, most = GRAVITY_M_S2
+        if np.isfinite(middle) and not least < middle < most:
+            raise FileRefusedError(
+                file.path.name,
+                "the acceleration of {sensor} is {middle} in the middle, which is not gravity in m/s2",
+                "Export it again in m/s2, gravity not taken out",
+                sensor=quoted(name),
+                middle=f"{middle:.2f}",
+            )
+        rates = np.abs(file.rows[:, list(columns[GYR])])
+        if np.nanmax(rates, initial=0.0) > LARGEST_RATE_RAD_S:
+            raise FileRefusedError(
+                file.path.name,
+                "the angular rates of {sensor} are in deg/s and not in rad/s",
+                "Export it again in rad/s",
+                sensor=quoted(name),
+            )

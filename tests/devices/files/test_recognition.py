@@ -1,0 +1,45 @@
+"""Is the program that wrote a file told by what stands in it?"""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from devices.files.recognition import recognised
+from devices.files.refusal import FileRefusedError
+
+FindData = Callable[[str], Path]
+MT = "// Update Rate: 100.0Hz\nPacketCounter\tAcc_X\tAcc_Y\tAcc_Z\n"
+APDM = "Format=7,17,,,Left Thigh\nTime,Accelerometer\n"
+
+
+def put(path: Path, text: str) -> Path:
+    path.write_text(text)
+    return path
+
+
+def test_every_export_there_is(test_data: FindData) -> None:
+    for folder, name in (("xsens_mtmanager", "xsens-mtmanager"), ("apdm", "apdm")):
+        texts = sorted(test_data(f"vendor_exports/{folder}").glob("*.[ct][sx][vt]"))
+        files = [path for path in texts if not path.name.startswith("LICENSE")]
+        assert files
+        assert {recognised([path]) for path in files} == {name}
+
+
+def test_the_name_of_a_file_says_nothing(tmp_path: Path) -> None:
+    assert recognised([put(tmp_path / "apdm.csv", MT)]) == "xsens-mtmanager"
+    assert recognised([put(tmp_path / "PacketCounter.txt", APDM)]) == "apdm"
+
+
+def test_what_is_not_known_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(FileRefusedError, match=r"a.csv: no format that can be imported is recognised in it.*--as"):
+        recognised([put(tmp_path / "a.csv", "time,left,right\n")])
+    dot = "DeviceTag:,D4\nPacketCounter,SampleTimeFine,Acc_X,Acc_Y,Acc_Z,Gyr_X,Gyr_Y,Gyr_Z\n1,16667,0,0,9.8,0,0,0\n"
+    with pytest.raises(FileRefusedError, match="no format"):  # Movella DOT counts microseconds, MT Manager 0.1 ms
+        recognised([put(tmp_path / "dot.csv", dot)])
+    with pytest.raises(FileRefusedError, match="no format"):
+        recognised([put(tmp_path / "b.csv", "")])
+    with pytest.raises(FileRefusedError, match=r"b.txt: it is of apdm, a.txt of xsens-mtmanager"):
+        recognised([put(tmp_path / "a.txt", MT), put(tmp_path / "b.txt", APDM)])
+    with pytest.raises(FileRefusedError, match="there is no such file"):
+        recognised([tmp_path / "none.csv"])
