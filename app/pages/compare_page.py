@@ -12,6 +12,7 @@ from app.icons import Icon
 from app.pages.compared_words import (
     MINUS,
     change_in_words,
+    comparison_heads,
     part_in_words,
     plot_row,
     sentence,
@@ -408,8 +409,9 @@ class ComparePage(Themed):
         worth = sorted((row for row in found.rows if row.is_told and row.difference.is_worth_a_sentence), key=weight)
         self._say([sentence(row) for row in worth], told, chosen)
         self.plot.show_groups(self._groups(found), self.title.text(), self.conclusion.text())
-        heads = [*(part.letter for part in chosen), *(f"{part.letter} {MINUS} {letter}" for part in found.others)]
-        self.table.show_rows(table_columns(heads, has_sides=True), table_rows(found, heads))
+        heads = comparison_heads(found)
+        days = {part.letter: part.name for part in chosen} if self.kind is Contrast.VISITS else {}
+        self.table.show_rows(table_columns(heads, has_sides=True, days=days), table_rows(found, heads))
         self.table.setAccessibleDescription(self.conclusion.text())
 
     def _show_sides(self) -> None:
@@ -447,7 +449,7 @@ class ComparePage(Themed):
             if self._is_drawn(row)
         ]
         self.plot.show_groups(groups, self.title.text(), self.conclusion.text())
-        heads = [one, other, f"{one} {MINUS} {other}", tr("symmetry, %")]
+        heads = [one, other, f"{one} {MINUS} {other}", tr("error"), tr("symmetry, %")]
         rows = [side_table_row(row, heads) for row in self.side_rows]
         self.table.show_rows(table_columns(heads, has_sides=False), rows)
         self.table.setAccessibleDescription(self.conclusion.text())

@@ -1,7 +1,7 @@
 """How does a comparison stand on the screen? Its rows, its dots, and a sentence for what lies beyond the error."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from app.charts.cycles import is_mean_enough, is_spread_enough
@@ -26,6 +26,7 @@ MINUS = "\N{MINUS SIGN}"
 LONGEST_LETTER = 4  # of parts: "C", "12", "12A"
 DASH = "\N{EN DASH}"
 DAGGER = "\N{DAGGER}"
+NO_DAYS: Mapping[str, str] = {}
 WALK_FIRST = {"speed_m_s": 0, "cadence_steps_min": 1, "stride_length_m": 2}  # the rows of a table
 
 
@@ -51,14 +52,25 @@ def plot_row(side: Side, rows: Sequence[Compared]) -> DifferenceRow:
     return DifferenceRow(side, words, dots, last.difference.error)
 
 
-def table_columns(heads: Sequence[str], *, has_sides: bool) -> list[TableColumn]:
-    """The legs where rows are of one of them, the names, and `heads` over values and differences."""
-    columns = [TableColumn(TextCell(head, align=RIGHT, size=12, tone="ink2")) for head in heads]
+def comparison_heads(found: Comparison) -> list[str]:
+    """What stands over the values of all parts, their differences, and the error of the last of these."""
+    others = [part.letter for part in found.others]
+    changes = [f"{letter} {MINUS} {found.against.letter}" for letter in others]
+    error = tr("error") if len(others) < 2 else tr("error of {letter}").format(letter=others[-1])
+    return [*(part.letter for part in found.parts), *changes, error]
+
+
+def table_columns(heads: Sequence[str], *, has_sides: bool, days: Mapping[str, str] = NO_DAYS) -> list[TableColumn]:
+    """The legs where rows are of one of them, the names, and `heads` over values, differences and errors.
+
+    `days`: which day a head stands for.
+    """
+    columns = [TableColumn(TextCell(head, days.get(head, ""), align=RIGHT, size=12, tone="ink2")) for head in heads]
     return [TableColumn(is_hidden=not has_sides), TableColumn(share=1), *columns]
 
 
 def table_rows(found: Comparison, heads: Sequence[str]) -> list[TableRow]:
-    """Every measure of each leg: the values of all parts, then their differences."""
+    """Every measure of each leg: the values of all parts, their differences, and the error of the last of these."""
     rows: dict[tuple[str, Side], list[Compared]] = {}
     for row in sorted(found.rows, key=lambda row: WALK_FIRST.get(row.measure.column, len(WALK_FIRST))):
         rows.setdefault((row.measure.column, row.side), []).append(row)
@@ -66,7 +78,7 @@ def table_rows(found: Comparison, heads: Sequence[str]) -> list[TableRow]:
     for (_, side), compared in rows.items():
         measure = compared[0].measure
         values = [value_cell(*part.figure(measure, side), measure.decimals) for part in found.parts]
-        changes = [_changed(row, found.against) for row in compared]
+        changes = [*(_changed(row, found.against) for row in compared), _error_cell(compared[-1])]
         lines.append(_table_row(tr(measure.name), None if measure.is_of_walk else side, heads, (*values, *changes)))
     return lines
 
@@ -87,11 +99,11 @@ def withheld_in_words(part: Part, joint: Joint) -> str:
 
 
 def side_table_row(row: SideRow, heads: Sequence[str]) -> TableRow:
-    """One measure of both legs, their difference and symmetry."""
+    """One measure of both legs, their difference with its error, and symmetry."""
     symmetry = f"{row.symmetry_percent:+.1f}".replace("-", MINUS) if math.isfinite(row.symmetry_percent) else DASH
     each = zip((row.first, row.second), row.verdicts, strict=True)
     values = [value_cell(value, verdict, row.measure.decimals) for value, verdict in each]
-    return _table_row(tr(row.measure.name), None, heads, (*values, _changed(row), _figure(symmetry)))
+    return _table_row(tr(row.measure.name), None, heads, (*values, _changed(row), _error_cell(row), _figure(symmetry)))
 
 
 def _table_row(name: str, side: Side | None, heads: Sequence[str], cells: Sequence[TextCell]) -> TableRow:
@@ -135,6 +147,14 @@ def _changed(row: Compared | SideRow, against: Part | None = None) -> TextCell:
     if against is not None and isinstance(row, Compared) and row.against is not against:
         doubt = " ".join(filter(None, [tr("from {letter}").format(letter=row.against.letter), doubt]))
     return _figure(words, doubt, is_marked=row.exceeds)
+
+
+def _error_cell(row: Compared | SideRow) -> TextCell:
+    """What a difference must exceed; nothing where none was judged."""
+    is_judged = row.is_told and row.difference.error > 0
+    degree = "°" if row.measure.unit == "°" else ""  # as its difference: other units are in the measure's name
+    words = fixed(row.difference.error, row.measure.decimals) + degree
+    return replace(_figure(words if is_judged else DASH), tone="ink2")
 
 
 def _doubt(found: Difference) -> str:

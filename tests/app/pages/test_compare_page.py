@@ -316,9 +316,33 @@ def test_speed_cadence_and_stride_length_stand_first_and_are_judged(
     compare.show_visits(visits_by_condition(visits))
     assert compare.comparison is not None
     heads = [letter for part in compare.comparison.parts for letter in part.letter]
-    rows = table_rows(compare.comparison, [*heads, "2 \N{MINUS SIGN} 1"])
+    rows = table_rows(compare.comparison, [*heads, "2 \N{MINUS SIGN} 1", "error"])
     names = list(dict.fromkeys(str(row.cells[1].words) for row in rows))
     assert names[:3] == ["Walking speed, m/s", "Cadence, steps/min", "Stride length, m"]
+
+
+def test_visits_stand_under_their_days_and_changes_beside_their_error(
+    page: ResultPage, analysis: Analysis, session: Session
+) -> None:
+    """Walks of one visit have no day over them."""
+    compare = page.compare
+    heads = [column.head.words for column in compare.table.cells.columns]
+    assert heads[2:] == ["A", "B", "B \N{MINUS SIGN} A", "error"]
+    visits = [walked(day, analysis, session, walk_1="A") for day in ("3 May", "1 June", "5 July")]
+    compare.set_has_visits(True)
+    compare.kinds.setCurrentIndex(compare.kinds.findData(Contrast.VISITS))
+    compare.show_visits(visits_by_condition(visits))
+    heads = [column.head.words for column in compare.table.cells.columns]
+    changes = ["2 \N{MINUS SIGN} 1", "3 \N{MINUS SIGN} 1"]
+    assert heads[2:] == ["1 3 May", "2 1 June", "3 5 July", *changes, "error of 3"]
+    found = compare.comparison
+    assert found is not None
+    of_last = {row.measure.column: row for row in found.rows if row.part.letter == "3"}
+    speed, cadence = of_last["speed_m_s"].difference, of_last["cadence_steps_min"].difference
+    assert speed.error > 0
+    told = [line[-1] for line in table_words(page)]
+    assert told[0] == f"{speed.error:.2f}"
+    assert (told[1] == "\N{EN DASH}") is not (cadence.error > 0)
 
 
 def test_visits_without_a_common_condition_are_not_compared_and_that_is_said(
@@ -423,7 +447,7 @@ def test_what_lies_beyond_its_error_is_marked_and_nothing_else(parts: tuple[Part
     knee = next(row for row in rows if row.measure.column == "knee_range_deg")
     for judgement, mark in ((Judgement.INSIDE_ERROR, None), (Judgement.EXCEEDS_ERROR, Icon.WARNING)):
         row = replace(knee, difference=replace(knee.difference, judgement=judgement))
-        cell = side_table_row(row, ["L", "R", "L - R", "symmetry, %"]).cells[4]
+        cell = side_table_row(row, ["L", "R", "L - R", "error", "symmetry, %"]).cells[4]
         assert isinstance(cell, TextCell)
         assert cell.mark is mark
         assert (cell.weight == SEMIBOLD) is (mark is not None)
@@ -490,7 +514,7 @@ def test_a_change_counts_from_the_first_visit_that_can_be_read_and_says_so(
     days = (("May", gated), ("June", analysis), ("July", analysis))
     (visits,) = visits_by_condition([walked(name, found, session, walk_1="A") for name, found in days])
     found = Comparison(Contrast.VISITS, visits.parts)
-    rows = table_rows(found, ["1", "2", "3", "2 - 1", "3 - 1"])
+    rows = table_rows(found, ["1", "2", "3", "2 - 1", "3 - 1", "error of 3"])
     ranges = [row.cells for row in rows if row.cells[1].words == "Knee range"]
     of_range = {cells[0].side: cells for cells in ranges if isinstance(cells[0], TextCell)}
     first, second, third = (of_range[Side.LEFT][k] for k in (2, 5, 6))
