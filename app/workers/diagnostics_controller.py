@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QFileDialog
 
 from app.pages.found_page import FoundPage
 from app.reports.diagnostics import write_diagnostics
+from app.reports.proposed_names import free_name, session_name
 from app.storage.audit import about
 from app.storage.stored import Action, LibraryError
 from app.wording import tr
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
 
 _log = logging.getLogger(__name__)
 
-FOLDER = "gaitwright-how-found"
+WHAT = "how-found"  # in the name of the folder that is proposed
 
 
 class DiagnosticsController(QObject):
@@ -110,12 +111,14 @@ class DiagnosticsController(QObject):
         self.refused.emit(tr("How this joint was found cannot be shown."), tr("The log holds the details."))
 
     def _on_save_wished(self) -> None:
-        if self._found is None:
+        if self._found is None or self._session is None:
             return
         self._dialog = QFileDialog(self._page, tr("Save these figures into a new folder"))
         self._dialog.setAcceptMode(QFileDialog.AcceptMode.AcceptSave)
         self._dialog.setFileMode(QFileDialog.FileMode.AnyFile)
-        self._dialog.selectFile(FOLDER)
+        place = Path(self._dialog.directory().absolutePath())
+        name = session_name(self._session.patient.code, self._session.started, WHAT)
+        self._dialog.selectFile(free_name(place, name))
         self._dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self._dialog.fileSelected.connect(self._on_folder_selected)
         self._dialog.open()

@@ -20,6 +20,7 @@ from app.reports.course import course_of
 from app.reports.course_lanes import CourseVisit
 from app.reports.patient_report.dates import date_of, day
 from app.reports.patient_report.request import AnalysedVisit, ReportRequest, default_walks
+from app.reports.proposed_names import free_name, session_name
 from app.storage.audit import REPORT_FORMAT, about
 from app.storage.operators import CLINIC
 from app.storage.pseudonyms import Typed
@@ -50,19 +51,6 @@ if TYPE_CHECKING:
 _log = logging.getLogger(__name__)
 
 OTHERS = ("xlsx", "c3d", "mot", "fhir")
-LONGEST_CODE = 60  # of a folder's name
-
-
-def folder_name(code: str, started: str) -> str:
-    """The folder proposed for a session's results: the patient's code and the day, in letters that any system takes."""
-    safe = "".join(letter if letter.isalnum() or letter == "-" else "_" for letter in code)[:LONGEST_CODE]
-    return f"{safe or 'session'}_{started[:10]}"
-
-
-def free_name(place: Path, name: str) -> str:
-    """A name that is not taken in a folder: a second session of a day stands beside the first."""
-    names = (name, *(f"{name}_{number}" for number in range(2, 1000)))
-    return next((one for one in names if not (place / one).exists()), name)
 
 
 class ReportStep(Step):
@@ -165,7 +153,7 @@ class ReportStep(Step):
         if self._visit.session is not None:
             told = self._visit.session.details
             place = Path(self.dialog.directory().absolutePath())
-            self.dialog.selectFile(free_name(place, folder_name(told.patient.code, told.started)))
+            self.dialog.selectFile(free_name(place, session_name(told.patient.code, told.started)))
         self.dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.dialog.fileSelected.connect(self.save_in)
         self.dialog.open()
@@ -191,7 +179,7 @@ class ReportStep(Step):
             return
         self.page.report.flush()
         told = self._visit.session.details
-        self.printer.ask(folder_name(told.patient.code, told.started), self.page.report.paper.choice)
+        self.printer.ask(session_name(told.patient.code, told.started), self.page.report.paper.choice)
 
     def _on_print_confirmed(self) -> None:
         request, stored = self._request(), self._visit.session
@@ -367,7 +355,7 @@ class ReportStep(Step):
             return
         out, session_id = Path(folder), stored.id
         chosen, kept = self.page.report.formats.chosen, self._kept
-        name = f"{folder_name(stored.details.patient.code, stored.details.started)}.pdf"
+        name = f"{session_name(stored.details.patient.code, stored.details.started)}.pdf"
         self.is_saving = True
 
         def save(opened: "OpenedLibrary", report: Report) -> Path:

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from enum import StrEnum
 
-from PySide6.QtCore import QEvent, QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QColor, QPainter, QPaintEvent, QResizeEvent
+from PySide6.QtCore import QEvent, QObject, QRectF, QSize, Qt, Signal
+from PySide6.QtGui import QColor, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import (
     QFrame,
     QHBoxLayout,
@@ -181,6 +181,7 @@ class _ListedWalk(Themed):
         self.edit.clicked.connect(self._on_edit_clicked)
         self.field.committed.connect(self._on_committed)
         self.field.line_edit.editingFinished.connect(self._on_left)
+        self.field.line_edit.installEventFilter(self)
         self._on_look_changed()
 
     def show_walk(self, walk: WalkRow) -> None:
@@ -202,6 +203,30 @@ class _ListedWalk(Themed):
         self.setAccessibleName(", ".join(filter(None, [walk.letter, walk.label, walk.note, state])))
         self.update()
 
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        if event.key() == Qt.Key.Key_F2 and self._can_be_renamed:
+            self._on_edit_clicked()
+        else:
+            super().keyPressEvent(event)
+
+    def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
+        if event.button() is Qt.MouseButton.LeftButton and self._can_be_renamed:
+            self._on_edit_clicked()
+        else:
+            super().mouseDoubleClickEvent(event)
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        """Let Esc take back what was typed; the window has this key otherwise, and leaving would keep the words."""
+        if watched is self.field.line_edit and isinstance(event, QKeyEvent) and event.key() == Qt.Key.Key_Escape:
+            if event.type() is QEvent.Type.ShortcutOverride:
+                event.accept()
+                return True
+            if event.type() is QEvent.Type.KeyPress:
+                self.field.set_text(self._walk.label)
+                self._on_left()
+                return True
+        return super().eventFilter(watched, event)
+
     def paintEvent(self, _event: QPaintEvent) -> None:
         theme = self._look.theme
         c, px = theme.colours, theme.px
@@ -222,6 +247,10 @@ class _ListedWalk(Themed):
         painter.drawRoundedRect(badge.adjusted(0.5, 0.5, -0.5, -0.5), radius, radius)
         tone = "inv_ink" if is_now else "ink"
         PaintedText(self._walk.letter, badge, theme.font(14, SEMIBOLD), tone, CENTRE).paint(painter, c)
+
+    @property
+    def _can_be_renamed(self) -> bool:
+        return self._walk.state is WalkState.KEPT and not self._is_edited
 
     def _on_undo_clicked(self) -> None:
         self._owner.undo_pressed.emit(self._walk.id)
@@ -253,7 +282,7 @@ class _ListedWalk(Themed):
         self._label.setVisible(not is_edited)
         self._note.setVisible(bool(walk.note) and not is_edited)
         self._mark.setVisible(walk.state in MARKS and not is_edited)
-        self.edit.setVisible(walk.state is WalkState.KEPT and not is_edited)
+        self.edit.setVisible(self._can_be_renamed)
         self.undo.setVisible(walk.state is WalkState.DISCARDED)
 
     def _on_look_changed(self) -> None:

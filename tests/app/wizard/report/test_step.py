@@ -10,13 +10,14 @@ import pypdf
 import pytest
 from pytestqt.qtbot import QtBot
 
+from app.reports.proposed_names import free_name, session_name
 from app.storage.exchange import import_session
 from app.storage.operators import CLINIC
 from app.theme import ThemeNotifier
 from app.widgets.rail_row import StepState
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.report.leaving_dialog import LeavingDialog
-from app.wizard.report.step import ReportStep, folder_name, free_name
+from app.wizard.report.step import ReportStep
 from app.wizard.visit import Visit
 from app.workers.library_controller import LibraryController
 from core.analysis import analyse
@@ -80,7 +81,7 @@ def test_pages_are_shown_and_made_anew_with_the_words(qtbot: QtBot, step: Report
 def report_name(visit: Visit) -> str:
     """By the patient's code and the day."""
     assert visit.session is not None
-    return f"{folder_name(visit.session.details.patient.code, visit.session.details.started)}.pdf"
+    return f"{session_name(visit.session.details.patient.code, visit.session.details.started)}.pdf"
 
 
 def test_the_chosen_files_are_saved(qtbot: QtBot, step: ReportStep, visit: Visit, tmp_path: Path) -> None:
@@ -148,7 +149,7 @@ def test_nothing_is_asked_where_no_file_leaves_without_the_name(qtbot: QtBot, st
     assert step.page.findChild(LeavingDialog) is None
     assert visit.session is not None
     told = visit.session.details
-    assert [Path(path).name for path in step.dialog.selectedFiles()] == [folder_name(told.patient.code, told.started)]
+    assert [Path(path).name for path in step.dialog.selectedFiles()] == [session_name(told.patient.code, told.started)]
     step.dialog.close()
 
 
@@ -234,7 +235,12 @@ def test_ctrl_s_saves_as_its_cap_says(qtbot: QtBot, visit: Visit, monkeypatch: p
     ],
 )
 def test_the_folder_proposed_is_named_by_code_and_day_and_by_nothing_a_system_refuses(code: str, name: str) -> None:
-    assert folder_name(code, "2026-11-20T10:00:00+00:00") == name
+    assert session_name(code, "2026-11-20T10:00:00+00:00") == name
+
+
+def test_what_is_no_report_is_named_so_and_a_day_nobody_knows_leaves_no_gap() -> None:
+    assert session_name("P-1", "2026-11-23T08:00:00+00:00", "how-found") == "P-1_2026-11-23_how-found"
+    assert session_name("", "", "how-found") == "session_how-found"
 
 
 def test_a_second_session_of_a_day_is_proposed_a_folder_of_its_own(tmp_path: Path) -> None:

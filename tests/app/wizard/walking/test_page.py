@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from PySide6.QtCore import Qt
+from PySide6.QtGui import QKeySequence, QShortcut
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QAbstractButton, QApplication, QLabel, QPushButton, QScrollArea, QVBoxLayout, QWidget
 from pytestqt.qtbot import QtBot
@@ -77,6 +78,38 @@ def test_a_name_that_stays_or_is_empty_renames_nothing(qtbot: QtBot, page: Walki
         with qtbot.assertNotEmitted(page.renamed):
             QTest.keyClick(field.line_edit, Qt.Key.Key_Return)
         assert not field.isVisible()
+
+
+def test_escape_takes_back_what_was_typed_as_a_name(qtbot: QtBot, page: WalkingPage) -> None:
+    """It went to the window, and the words were kept on leaving."""
+    page.show_walks((KEPT,))
+    at_window = QShortcut(QKeySequence(Qt.Key.Key_Escape), page)
+    (edit,) = page.walks.buttons
+    assert isinstance(edit, QAbstractButton)
+    edit.click()
+    field = page.walks.findChildren(Field)[0]
+    QTest.keyClicks(field.line_edit, "Own shoes")
+    with qtbot.assertNotEmitted(page.renamed), qtbot.assertNotEmitted(at_window.activated):
+        QTest.keyClick(field.line_edit, Qt.Key.Key_Escape)
+    assert not field.isVisible()
+    edit.click()
+    assert field.text == "Barefoot"
+
+
+def test_a_double_click_or_f2_names_a_kept_walk_and_no_other(page: WalkingPage) -> None:
+    page.show_walks((KEPT, DISCARDED))
+    kept, discarded = (row for row in page.walks.findChildren(QWidget) if hasattr(row, "field"))
+    kept_field, discarded_field = page.walks.findChildren(Field)
+    QTest.mouseDClick(discarded, Qt.MouseButton.LeftButton)
+    assert not discarded_field.isVisible()
+    QTest.mouseDClick(kept, Qt.MouseButton.LeftButton)
+    assert kept_field.isVisible()
+    QTest.keyClick(kept_field.line_edit, Qt.Key.Key_Return)
+    assert not kept_field.isVisible()
+    QTest.keyClick(page.walks.buttons[0], Qt.Key.Key_F2)
+    assert kept_field.isVisible()
+    QTest.keyClick(discarded, Qt.Key.Key_F2)
+    assert not discarded_field.isVisible()
 
 
 def live(now_s: float = 5.0, knee_deg: float = 30.4, is_provisional: bool = False) -> WalkingReadout:

@@ -1,0 +1,17 @@
+"""Names proposed for what is saved outside the library: the patient's code and the day of the session, never a name."""
+
+from pathlib import Path
+
+LONGEST_CODE = 60  # characters of it in a name
+
+
+def session_name(code: str, started: str, what: str = "") -> str:
+    """The patient's code, the day and, where it is not the report, what it is, in letters that any system takes."""
+    safe = "".join(letter if letter.isalnum() or letter == "-" else "_" for letter in code)[:LONGEST_CODE]
+    return "_".join(filter(None, [safe or "session", started[:10], what]))
+
+
+def free_name(place: Path, name: str) -> str:
+    """A name that is not taken in a folder: a second session of a day stands beside the first."""
+    names = (name, *(f"{name}_{number}" for number in range(2, 1000)))
+    return next((one for one in names if not (place / one).exists()), name)
