@@ -86,6 +86,9 @@ def read_apdm(path: Path) -> ApdmFile:
             rows = _numbers([*head[first_row:], *reader], len(head[first_row - 1]), first_row, where)
         except (csv.Error, UnicodeDecodeError) as error:
             raise FileRefusedError(where, "this is no text of comma-separated values", EXPORT_AGAIN) from error
+    last = max((place for found in columns.values() for places in found for place in places), default=0)
+    if last >= rows.shape[1]:
+        raise FileRefusedError(where, "its lines of heads are not of one length", EXPORT_AGAIN)
     time_s = _times(rows[:, 0], tick_s, first_row, where)
     found = ApdmFile(path, time_s, rows, columns, ids, rate_hz)
     _check_units(found)

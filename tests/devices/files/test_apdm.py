@@ -150,6 +150,11 @@ def test_what_is_damaged_is_refused_where_it_is(tmp_path: Path) -> None:
     cells = cells_of(moveo(tmp_path / "e.csv"))
     assert '"Thigh" has no angular rates' in refusal(written(tmp_path / "e.csv", [line[:4] for line in cells]))
     assert "no line of columns that begins with Time" in refusal(written(tmp_path / "f.csv", cells[:2]))
+    cells = cells_of(monitors(tmp_path / "j.csv"))
+    short = [line[:9] for line in cells[2:]]
+    assert "j.csv: its lines of heads are not of one length" in refusal(
+        written(tmp_path / "j.csv", [*cells[:2], *short])
+    )
     (tmp_path / "g.csv").write_bytes(b"Test Name:,\xff\xfe")
     assert "no text of comma-separated values" in refusal(tmp_path / "g.csv")
     assert "no export of APDM's programs" in refusal(written(tmp_path / "h.csv", [["Sensor", "Time"]]))
