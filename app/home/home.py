@@ -2,17 +2,16 @@
 
 import datetime
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING
 from uuid import UUID
 
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QColor, QKeySequence, QPainter, QPaintEvent, QResizeEvent, QShortcut
-from PySide6.QtWidgets import QFileDialog, QFrame, QHBoxLayout, QScrollArea, QStackedWidget, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QStackedWidget, QVBoxLayout, QWidget
 
-from app.foreign_files import read_foreign_session
 from app.home.deleting import Deleting
 from app.home.entry import ADMINISTRATOR
+from app.home.importing import Importing
 from app.home.patient_reading import PatientReading, compute_courses, read_patient
 from app.home.recovering import Recovering
 from app.home.settings_controller import SettingsController
@@ -22,11 +21,9 @@ from app.pages.import_page import ImportPage
 from app.pages.settings_page import SettingsPage
 from app.patient_words import patient_line, person
 from app.settings import Scheme, Settings
-from app.storage.exchange import import_session
 from app.theme import ThemeNotifier
 from app.widgets.action_bar import ActionBar, BarAction, BarState
 from app.widgets.banner import Banner
-from app.widgets.folder_dialog import ask_for_folder
 from app.widgets.rail_row import RailForm, RailRow, StepState
 from app.widgets.start_pages import WorkingPage
 from app.widgets.step_rail import StepRail, home_below
@@ -39,10 +36,8 @@ from app.workers.library_state import OpenedState
 
 if TYPE_CHECKING:
     from app.storage import stored
-    from app.storage.exchange import Imported
     from app.storage.opened import OpenedLibrary
     from app.storage.rollback import Rollback
-    from core.samples import Session
 
 COMPACT_BELOW = (1180, 720)
 WIDE_FROM = 1800
@@ -74,8 +69,6 @@ class Home(Themed):
         self._sessions_of: UUID | None = None  # the patient whose sessions are shown, or being read
         self._reading: PatientReading | None = None
         self._is_computing = False
-        self._to_import: Session | None = None
-        self._dialog: QFileDialog | None = None
         self.rail = StepRail(look)
         self.banner = Banner(look)
         self.rollback_banner = Banner(look)
@@ -83,7 +76,7 @@ class Home(Themed):
         self.rollback_banner.acted.connect(self._on_rollback_accepted)
         self.recovering = Recovering(controller, self.banner, self)
         self.page = HomePage(look)
-        self.import_page = ImportPage(look)
+        self.importing = Importing(look, controller, self)
         self._settings_controller: SettingsController | None = None
         self.working = WorkingPage(look)
         self.bar = ActionBar(look)
@@ -161,7 +154,8 @@ class Home(Themed):
 
     def clear(self) -> None:
         """Keep nothing of any patient, for whoever comes next."""
-        self._state, self._to_import = None, None
+        self._state = None
+        self.importing.forget()
         self._patients.clear()
         self._reading = None
         self.deleting.forget()
@@ -204,7 +198,7 @@ class Home(Themed):
 
     def _build(self) -> None:
         self._pages = QStackedWidget()
-        for page in (self.page, self.import_page, self.working):
+        for page in (self.page, self.importing.page, self.working):
             self._add_page(page)
         self._banner_row = QVBoxLayout()
         self._banner_row.addWidget(self.rollback_banner)
@@ -244,8 +238,13 @@ class Home(Themed):
         self.bar.primary_pressed.connect(self._on_primary)
         self.bar.quiet_pressed.connect(self._on_quiet)
         self.bar.back_pressed.connect(self._on_back)
-        self.import_page.code_changed.connect(self._on_import_code)
-        self.import_page.code.line_edit.returnPressed.connect(self._on_primary)
+        self.importing.page.code_changed.connect(self._show)
+        self.importing.working.connect(self._work)
+        self.importing.progressed.connect(self._on_progressed)
+        self.importing.asked.connect(self._on_import_asked)
+        self.importing.left.connect(self._on_import_left)
+        self.importing.imported.connect(self.refresh)
+        self.importing.told.connect(self.banner.tell)
         self.working.stop_pressed.connect(self._on_stop)
         self.recovering.recovered.connect(self.refresh)
         self.toast.undone.connect(self.deleting.undo)
@@ -296,7 +295,7 @@ class Home(Themed):
         """Show what can be done from the page in sight."""
         current = self.current
         is_demonstration = self._state is not None and self._state.is_demonstration
-        states = [current is self.page, False, current is self.import_page]
+        states = [current is self.page, False, current is self.importing.page]
         icons = (Icon.HOME, Icon.BACK if is_demonstration else Icon.PLAY, Icon.IMPORT)
         names = (
             tr("Patients"),
@@ -318,10 +317,8 @@ class Home(Themed):
         self.bar.setVisible(current is not self.working)
 
     def _bar(self) -> BarState:
-        if self.current is self.import_page:
-            code = self.import_page.code.text.strip()
-            words = tr("Import for {code}").format(code=code) if code else tr("Import")
-            return BarState(BarAction(words, tr("Enter"), Icon.IMPORT, is_enabled=bool(code)))
+        if self.current is self.importing.page:
+            return self.importing.bar
         if self.current is not self.page:
             return BarState()
         new = BarAction(tr("New patient"), tr("Ctrl N"), Icon.ADD)
@@ -403,8 +400,8 @@ class Home(Themed):
             self.session_wished.emit(None)
 
     def _on_primary(self) -> None:
-        if self.current is self.import_page:
-            self._import()
+        if self.current is self.importing.page:
+            self.importing.take_in()
         elif self.current is self.page and self.patient is not None:
             self.session_wished.emit(self.patient)
 
@@ -412,7 +409,7 @@ class Home(Themed):
         self._on_new_patient()
 
     def _on_back(self) -> None:
-        self._to_import = None
+        self.importing.forget()
         was_settings = isinstance(self.current, SettingsPage)
         self._go_to(self.page)
         if was_settings:
@@ -461,60 +458,13 @@ class Home(Themed):
     # what comes in
 
     def _choose_folder(self) -> None:
-        self._dialog = ask_for_folder(self, tr("Import a session folder"), self._on_folder_selected)
+        self.importing.choose_folder(self, self.patient.details.code if self.patient is not None else "")
 
-    def _on_folder_selected(self, folder: str) -> None:
-        self.read_folder(Path(folder))
+    def _on_import_asked(self) -> None:
+        self._go_to(self.importing.page)
 
-    def read_folder(self, folder: Path) -> None:
-        """Read a session folder, to be imported once it is said whose it is."""
-
-        def read(_opened: "OpenedLibrary", report: Report) -> "Session":
-            report(0.0, folder.name)
-            return read_foreign_session(folder, lambda: report(0.0, folder.name))
-
-        self._folder = folder
-        self._work(tr("Reading {folder}").format(folder=folder.name))
-        self._controller.run_long(read, self._on_folder_read, self._on_work_refused, self._on_progressed, self)
-
-    def _on_folder_read(self, session: "Session") -> None:
-        self._to_import = session
-        code = session.patient.code or (self.patient.details.code if self.patient is not None else "")
-        names = [recording.name for recording in session.recordings]
-        self.import_page.show_session(
-            str(self._folder), names, code, session.findings, is_simulated=session.is_simulated
-        )
-        self._go_to(self.import_page)
-
-    def _on_import_code(self, _code: str) -> None:
-        self.bar.show_state(self._bar())
-
-    def _import(self) -> None:
-        session, code = self._to_import, self.import_page.code.text.strip()
-        if session is None or not code:
-            return
-
-        def work(opened: "OpenedLibrary", report: Report) -> "Imported":
-            return import_session(opened, session, report, code)
-
-        self._work(tr("Importing {folder}").format(folder=self._folder.name))
-        self._controller.run_long(work, self._on_imported, self._on_import_refused, self._on_progressed, self)
-
-    def _on_imported(self, imported: "Imported") -> None:
-        self._to_import = None
+    def _on_import_left(self) -> None:
         self._go_to(self.page)
-        if imported.differing:
-            self.banner.tell(
-                tr("{code} is told of otherwise in the folder: {what}.").format(
-                    code=imported.patient.details.code, what=", ".join(_named(name) for name in imported.differing)
-                ),
-                tr("The library keeps what it says."),
-            )
-        self.refresh(imported.patient.id)
-
-    def _on_import_refused(self, what: str, remedy: str) -> None:
-        self._go_to(self.import_page)
-        self.banner.tell(what, remedy)
 
     def _work(self, title: str) -> None:
         self.banner.hide()
@@ -533,25 +483,8 @@ class Home(Themed):
             self._go_to(self.page)
             self.banner.tell(tr("This was stopped."), tr("The visits that were computed stay in the course."))
             self.refresh()
-        elif self._to_import is None:  # a folder was being read, and no more
-            self._controller.stop_long()
-            self._go_to(self.page)
-            self.banner.tell(tr("This was stopped."), tr("Nothing was added to the library."))
         else:
-            self._controller.stop_long(self._on_import_stopped)
-            self._go_to(self.import_page)
-            self.banner.tell(tr("The import is being stopped."), tr("What was added of it is taken back."))
-
-    def _on_import_stopped(self, is_done: bool) -> None:
-        if is_done:
-            self._to_import = None
-            self._go_to(self.page)
-            self.banner.tell(
-                tr("The import was done before it could be stopped."), tr("The session is in the library.")
-            )
-        else:
-            self.banner.tell(tr("The import was stopped."), tr("No session was added to the library."))
-        self.refresh()
+            self.importing.stop()
 
     def _on_work_refused(self, what: str, remedy: str) -> None:
         self._is_computing = False
@@ -568,17 +501,3 @@ class Home(Themed):
 def _patients_in(opened: "OpenedLibrary") -> _Patients:
     undecided = opened.library.recordings.undecided()
     return _Patients(opened.library.patients.search(), frozenset(walk.patient_id for walk in undecided))
-
-
-def _named(name: str) -> str:
-    """What is told of a patient, by the name that it has in the library."""
-    return {
-        "birth_year": tr("birth year"),
-        "sex": tr("sex"),
-        "height_m": tr("height"),
-        "mass_kg": tr("mass"),
-        "device": tr("device"),
-        "aids": tr("aids"),
-        "affected_side": tr("affected side"),
-        "prosthetic_side": tr("prosthetic side"),
-    }.get(name, name)

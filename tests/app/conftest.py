@@ -1,4 +1,4 @@
-"""What tests of the screen get: a watchdog over its thread, a language as long as German, the results."""
+"""What tests of the screen get: a watchdog over its thread, a language as long as German, a theme, the results."""
 
 from collections.abc import Iterator
 
@@ -31,11 +31,19 @@ def pseudo_language() -> Iterator[None]:
 
 
 @pytest.fixture
-def result_page(qtbot: QtBot, qapp: QApplication) -> ResultPage:
-    """The results by themselves, in the light theme."""
+def look(qapp: QApplication) -> Iterator[ThemeNotifier]:
+    """The light theme at its usual size, whatever a test makes of it."""
     load_fonts()
     look = ThemeNotifier()
     look.set_dark(False)
+    yield look
+    look.set_scale(1.0)
+    qapp.setStyleSheet("")
+
+
+@pytest.fixture
+def result_page(qtbot: QtBot, look: ThemeNotifier) -> ResultPage:
+    """The results by themselves, in the light theme."""
     page = ResultPage(look)
     qtbot.addWidget(page)
     return page

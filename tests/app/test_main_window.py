@@ -32,7 +32,7 @@ from app.storage.library import Library
 from app.storage.login_delay import LoginDelay
 from app.storage.slots import Cost
 from app.storage.stored import Operator, Role
-from app.theme import ThemeNotifier, load_fonts
+from app.theme import ThemeNotifier
 from app.wizard.keys import Intent, KeyAction
 from app.wording import use_language
 from app.workers.background import Report
@@ -59,12 +59,6 @@ def untouched(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture
 def folder(untouched: Path, tmp_path: Path) -> Path:
     return Path(shutil.copytree(untouched, tmp_path / "library"))
-
-
-@pytest.fixture
-def look(qapp: QApplication) -> ThemeNotifier:
-    load_fonts()
-    return ThemeNotifier()
 
 
 @pytest.fixture

@@ -5,7 +5,7 @@ from PySide6.QtCore import QRectF
 from PySide6.QtWidgets import QLineEdit, QScrollArea, QVBoxLayout, QWidget
 from pytestqt.qtbot import QtBot
 
-from app.theme import ThemeNotifier, load_fonts
+from app.theme import ThemeNotifier
 from app.widgets.button import Button
 from app.widgets.painted_text import PaintedText
 from app.widgets.segmented import Segmented
@@ -31,12 +31,6 @@ def parts(look: ThemeNotifier) -> list[QWidget]:
         field,
         Painted(),
     ]
-
-
-@pytest.fixture
-def look(qtbot: QtBot) -> ThemeNotifier:
-    load_fonts()
-    return ThemeNotifier()
 
 
 @pytest.mark.parametrize("kind", range(6))

@@ -231,11 +231,11 @@ def test_a_session_folder_is_imported_for_a_patient(qtbot: QtBot, home: Home, tm
     block = ImuBlock("LT-1", time_s, np.zeros((300, 3)), np.tile([0.0, 0.0, 9.81], (300, 1)))
     recording = Recording("walk 1", RecordingKind.WALKING, "walk_1", {Site.LEFT_THIGH: block})
     write_session(Session((recording,), Patient(code="P-0200"), started="2026-11-02T10:00:00"), tmp_path / "visit")
-    home.read_folder(tmp_path / "visit")
-    qtbot.waitUntil(lambda: home.current is home.import_page, timeout=WAIT_MS)
-    assert home.import_page.code.text == "P-0200"
+    home.importing.read_folder(tmp_path / "visit")
+    qtbot.waitUntil(lambda: home.current is home.importing.page, timeout=WAIT_MS)
+    assert home.importing.page.code.text == "P-0200"
     assert home.bar.primary.text() == "Import for P-0200"
-    QTest.keyClick(home.import_page.code.line_edit, Qt.Key.Key_Return)
+    QTest.keyClick(home.importing.page.code.line_edit, Qt.Key.Key_Return)
     qtbot.waitUntil(lambda: home.current is home.page and "P-0200" in codes(home), timeout=WAIT_MS)
     assert home.bar.primary.text() == "New session for P-0200"
     qtbot.waitUntil(lambda: [line.amount for line in sessions(home)] == ["1 recording"], timeout=WAIT_MS)
@@ -259,9 +259,9 @@ def test_a_stopped_import_says_what_came_of_it_once_that_is_known(
         assert go_on.wait(WAIT_MS / 1000)
         return import_session(opened, session, (lambda _share, _what: None) if is_done else report, code)
 
-    monkeypatch.setattr("app.home.home.import_session", held)
-    home.read_folder(tmp_path / "visit")
-    qtbot.waitUntil(lambda: home.current is home.import_page, timeout=WAIT_MS)
+    monkeypatch.setattr("app.home.importing.import_session", held)
+    home.importing.read_folder(tmp_path / "visit")
+    qtbot.waitUntil(lambda: home.current is home.importing.page, timeout=WAIT_MS)
     home.bar.primary_pressed.emit()
     home.working.stop_pressed.emit()
     assert "being stopped" in home.banner.text
@@ -286,7 +286,7 @@ def test_stop_ends_a_reading_that_would_never_end(qtbot: QtBot, home: Home, tmp_
     process = the_reader().process
     assert process is not None
     os.kill(process.pid, signal.SIGSTOP)
-    home.read_folder(tmp_path / "visit")
+    home.importing.read_folder(tmp_path / "visit")
     qtbot.wait(200)
     assert home.working.isVisible()
     assert process.poll() is None
@@ -297,15 +297,15 @@ def test_stop_ends_a_reading_that_would_never_end(qtbot: QtBot, home: Home, tmp_
 
     def is_read() -> bool:
         if home.page.isVisible():  # what was stopped has not ended yet
-            home.read_folder(tmp_path / "visit")
-        return home.import_page.isVisible()
+            home.importing.read_folder(tmp_path / "visit")
+        return home.importing.page.isVisible()
 
     qtbot.waitUntil(is_read, timeout=WAIT_MS)
 
 
 def test_a_folder_that_is_no_session_is_refused_in_words(qtbot: QtBot, home: Home, tmp_path: Path) -> None:
     (tmp_path / "nothing").mkdir()
-    home.read_folder(tmp_path / "nothing")
+    home.importing.read_folder(tmp_path / "nothing")
     qtbot.waitUntil(home.banner.isVisible, timeout=WAIT_MS)
     assert "session.toml" in home.banner.text
     assert home.current is home.page

@@ -29,7 +29,7 @@ from app.pages.result_page import (
     ResultPage,
 )
 from app.plots.angle_chart import AngleChart
-from app.theme import ThemeNotifier, load_fonts
+from app.theme import ThemeNotifier
 from app.widgets.findings_list import FindingRow
 from app.widgets.table import CellTable
 from app.widgets.table_cells import TextCell
@@ -110,14 +110,6 @@ def analysis(is_simulated: bool = False, has_orientation: bool = True) -> Analys
 def opened(is_simulated: bool = False, has_orientation: bool = True) -> Opened:
     patient = Patient(code="P-0147", birth_year=1968, sex="male", prosthetic_side="left")
     return Opened(Session((), patient, is_simulated=is_simulated), analysis(is_simulated, has_orientation))
-
-
-@pytest.fixture
-def look(qapp: QApplication) -> ThemeNotifier:
-    load_fonts()
-    look = ThemeNotifier()
-    look.set_dark(False)
-    return look
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from PySide6.QtCore import QObject
-from PySide6.QtWidgets import QApplication, QFileDialog
+from PySide6.QtWidgets import QFileDialog
 from pytestqt.qtbot import QtBot
 
 from app.pages.found_page import TEN_SECONDS, FoundPage
@@ -20,7 +20,7 @@ from app.reports.diagnostics import (
     names_of_files,
     write_diagnostics,
 )
-from app.theme import ThemeNotifier, load_fonts
+from app.theme import ThemeNotifier
 from app.widgets.text import Text
 from app.workers.background import Background
 from app.workers.diagnostics_controller import DiagnosticsController
@@ -61,14 +61,6 @@ def found(session: Session, analysis: Analysis) -> JointDiagnostics:
     found = diagnostics_of(session, analysis.calibrations[0].joints[KNEE], analysis.recordings[-1].name)
     assert found is not None
     return found
-
-
-@pytest.fixture
-def look(qapp: QApplication) -> ThemeNotifier:
-    load_fonts()
-    look = ThemeNotifier()
-    look.set_dark(False)
-    return look
 
 
 @pytest.fixture

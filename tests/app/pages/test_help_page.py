@@ -12,7 +12,7 @@ from pytestqt.qtbot import QtBot
 
 from app.pages.help_page import HelpPage
 from app.pages.help_topics import Topic, topic_title
-from app.theme import ThemeNotifier, load_fonts
+from app.theme import ThemeNotifier
 from tests.app.watchdog import Watchdog
 
 FOLDER = Path(__file__).parents[3] / "resources" / "help"
@@ -21,14 +21,6 @@ PICTURE = "pictures/walking.png"
 FORBIDDEN = re.compile(
     r"\b(errors?|fail(s|ed|ure)?|invalid|please|disconnected|heel strikes?|you|your)\b|!", re.IGNORECASE
 )
-
-
-@pytest.fixture
-def look(qapp: QApplication) -> ThemeNotifier:
-    load_fonts()
-    look = ThemeNotifier()
-    look.set_dark(False)
-    return look
 
 
 @pytest.fixture

@@ -12,19 +12,11 @@ from app.pages.home_course import CourseCard
 from app.pages.home_page import PATIENT, HomePage
 from app.reports.course_lanes import CourseVisit
 from app.reports.course_words import NextStep
-from app.theme import ThemeNotifier, load_fonts
+from app.theme import ThemeNotifier
 from app.widgets.text import Text
 from tests.app.home.course_library import SHOES, STICK, VISITS
 from tests.app.pages.test_home_page import patient, session
 from tests.app.room import words_cut
-
-
-@pytest.fixture
-def look(qapp: QApplication) -> ThemeNotifier:
-    load_fonts()
-    look = ThemeNotifier()
-    look.set_dark(False)
-    return look
 
 
 @pytest.fixture

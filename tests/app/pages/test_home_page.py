@@ -12,18 +12,10 @@ from pytestqt.qtbot import QtBot
 
 from app.pages.home_lists import TEXT_ROW, LineCell, PatientLine, SessionLine
 from app.pages.home_page import HomePage
-from app.theme import ThemeNotifier, load_fonts
+from app.theme import ThemeNotifier
 
 MANY = 5000
 MOST_S = 0.1  # what the screen's thread may take for anything
-
-
-@pytest.fixture
-def look(qapp: QApplication) -> ThemeNotifier:
-    load_fonts()
-    look = ThemeNotifier()
-    look.set_dark(False)
-    return look
 
 
 @pytest.fixture

@@ -6,7 +6,7 @@ from uuid import UUID
 
 import numpy as np
 import pytest
-from PySide6.QtWidgets import QApplication, QWidget
+from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
 from app.pages.first_start_page import FirstStartPage
@@ -19,7 +19,7 @@ from app.pages.log_in_page import LogInPage
 from app.pages.settings_page import OperatorLine, SettingsPage
 from app.reports.course_lanes import CourseVisit
 from app.reports.course_words import NextStep
-from app.theme import ThemeNotifier, load_fonts
+from app.theme import ThemeNotifier
 from app.widgets.gauge import GaugeFace, GaugeMeasure, GaugeState
 from app.widgets.hint import Hint
 from app.wizard.free_motion.page import FreeMotionFace, FreeMotionPage
@@ -263,14 +263,6 @@ BELOW_STRIP = {
     "recording",
     "asking",
 }
-
-
-@pytest.fixture
-def look(qapp: QApplication) -> ThemeNotifier:
-    load_fonts()
-    look = ThemeNotifier()
-    look.set_dark(False)
-    return look
 
 
 @pytest.mark.usefixtures("pseudo_language")

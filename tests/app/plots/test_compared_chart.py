@@ -1,31 +1,20 @@
 """Curves compared: the band only beside curves with a height, and a casing of one width at every size."""
 
 import math
-from collections.abc import Iterator
 
 import numpy as np
 import pytest
 from PySide6.QtGui import QColor
-from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.charts.cycles import Band
 from app.charts.stride_chart import StrideCurve
 from app.plots.compared_chart import ComparedChart
 from app.reports.reference_bands import reference_curves
-from app.theme import ThemeNotifier, load_fonts
+from app.theme import ThemeNotifier
 from core.body import Side
 
 BAND = Band(*reference_curves().mean_and_sd_deg("knee"))
-
-
-@pytest.fixture
-def look(qapp: QApplication) -> Iterator[ThemeNotifier]:
-    load_fonts()
-    look = ThemeNotifier()
-    look.set_dark(False)
-    yield look
-    look.set_scale(1.0)
 
 
 def flat(letter: str, angle_deg: float) -> StrideCurve:

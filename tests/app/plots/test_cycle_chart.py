@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from PySide6.QtGui import QColor
-from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.charts.axes import ANKLE_DEG, KNEE_DEG
@@ -14,7 +13,7 @@ from app.charts.marks import Deviation, Gap, Point
 from app.charts.stride_chart import toe_off_labels
 from app.plots.cycle_chart import CycleChart, CycleCharts
 from app.reports.reference_bands import reference_curves
-from app.theme import ThemeNotifier, load_fonts
+from app.theme import ThemeNotifier
 from core.body import Joint, Side
 from core.gait.cycles import mean_cycle
 from core.samples import FloatArray
@@ -29,14 +28,6 @@ def cycle(n: int, height_deg: float = 60.0, toe_off_percent: float = 60.0, shift
     spread = np.linspace(-1, 1, n) if n > 1 else np.zeros(n)
     strides_deg: FloatArray = shift_deg + height_deg * (1 + spread[:, None] / 10) * swing
     return SideCycle(mean_cycle(strides_deg), strides_deg, toe_off_percent)
-
-
-@pytest.fixture
-def look(qapp: QApplication) -> ThemeNotifier:
-    load_fonts()
-    look = ThemeNotifier()
-    look.set_dark(False)
-    return look
 
 
 @pytest.fixture

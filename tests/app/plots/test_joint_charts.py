@@ -4,13 +4,12 @@ import numpy as np
 import pytest
 from PySide6.QtCore import QPointF, Qt
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.charts.axes import ANKLE_DEG, KNEE_DEG
 from app.plots.angle_chart import AngleChart, Curve
 from app.plots.joint_charts import NO_VALUE, JointCharts
-from app.theme import ThemeNotifier, load_fonts
+from app.theme import ThemeNotifier
 from core.body import Joint, Side
 from core.samples import FloatArray
 
@@ -20,12 +19,6 @@ GAP = slice(400, 450)
 
 def angle(highest_deg: float) -> FloatArray:
     return highest_deg * np.sin(2 * np.pi * TIME_S) ** 2
-
-
-@pytest.fixture
-def look(qapp: QApplication) -> ThemeNotifier:
-    load_fonts()
-    return ThemeNotifier()
 
 
 @pytest.fixture

@@ -6,25 +6,16 @@ from uuid import UUID
 
 import pytest
 from PySide6.QtGui import QColor, QImage
-from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.plots.lane_plot import DateAxis, LanePlot, LaneScale
 from app.reports.course import Course
 from app.reports.course_lanes import CourseVisit, LaneKind, lanes
-from app.theme import ThemeNotifier, load_fonts
+from app.theme import ThemeNotifier
 from core.body import Joint
 from tests.app.course_material import course, unsure, walked
 
 SHOES, STICK = "shoes", "stick"
-
-
-@pytest.fixture
-def look(qapp: QApplication) -> ThemeNotifier:
-    load_fonts()
-    look = ThemeNotifier()
-    look.set_dark(False)
-    return look
 
 
 def visit(day: int, found: Course | None) -> CourseVisit:

@@ -5,12 +5,11 @@ import pytest
 from PySide6.QtCore import QPoint, QPointF, Qt
 from PySide6.QtGui import QColor, QWheelEvent
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.plots.joint_charts import JointCharts
 from app.plots.phase_lanes import Lane, PhaseLanes
-from app.theme import ThemeNotifier, load_fonts
+from app.theme import ThemeNotifier
 from core.body import Side
 from core.gait.events import FootEvents
 from core.gait.phases import phases_at
@@ -33,14 +32,6 @@ def events(first_s: float, count: int = STRIDES) -> FootEvents:
 def gait(first_s: float, count: int = STRIDES) -> SideGait:
     found = (events(first_s, count),)
     return SideGait(found, strides_of(found), {}, {}, phases_at(TIME_S, found))
-
-
-@pytest.fixture
-def look(qapp: QApplication) -> ThemeNotifier:
-    load_fonts()
-    look = ThemeNotifier()
-    look.set_dark(False)
-    return look
 
 
 @pytest.fixture

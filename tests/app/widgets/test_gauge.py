@@ -4,10 +4,9 @@ import math
 from itertools import pairwise
 
 import pytest
-from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.theme import ThemeNotifier, load_fonts
+from app.theme import ThemeNotifier
 from app.widgets.gauge import Gauge, GaugeFace, GaugeState, gauge_face, two_digits
 from core.body import Joint
 from core.live.excitation import HUMAN, PROSTHESIS, ExcitationState
@@ -27,14 +26,6 @@ def state(axis_deg: float, centre_mm: float, floor_deg: float = 4.0, **told: boo
         missing=None,
         moved_s=5.0,
     )
-
-
-@pytest.fixture
-def look(qapp: QApplication) -> ThemeNotifier:
-    load_fonts()
-    look = ThemeNotifier()
-    look.set_dark(False)
-    return look
 
 
 @pytest.mark.parametrize(("value", "written"), [(0.84, "0.8"), (9.94, "9.9"), (9.96, "10"), (11.4, "11"), (2.0, "2.0")])

@@ -9,7 +9,7 @@ from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
 from app.colours import LIGHT
-from app.theme import ThemeNotifier, load_fonts
+from app.theme import ThemeNotifier
 from app.widgets.sensor_strip import SensorStrip
 from app.widgets.sensor_tile import SensorTile, TileState, sentence
 from app.widgets.strip_button import StripButton
@@ -45,12 +45,6 @@ STATES = [
     (tile(silent_s=9.0, is_worn=False), TileState.NOT_WORN, "not used"),
     (replace(tile(is_worn=False), is_awaited=True), TileState.NOT_WORN, "found later"),
 ]
-
-
-@pytest.fixture
-def look() -> ThemeNotifier:
-    load_fonts()
-    return ThemeNotifier()
 
 
 @pytest.fixture

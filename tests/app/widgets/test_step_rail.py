@@ -7,7 +7,7 @@ from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
 from app.icons import Icon
-from app.theme import ThemeNotifier, load_fonts
+from app.theme import ThemeNotifier
 from app.widgets.rail_row import RailForm, RailRow, StepState
 from app.widgets.step_rail import StepRail, home_below
 from tests.app.room import settle, words_cut
@@ -19,12 +19,6 @@ STEPS = (
     RailRow("Walking", "Recording walk 3", StepState.CURRENT),
     RailRow("Results"),
 )
-
-
-@pytest.fixture
-def look() -> ThemeNotifier:
-    load_fonts()
-    return ThemeNotifier()
 
 
 @pytest.fixture

@@ -8,18 +8,12 @@ from PySide6.QtWidgets import QApplication, QWidget
 from pytestqt.qtbot import QtBot
 
 from app.colours import LIGHT
-from app.theme import ThemeNotifier, load_fonts
+from app.theme import ThemeNotifier
 from app.widgets import toast as toast_module
 from app.widgets.header import Header
 from app.widgets.stopwatch import Stopwatch
 from app.widgets.toast import Toast
 from tests.app.room import settle, words_cut
-
-
-@pytest.fixture
-def look() -> ThemeNotifier:
-    load_fonts()
-    return ThemeNotifier()
 
 
 @pytest.fixture

@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.icons import Icon
-from app.theme import ThemeNotifier, load_fonts
+from app.theme import ThemeNotifier
 from app.tokens import Theme
 from app.widgets.table import CellTable, TableColumn, TableRow
 from app.widgets.table_cells import CENTRE, EMPTY, LEFT, RIGHT, STRIP_WIDTH, ErrorStrip, TableCell, TextCell
@@ -25,14 +25,6 @@ COLUMNS = (
     TableColumn(TextCell("L \N{MINUS SIGN} R", align=RIGHT, size=12, tone="ink2")),
     TableColumn(TextCell("grey: error", align=CENTRE, size=12, tone="ink2"), share=2),
 )
-
-
-@pytest.fixture
-def look(qapp: QApplication) -> ThemeNotifier:
-    load_fonts()
-    look = ThemeNotifier()
-    look.set_dark(False)
-    return look
 
 
 def strip(difference_deg: float, *, is_judged: bool = True) -> ErrorStrip:

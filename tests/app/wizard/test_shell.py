@@ -93,11 +93,6 @@ def _fonts(qapp: object) -> Iterator[None]:
 
 
 @pytest.fixture
-def look() -> ThemeNotifier:
-    return ThemeNotifier()
-
-
-@pytest.fixture
 def shell(look: ThemeNotifier, qtbot: QtBot, monkeypatch: pytest.MonkeyPatch) -> WizardShell:
     monkeypatch.setattr(shell_module, "duration_ms", lambda _usual_ms: 0)
     shell = filled(look)

@@ -1,6 +1,5 @@
 """Standing still on the page: the count, who moved, what follows without it, and the angles typed beside it."""
 
-from collections.abc import Iterator
 from dataclasses import replace
 
 import pytest
@@ -11,7 +10,7 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.icons import Icon
-from app.theme import ThemeNotifier, load_fonts
+from app.theme import ThemeNotifier
 from app.widgets.stillness import MovementBars
 from app.wizard.standing.page import (
     StandPhase,
@@ -29,15 +28,6 @@ STILL: dict[str, float] = dict.fromkeys(Site, 0.4)
 
 def counting(still_s: float = 1.2, **more: object) -> StandStillView:
     return StandStillView(StandPhase.COUNTING, still_s, movement_deg_s=STILL, **more)  # type: ignore[arg-type]  # any of its fields
-
-
-@pytest.fixture
-def look(qapp: QApplication) -> Iterator[ThemeNotifier]:
-    load_fonts()
-    look = ThemeNotifier()
-    look.set_dark(False)
-    yield look
-    qapp.setStyleSheet("")
 
 
 @pytest.fixture

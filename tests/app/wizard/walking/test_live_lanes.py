@@ -7,7 +7,7 @@ from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.theme import ThemeNotifier, load_fonts
+from app.theme import ThemeNotifier
 from app.wizard.walking.live_lanes import LiveLanes
 from app.wizard.walking.readout import LiveLane, PhaseSpan
 from core.body import Side
@@ -16,14 +16,6 @@ from core.gait.phases import Phase
 FRAME_S = 1 / 30
 LOADING, FLAT, PRE_SWING, SWING = Phase.LOADING, Phase.FOOT_FLAT, Phase.PRE_SWING, Phase.SWING
 SHARES = ((LOADING, 0.0, 0.12), (FLAT, 0.12, 0.45), (PRE_SWING, 0.45, 0.6), (SWING, 0.6, 1.0))
-
-
-@pytest.fixture
-def look(qapp: QApplication) -> ThemeNotifier:
-    load_fonts()
-    look = ThemeNotifier()
-    look.set_dark(False)
-    return look
 
 
 @pytest.fixture

@@ -6,7 +6,7 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.charts.axes import ANKLE_DEG, KNEE_DEG
-from app.theme import ThemeNotifier, load_fonts
+from app.theme import ThemeNotifier
 from app.wizard.walking.live_strip import LiveStrip, _Trace
 from app.wizard.walking.readout import LiveTrace
 from core.body import Side
@@ -17,14 +17,6 @@ pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 RATE_HZ, FRAME_S = 100.0, 1 / 30
 KEPT_S = 15.0
 PERIOD_S = 1.1
-
-
-@pytest.fixture
-def look(qapp: QApplication) -> ThemeNotifier:
-    load_fonts()
-    look = ThemeNotifier()
-    look.set_dark(False)
-    return look
 
 
 @pytest.fixture

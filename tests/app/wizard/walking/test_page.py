@@ -11,7 +11,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QAbstractButton, QApplication, QLabel, QPushButton, QScrollArea, QVBoxLayout, QWidget
 from pytestqt.qtbot import QtBot
 
-from app.theme import ThemeNotifier, load_fonts
+from app.theme import ThemeNotifier
 from app.widgets.field import Field
 from app.wizard.walking.page import WalkingPage
 from app.wizard.walking.readout import LiveLane, LiveTrace, PhaseSpan, WalkingReadout
@@ -26,14 +26,6 @@ ASKING = WalkRow("3", "C", "AFO", WalkState.ASKING, 12)
 RECORDING = WalkRow("3", "C", "AFO", WalkState.RECORDING)
 RECOVERED = WalkRow("4", "B", "Shoes", WalkState.RECOVERED, 9)
 LABELS = ("Barefoot", "Shoes", "AFO")
-
-
-@pytest.fixture
-def look(qapp: QApplication) -> ThemeNotifier:
-    load_fonts()
-    look = ThemeNotifier()
-    look.set_dark(False)
-    return look
 
 
 @pytest.fixture

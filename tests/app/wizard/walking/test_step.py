@@ -5,10 +5,9 @@ from dataclasses import replace
 
 import pytest
 from PySide6.QtCore import QTimer
-from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.theme import ThemeNotifier, load_fonts
+from app.theme import ThemeNotifier
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.results.step import ResultsStep
 from app.wizard.visit import Visit
@@ -24,15 +23,6 @@ pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
 TICK_MS = 10
 RUN = Intent(KeyAction.RUN)
-
-
-@pytest.fixture
-def look(qapp: QApplication) -> Iterator[ThemeNotifier]:
-    load_fonts()
-    look = ThemeNotifier()
-    look.set_dark(False)
-    yield look
-    qapp.setStyleSheet("")
 
 
 @pytest.fixture
