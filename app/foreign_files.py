@@ -4,16 +4,15 @@ A file can at most end that process. Folders that this program has just written 
 `waiting` is called while something is read, twenty times a second; what it raises ends the reading at once.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from core.body import Site
     from core.samples import Session
-    from devices.files.imports import ImportedFiles
     from devices.files.limited_reader import LimitedReader, Waiting
+    from devices.files.trial import ImportedTrial
 
 
 def read_foreign_session(folder: Path, waiting: "Waiting") -> "Session":
@@ -50,15 +49,10 @@ def write_over_session(session: "Session", folder: Path) -> None:
     write_session(session, folder, LimitedReading(the_reader(), _nobody_waits))
 
 
-def import_foreign(
-    format_name: str,
-    files: Sequence[Path],
-    placement: "Mapping[Site, str]",
-    recording: str,
-    rate_hz: float | None,
-    waiting: "Waiting",
-) -> "ImportedFiles":
-    """The samples of one recording of another program, as its importer in `devices.files` gives them.
+def read_foreign_trial(
+    format_name: str, files: Sequence[Path], rate_hz: float | None, waiting: "Waiting"
+) -> "ImportedTrial":
+    """What the files of one trial of another program hold, as its reader in `devices.files` gives it.
 
     `format_name` empty: told by the content.
 
@@ -69,7 +63,7 @@ def import_foreign(
     """
     from devices.files.limited_reader import LimitedReading
 
-    return LimitedReading(the_reader(), waiting).import_files(format_name, files, placement, recording, rate_hz)
+    return LimitedReading(the_reader(), waiting).read_trial(format_name, files, rate_hz)
 
 
 @cache

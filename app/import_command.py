@@ -6,7 +6,7 @@ from pathlib import Path
 
 from app.terminal import finding_lines, one_of, positive
 
-# as core.samples.RecordingKind and devices.files.child.IMPORTERS have them, whose imports would cost half a second here
+# as core.samples.RecordingKind and devices.files.formats have them, whose imports would cost half a second here
 KINDS = ("standing", "free_motion", "walking")
 FORMATS = ("xsens-mtmanager", "apdm")
 
@@ -45,9 +45,9 @@ def import_files(wanted: argparse.Namespace, progress: Report) -> list[str]:
     OSError
         The session cannot be written.
     """
-    from app.foreign_files import import_foreign, read_foreign_session, write_over_session
+    from app.foreign_files import read_foreign_session, read_foreign_trial, write_over_session
     from core.samples import Recording, RecordingKind, Session
-    from devices.files.imports import add_recording, folder_for, free_name, parse_map
+    from devices.files.imports import add_recording, folder_for, free_name, parse_map, place_trial
 
     kind = RecordingKind(wanted.kind)
     placement = parse_map(wanted.map)
@@ -55,9 +55,8 @@ def import_files(wanted: argparse.Namespace, progress: Report) -> list[str]:
     session = Session(()) if is_new else read_foreign_session(wanted.out, lambda: progress(0.0, str(wanted.out)))
     name = wanted.recording or free_name(session, kind)
     progress(0.0, name)
-    imported = import_foreign(
-        wanted.format or "", wanted.files, placement, name, wanted.rate, lambda: progress(0.0, name)
-    )
+    trial = read_foreign_trial(wanted.format or "", wanted.files, wanted.rate, lambda: progress(0.0, name))
+    imported = place_trial(trial, placement, name)
     recording = Recording(name, kind, folder_for(name), imported.imu)
     session = add_recording(session, recording, imported.sensors, imported.findings)
     progress(0.5, str(wanted.out))

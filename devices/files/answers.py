@@ -17,11 +17,10 @@ from typing import IO, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from core.body import Site
 from core.findings import Finding, Severity
 from core.samples import ImuBlock, RateKind, SensorInfo
-from devices.files.imports import ImportedFiles
 from devices.files.refusal import FileRefusedError
+from devices.files.trial import ImportedSensor, ImportedTrial, UnreadFile
 
 Array = NDArray[np.generic]
 Details = dict[str, Any]
@@ -137,20 +136,30 @@ def findings_from(details: list[Details]) -> tuple[Finding, ...]:
         return tuple(_finding(one) for one in details)
 
 
-def details_of_import(imported: ImportedFiles, arrays: list[Array]) -> Details:
-    """What an importer brought; what it says of sensors is in the keys of `SensorInfo`."""
+def details_of_trial(trial: ImportedTrial, arrays: list[Array]) -> Details:
+    """What a reader found in the files of a trial; what it says of sensors is in the keys of `SensorInfo`."""
     return {
-        "imu": {site: details_of_block(block, arrays) for site, block in imported.imu.items()},
-        "sensors": {
-            site: {name: getattr(info, name) for name in (*TEXTS_OF_SENSOR, "rate_hz", "rate_kind")}
-            for site, info in imported.sensors.items()
-        },
-        "findings": details_of_findings(imported.findings),
+        "format": trial.format,
+        "started": trial.started,
+        "sensors": [
+            {
+                "name": sensor.name,
+                "ids": list(sensor.ids),
+                "file": sensor.file,
+                "block": details_of_block(sensor.block, arrays),
+                "info": {name: getattr(sensor.info, name) for name in (*TEXTS_OF_SENSOR, "rate_hz", "rate_kind")},
+                "findings": details_of_findings(sensor.findings),
+            }
+            for sensor in trial.sensors
+        ],
+        "unread": [
+            {"file": one.file, "ids": list(one.ids), "refusal": details_of_refusal(one.refusal)} for one in trial.unread
+        ],
     }
 
 
-def import_from(details: Details, arrays: Sequence[Array]) -> ImportedFiles:
-    """What `details_of_import` wrote, checked.
+def trial_from(details: Details, arrays: Sequence[Array]) -> ImportedTrial:
+    """What `details_of_trial` wrote, checked.
 
     Raises
     ------
@@ -158,11 +167,22 @@ def import_from(details: Details, arrays: Sequence[Array]) -> ImportedFiles:
         It is something else.
     """
     with _whatever_is_wrong():
-        return ImportedFiles(
-            {Site(site): block_from(block, arrays) for site, block in details["imu"].items()},
-            {Site(site): _sensor(info) for site, info in details["sensors"].items()},
-            findings_from(details["findings"]),
+        sensors = tuple(
+            ImportedSensor(
+                _text(one["name"]),
+                tuple(map(_text, one["ids"])),
+                _text(one["file"]),
+                block_from(one["block"], arrays),
+                _sensor(one["info"]),
+                findings_from(one["findings"]),
+            )
+            for one in details["sensors"]
         )
+        unread = tuple(
+            UnreadFile(_text(one["file"]), tuple(map(_text, one["ids"])), refusal_from(one["refusal"]))
+            for one in details["unread"]
+        )
+        return ImportedTrial(_text(details["format"]), sensors, unread, _text(details["started"]))
 
 
 def details_of_document(value: object) -> object:

@@ -16,11 +16,9 @@ from pathlib import Path
 
 import numpy as np
 
-from core.body import Site
-from core.findings import Finding, Severity
 from core.samples import FloatArray, ImuBlock, RateKind, SensorInfo
-from devices.files.imports import MAP, ImportedFiles
 from devices.files.refusal import FileRefusedError, quoted
+from devices.files.trial import ImportedSensor, ImportedTrial
 
 MONITORS, TEST_NAME, TIME = "Format=", "Test Name:", "Time"
 HEAD_LINES = 5  # at most, of either dialect
@@ -50,7 +48,7 @@ class ApdmFile:
     rate_hz: float | None
 
 
-def is_apdm(head: bytes) -> bool:
+def is_apdm(_path: Path, head: bytes) -> bool:
     """Whether a file that begins so is one of these exports."""
     lines = head.decode("utf-8", "replace").lstrip("\ufeff").splitlines()
     if not lines:
@@ -95,50 +93,29 @@ def read_apdm(path: Path) -> ApdmFile:
     return found
 
 
-def import_apdm(
-    files: Sequence[Path], placement: Mapping[Site, str], recording: str, rate_hz: float | None = None
-) -> ImportedFiles:
-    """The sensors of one trial as the samples of one recording; all share the stamps of the file.
-
-    Parameters
-    ----------
-    placement
-        Per site a sensor's name or number as the file has it; `imports.parse_map`.
-    recording
-        The recording's name in findings.
-    rate_hz
-        Not needed: the file tells its times.
-
-    Returns
-    -------
-    ImportedFiles
-        SI units, sensor axes; seconds since the trial's first sample.
+def apdm_trial(files: Sequence[Path], _rate_hz: float | None = None) -> ImportedTrial:
+    """The sensors of one trial, all in one file; they share its stamps, which tell the rate.
 
     Raises
     ------
     FileRefusedError
-        What `read_apdm` refuses, several files, a site whose sensor is none of the file's.
+        What `read_apdm` refuses, several files.
     """
     if len(files) != 1:
         raise FileRefusedError(
-            recording, "an export of APDM holds all sensors of a trial in one file", "Import one file at a time"
+            ", ".join(path.name for path in files),
+            "an export of APDM holds all sensors of a trial in one file",
+            "Import one file at a time",
         )
     file = read_apdm(files[0])
-    sensors = {site: _sensor_of(file, site, value) for site, value in placement.items()}
-    for site, name in sensors.items():
-        if list(sensors.values()).count(name) > 1:
-            raise FileRefusedError(
-                f"{MAP} {site}", "{name} is at two sites", "Name each sensor once", name=quoted(name)
-            )
-    told_hz = rate_hz or file.rate_hz or _rate_of(file.time_s)
-    imu = {site: _block(file, name) for site, name in sensors.items()}
-    info = {
-        site: SensorInfo(serial=file.ids.get(name, name), rate_hz=told_hz, rate_kind=RateKind.INSTANTANEOUS)
-        for site, name in sensors.items()
-    }
-    left_out = [name for name in file.columns if name not in sensors.values()]
-    findings = [Finding("file_left_out", Severity.INFO, recording, {"name": name}) for name in left_out]
-    return ImportedFiles(imu, info, tuple(findings))
+    rate_hz = file.rate_hz or _rate_of(file.time_s)
+    sensors = []
+    for name in file.columns:
+        called = file.ids.get(name, name)
+        info = SensorInfo(serial=called, rate_hz=rate_hz, rate_kind=RateKind.INSTANTANEOUS)
+        ids = tuple(filter(None, [file.ids.get(name)]))
+        sensors.append(ImportedSensor(name, ids, str(files[0]), _block(file, name), info))
+    return ImportedTrial("apdm", tuple(sensors))
 
 
 def _monitors(head: list[list[str]], where: str) -> tuple[dict[str, Columns], dict[str, str]]:
@@ -244,23 +221,6 @@ def _times(stamps: FloatArray, tick_s: float, first_row: int, where: str) -> Flo
             EXPORT_AGAIN,
         )
     return (stamps - stamps[:1]) * tick_s
-
-
-def _sensor_of(file: ApdmFile, site: Site, value: str) -> str:
-    """The sensor of a name or number, whatever its case."""
-    wanted = value.strip().casefold()
-    for name in file.columns:
-        if wanted in (name.casefold(), file.ids.get(name, "").casefold()):
-            return name
-    known = ", ".join(f"{name} ({file.ids[name]})" if name in file.ids else name for name in file.columns)
-    raise FileRefusedError(
-        f"{MAP} {site}",
-        "{name} has no sensor {value}",
-        "The sensors there are {sensors}",
-        name=file.path.name,
-        value=quoted(value),
-        sensors=known,
-    )
 
 
 def _block(file: ApdmFile, name: str) -> ImuBlock:

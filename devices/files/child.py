@@ -1,4 +1,4 @@
-"""What runs in the limited process: one foreign file, or the files of one recording, at a time.
+"""What runs in the limited process: one foreign file, or the files of one trial, at a time.
 
 It is the only process in which bytes of others are parsed, and as little trusted as they are: it is limited before it
 imports what reads them, is told what to do in JSON, and answers as `answers` says.
@@ -7,17 +7,15 @@ imports what reads them, is told what to do in JSON, and answers as `answers` sa
 import os
 import signal
 import sys
-from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from devices.files.limits import limit_processor_time, limit_this_process
 
 if TYPE_CHECKING:
     from devices.files.answers import Array, Details
 
-TOML, SITE, IMPORT = "toml", "site", "import"
-IMPORTERS = ("xsens-mtmanager", "apdm")
+TOML, SITE, TRIAL = "toml", "site", "trial"
 READ, REFUSED, MEMORY, UNFORESEEN = "read", "refused", "memory", "unforeseen"
 
 
@@ -42,14 +40,6 @@ def main() -> None:
         send(answering, _answer(asked, arrays), arrays)
 
 
-def importers() -> "dict[str, Callable[..., Any]]":
-    """What reads each of `IMPORTERS`."""
-    from devices.files.apdm import import_apdm
-    from devices.files.xsens_mtmanager import import_mtmanager  # here: SciPy takes longer to import than most files
-
-    return {"xsens-mtmanager": import_mtmanager, "apdm": import_apdm}
-
-
 def _answer(asked: "Details", arrays: "list[Array]") -> "Details":
     from devices.files.answers import details_of_refusal
     from devices.files.refusal import FileRefusedError
@@ -72,8 +62,7 @@ def _answer(asked: "Details", arrays: "list[Array]") -> "Details":
 
 
 def _read(asked: "Details", arrays: "list[Array]") -> object:
-    from core.body import Site
-    from devices.files.answers import details_of_block, details_of_document, details_of_findings, details_of_import
+    from devices.files.answers import details_of_block, details_of_document, details_of_findings, details_of_trial
     from devices.files.session_folder import IN_THIS_PROCESS
     from devices.files.site_files import read_site
 
@@ -85,12 +74,9 @@ def _read(asked: "Details", arrays: "list[Array]") -> object:
             Path(asked["path"]), asked["where"], asked["place"], asked["sensor"], asked["is_rate_derived"]
         )
         return {"block": details_of_block(block, arrays), "findings": details_of_findings(findings)}
-    from devices.files.recognition import recognised  # here, for SciPy comes with it
+    from devices.files.formats import read_trial  # here: SciPy takes longer to import than most files
 
-    placement = {Site(site): value for site, value in asked["placement"].items()}
-    files = [Path(path) for path in asked["files"]]
-    imported = importers()[asked["format"] or recognised(files)](files, placement, asked["recording"], asked["rate_hz"])
-    return details_of_import(imported, arrays)
+    return details_of_trial(read_trial(asked["format"], list(map(Path, asked["files"])), asked["rate_hz"]), arrays)
 
 
 def _last_line(error: Exception) -> str:

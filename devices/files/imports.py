@@ -1,15 +1,16 @@
-"""Files assigned to sites, and imported samples joined to a session."""
+"""Sensors of a trial assigned to sites, and imported samples joined to a session."""
 
 import re
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from core.body import Site
-from core.findings import Finding
+from core.findings import Finding, Severity
 from core.samples import ImuBlock, Recording, RecordingKind, SensorInfo, Session
 from devices.files.refusal import FileRefusedError, quoted
 from devices.files.site_files import sensor_changes
+from devices.files.trial import ImportedSensor, ImportedTrial
 
 MAP = "--map"
 AS_IN = "Write it as left_thigh=FILE_OR_SENSOR_ID,left_shank=FILE_OR_SENSOR_ID"
@@ -46,50 +47,88 @@ def parse_map(text: str) -> dict[Site, str]:
     return placement
 
 
-def place_files(
-    files: Sequence[Path], placement: Mapping[Site, str], sensors_of: Callable[[Path], Collection[str]]
-) -> tuple[dict[Site, Path], list[Path]]:
-    """The file of each site, and the files that no site names.
+def place_trial(trial: ImportedTrial, placement: Mapping[Site, str], recording: str) -> ImportedFiles:
+    """The sensors of a trial at their sites; time starts with the first sample of any of them.
 
     Parameters
     ----------
     placement
-        Per site a path, a file's name with or without its suffix, or a sensor's id, with or without underscore.
-    sensors_of
-        The ids by which a file's sensor may be called.
+        Per site a sensor's name or id, with or without underscore, or the path or name of its file, with or without its
+        suffix; `parse_map`.
+    recording
+        The recording's name in findings.
 
     Raises
     ------
     FileRefusedError
-        A file that is not there, a site whose file or sensor is none or several of the files, a file at two sites.
+        A site whose sensor is none or several of the trial's or is in a file that could not be read, a sensor at two
+        sites, sensors that share no stretch of time.
     """
-    for path in files:
-        if not path.is_file():
-            raise FileRefusedError(str(path), "there is no such file", "Check its name")
-    ids = {path: {_plain_id(sensor) for sensor in sensors_of(path)} for path in files}
-    placed: dict[Site, Path] = {}
+    placed: dict[Site, ImportedSensor] = {}
     for site, value in placement.items():
-        named = [p for p in files if value in (str(p), p.name, p.stem) or p.resolve() == Path(value).resolve()]
-        found = dict.fromkeys(path.resolve() for path in named or [p for p in files if _plain_id(value) in ids[p]])
-        if not found:
-            raise FileRefusedError(
-                f"{MAP} {site}",
-                "none of the files is or holds {value}",
-                "The sensors there are {sensors}",
-                value=quoted(value),
-                sensors=", ".join(sorted(set().union(*ids.values()))),
-            )
-        if len(found) > 1:
-            names = ", ".join(path.name for path in found)
-            raise FileRefusedError(
-                f"{MAP} {site}", "{value} may be {names}", "Give the file's name", value=quoted(value), names=names
-            )
-        path = next(iter(found))
-        if path in placed.values():
-            raise FileRefusedError(f"{MAP} {site}", "{name} is at two sites", "Name each file once", name=path.name)
-        placed[site] = path
-    left_out = [path for path in files if path.resolve() not in placed.values()]
-    return placed, left_out
+        sensor = _sensor_of(trial, site, value)
+        if any(sensor is other for other in placed.values()):
+            raise FileRefusedError(f"{MAP} {site}", "{name} is at two sites", "Name each once", name=sensor.name)
+        placed[site] = sensor
+    starts = [sensor.block.time_s[0] for sensor in placed.values() if len(sensor.block.time_s)]
+    start_s = min(starts, default=0.0)
+    _refuse_apart(list(placed.values()))
+    imu = {
+        site: replace(sensor.block, time_s=sensor.block.time_s - start_s) if start_s else sensor.block
+        for site, sensor in placed.items()
+    }
+    left_out = [sensor.name for sensor in trial.sensors if not any(sensor is one for one in placed.values())]
+    left_out += [Path(unread.file).name for unread in trial.unread]
+    findings = [Finding("file_left_out", Severity.INFO, recording, {"name": name}) for name in left_out]
+    for site, sensor in placed.items():
+        findings += [replace(finding, where=f"{recording}, {site}") for finding in sensor.findings]
+    return ImportedFiles(imu, {site: sensor.info for site, sensor in placed.items()}, tuple(findings))
+
+
+def _sensor_of(trial: ImportedTrial, site: Site, value: str) -> ImportedSensor:
+    """The sensor that somebody calls `value`: a file first, then a name, then an id."""
+    called = [sensor for sensor in trial.sensors if _is_file(value, sensor.file)]
+    called = called or [sensor for sensor in trial.sensors if value.casefold() == sensor.name.casefold()]
+    called = called or [s for s in trial.sensors if _plain_id(value) in map(_plain_id, s.ids)]
+    if len(called) == 1:
+        return called[0]
+    if called:
+        names = ", ".join(sensor.name for sensor in called)
+        raise FileRefusedError(
+            f"{MAP} {site}", "{value} may be {names}", "Give one of these names", value=quoted(value), names=names
+        )
+    for unread in trial.unread:
+        if _is_file(value, unread.file) or _plain_id(value) in map(_plain_id, unread.ids):
+            raise unread.refusal
+    known = [f"{sensor.name} ({', '.join(sensor.ids)})" if sensor.ids else sensor.name for sensor in trial.sensors]
+    raise FileRefusedError(
+        f"{MAP} {site}",
+        "none of the files is or holds {value}",
+        "The sensors there are {sensors}",
+        value=quoted(value),
+        sensors=", ".join(known),
+    )
+
+
+def _is_file(value: str, file: str) -> bool:
+    path = Path(file)
+    return value in (file, path.name, path.stem) or path.resolve() == Path(value).resolve()
+
+
+def _refuse_apart(sensors: Sequence[ImportedSensor]) -> None:
+    """Sensors of one trial are worn at the same time."""
+    filled = [sensor for sensor in sensors if len(sensor.block.time_s)]
+    if not filled:
+        return
+    last = max(filled, key=lambda sensor: float(sensor.block.time_s[0]))
+    first = min(filled, key=lambda sensor: float(sensor.block.time_s[-1]))
+    if last.block.time_s[0] > first.block.time_s[-1]:
+        raise FileRefusedError(
+            last.name,
+            "it starts after the last sample of {other}, so they are not of one trial",
+            "Import the files of one trial at a time",
+            other=first.name,
+        )
 
 
 def add_recording(

@@ -17,7 +17,6 @@ from pathlib import Path
 from time import monotonic
 from typing import Any, TypeVar
 
-from core.body import Site
 from devices.files import child
 from devices.files.answers import (
     Array,
@@ -26,15 +25,15 @@ from devices.files.answers import (
     block_from,
     document_from,
     findings_from,
-    import_from,
     receive,
     refusal_from,
     send,
+    trial_from,
 )
-from devices.files.imports import ImportedFiles
 from devices.files.refusal import FileRefusedError
 from devices.files.session_toml import FILE_NAME
 from devices.files.site_files import ReadSite, SiteFile
+from devices.files.trial import ImportedTrial
 
 FILES_EACH = 500
 MEMORY_BYTES = 4 * 1024**3  # half a gigabyte of text takes 1.9, most of it only reserved, the libraries 0.4 of them
@@ -245,7 +244,7 @@ def _details(answer: Details, where: str) -> Any:
 
 
 class LimitedReading:
-    """One reading of files of others, that `waiting` can end: a `session_folder.SessionReader`, and an importer."""
+    """One reading of files of others, that `waiting` can end: a `session_folder.SessionReader`, and one of trials."""
 
     def __init__(self, reader: LimitedReader, waiting: Waiting) -> None:
         self._reader = reader
@@ -265,25 +264,16 @@ class LimitedReading:
         }
         return self._reader.ask(task, [file.path], file.where, _site, self.waiting)
 
-    def import_files(
-        self,
-        format_name: str,
-        files: Sequence[Path],
-        placement: Mapping[Site, str],
-        recording: str,
-        rate_hz: float | None,
-    ) -> ImportedFiles:
-        """As the importer of this format does."""
+    def read_trial(self, format_name: str, files: Sequence[Path], rate_hz: float | None) -> ImportedTrial:
+        """As `formats.read_trial` does."""
         task = {
-            "task": child.IMPORT,
+            "task": child.TRIAL,
             "format": format_name,
             "files": [str(path) for path in files],
-            "placement": dict(placement),
-            "recording": recording,
             "rate_hz": rate_hz,
         }
         where = ", ".join(path.name for path in files)
-        return self._reader.ask(task, files, where, import_from, self.waiting)
+        return self._reader.ask(task, files, where, trial_from, self.waiting)
 
 
 def _document(details: Any, _arrays: Sequence[Array]) -> dict[str, object]:

@@ -14,12 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from core.body import Site
 from core.findings import Finding, Severity
 from core.samples import BoolArray, FloatArray, ImuBlock, RateKind, SensorInfo
-from devices.files.imports import ImportedFiles, place_files
 from devices.files.refusal import FileRefusedError
 from devices.files.tables import CORRECT_IT, Table, header_of, read_csv
+from devices.files.trial import ImportedSensor, ImportedTrial, UnreadFile
 
 COUNTER = "PacketCounter"
 FINE_TIME = "SampleTimeFine"
@@ -60,7 +59,7 @@ class MtFile:
     rate_hz: float | None
 
 
-def is_mtmanager(head: bytes) -> bool:
+def is_mtmanager(_path: Path, head: bytes) -> bool:
     """Whether a file that begins so is one of these texts, with the comments MT Manager heads them with.
 
     Columns alone do not tell: those of Movella DOT have the same names, and other ticks of time.
@@ -113,46 +112,38 @@ def read_mtmanager(path: Path) -> MtFile:
     return file
 
 
-def import_mtmanager(
-    files: Sequence[Path], placement: Mapping[Site, str], recording: str, rate_hz: float | None = None
-) -> ImportedFiles:
-    """The files of one trial as the samples of one recording, aligned by their packet counters.
+def mtmanager_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedTrial:
+    """The files of one trial, one sensor in each, aligned by their packet counters.
 
     Time is the counter divided by the update rate, from the first packet that any of the files holds; packets that are
     missing are gaps. Rates that a file lacks are derived from its orientation, see `derive_rates`.
 
     Parameters
     ----------
-    placement
-        Per site a path, a file's name or a sensor's id; `imports.parse_map`.
-    recording
-        The recording's name in findings.
     rate_hz
         Update rate where the files do not tell it.
-
-    Returns
-    -------
-    ImportedFiles
-        SI units, sensor axes; seconds since the trial's first packet.
 
     Raises
     ------
     FileRefusedError
-        What `read_mtmanager` and `imports.place_files` refuse, an update rate that is unknown or not the same
-        everywhere, files that share no stretch of the counter.
+        What `read_mtmanager` refuses of the only file, an update rate that is unknown or not the same everywhere.
     """
-    placed, left_out = place_files(files, placement, sensor_ids)
-    read = {site: read_mtmanager(path) for site, path in placed.items()}
-    rate_hz = _common_rate(read.values(), rate_hz)
-    starts = _start_together(list(read.values()))
-    imu, sensors = {}, {}
-    findings = [Finding("file_left_out", Severity.INFO, recording, {"name": path.name}) for path in left_out]
-    for (site, file), start in zip(read.items(), starts, strict=True):
-        block = _block(file, start, rate_hz)
-        imu[site] = block
-        sensors[site] = replace(file.info, rate_hz=rate_hz, rate_kind=_rate_kind(file, block, rate_hz))
-        findings += _findings(file, block, f"{recording}, {site}")
-    return ImportedFiles(imu, sensors, tuple(findings))
+    read, unread = [], []
+    for path in files:
+        try:
+            read.append(read_mtmanager(path))
+        except FileRefusedError as refusal:
+            unread.append(UnreadFile(str(path), tuple(sensor_ids(path)), refusal))
+    if not read and unread:
+        raise unread[0].refusal
+    rate_hz = _common_rate(read, rate_hz)
+    sensors = []
+    for file, counter in zip(read, _start_together(read), strict=True):
+        block = _block(file, counter, rate_hz)
+        info = replace(file.info, rate_hz=rate_hz, rate_kind=_rate_kind(file, block, rate_hz))
+        ids = tuple(sensor_ids(file.path))
+        sensors.append(ImportedSensor(file.path.name, ids, str(file.path), block, info, tuple(_findings(file, block))))
+    return ImportedTrial("xsens-mtmanager", tuple(sensors), tuple(unread))
 
 
 def sensor_ids(path: Path) -> list[str]:
@@ -322,17 +313,7 @@ def _start_together(files: Sequence[MtFile]) -> list[Numbers]:
         file.counter - file.counter[:1] + reference + (file.counter[:1] - reference + half) % COUNTER_TURNS_AT - half
         for file in files
     ]
-    spans = {file.path.name: (c[0], c[-1]) for file, c in zip(files, turned, strict=True) if len(c)}
-    last_start = max(spans, key=lambda name: spans[name][0])
-    first_end = min(spans, key=lambda name: spans[name][1])
-    if spans[last_start][0] > spans[first_end][1]:
-        raise FileRefusedError(
-            last_start,
-            "it starts after the last packet of {other}, so they are not of one trial",
-            "Import the files of one trial at a time",
-            other=first_end,
-        )
-    start = min(first for first, _ in spans.values())
+    start = min(counter[0] for counter in turned if len(counter))
     return [counter - start for counter in turned]
 
 
@@ -404,8 +385,8 @@ def _median(values: FloatArray) -> float:
     return float(np.median(values)) if len(values) else np.nan
 
 
-def _findings(file: MtFile, block: ImuBlock, place: str) -> Iterator[Finding]:
+def _findings(file: MtFile, block: ImuBlock) -> Iterator[Finding]:
     if block.is_rate_derived:
-        yield Finding("rate_from_orientation", Severity.INFO, place)
+        yield Finding("rate_from_orientation", Severity.INFO, "")
     if file.doubled:
-        yield Finding("doubled_stamps", Severity.WARNING, place, {"count": file.doubled})
+        yield Finding("doubled_stamps", Severity.WARNING, "", {"count": file.doubled})

@@ -23,7 +23,7 @@ from core.body import Site
 from core.published.angles import DEFAULT_TAU_S
 from core.results import Method
 from core.samples import ImuBlock, Recording, RecordingKind, Session
-from devices.files import child
+from devices.files.formats import FORMATS
 from devices.files.session_folder import write_session
 
 ROOT = Path(__file__).parents[2]
@@ -187,7 +187,7 @@ def test_help_comes_without_the_heavy_libraries() -> None:
 def test_the_choices_are_those_of_the_core() -> None:
     assert tuple(Method) == cli.METHODS
     assert tuple(RecordingKind) == import_command.KINDS
-    assert child.IMPORTERS == tuple(child.importers()) == import_command.FORMATS
+    assert tuple(FORMATS) == import_command.FORMATS
     assert report_command.PAPERS == request.PAPERS
     assert cli.DEFAULT_TAU_S == DEFAULT_TAU_S
 

@@ -9,7 +9,6 @@ import pytest
 from app import foreign_files
 from app.cli import main
 from app.foreign_files import read_foreign_session, the_reader
-from core.body import Site
 from core.samples import Session
 from devices.files import child, limited_reader
 from devices.files.limited_reader import ReadingEndedError
@@ -110,6 +109,6 @@ def test_a_file_that_takes_too_long_is_refused_with_two(
 def test_a_reader_that_fails_for_no_foreseen_reason_is_a_refusal_too(folder: Path) -> None:
     reading = limited_reader.LimitedReading(the_reader(), nothing)
     with pytest.raises(ReadingEndedError, match="for a reason that the log names") as caught:
-        reading.import_files("no-such-format", [folder / "session.toml"], {Site.LEFT_FOOT: "a"}, "walk 1", None)
+        reading.read_trial("no-such-format", [folder / "session.toml"], None)
     assert caught.value.cause == child.UNFORESEEN
     assert foreign_files.the_reader().process is None

@@ -21,7 +21,7 @@ from core.placement.links import link
 from core.placement.smoothed_tracks import Tracks, smoothed_in_steps
 from core.placement.steps import at_once
 from core.samples import FloatArray, ImuBlock, Recording, RecordingKind, Session
-from devices.files.xsens_mtmanager import import_mtmanager
+from devices.files.xsens_mtmanager import mtmanager_trial
 from devices.walker import FreeMotion, Motion, SimulatedSession, Standing, Tissue, Walk, WalkerSettings, simulate
 from tests.benchmarks.placement import (
     arranged,
@@ -32,6 +32,7 @@ from tests.benchmarks.placement import (
     tracks_of,
     unlabelled,
 )
+from tests.trials_of_files import import_with
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
@@ -64,7 +65,7 @@ def real_walk(test_data: FindData) -> Session:
         bone, side, *_ = (sensor.findtext("name_in_model") or "").split("_")
         if bone in BONES:
             placement[Site(f"{'left' if side == 'l' else 'right'}_{BONES[bone]}")] = sensor.attrib["name"]
-    imported = import_mtmanager(sorted(folder.glob("OpenSenseExample_*")), placement, "walk 1")
+    imported = import_with(mtmanager_trial, sorted(folder.glob("OpenSenseExample_*")), placement, "walk 1")
     return Session((Recording("walk 1", RecordingKind.WALKING, "walk_1", imported.imu),))
 
 

@@ -23,6 +23,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from core.body import Site
+from devices.files.imports import place_trial
 from devices.files.limited_reader import LimitedReader, LimitedReading, ReadingEndedError
 from devices.files.refusal import FileRefusedError
 from devices.files.session_folder import read_session
@@ -137,17 +138,14 @@ def apdm() -> bytes:
 
 
 def read_export(reader: LimitedReader, folder: Path) -> object:
-    files = [folder / "export.txt"]
-    return LimitedReading(reader, nobody).import_files(
-        "xsens-mtmanager", files, {Site.LEFT_THIGH: "export.txt"}, "walk 1", None
-    )
+    trial = LimitedReading(reader, nobody).read_trial("xsens-mtmanager", [folder / "export.txt"], None)
+    return place_trial(trial, {Site.LEFT_THIGH: "export.txt"}, "walk 1")
 
 
 def read_unnamed(reader: LimitedReader, folder: Path) -> object:
     """The format told by the content, as without --as."""
-    return LimitedReading(reader, nobody).import_files(
-        "", [folder / "export.csv"], {Site.LEFT_THIGH: "A"}, "walk 1", None
-    )
+    trial = LimitedReading(reader, nobody).read_trial("", [folder / "export.csv"], None)
+    return place_trial(trial, {Site.LEFT_THIGH: "A"}, "walk 1")
 
 
 def nobody() -> None: ...

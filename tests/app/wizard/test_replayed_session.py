@@ -15,8 +15,9 @@ from core.body import Joint, Side, Site
 from core.results import Analysis
 from core.samples import Patient, Recording, RecordingKind, Session
 from devices.files.session_folder import read_session, write_session
-from devices.files.xsens_mtmanager import import_mtmanager
+from devices.files.xsens_mtmanager import mtmanager_trial
 from devices.walker import DEMONSTRATION, simulate
+from tests.trials_of_files import import_with
 
 pytestmark = pytest.mark.endurance  # as long as the patients take, a minute or two each
 WAIT_MS = 60_000
@@ -97,7 +98,7 @@ def test_a_real_walk_without_standing_goes_as_far(
         bone, side, *_ = (sensor.findtext("name_in_model") or "").split("_")
         if bone in BONES:
             worn[Site(f"{'left' if side == 'l' else 'right'}_{BONES[bone]}")] = sensor.attrib["name"]
-    imported = import_mtmanager(sorted(source.glob("OpenSenseExample_*")), worn, "walk 1")
+    imported = import_with(mtmanager_trial, sorted(source.glob("OpenSenseExample_*")), worn, "walk 1")
     folder = tmp_path / "real"
     write_session(Session((Recording("walk 1", RecordingKind.WALKING, "walk_1", imported.imu),)), folder)
     lead_to_standing(qtbot, wizard, folder)

@@ -10,8 +10,9 @@ from scipy.spatial.transform import Rotation
 
 from core.body import Site
 from core.samples import RateKind
-from devices.files.apdm import import_apdm, read_apdm
+from devices.files.apdm import apdm_trial, read_apdm
 from devices.files.refusal import FileRefusedError
+from tests.trials_of_files import import_with
 
 FindData = Callable[[str], Path]
 FOLDER = "vendor_exports/apdm"
@@ -62,7 +63,7 @@ def refusal(path: Path) -> str:
 def test_the_orientation_turns_gravity_up(test_data: FindData) -> None:
     """Of sensors that swing, none of them level: a transposed or reordered quaternion would not."""
     for name in ("Upper", "Middle", "Lower"):
-        imported = import_apdm([test_data(f"{FOLDER}/imuData01.csv")], {Site.LEFT_THIGH: name}, "walk 1")
+        imported = import_with(apdm_trial, [test_data(f"{FOLDER}/imuData01.csv")], {Site.LEFT_THIGH: name}, "walk 1")
         block = imported.imu[Site.LEFT_THIGH]
         assert block.q_earth_from_sensor is not None
         turn = Rotation.from_quat(block.q_earth_from_sensor, scalar_first=True)
@@ -72,7 +73,7 @@ def test_the_orientation_turns_gravity_up(test_data: FindData) -> None:
 
 
 def test_rates_are_the_slope_of_the_orientation_at_their_stamps(test_data: FindData) -> None:
-    block = import_apdm([test_data(f"{FOLDER}/imuData01.csv")], THIGH_SHANK, "walk 1").imu[Site.LEFT_THIGH]
+    block = import_with(apdm_trial, [test_data(f"{FOLDER}/imuData01.csv")], THIGH_SHANK, "walk 1").imu[Site.LEFT_THIGH]
     assert block.q_earth_from_sensor is not None
     turn = Rotation.from_quat(block.q_earth_from_sensor, scalar_first=True)
     central = (turn[:-2].inv() * turn[2:]).as_rotvec() / (block.time_s[2:] - block.time_s[:-2])[:, None]
@@ -86,7 +87,7 @@ def test_rates_are_the_slope_of_the_orientation_at_their_stamps(test_data: FindD
 def test_counts_units_and_rate_are_those_of_the_file(test_data: FindData) -> None:
     path = test_data(f"{FOLDER}/imuData01.csv")
     cells = cells_of(path)
-    imported = import_apdm([path], THIGH_SHANK, "walk 1")
+    imported = import_with(apdm_trial, [path], THIGH_SHANK, "walk 1")
     block, info = imported.imu[Site.LEFT_THIGH], imported.sensors[Site.LEFT_THIGH]
     at = cells[2].index("Upper/Acceleration/X")
     assert len(block.time_s) == len(cells) - 4
@@ -100,7 +101,7 @@ def test_counts_units_and_rate_are_those_of_the_file(test_data: FindData) -> Non
 def test_sensors_by_number_and_by_name(test_data: FindData) -> None:
     path = test_data(f"{FOLDER}/apdm_format7.csv")
     cells = cells_of(path)
-    imported = import_apdm([path], {Site.LEFT_FOOT: "left foot", Site.RIGHT_FOOT: "6833"}, "walk 1")
+    imported = import_with(apdm_trial, [path], {Site.LEFT_FOOT: "left foot", Site.RIGHT_FOOT: "6833"}, "walk 1")
     for site, number in ((Site.LEFT_FOOT, "6570"), (Site.RIGHT_FOOT, "6833")):
         at = cells[0].index(number)
         assert imported.imu[site].acc_m_s2[0].tolist() == [float(cell) for cell in cells[3][at : at + 3]]
@@ -108,14 +109,16 @@ def test_sensors_by_number_and_by_name(test_data: FindData) -> None:
         assert imported.sensors[site].serial == number
     stamps = [int(line[0]) for line in cells[3:] if line]
     np.testing.assert_allclose(imported.imu[Site.LEFT_FOOT].time_s * 1e6, np.array(stamps) - stamps[0], atol=1.0)
-    with pytest.raises(FileRefusedError, match=r'has no sensor "Knee". The sensors there are Lumbar \(5718\)'):
-        import_apdm([path], {Site.LEFT_FOOT: "Knee"}, "walk 1")
+    with pytest.raises(
+        FileRefusedError, match=r'none of the files is or holds "Knee". The sensors there are Lumbar \(5718\)'
+    ):
+        import_with(apdm_trial, [path], {Site.LEFT_FOOT: "Knee"}, "walk 1")
     with pytest.raises(FileRefusedError, match="at two sites"):
-        import_apdm([path], {Site.LEFT_FOOT: "Lumbar", Site.LEFT_SHANK: "5718"}, "walk 1")
+        import_with(apdm_trial, [path], {Site.LEFT_FOOT: "Lumbar", Site.LEFT_SHANK: "5718"}, "walk 1")
 
 
 def test_a_sensor_without_magnetometer_and_orientation_is_read(tmp_path: Path) -> None:
-    imported = import_apdm([monitors(tmp_path / "a.csv")], {Site.LEFT_SHANK: "21"}, "walk 1")
+    imported = import_with(apdm_trial, [monitors(tmp_path / "a.csv")], {Site.LEFT_SHANK: "21"}, "walk 1")
     block = imported.imu[Site.LEFT_SHANK]
     assert block.mag is None
     assert block.q_earth_from_sensor is None
@@ -125,7 +128,8 @@ def test_a_sensor_without_magnetometer_and_orientation_is_read(tmp_path: Path) -
 
 def test_an_empty_cell_is_a_sample_that_is_not_there(tmp_path: Path) -> None:
     rows = [["0.0", "", "0.0", "9.81", "0", "0", "0"], ["0.1", "0", "0", "9.81", "0", "0", "0"]]
-    block = import_apdm([moveo(tmp_path / "a.csv", rows)], {Site.LEFT_THIGH: "thigh"}, "walk 1").imu[Site.LEFT_THIGH]
+    imported = import_with(apdm_trial, [moveo(tmp_path / "a.csv", rows)], {Site.LEFT_THIGH: "thigh"}, "walk 1")
+    block = imported.imu[Site.LEFT_THIGH]
     assert np.isnan(block.acc_m_s2[:, 0]).tolist() == [True, False]
 
 
@@ -161,7 +165,7 @@ def test_what_is_damaged_is_refused_where_it_is(tmp_path: Path) -> None:
 
 
 def test_a_trial_without_samples_is_an_empty_recording(tmp_path: Path) -> None:
-    imported = import_apdm([moveo(tmp_path / "a.csv", [])], {Site.LEFT_THIGH: "Thigh"}, "walk 1")
+    imported = import_with(apdm_trial, [moveo(tmp_path / "a.csv", [])], {Site.LEFT_THIGH: "Thigh"}, "walk 1")
     assert len(imported.imu[Site.LEFT_THIGH].time_s) == 0
 
 

@@ -1,5 +1,6 @@
 """Do files find their sites, and recordings their session?"""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -8,9 +9,11 @@ import pytest
 from core.body import Site
 from core.findings import Finding, Severity
 from core.samples import ImuBlock, RateKind, Recording, RecordingKind, SensorInfo, Session
-from devices.files.imports import add_recording, folder_for, free_name, parse_map, place_files
+from devices.files.formats import read_trial
+from devices.files.imports import add_recording, folder_for, free_name, parse_map, place_trial
 from devices.files.refusal import FileRefusedError
 from devices.files.session_folder import read_session, write_session
+from devices.files.trial import ImportedSensor, ImportedTrial, UnreadFile
 
 
 def block(sensor: str) -> ImuBlock:
@@ -45,48 +48,66 @@ def test_a_wrong_map_is_refused(text: str, words: str) -> None:
         parse_map(text)
 
 
+def sensor(path: Path, *ids: str, start_s: float = 0.0) -> ImportedSensor:
+    worn = replace(block(path.stem), time_s=start_s + np.arange(2.0))
+    return ImportedSensor(path.name, ids, str(path), worn, SensorInfo(), (Finding("x", Severity.INFO, ""),))
+
+
 @pytest.fixture
-def files(tmp_path: Path) -> list[Path]:
-    paths = [tmp_path / name for name in ("t_00B40001.txt", "t_00B40002.txt", "u_00B40002.txt", "readme.md")]
-    for path in paths:
-        path.write_text("")
-    return paths
+def trial(tmp_path: Path) -> ImportedTrial:
+    paths = [tmp_path / name for name in ("t_00B40001.txt", "t_00B40002.txt", "u_00B40002.txt")]
+    broken = FileRefusedError("b_00B40003.txt", "there is no acceleration", "Export it again")
+    unread = UnreadFile(str(tmp_path / "b_00B40003.txt"), ("00B40003",), broken)
+    return ImportedTrial("xsens-mtmanager", tuple(sensor(path, path.stem[-8:]) for path in paths), (unread,))
 
 
-def sensors_of(path: Path) -> list[str]:
-    return [path.stem[-8:]] if path.suffix == ".txt" else []
+@pytest.mark.parametrize("called", ["00B40001", "_00B40001", "00b40001", "t_00B40001.txt", "t_00B40001"])
+def test_a_sensor_is_found_by_its_file_or_id(trial: ImportedTrial, called: str) -> None:
+    found = place_trial(trial, {Site.LEFT_FOOT: called}, "walk 1")
+    assert {site: one.sensor for site, one in found.imu.items()} == {Site.LEFT_FOOT: "t_00B40001"}
+    assert [(one.key, one.where, dict(one.numbers)) for one in found.findings] == [
+        *(("file_left_out", "walk 1", {"name": f"{name}.txt"}) for name in ("t_00B40002", "u_00B40002", "b_00B40003")),
+        ("x", "walk 1, left_foot", {}),
+    ]
 
 
-@pytest.mark.parametrize("sensor", ["00B40001", "_00B40001", "00b40001", "t_00B40001.txt", "t_00B40001"])
-def test_a_file_is_found_by_its_name_or_sensor(files: list[Path], sensor: str) -> None:
-    placed, left_out = place_files(files, {Site.LEFT_FOOT: sensor}, sensors_of)
-    assert placed == {Site.LEFT_FOOT: files[0].resolve()}
-    assert left_out == files[1:]
-
-
-def test_a_file_is_found_by_its_path(files: list[Path], monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(files[0].parent.parent)
-    for value in (str(files[2]), f"{files[2].parent.name}/u_00B40002.txt"):
-        placed, _ = place_files(files, {Site.LEFT_FOOT: value}, sensors_of)
-        assert placed == {Site.LEFT_FOOT: files[2].resolve()}
+def test_a_sensor_is_found_by_the_path_of_its_file(
+    trial: ImportedTrial, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path.parent)
+    for value in (str(tmp_path / "u_00B40002.txt"), f"{tmp_path.name}/u_00B40002.txt"):
+        assert place_trial(trial, {Site.LEFT_FOOT: value}, "walk 1").imu[Site.LEFT_FOOT].sensor == "u_00B40002"
 
 
 @pytest.mark.parametrize(
     ("placement", "words"),
     [
-        ({Site.LEFT_FOOT: "00B49999"}, "none of the files is or holds .* The sensors there are 00B40001, 00B40002"),
+        ({Site.LEFT_FOOT: "00B49999"}, r"none of the files is or holds .* there are t_00B40001.txt \(00B40001\), t_"),
         ({Site.LEFT_FOOT: "00B40002"}, "may be t_00B40002.txt, u_00B40002.txt"),
         ({Site.LEFT_FOOT: "00B40001", Site.LEFT_SHANK: "t_00B40001.txt"}, "t_00B40001.txt is at two sites"),
+        ({Site.LEFT_FOOT: "00B40003"}, "b_00B40003.txt: there is no acceleration"),
+        ({Site.LEFT_FOOT: "b_00B40003.txt"}, "b_00B40003.txt: there is no acceleration"),
     ],
 )
-def test_a_map_that_fits_no_file_is_refused(files: list[Path], placement: dict[Site, str], words: str) -> None:
+def test_a_map_that_fits_no_sensor_is_refused(trial: ImportedTrial, placement: dict[Site, str], words: str) -> None:
     with pytest.raises(FileRefusedError, match=words):
-        place_files(files, placement, sensors_of)
+        place_trial(trial, placement, "walk 1")
+
+
+def test_time_starts_with_the_first_sample_that_is_placed(tmp_path: Path) -> None:
+    starts = {"a": 0.0, "b": 5.5, "c": 5.0}
+    sensors = tuple(sensor(tmp_path / f"{name}.txt", start_s=start_s) for name, start_s in starts.items())
+    trial = ImportedTrial("xsens-mtmanager", sensors)
+    found = place_trial(trial, {Site.LEFT_FOOT: "b", Site.LEFT_SHANK: "c"}, "walk 1")
+    assert [found.imu[site].time_s[0] for site in (Site.LEFT_FOOT, Site.LEFT_SHANK)] == [0.5, 0.0]
+    with pytest.raises(FileRefusedError, match=r"b.txt: it starts after the last sample of a.txt, .* not of one trial"):
+        place_trial(trial, {Site.LEFT_FOOT: "a", Site.LEFT_SHANK: "b"}, "walk 1")
 
 
 def test_a_file_that_is_not_there_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(FileRefusedError, match="there is no such file"):
-        place_files([tmp_path / "none.txt"], {}, sensors_of)
+    for name in ("", "xsens-mtmanager"):
+        with pytest.raises(FileRefusedError, match="there is no such file"):
+            read_trial(name, [tmp_path / "none.txt"], None)
 
 
 def test_a_second_import_adds_a_recording(tmp_path: Path) -> None:

@@ -33,11 +33,13 @@ from devices.files.answers import (
     refusal_from,
     send,
 )
+from devices.files.imports import place_trial
 from devices.files.limited_reader import LimitedReader, LimitedReading, ReadingEndedError
 from devices.files.refusal import FileRefusedError
 from devices.files.session_folder import read_session, write_session
 from devices.files.site_files import REQUIRED
-from devices.files.xsens_mtmanager import import_mtmanager
+from devices.files.xsens_mtmanager import mtmanager_trial
+from tests.trials_of_files import import_with
 
 MakeSession = Callable[..., Path]
 EXPORT = """// Update Rate: 100.0Hz
@@ -137,8 +139,9 @@ folder = "walk_1"
 def test_an_import_comes_back_as_if_it_had_been_read_here(tmp_path: Path, shared: LimitedReader) -> None:
     files = [exported(tmp_path), exported(tmp_path, "b.txt")]
     placement = {Site.LEFT_THIGH: "a.txt"}
-    direct = import_mtmanager(files, placement, "walk 1")
-    limited = LimitedReading(shared, nothing).import_files("xsens-mtmanager", files, placement, "walk 1", None)
+    direct = import_with(mtmanager_trial, files, placement, "walk 1")
+    trial = LimitedReading(shared, nothing).read_trial("xsens-mtmanager", files, None)
+    limited = place_trial(trial, placement, "walk 1")
     assert [finding.key for finding in limited.findings] == ["file_left_out"]
     assert same(direct, limited)
 
@@ -214,7 +217,7 @@ def test_an_8_gb_file_is_refused_before_it_is_read(make_session: MakeSession, re
     reading = LimitedReading(reader, nothing)
     files = [exported(folder), folder / "session.toml"]
     with pytest.raises(FileRefusedError, match=r"session.toml: this is 8000 MB large.*up to 1000 MB\.$"):
-        reading.import_files("xsens-mtmanager", files, {Site.LEFT_THIGH: "a.txt"}, "walk 1", None)
+        reading.read_trial("xsens-mtmanager", files, None)
     assert time.monotonic() - began_s < 10.0  # reading one of them takes longer
 
 

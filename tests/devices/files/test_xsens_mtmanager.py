@@ -15,7 +15,8 @@ from core.body import Site
 from core.samples import RateKind
 from devices.files.imports import ImportedFiles
 from devices.files.refusal import FileRefusedError
-from devices.files.xsens_mtmanager import MtFile, derive_rates, import_mtmanager, read_mtmanager
+from devices.files.xsens_mtmanager import MtFile, derive_rates, mtmanager_trial, read_mtmanager
+from tests.trials_of_files import import_with
 
 FindData = Callable[[str], Path]
 FOLDER = "vendor_exports/xsens_mtmanager"
@@ -45,7 +46,9 @@ def refusal(path: Path) -> str:
 
 
 def import_two(one: Path, other: Path, rate_hz: float | None = None) -> ImportedFiles:
-    return import_mtmanager([one, other], {Site.LEFT_THIGH: one.name, Site.LEFT_SHANK: other.name}, "walk 1", rate_hz)
+    return import_with(
+        mtmanager_trial, [one, other], {Site.LEFT_THIGH: one.name, Site.LEFT_SHANK: other.name}, "walk 1", rate_hz
+    )
 
 
 # --- orientation and rates
@@ -140,7 +143,7 @@ def test_a_real_walk_is_imported(test_data: FindData) -> None:
         bone, side, *_ = (sensor.findtext("name_in_model") or "").split("_")
         if bone in sites:
             placement[Site(f"{'left' if side == 'l' else 'right'}_{sites[bone]}")] = sensor.attrib["name"]
-    imported = import_mtmanager(sorted(folder.glob("OpenSenseExample_*")), placement, "walk 1")
+    imported = import_with(mtmanager_trial, sorted(folder.glob("OpenSenseExample_*")), placement, "walk 1")
     assert set(imported.imu) == set(Site)
     assert imported.imu[Site.LEFT_THIGH].sensor == "00B421EE"
     lengths = {len(block) for block in imported.imu.values()}
@@ -158,7 +161,7 @@ def test_a_real_walk_is_imported(test_data: FindData) -> None:
 
 def test_the_kind_of_rate_is_read_from_the_orientation(test_data: FindData) -> None:
     files = sorted(test_data(FOLDER).glob("MT_012005D6_031-000_*"))
-    imported = import_mtmanager(files, {Site.LEFT_THIGH: "00B421AF", Site.LEFT_SHANK: "00B4227B"}, "walk 1")
+    imported = import_with(mtmanager_trial, files, {Site.LEFT_THIGH: "00B421AF", Site.LEFT_SHANK: "00B4227B"}, "walk 1")
     assert [info.rate_kind for info in imported.sensors.values()] == [RateKind.AVERAGED] * 2
     block = imported.imu[Site.LEFT_THIGH]
     assert block.mag is not None
@@ -182,8 +185,8 @@ def test_a_rate_that_no_file_tells_is_asked_for(test_data: FindData) -> None:
     path = test_data(FOLDER) / "MT_01200454_000-000_00B40DE4.txt"
     placement = {Site.LEFT_THIGH: "00B40DE4"}
     with pytest.raises(FileRefusedError, match=r"none of these files tells it\. Give it in Hz with --rate"):
-        import_mtmanager([path], placement, "walk 1")
-    block = import_mtmanager([path], placement, "walk 1", rate_hz=60.0).imu[Site.LEFT_THIGH]
+        import_with(mtmanager_trial, [path], placement, "walk 1")
+    block = import_with(mtmanager_trial, [path], placement, "walk 1", rate_hz=60.0).imu[Site.LEFT_THIGH]
     np.testing.assert_allclose(block.time_s, np.arange(4) / 60)
     assert block.mag is not None
 
@@ -203,7 +206,7 @@ def test_files_are_aligned_by_the_counter_across_its_turn(tmp_path: Path) -> Non
 
 def test_a_packet_twice_is_dropped_and_told(tmp_path: Path) -> None:
     path = export(tmp_path / "a.txt", ACC_GYR, still([1, 2, 2, 3]))
-    imported = import_mtmanager([path], {Site.LEFT_FOOT: "a"}, "walk 1")
+    imported = import_with(mtmanager_trial, [path], {Site.LEFT_FOOT: "a"}, "walk 1")
     assert len(imported.imu[Site.LEFT_FOOT]) == 3
     assert [(f.key, f.where, f.numbers) for f in imported.findings] == [
         ("doubled_stamps", "walk 1, left_foot", {"count": 1})
@@ -213,7 +216,7 @@ def test_a_packet_twice_is_dropped_and_told(tmp_path: Path) -> None:
 def test_files_that_share_no_packet_are_refused(tmp_path: Path) -> None:
     one = export(tmp_path / "a.txt", ACC_GYR, still([1, 2, 3]))
     other = export(tmp_path / "b.txt", ACC_GYR, still([100, 101]))
-    with pytest.raises(FileRefusedError, match=r"b.txt: it starts after the last packet of a.txt"):
+    with pytest.raises(FileRefusedError, match=r"b.txt: it starts after the last sample of a.txt"):
         import_two(one, other)
 
 
@@ -223,7 +226,7 @@ def test_files_of_two_rates_are_refused(tmp_path: Path) -> None:
     with pytest.raises(FileRefusedError, match=r"b.txt: the update rate is 60 Hz, in a.txt 100 Hz"):
         import_two(one, other)
     with pytest.raises(FileRefusedError, match=r"--rate: the update rate is 50 Hz, in a.txt 100 Hz"):
-        import_mtmanager([one], {Site.LEFT_FOOT: "a"}, "walk 1", rate_hz=50.0)
+        import_with(mtmanager_trial, [one], {Site.LEFT_FOOT: "a"}, "walk 1", rate_hz=50.0)
 
 
 def test_a_rate_told_once_holds_for_the_trial(tmp_path: Path) -> None:
@@ -290,7 +293,7 @@ def test_missing_orientations_are_nan(tmp_path: Path) -> None:
     file: MtFile = read_mtmanager(export(tmp_path / "a.txt", [*ACC_GYR[:4], *MATRIX], rows))
     assert file.q_earth_from_sensor is not None
     np.testing.assert_array_equal(np.isnan(file.q_earth_from_sensor).any(axis=1), np.arange(7) == 3)
-    block = import_mtmanager([file.path], {Site.LEFT_FOOT: "a"}, "walk 1").imu[Site.LEFT_FOOT]
+    block = import_with(mtmanager_trial, [file.path], {Site.LEFT_FOOT: "a"}, "walk 1").imu[Site.LEFT_FOOT]
     np.testing.assert_array_equal(np.isnan(block.gyr_rad_s).any(axis=1), [1, 0, 1, 1, 1, 0, 1])
 
 
@@ -306,7 +309,7 @@ def test_spoilt_files_are_refused_or_read(
         content[data.draw(st.integers(0, len(content) - 1))] = data.draw(st.integers(0, 255))
     path.write_bytes(content[: data.draw(st.integers(0, len(content)))])
     try:
-        imported = import_mtmanager([path], {Site.LEFT_FOOT: "a.txt"}, "walk 1")
+        imported = import_with(mtmanager_trial, [path], {Site.LEFT_FOOT: "a.txt"}, "walk 1")
     except FileRefusedError as refused:
         said = str(refused)
         assert said.isprintable()

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from devices.files.recognition import recognised
+from devices.files.formats import recognised
 from devices.files.refusal import FileRefusedError
 
 FindData = Callable[[str], Path]

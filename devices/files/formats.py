@@ -1,0 +1,103 @@
+"""The programs whose files can be read, each told by what stands in a file, never by its name."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from devices.files.apdm import apdm_trial, is_apdm
+from devices.files.refusal import FileRefusedError
+from devices.files.trial import ImportedTrial
+from devices.files.xsens_mtmanager import is_mtmanager, mtmanager_trial
+
+HEAD_BYTES = 65_536  # heads of many sensors are long
+
+
+@dataclass(frozen=True, slots=True)
+class FileFormat:
+    """`is_it`: whether a file, whose first bytes are given, is of this format; a folder has none.
+
+    `trial`: what the files of one trial hold, with the samples per second where they do not tell.
+    """
+
+    program: str
+    is_it: Callable[[Path, bytes], bool]
+    trial: Callable[[Sequence[Path], float | None], ImportedTrial]
+
+
+FORMATS: Mapping[str, FileFormat] = {
+    "xsens-mtmanager": FileFormat("Xsens MT Manager", is_mtmanager, mtmanager_trial),
+    "apdm": FileFormat("APDM Moveo, Mobility Lab or Motion Studio", is_apdm, apdm_trial),
+}
+
+
+def read_trial(name: str, files: Sequence[Path], rate_hz: float | None) -> ImportedTrial:
+    """Read the files of one trial, of the format of this name, or of the one that is recognised where it is empty.
+
+    Raises
+    ------
+    FileRefusedError
+        What `recognised` and the reader of the format refuse.
+    OSError
+        A file cannot be read.
+    """
+    for path in files:
+        _refuse_missing(path)
+    every = list({path.resolve(): path for path in files}.values())
+    return FORMATS[name or recognised(every)].trial(every, rate_hz)
+
+
+def recognised(files: Sequence[Path]) -> str:
+    """The format of the files of one trial.
+
+    Raises
+    ------
+    FileRefusedError
+        A file that none of the formats is, or files of several.
+    OSError
+        A file cannot be read.
+    """
+    found: dict[str, Path] = {}
+    for path in files:
+        found.setdefault(format_of(path), path)
+    if len(found) > 1:
+        (one, first), (other, second), *_ = found.items()
+        raise FileRefusedError(
+            second.name,
+            "it is of {other}, {first} of {one}",
+            "Import the files of one program at a time",
+            other=other,
+            first=first.name,
+            one=one,
+        )
+    return next(iter(found))
+
+
+def format_of(path: Path) -> str:
+    """The format of a file or folder.
+
+    Raises
+    ------
+    FileRefusedError
+        It is not there, or none of the formats.
+    OSError
+        It cannot be read.
+    """
+    _refuse_missing(path)
+    head = b""
+    if path.is_file():
+        with path.open("rb") as file:
+            head = file.read(HEAD_BYTES)
+    for name, one in FORMATS.items():
+        if one.is_it(path, head):
+            return name
+    raise FileRefusedError(
+        path.name,
+        "no format that can be imported is recognised in it",
+        "Those there are: {formats}; say which with --as if it is one of them",
+        formats=", ".join(FORMATS),
+    )
+
+
+def _refuse_missing(path: Path) -> None:
+    if not path.exists():
+        raise FileRefusedError(str(path), "there is no such file", "Check its name")

@@ -1,0 +1,42 @@
+"""What the files of another program hold of one trial, before anybody has said which sensor was worn where."""
+
+from dataclasses import dataclass
+
+from core.findings import Finding
+from core.samples import ImuBlock, SensorInfo
+from devices.files.refusal import FileRefusedError
+
+
+@dataclass(frozen=True, slots=True)
+class ImportedSensor:
+    """One sensor and its samples: SI units, sensor axes; seconds on the clock that all sensors of the trial share.
+
+    `name`: as the program calls it, else its file. `ids`: by what else it may be called. `file`: the path it is from.
+    `findings`: without a place, which is not known yet.
+    """
+
+    name: str
+    ids: tuple[str, ...]
+    file: str
+    block: ImuBlock
+    info: SensorInfo
+    findings: tuple[Finding, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class UnreadFile:
+    """A file beside the others that could not be read, the ids of what it may hold, and why."""
+
+    file: str
+    ids: tuple[str, ...]
+    refusal: FileRefusedError
+
+
+@dataclass(frozen=True, slots=True)
+class ImportedTrial:
+    """`format`: one of `formats.FORMATS`. `started`: as the file says it, empty where it does not."""
+
+    format: str
+    sensors: tuple[ImportedSensor, ...]
+    unread: tuple[UnreadFile, ...] = ()
+    started: str = ""

@@ -1,0 +1,19 @@
+"""One recording of files of another program, read in this process."""
+
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+
+from core.body import Site
+from devices.files.imports import ImportedFiles, place_trial
+from devices.files.trial import ImportedTrial
+
+
+def import_with(
+    trial: Callable[[Sequence[Path], float | None], ImportedTrial],
+    files: Sequence[Path],
+    placement: Mapping[Site, str],
+    recording: str,
+    rate_hz: float | None = None,
+) -> ImportedFiles:
+    """What `trial` reads of the files, at these sites."""
+    return place_trial(trial(files, rate_hz), placement, recording)
