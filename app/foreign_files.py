@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from core.samples import Session
     from devices.files.limited_reader import LimitedReader, Waiting
-    from devices.files.trial import ImportedTrial
+    from devices.files.trial import Gathered, ImportedTrial
 
 
 def read_foreign_session(folder: Path, waiting: "Waiting") -> "Session":
@@ -64,6 +64,19 @@ def read_foreign_trial(
     from devices.files.limited_reader import LimitedReading
 
     return LimitedReading(the_reader(), waiting).read_trial(format_name, files, rate_hz)
+
+
+def gather_foreign(paths: Sequence[Path], waiting: "Waiting") -> "Gathered":
+    """Which of these files and folders belong together, as `devices.files.gathering.gather` says.
+
+    Raises
+    ------
+    FileRefusedError
+        There are too many, or they cannot be looked at within the limits.
+    """
+    from devices.files.limited_reader import LimitedReading
+
+    return LimitedReading(the_reader(), waiting).gather(paths)
 
 
 @cache

@@ -1,7 +1,9 @@
 """Home: whose sessions are in the library, what begins from here, what comes in, what goes out of sight for 30 days."""
 
 import datetime
+from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING
 from uuid import UUID
 
@@ -229,7 +231,7 @@ class Home(Themed):
         page.new_session_wished.connect(self._on_primary)
         page.new_patient_wished.connect(self._on_new_patient)
         page.demonstration_wished.connect(self.demonstration_wished)
-        page.import_wished.connect(self._choose_folder)
+        page.import_wished.connect(self._begin_import)
         page.computing_wished.connect(self._compute)
         page.patient_deleted.connect(self._on_patient_deleted)
         page.session_deleted.connect(self.deleting.session)
@@ -239,6 +241,7 @@ class Home(Themed):
         self.bar.quiet_pressed.connect(self._on_quiet)
         self.bar.back_pressed.connect(self._on_back)
         self.importing.page.code_changed.connect(self._show)
+        self.importing.page.changed.connect(self._show)
         self.importing.working.connect(self._work)
         self.importing.progressed.connect(self._on_progressed)
         self.importing.asked.connect(self._on_import_asked)
@@ -287,6 +290,7 @@ class Home(Themed):
         form = RailForm.COMPACT if is_compact else RailForm.WIDE if width >= WIDE_FROM else RailForm.USUAL
         self.rail.set_form(form)
         self.page.set_room(width - form.value, is_compact=is_compact)
+        self.importing.page.set_room(width - form.value)
         self.bar.show_state(self._bar())
         px = self._look.theme.px
         self.toast.move(px(form.value + 24), self.height() - self.bar.height() - self.toast.height() - px(16))
@@ -406,7 +410,10 @@ class Home(Themed):
             self.session_wished.emit(self.patient)
 
     def _on_quiet(self, _number: int) -> None:
-        self._on_new_patient()
+        if self.current is self.importing.page:
+            self.importing.leave_out()
+        else:
+            self._on_new_patient()
 
     def _on_back(self) -> None:
         self.importing.forget()
@@ -429,7 +436,7 @@ class Home(Themed):
         if number == PATIENTS:
             self._on_back()
         elif number == IMPORT:
-            self._choose_folder()
+            self._begin_import()
         elif self._state is not None and self._state.is_demonstration:
             self.own_library_wished.emit()
         else:
@@ -457,8 +464,13 @@ class Home(Themed):
 
     # what comes in
 
-    def _choose_folder(self) -> None:
-        self.importing.choose_folder(self, self.patient.details.code if self.patient is not None else "")
+    def take(self, paths: Sequence[Path]) -> None:
+        """Read what was dropped onto the window, to be imported."""
+        if self.current is not self.working:
+            self.importing.read(paths)
+
+    def _begin_import(self) -> None:
+        self.importing.begin(self.patient.details.code if self.patient is not None else "")
 
     def _on_import_asked(self) -> None:
         self._go_to(self.importing.page)

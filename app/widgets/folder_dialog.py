@@ -1,4 +1,4 @@
-"""Which folder is meant? The system's own dialog, which holds up nothing meanwhile."""
+"""Which folder or files are meant? The system's own dialog, which holds up nothing meanwhile."""
 
 from collections.abc import Callable
 
@@ -13,5 +13,15 @@ def ask_for_folder(parent: QWidget, title: str, on_chosen: Callable[[str], None]
     dialog.setOption(QFileDialog.Option.ShowDirsOnly)
     dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
     dialog.fileSelected.connect(on_chosen)
+    dialog.open()
+    return dialog
+
+
+def ask_for_files(parent: QWidget, title: str, on_chosen: Callable[[list[str]], None]) -> QFileDialog:
+    """Open a dialog for files that are there; once it is closed it deletes itself."""
+    dialog = QFileDialog(parent, title)
+    dialog.setFileMode(QFileDialog.FileMode.ExistingFiles)
+    dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+    dialog.filesSelected.connect(on_chosen)
     dialog.open()
     return dialog

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from core.findings import Finding, Severity
 from core.samples import ImuBlock, RateKind, SensorInfo
 from devices.files.refusal import FileRefusedError
-from devices.files.trial import ImportedSensor, ImportedTrial, UnreadFile
+from devices.files.trial import FilesOfTrial, Gathered, ImportedSensor, ImportedTrial, UnreadFile
 
 Array = NDArray[np.generic]
 Details = dict[str, Any]
@@ -183,6 +183,30 @@ def trial_from(details: Details, arrays: Sequence[Array]) -> ImportedTrial:
             for one in details["unread"]
         )
         return ImportedTrial(_text(details["format"]), sensors, unread, _text(details["started"]))
+
+
+def details_of_gathered(gathered: Gathered) -> Details:
+    """Which files belong together."""
+    return {
+        "trials": [{"format": one.format, "name": one.name, "files": list(one.files)} for one in gathered.trials],
+        "refused": list(map(details_of_refusal, gathered.refused)),
+    }
+
+
+def gathered_from(details: Details) -> Gathered:
+    """What `details_of_gathered` wrote, checked.
+
+    Raises
+    ------
+    BrokenAnswerError
+        It is something else.
+    """
+    with _whatever_is_wrong():
+        trials = tuple(
+            FilesOfTrial(_text(one["format"]), _text(one["name"]), tuple(map(_text, one["files"])))
+            for one in details["trials"]
+        )
+        return Gathered(trials, tuple(map(refusal_from, details["refused"])))
 
 
 def details_of_document(value: object) -> object:

@@ -15,7 +15,7 @@ from devices.files.limits import limit_processor_time, limit_this_process
 if TYPE_CHECKING:
     from devices.files.answers import Array, Details
 
-TOML, SITE, TRIAL = "toml", "site", "trial"
+TOML, SITE, TRIAL, GATHER = "toml", "site", "trial", "gather"
 READ, REFUSED, MEMORY, UNFORESEEN = "read", "refused", "memory", "unforeseen"
 
 
@@ -62,7 +62,13 @@ def _answer(asked: "Details", arrays: "list[Array]") -> "Details":
 
 
 def _read(asked: "Details", arrays: "list[Array]") -> object:
-    from devices.files.answers import details_of_block, details_of_document, details_of_findings, details_of_trial
+    from devices.files.answers import (
+        details_of_block,
+        details_of_document,
+        details_of_findings,
+        details_of_gathered,
+        details_of_trial,
+    )
     from devices.files.session_folder import IN_THIS_PROCESS
     from devices.files.site_files import read_site
 
@@ -74,9 +80,14 @@ def _read(asked: "Details", arrays: "list[Array]") -> object:
             Path(asked["path"]), asked["where"], asked["place"], asked["sensor"], asked["is_rate_derived"]
         )
         return {"block": details_of_block(block, arrays), "findings": details_of_findings(findings)}
+    files = list(map(Path, asked["files"]))
+    if task == GATHER:
+        from devices.files.gathering import gather
+
+        return details_of_gathered(gather(files))
     from devices.files.formats import read_trial  # here: SciPy takes longer to import than most files
 
-    return details_of_trial(read_trial(asked["format"], list(map(Path, asked["files"])), asked["rate_hz"]), arrays)
+    return details_of_trial(read_trial(asked["format"], files, asked["rate_hz"]), arrays)
 
 
 def _last_line(error: Exception) -> str:

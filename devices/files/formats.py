@@ -16,17 +16,18 @@ HEAD_BYTES = 65_536  # heads of many sensors are long
 class FileFormat:
     """`is_it`: whether a file, whose first bytes are given, is of this format; a folder has none.
 
-    `trial`: what the files of one trial hold, with the samples per second where they do not tell.
+    `trial`: what the files of one trial hold, with the samples per second where they do not tell. `is_one_sensor`: a
+    file holds one sensor, and a trial has several; else it holds all of them.
     """
 
-    program: str
     is_it: Callable[[Path, bytes], bool]
     trial: Callable[[Sequence[Path], float | None], ImportedTrial]
+    is_one_sensor: bool = False
 
 
 FORMATS: Mapping[str, FileFormat] = {
-    "xsens-mtmanager": FileFormat("Xsens MT Manager", is_mtmanager, mtmanager_trial),
-    "apdm": FileFormat("APDM Moveo, Mobility Lab or Motion Studio", is_apdm, apdm_trial),
+    "xsens-mtmanager": FileFormat(is_mtmanager, mtmanager_trial, is_one_sensor=True),
+    "apdm": FileFormat(is_apdm, apdm_trial),
 }
 
 
@@ -58,7 +59,16 @@ def recognised(files: Sequence[Path]) -> str:
     """
     found: dict[str, Path] = {}
     for path in files:
-        found.setdefault(format_of(path), path)
+        _refuse_missing(path)
+        name = format_of(path)
+        if name is None:
+            raise FileRefusedError(
+                path.name,
+                "no format that can be imported is recognised in it",
+                "Those there are: {formats}; say which with --as if it is one of them",
+                formats=", ".join(FORMATS),
+            )
+        found.setdefault(name, path)
     if len(found) > 1:
         (one, first), (other, second), *_ = found.items()
         raise FileRefusedError(
@@ -72,30 +82,19 @@ def recognised(files: Sequence[Path]) -> str:
     return next(iter(found))
 
 
-def format_of(path: Path) -> str:
-    """The format of a file or folder.
+def format_of(path: Path) -> str | None:
+    """The format of a file or folder; None: it is of none of them.
 
     Raises
     ------
-    FileRefusedError
-        It is not there, or none of the formats.
     OSError
         It cannot be read.
     """
-    _refuse_missing(path)
     head = b""
     if path.is_file():
         with path.open("rb") as file:
             head = file.read(HEAD_BYTES)
-    for name, one in FORMATS.items():
-        if one.is_it(path, head):
-            return name
-    raise FileRefusedError(
-        path.name,
-        "no format that can be imported is recognised in it",
-        "Those there are: {formats}; say which with --as if it is one of them",
-        formats=", ".join(FORMATS),
-    )
+    return next((name for name, one in FORMATS.items() if one.is_it(path, head)), None)
 
 
 def _refuse_missing(path: Path) -> None:

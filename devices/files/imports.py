@@ -64,25 +64,31 @@ def place_trial(trial: ImportedTrial, placement: Mapping[Site, str], recording: 
         A site whose sensor is none or several of the trial's or is in a file that could not be read, a sensor at two
         sites, sensors that share no stretch of time.
     """
-    placed: dict[Site, ImportedSensor] = {}
-    for site, value in placement.items():
-        sensor = _sensor_of(trial, site, value)
-        if any(sensor is other for other in placed.values()):
+    return place_sensors(
+        trial, [(site, _sensor_of(trial, site, value)) for site, value in placement.items()], recording
+    )
+
+
+def place_sensors(trial: ImportedTrial, placed: Sequence[tuple[Site, ImportedSensor]], recording: str) -> ImportedFiles:
+    """As `place_trial`, by the sensors themselves."""
+    for number, (site, sensor) in enumerate(placed):
+        if any(sensor is other for _, other in placed[:number]):
             raise FileRefusedError(f"{MAP} {site}", "{name} is at two sites", "Name each once", name=sensor.name)
-        placed[site] = sensor
-    starts = [sensor.block.time_s[0] for sensor in placed.values() if len(sensor.block.time_s)]
-    start_s = min(starts, default=0.0)
-    _refuse_apart(list(placed.values()))
+        if site in [other for other, _ in placed[:number]]:
+            raise FileRefusedError(recording, "{site} is there twice", "Name each site once", site=site)
+    sensors = [sensor for _, sensor in placed]
+    _refuse_apart(sensors)
+    start_s = min((sensor.block.time_s[0] for sensor in sensors if len(sensor.block)), default=0.0)
     imu = {
         site: replace(sensor.block, time_s=sensor.block.time_s - start_s) if start_s else sensor.block
-        for site, sensor in placed.items()
+        for site, sensor in placed
     }
-    left_out = [sensor.name for sensor in trial.sensors if not any(sensor is one for one in placed.values())]
+    left_out = [sensor.name for sensor in trial.sensors if not any(sensor is one for one in sensors)]
     left_out += [Path(unread.file).name for unread in trial.unread]
     findings = [Finding("file_left_out", Severity.INFO, recording, {"name": name}) for name in left_out]
-    for site, sensor in placed.items():
+    for site, sensor in placed:
         findings += [replace(finding, where=f"{recording}, {site}") for finding in sensor.findings]
-    return ImportedFiles(imu, {site: sensor.info for site, sensor in placed.items()}, tuple(findings))
+    return ImportedFiles(imu, {site: sensor.info for site, sensor in placed}, tuple(findings))
 
 
 def _sensor_of(trial: ImportedTrial, site: Site, value: str) -> ImportedSensor:

@@ -25,6 +25,7 @@ from devices.files.answers import (
     block_from,
     document_from,
     findings_from,
+    gathered_from,
     receive,
     refusal_from,
     send,
@@ -33,7 +34,7 @@ from devices.files.answers import (
 from devices.files.refusal import FileRefusedError
 from devices.files.session_toml import FILE_NAME
 from devices.files.site_files import ReadSite, SiteFile
-from devices.files.trial import ImportedTrial
+from devices.files.trial import Gathered, ImportedTrial
 
 FILES_EACH = 500
 MEMORY_BYTES = 4 * 1024**3  # half a gigabyte of text takes 1.9, most of it only reserved, the libraries 0.4 of them
@@ -274,6 +275,15 @@ class LimitedReading:
         }
         where = ", ".join(path.name for path in files)
         return self._reader.ask(task, files, where, trial_from, self.waiting)
+
+    def gather(self, paths: Sequence[Path]) -> Gathered:
+        """As `gathering.gather` does."""
+        task = {"task": child.GATHER, "files": [str(path) for path in paths]}
+        return self._reader.ask(task, (), paths[0].name, _gathered, self.waiting)
+
+
+def _gathered(details: Any, _arrays: Sequence[Array]) -> Gathered:
+    return gathered_from(details)
 
 
 def _document(details: Any, _arrays: Sequence[Array]) -> dict[str, object]:

@@ -1,10 +1,17 @@
 """What the files of another program hold of one trial, before anybody has said which sensor was worn where."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from core.findings import Finding
 from core.samples import ImuBlock, SensorInfo
 from devices.files.refusal import FileRefusedError
+
+SESSION = "session"  # in place of a format: a session folder
+PROGRAMS: Mapping[str, str] = {  # what writes each of `formats.FORMATS`, whose import takes longer than most files
+    "xsens-mtmanager": "Xsens MT Manager",
+    "apdm": "APDM Moveo, Mobility Lab or Motion Studio",
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,3 +47,20 @@ class ImportedTrial:
     sensors: tuple[ImportedSensor, ...]
     unread: tuple[UnreadFile, ...] = ()
     started: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class FilesOfTrial:
+    """`name`: what the files have in common, to call the trial by."""
+
+    format: str
+    name: str
+    files: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Gathered:
+    """`refused`: what is none of the formats, and why."""
+
+    trials: tuple[FilesOfTrial, ...]
+    refused: tuple[FileRefusedError, ...]

@@ -6,7 +6,7 @@ means over the interval before their stamp, which the orientation in the same fi
 """
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -279,15 +279,15 @@ def _fine_rate(table: Table, counter: Numbers) -> float | None:
     return FINE_TICKS_PER_S * float(counter[-1] - counter[0]) / elapsed if elapsed > 0 else None
 
 
-def _common_rate(files: Iterable[MtFile], asked_hz: float | None) -> float:
+def _common_rate(files: Sequence[MtFile], asked_hz: float | None) -> float:
     rates_hz = {file.path.name: file.rate_hz for file in files if file.rate_hz is not None}
     if asked_hz is not None:
         rates_hz["--rate"] = asked_hz
     if not rates_hz:
         raise FileRefusedError(
-            "update rate",
-            "none of these files tells it",
-            "Give it in Hz with --rate, as set in MT Manager when recording",
+            ", ".join(file.path.name for file in files),
+            "its update rate is not told",
+            "Give it in Hz (--rate), as set in MT Manager when recording",
         )
     (first, rate_hz), *others = rates_hz.items()
     for name, other_hz in others:

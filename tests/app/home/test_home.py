@@ -4,14 +4,14 @@ import os
 import shutil
 import signal
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from uuid import UUID
 
 import numpy as np
 import pytest
-from PySide6.QtCore import QSettings, Qt
+from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
@@ -31,72 +31,17 @@ from app.storage.library import Library
 from app.storage.opened import OpenedLibrary
 from app.storage.recovery import adopt_home, find_interrupted, recover
 from app.storage.rollback import Rollback
-from app.storage.slots import Cost
-from app.storage.stored import LibraryError, Operator, PlacedSensor, Role, StoredJournal, StoredPatient
+from app.storage.stored import LibraryError, PlacedSensor, Role, StoredJournal, StoredPatient
 from app.theme import ThemeNotifier, load_fonts
 from app.widgets.button import Button
 from app.workers.library_controller import LibraryController
-from app.workers.library_state import OpenedState
 from core.body import Site
 from core.samples import ImuBlock, Patient, Recording, RecordingKind, SensorInfo, Session
 from devices.files.session_folder import write_session
 from devices.source import SourceInfo
+from tests.app.home.home_library import PASSPHRASE, WAIT_MS, open_library
 
-PASSPHRASE = "four short words here"
-WAIT_MS = 20_000  # on a busy machine
 ANY_ROOM = Room(start_bytes=0, kept_bytes=0)
-
-
-@pytest.fixture(scope="module")
-def untouched(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A closed library of `hk` with two patients, the second of whom was here three times."""
-    folder = tmp_path_factory.mktemp("home")
-    data_key, _ = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64)).create("hk", PASSPHRASE)
-    with Library.create(folder, data_key, Operator("hk", "H. Keller", Role.ADMINISTRATOR)) as library:
-        library.patients.create(Patient(code="P-0147", birth_year=1968, device="microprocessor knee"))
-        patient = library.patients.create(Patient(code="P-0163", birth_year=1951, sex="female", affected_side="right"))
-        for month in (3, 4, 5):
-            library.sessions.create(patient.id, Session((), started=f"2026-0{month}-20T09:00:00"))
-    return folder
-
-
-@pytest.fixture
-def folder(untouched: Path, tmp_path: Path) -> Path:
-    return Path(shutil.copytree(untouched, tmp_path / "library"))
-
-
-@pytest.fixture
-def settings(tmp_path: Path) -> Settings:
-    return Settings(QSettings(str(tmp_path / "settings.ini"), QSettings.Format.IniFormat))
-
-
-@pytest.fixture
-def controller(qtbot: QtBot) -> Iterator[LibraryController]:
-    controller = LibraryController()
-    yield controller
-    controller.finish()
-
-
-@pytest.fixture
-def home(qtbot: QtBot, qapp: QApplication, controller: LibraryController, settings: Settings, folder: Path) -> Home:
-    load_fonts()
-    home = Home(ThemeNotifier(), controller, settings)
-    home.resize(1280, 800)
-    qtbot.addWidget(home)
-    with qtbot.waitActive(home):
-        home.show()
-        home.activateWindow()
-    open_library(qtbot, controller, home, folder)
-    return home
-
-
-def open_library(qtbot: QtBot, controller: LibraryController, home: Home, folder: Path) -> None:
-    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as told:
-        controller.open(folder, PASSPHRASE)
-    (state,) = told.args or []
-    assert isinstance(state, OpenedState)
-    home.show_library(state)
-    qtbot.waitUntil(lambda: bool(home.page.patients.lines), timeout=WAIT_MS)
 
 
 def lines(home: Home) -> list[PatientLine]:
@@ -231,7 +176,7 @@ def test_a_session_folder_is_imported_for_a_patient(qtbot: QtBot, home: Home, tm
     block = ImuBlock("LT-1", time_s, np.zeros((300, 3)), np.tile([0.0, 0.0, 9.81], (300, 1)))
     recording = Recording("walk 1", RecordingKind.WALKING, "walk_1", {Site.LEFT_THIGH: block})
     write_session(Session((recording,), Patient(code="P-0200"), started="2026-11-02T10:00:00"), tmp_path / "visit")
-    home.importing.read_folder(tmp_path / "visit")
+    home.importing.read([tmp_path / "visit"])
     qtbot.waitUntil(lambda: home.current is home.importing.page, timeout=WAIT_MS)
     assert home.importing.page.code.text == "P-0200"
     assert home.bar.primary.text() == "Import for P-0200"
@@ -260,7 +205,7 @@ def test_a_stopped_import_says_what_came_of_it_once_that_is_known(
         return import_session(opened, session, (lambda _share, _what: None) if is_done else report, code)
 
     monkeypatch.setattr("app.home.importing.import_session", held)
-    home.importing.read_folder(tmp_path / "visit")
+    home.importing.read([tmp_path / "visit"])
     qtbot.waitUntil(lambda: home.current is home.importing.page, timeout=WAIT_MS)
     home.bar.primary_pressed.emit()
     home.working.stop_pressed.emit()
@@ -286,7 +231,7 @@ def test_stop_ends_a_reading_that_would_never_end(qtbot: QtBot, home: Home, tmp_
     process = the_reader().process
     assert process is not None
     os.kill(process.pid, signal.SIGSTOP)
-    home.importing.read_folder(tmp_path / "visit")
+    home.importing.read([tmp_path / "visit"])
     qtbot.wait(200)
     assert home.working.isVisible()
     assert process.poll() is None
@@ -297,7 +242,7 @@ def test_stop_ends_a_reading_that_would_never_end(qtbot: QtBot, home: Home, tmp_
 
     def is_read() -> bool:
         if home.page.isVisible():  # what was stopped has not ended yet
-            home.importing.read_folder(tmp_path / "visit")
+            home.importing.read([tmp_path / "visit"])
         return home.importing.page.isVisible()
 
     qtbot.waitUntil(is_read, timeout=WAIT_MS)
@@ -305,7 +250,7 @@ def test_stop_ends_a_reading_that_would_never_end(qtbot: QtBot, home: Home, tmp_
 
 def test_a_folder_that_is_no_session_is_refused_in_words(qtbot: QtBot, home: Home, tmp_path: Path) -> None:
     (tmp_path / "nothing").mkdir()
-    home.importing.read_folder(tmp_path / "nothing")
+    home.importing.read([tmp_path / "nothing"])
     qtbot.waitUntil(home.banner.isVisible, timeout=WAIT_MS)
     assert "session.toml" in home.banner.text
     assert home.current is home.page

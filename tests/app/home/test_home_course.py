@@ -37,13 +37,6 @@ def untouched(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def controller(qtbot: QtBot) -> Iterator[LibraryController]:
-    controller = LibraryController()
-    yield controller
-    controller.finish()
-
-
-@pytest.fixture
 def home(qtbot: QtBot, qapp: QApplication, controller: LibraryController, untouched: Path, tmp_path: Path) -> Home:
     load_fonts()
     settings = Settings(QSettings(str(tmp_path / "settings.ini"), QSettings.Format.IniFormat))

@@ -9,6 +9,7 @@ import pytest
 from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
+from app.import_drafts import drafts_of
 from app.pages.first_start_page import FirstStartPage
 from app.pages.help_page import HelpPage
 from app.pages.help_topics import Topic
@@ -36,7 +37,8 @@ from app.wording import tr
 from core.body import Joint, Side, Site
 from core.findings import Finding, Severity
 from core.gait.phases import Phase
-from core.samples import Patient
+from core.samples import ImuBlock, Patient, SensorInfo
+from devices.files.trial import ImportedSensor, ImportedTrial
 from tests.app.home.course_library import VISITS
 from tests.app.room import words_cut
 
@@ -112,6 +114,19 @@ def importing(look: ThemeNotifier) -> QWidget:
     page = ImportPage(look)
     finding = Finding("gaps", Severity.WARNING, "left_foot", {"count": 3, "missing_percent": 2.5, "longest_s": 0.4})
     page.show_session("session_2026", ["standing", "free motion", "walk 1"], "DEMO-1", [finding], is_simulated=True)
+    return page
+
+
+def importing_files(look: ThemeNotifier) -> QWidget:
+    """A walk of six sensors that says nothing of them, one of which has a site twice."""
+    page = ImportPage(look)
+    time_s = np.arange(500) / 100.0
+    block = ImuBlock("A", time_s, np.sin(time_s)[:, None] * np.ones(3), np.tile([0.0, 0.0, 9.81], (500, 1)))
+    names = ("Left Foot", "Left Thigh", "00B4227C", "00B4227D", "00B421EF", "00B42279")
+    sensors = tuple(ImportedSensor(name, (), "walk.csv", block, SensorInfo(rate_hz=100.0)) for name in names)
+    (draft,) = drafts_of([("walk_1", ImportedTrial("apdm", sensors))])
+    page.show_draft("session_2026", "APDM Moveo, Mobility Lab or Motion Studio", draft, "P-0300")
+    page.show_unread([tr("This was stopped.")], can_try_again=True)
     return page
 
 
@@ -235,6 +250,7 @@ PAGES: dict[str, Callable[[ThemeNotifier], QWidget]] = {
     "home of a patient": home_of_a_patient,
     "empty home": empty_home,
     "import": importing,
+    "import of files": importing_files,
     "settings": settings,
     "patient": patient,
     "sensors": sensors,

@@ -1,0 +1,69 @@
+"""Files put together to trials: those of a program that writes one for each sensor, by their names."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from devices.files.formats import FORMATS, format_of
+from devices.files.refusal import FileRefusedError
+from devices.files.session_toml import FILE_NAME
+from devices.files.site_names import without_site
+from devices.files.trial import SESSION, FilesOfTrial, Gathered
+
+MOST_FILES = 500  # what is dragged may be a whole disk
+
+
+def gather(paths: Sequence[Path]) -> Gathered:
+    """Put files together to trials, in the order of their names. Of a folder that is of no format, the files in it.
+
+    Raises
+    ------
+    FileRefusedError
+        Nothing is in the folder, or more than anybody imports at once.
+    """
+    refused: list[FileRefusedError] = []
+    found: dict[tuple[str, Path, str], list[str]] = {}
+    for path in _opened_up(paths):
+        try:
+            name = SESSION if (path / FILE_NAME).is_file() else format_of(path)
+        except OSError as problem:
+            why = problem.strerror or type(problem).__name__
+            refused.append(FileRefusedError(path.name, "this cannot be read ({why})", "Check its permissions", why=why))
+            continue
+        if name is None:
+            refused.append(FileRefusedError(path.name, "this is of no program whose files can be read", "Leave it out"))
+            continue
+        is_one_sensor = name != SESSION and FORMATS[name].is_one_sensor
+        common = without_site(path.stem) if is_one_sensor else path.name
+        found.setdefault((name, path.parent, common), []).append(str(path))
+    if not found and not refused:
+        raise FileRefusedError(
+            paths[0].name,
+            "there is no session.toml in it, and no file that can be imported",
+            "Choose the folder that holds the recordings",
+        )
+    trials = tuple(
+        FilesOfTrial(name, (common if len(files) > 1 else Path(files[0]).stem) or folder.name, tuple(files))
+        for (name, folder, common), files in found.items()
+    )
+    return Gathered(trials, tuple(refused))
+
+
+def _opened_up(paths: Sequence[Path]) -> list[Path]:
+    opened: list[Path] = []
+    for path in sorted(set(paths)):
+        if path.is_dir() and not (path / FILE_NAME).is_file() and not _is_known(path):
+            opened += sorted(inner for inner in path.iterdir() if not inner.name.startswith("."))
+        else:
+            opened.append(path)
+        if len(opened) > MOST_FILES:
+            raise FileRefusedError(
+                path.name,
+                "these are more than {count} files",
+                "Choose the files of a few sessions at a time",
+                count=MOST_FILES,
+            )
+    return opened
+
+
+def _is_known(folder: Path) -> bool:
+    return any(one.is_it(folder, b"") for one in FORMATS.values())

@@ -1,0 +1,65 @@
+"""What tests of home get: the thread that has the library, settings of their own, home with two patients."""
+
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from PySide6.QtCore import QSettings
+from PySide6.QtWidgets import QApplication
+from pytestqt.qtbot import QtBot
+
+from app.home.home import Home
+from app.settings import Settings
+from app.storage.keys import KeySlots
+from app.storage.layout import KEYS
+from app.storage.library import Library
+from app.storage.slots import Cost
+from app.storage.stored import Operator, Role
+from app.theme import ThemeNotifier, load_fonts
+from app.workers.library_controller import LibraryController
+from core.samples import Patient, Session
+from tests.app.home.home_library import PASSPHRASE, open_library
+
+
+@pytest.fixture
+def settings(tmp_path: Path) -> Settings:
+    return Settings(QSettings(str(tmp_path / "settings.ini"), QSettings.Format.IniFormat))
+
+
+@pytest.fixture
+def controller(qtbot: QtBot) -> Iterator[LibraryController]:
+    controller = LibraryController()
+    yield controller
+    controller.finish()
+
+
+@pytest.fixture(scope="module")
+def untouched(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A closed library of `hk` with two patients, the second of whom was here three times."""
+    folder = tmp_path_factory.mktemp("home")
+    data_key, _ = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64)).create("hk", PASSPHRASE)
+    with Library.create(folder, data_key, Operator("hk", "H. Keller", Role.ADMINISTRATOR)) as library:
+        library.patients.create(Patient(code="P-0147", birth_year=1968, device="microprocessor knee"))
+        patient = library.patients.create(Patient(code="P-0163", birth_year=1951, sex="female", affected_side="right"))
+        for month in (3, 4, 5):
+            library.sessions.create(patient.id, Session((), started=f"2026-0{month}-20T09:00:00"))
+    return folder
+
+
+@pytest.fixture
+def folder(untouched: Path, tmp_path: Path) -> Path:
+    return Path(shutil.copytree(untouched, tmp_path / "library"))
+
+
+@pytest.fixture
+def home(qtbot: QtBot, qapp: QApplication, controller: LibraryController, settings: Settings, folder: Path) -> Home:
+    load_fonts()
+    home = Home(ThemeNotifier(), controller, settings)
+    home.resize(1280, 800)
+    qtbot.addWidget(home)
+    with qtbot.waitActive(home):
+        home.show()
+        home.activateWindow()
+    open_library(qtbot, controller, home, folder)
+    return home

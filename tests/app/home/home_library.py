@@ -1,0 +1,21 @@
+"""Home with a library that is open."""
+
+from pathlib import Path
+
+from pytestqt.qtbot import QtBot
+
+from app.home.home import Home
+from app.workers.library_controller import LibraryController
+from app.workers.library_state import OpenedState
+
+PASSPHRASE = "four short words here"
+WAIT_MS = 20_000  # on a busy machine
+
+
+def open_library(qtbot: QtBot, controller: LibraryController, home: Home, folder: Path) -> None:
+    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as told:
+        controller.open(folder, PASSPHRASE)
+    (state,) = told.args or []
+    assert isinstance(state, OpenedState)
+    home.show_library(state)
+    qtbot.waitUntil(lambda: bool(home.page.patients.lines), timeout=WAIT_MS)
