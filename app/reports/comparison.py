@@ -365,8 +365,10 @@ class Comparison:
             else self.compare(measure, side, part, against)
         )
 
-    def is_same_attachment(self, part: Part) -> bool:
-        same = (part.visit, part.attachment) == (self.against.visit, self.against.attachment)
+    def is_same_attachment(self, part: Part, against: Part | None = None) -> bool:
+        """Whether the sensors stayed on between a part and `against`, None: the one that all are told against."""
+        other = against or self.against
+        same = (part.visit, part.attachment) == (other.visit, other.attachment)
         return self.kind is not Contrast.VISITS and same
 
     def has_one_zero(self, joint: Joint) -> bool:
@@ -374,16 +376,17 @@ class Comparison:
         kinds = {part.zero(joint) for part in self.parts if joint in part.joints}
         return len(kinds) == 1 and ZeroKind.NONE not in kinds
 
-    def error_kind(self, part: Part) -> ComparisonKind:
-        """What lies between a part and the one it is told against."""
-        if self.kind is Contrast.VISITS or part.visit != self.against.visit:
+    def error_kind(self, part: Part, against: Part | None = None) -> ComparisonKind:
+        """What lies between a part and `against`, None: the one that all are told against."""
+        other = against or self.against
+        if self.kind is Contrast.VISITS or part.visit != other.visit:
             return ComparisonKind.VISITS
-        return ComparisonKind.ATTACHED if self.is_same_attachment(part) else ComparisonKind.STRAPPINGS
+        return ComparisonKind.ATTACHED if self.is_same_attachment(part, other) else ComparisonKind.STRAPPINGS
 
     def compare(self, measure: Measure, side: Side, part: Part, against: Part | None = None) -> Compared:
         """A measure of one leg against that of `against`, None: of the part that all are told against."""
         other = against or self.against
-        kind, column, pair = self.error_kind(part), measure.column, (part, other)
+        kind, column, pair = self.error_kind(part, other), measure.column, (part, other)
         means = [one.mean(side, column, kind) for one in pair]
         assessments = tuple(one.assessment(side, column) for one in pair)
         return Compared(
@@ -399,7 +402,7 @@ class Comparison:
 
     def compare_walks(self, measure: Measure, part: Part, against: Part) -> Compared:
         """A measure of both legs together."""
-        kind, column, side = self.error_kind(part), measure.column, self.sides[0]
+        kind, column, side = self.error_kind(part, against), measure.column, self.sides[0]
         one, other = (of.of_walk(column, kind) for of in (part, against))
         assessments = part.assessment_of_walk(column), against.assessment_of_walk(column)
         reservation = Reservation.NONE if one.n and other.n else Reservation.NOT_MEASURED

@@ -150,7 +150,11 @@ def _differences(facts: Facts, comparison: Comparison | None) -> Iterator[Differ
 def _changes(facts: Facts, comparison: Comparison | None) -> Iterator[Candidate]:
     """What differs from the first part. A height is a finding only where both parts share one zero."""
     for row in comparison.rows if comparison is not None else ():
-        is_height = row.measure.needs_height and comparison is not None and not comparison.is_same_attachment(row.part)
+        is_height = (
+            row.measure.needs_height
+            and comparison is not None
+            and not comparison.is_same_attachment(row.part, row.against)
+        )
         if row.is_told and row.difference.is_worth_a_sentence and not is_height:
             topic = _topic(row.side, row.measure.column, row.difference.difference > 0)
             rank = _RANKS[QUANTITIES[row.measure.column]]
