@@ -24,10 +24,10 @@ def test_a_change_from_the_next_visit_that_can_be_read_has_the_error_of_visits()
         row for row in comparison.rows if row.measure is KNEE and row.side is Side.LEFT and row.part.letter == "1A"
     )
     assert row.against.letter == "2A"
-    means = [one.mean(Side.LEFT, KNEE.column, ComparisonKind.VISITS) for one in (row.part, row.against)]
-    assessments = tuple(one.assessment(Side.LEFT, KNEE.column) for one in (row.part, row.against))
-    assert row.difference == compare(KNEE.column, ComparisonKind.VISITS, *means, assessments)
-    attached = compare(KNEE.column, ComparisonKind.ATTACHED, *means, assessments)
+    one, other = (found.mean(Side.LEFT, KNEE.column, ComparisonKind.VISITS) for found in (row.part, row.against))
+    assessments = tuple(found.assessment(Side.LEFT, KNEE.column) for found in (row.part, row.against))
+    assert row.difference == compare(KNEE.column, ComparisonKind.VISITS, one, other, assessments)
+    attached = compare(KNEE.column, ComparisonKind.ATTACHED, one, other, assessments)
     assert attached.error < row.difference.error  # which would have said more than can be known
 
 
