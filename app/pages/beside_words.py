@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from app.icons import Icon
 from app.pages.compared_words import change_in_words, value_cell, why_not_told
-from app.reports.comparison import CADENCE, Compared, Comparison, Measure
+from app.reports.comparison import Compared, Comparison, Measure
 from app.reports.patient_report.answer import Answer, Outcome
 from app.reports.patient_report.numbers_in_words import DAGGER, NOTHING, fixed, in_words, judged_in_words
 from app.widgets.chip import LETTERS
@@ -41,14 +41,9 @@ def beside_rows(found: Comparison) -> list[TableRow]:
 
 def key_figures_beside(figures: Sequence[KeyFigure], found: Comparison) -> list[KeyFigure]:
     """The walk's key figures, each with its change and what that is worth in place of its band."""
-    columns = {
-        tr("Walking speed"): "speed_m_s",
-        tr("Cadence"): CADENCE,
-        tr("Stride length"): "stride_length_m",
-    }
     told = []
     for figure in figures:
-        rows = [row for row in found.rows if row.measure.column == columns.get(figure.name)]
+        rows = [row for row in found.rows if row.measure.column == figure.key]
         if figure.value == NOTHING or not rows:
             told.append(figure)
             continue

@@ -8,7 +8,7 @@ import pytest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.pages.beside_words import answer_beside
+from app.pages.beside_words import answer_beside, key_figures_beside
 from app.pages.result_page import STRIDES, Beside, ResultPage
 from app.reports.beside import beside_last_visit, beside_walk, changes_on_curves, walks_alone
 from app.reports.comparison import Comparison
@@ -122,6 +122,15 @@ def test_the_table_and_the_key_figures_tell_the_change_with_its_verdict(
     choose(page, Beside.BAND)
     (told,) = (figure for figure in page.key_figures.figures if figure.name == "Walking speed")
     assert "error" not in told.note
+
+
+def test_a_key_figure_is_told_from_the_others_in_every_language(page: ResultPage, analysis: Analysis) -> None:
+    alone = walks_alone(analysis, ())
+    found = beside_walk(alone["walk 1"], alone["walk 2"], is_simulated=True)
+    told = key_figures_beside(page.key_figures.figures, found)
+    same_name = key_figures_beside([replace(one, name="?") for one in page.key_figures.figures], found)
+    assert [one.note for one in same_name] == [one.note for one in told]
+    assert len({one.note for one in told}) == len(told) == 3
 
 
 def test_the_marks_are_those_of_the_change(page: ResultPage, analysis: Analysis, session: Session) -> None:
