@@ -240,7 +240,7 @@ class ComparePage(Themed):
         else:
             self._page.insertWidget(1, self._words)
         if self._has_view and self._is_compact:
-            self._page.insertWidget(1, self.view)
+            self._page.insertWidget(1, self.view, 0, Qt.AlignmentFlag.AlignLeft)
         elif self._has_view:
             self._head.addWidget(self.view, 0, Qt.AlignmentFlag.AlignTop)
 
