@@ -90,10 +90,11 @@ def compare(wanted: argparse.Namespace, report: Report) -> list[str]:
 
 
 def _not_compared(place: object, visits: "Sequence[tuple[Session, Analysis]]") -> str:
-    from app.reports.visits import conditions_in_words
+    from app.reports.visits import WalkedVisit, conditions_in_words
 
     walked = [
-        (f"session {number}", analysis, session.recordings) for number, (session, analysis) in enumerate(visits, 1)
+        WalkedVisit(f"session {number}", analysis, session.recordings)
+        for number, (session, analysis) in enumerate(visits, 1)
     ]
     name = one_line(str(place))
     return f"{name} has no condition in common with the first, so they are not compared. {conditions_in_words(walked)}"

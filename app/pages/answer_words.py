@@ -17,6 +17,8 @@ from core.body import Side
 from core.gait.strides import Reason
 from core.verdicts.model import Verdict
 
+KEY_COLUMNS = ("speed_m_s", "cadence_steps_min", "stride_length_m")
+
 
 def door_words(found: DataQuality) -> DoorWords:
     """The verdict of the gravest remark, where it holds, what to do or why, and how many there are."""
@@ -35,8 +37,7 @@ def door_words(found: DataQuality) -> DoorWords:
 
 def key_figures(facts: Facts) -> list[KeyFigure]:
     """Speed, cadence and stride length of a walk whose legs were measured."""
-    rows = facts.time_distance
-    return [_of_row(rows[name]) for name in (tr("Walking speed"), tr("Cadence"), tr("Stride length")) if name in rows]
+    return [_of_row(facts.time_distance[column]) for column in KEY_COLUMNS]
 
 
 def _of_row(row: Figure) -> KeyFigure:
@@ -57,7 +58,7 @@ def _of_row(row: Figure) -> KeyFigure:
     shown = fixed(value, row.decimals) if is_known else NOTHING
     unit = row.unit if is_known else ""
     words = tr("{name}: {value}.").format(name=row.name, value=" ".join(filter(None, [shown, unit, note])))
-    return KeyFigure(row.name, shown, unit, note, words)
+    return KeyFigure(row.column, row.name, shown, unit, note, words)
 
 
 def figures_in_short(facts: Facts) -> str:

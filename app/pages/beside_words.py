@@ -4,8 +4,16 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from app.icons import Icon
-from app.pages.compared_words import change_in_words, value_cell, why_not_told
-from app.reports.comparison import CADENCE, Compared, Comparison, Measure
+from app.pages.compared_table import head_cell, value_cell
+from app.pages.compared_words import (
+    change_in_words,
+    error_in_figures,
+    error_in_sentence,
+    is_judged,
+    unit_behind,
+    why_not_told,
+)
+from app.reports.comparison import Compared, Comparison
 from app.reports.patient_report.answer import Answer, Outcome
 from app.reports.patient_report.numbers_in_words import DAGGER, NOTHING, fixed, in_words, judged_in_words
 from app.widgets.chip import LETTERS
@@ -17,7 +25,6 @@ from app.wording import side_name, tr
 from core.verdicts.measurement_error import Judgement
 
 SCALE = 1.8  # errors, to either edge of a strip
-JUDGED = (Judgement.EXCEEDS_ERROR, Judgement.INSIDE_ERROR)
 
 
 def beside_columns(found: Comparison) -> list[TableColumn]:
@@ -26,29 +33,24 @@ def beside_columns(found: Comparison) -> list[TableColumn]:
     return [
         TableColumn(),
         TableColumn(TextCell(tr("Beside {walk}").format(walk=found.against.name), weight=SEMIBOLD), share=3),
-        *(TableColumn(TextCell(head, align=RIGHT, size=12, tone="ink2"), share=1) for head in heads),
+        *(TableColumn(head_cell(head), share=1) for head in heads),
         TableColumn(TextCell(tr("grey: error"), align=CENTRE, size=12, tone="ink2"), share=2),
-        TableColumn(TextCell(tr("error"), align=RIGHT, size=12, tone="ink2"), share=1),
+        TableColumn(head_cell(tr("error")), share=1),
         TableColumn(TextCell(tr("in words"), size=12, tone="ink2"), share=1),
     ]
 
 
 def beside_rows(found: Comparison) -> list[TableRow]:
     """What differs by most errors first, then what is not judged, then what may not be told."""
-    ordered = sorted(found.rows, key=lambda row: (not row.is_told, not _is_judged(row), -row.difference.ratio))
+    ordered = sorted(found.rows, key=lambda row: (not row.is_told, not is_judged(row), -row.difference.ratio))
     return [_row(row) for row in ordered]
 
 
 def key_figures_beside(figures: Sequence[KeyFigure], found: Comparison) -> list[KeyFigure]:
     """The walk's key figures, each with its change and what that is worth in place of its band."""
-    columns = {
-        tr("Walking speed"): "speed_m_s",
-        tr("Cadence"): CADENCE,
-        tr("Stride length"): "stride_length_m",
-    }
     told = []
     for figure in figures:
-        rows = [row for row in found.rows if row.measure.column == columns.get(figure.name)]
+        rows = [row for row in found.rows if row.measure.column == figure.key]
         if figure.value == NOTHING or not rows:
             told.append(figure)
             continue
@@ -63,13 +65,12 @@ def key_figures_beside(figures: Sequence[KeyFigure], found: Comparison) -> list[
 def answer_beside(found: Comparison) -> Answer:
     """What differs by most errors as a sentence, or that nothing does; the legs' answer is of this walk alone."""
     walk = found.against.name
-    told = [row for row in found.rows if row.is_told and _is_judged(row)]
+    told = [row for row in found.rows if is_judged(row)]
     worth = [row for row in told if row.difference.is_worth_a_sentence]
     if worth:
         most = max(worth, key=lambda row: row.difference.ratio)
-        error = fixed(most.difference.error, most.measure.decimals) + _unit(most.measure)
-        error += DAGGER if most.difference.is_unverified else ""
-        return Answer(Outcome.DIFFERS, _sentence(most), tr("Larger than its error ({error}).").format(error=error))
+        then = tr("Larger than its error ({error}).").format(error=error_in_sentence(most))
+        return Answer(Outcome.DIFFERS, _sentence(most), then)
     if not told:
         return Answer(Outcome.OPEN, tr("Nothing can be compared with {walk}.").format(walk=walk), "")
     if any(row.exceeds for row in told):
@@ -86,7 +87,7 @@ def _sentence(row: Compared) -> str:
     if round(round(value, decimals) - round(other, decimals), decimals) != round(change, decimals):
         decimals += 1
     name = tr(measure.name)
-    name = name.rpartition(",")[0] if _unit(measure) and not measure.kind else name  # the unit is with the figure
+    name = name.rpartition(",")[0] if unit_behind(measure) and not measure.kind else name  # the unit is with the figure
     pattern = (
         tr("{measure}: {size} less than {walk}, {value} against {other}.")
         if change < 0
@@ -94,18 +95,11 @@ def _sentence(row: Compared) -> str:
     )
     return pattern.format(
         measure=name if measure.is_of_walk else f"{LETTERS[row.side]} {name}",
-        size=fixed(abs(change), decimals) + _unit(measure),
+        size=fixed(abs(change), decimals) + unit_behind(measure),
         walk=row.against.name,
         value=fixed(value, decimals),
         other=fixed(other, decimals),
     )
-
-
-def _unit(measure: Measure) -> str:
-    """As it stands behind a figure; a share of the stride is named before it, since "3 % more" means another thing."""
-    if measure.unit == "%":
-        return ""
-    return measure.unit if measure.unit == "°" else f"\N{NO-BREAK SPACE}{measure.unit}"
 
 
 def _in_short(row: Compared) -> str:
@@ -115,10 +109,6 @@ def _in_short(row: Compared) -> str:
     change = change_in_words(row.difference.difference, row.measure)
     leg = "" if row.measure.is_of_walk else LETTERS[row.side]
     return " ".join(filter(None, [leg, change, "" if leg else in_words(row.difference.judgement)]))
-
-
-def _is_judged(row: Compared) -> bool:
-    return row.difference.judgement in JUDGED
 
 
 def _row(row: Compared) -> TableRow:
@@ -157,14 +147,11 @@ def _strip(row: Compared) -> TableCell:
     found = row.difference
     if not row.is_told:
         return TextCell(tr("no difference is given"), align=CENTRE, size=12, tone="ink2")
-    if not _is_judged(row):
+    if not is_judged(row):
         word = tr("too few strides") if found.judgement is Judgement.TOO_FEW_STRIDES else tr("no published error")
         return TextCell(word, align=CENTRE, size=12, tone="ink2")
     return ErrorStrip(found.difference, found.error, SCALE * found.error, is_judged=True, spoken=judged_in_words(found))
 
 
 def _error(row: Compared) -> str:
-    if not row.is_told or not _is_judged(row):
-        return NOTHING
-    unit = row.measure.unit if row.measure.unit == "°" else ""
-    return fixed(row.difference.error, row.measure.decimals) + unit + (DAGGER if row.difference.is_unverified else "")
+    return error_in_figures(row) + (DAGGER if is_judged(row) and row.difference.is_unverified else "")

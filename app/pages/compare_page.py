@@ -4,32 +4,27 @@ from collections.abc import Sequence
 
 import numpy as np
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QScrollArea, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QVBoxLayout, QWidget
 
 from app.charts.axes import joint_of
 from app.charts.cycles import Band, SideCycle
 from app.icons import Icon
+from app.pages.compared_card import ComparedCard, scrolling
 from app.pages.compared_words import (
     MINUS,
-    change_in_words,
-    comparison_heads,
+    conclusion,
+    days_of,
+    error_in_words,
     part_in_words,
-    plot_row,
     sentence,
     side_sentence,
-    side_table_row,
     side_weight,
-    table_columns,
-    table_rows,
     weight,
-    why_not_told,
     withheld_in_words,
 )
 from app.plots.compared_chart import ComparedChart, ComparedFrame
 from app.plots.cycle_chart import CycleCharts
-from app.plots.difference_plot import DifferenceGroup, DifferencePlot, DifferenceRow, Dot
 from app.reports.comparison import (
-    Compared,
     Comparison,
     Contrast,
     Part,
@@ -37,37 +32,26 @@ from app.reports.comparison import (
     compare_sides,
     first_and_second,
     left_out_of_parts,
-    sources_in_words,
 )
 from app.reports.reference_bands import NOBODY, bands_of, reference_curves, sides_with_band
 from app.reports.visits import ComparedVisits, condition_in_words
 from app.theme import ThemeNotifier
-from app.widgets.card import Card
 from app.widgets.chip import LETTERS
 from app.widgets.chips import Chips
 from app.widgets.choice import Choice
 from app.widgets.icons import IconMark
 from app.widgets.segmented import Segmented
-from app.widgets.table import CellTable
-from app.widgets.text import SEMIBOLD, Text
+from app.widgets.text import Text
 from app.widgets.themed import Themed
 from app.wording import later, tr
 from core.body import Side
 from core.gait.cycles import POINTS
 from core.norms import AgeAndHeight, ReferenceCurves
 from core.results import Analysis
-from core.verdicts.measurement_error import ComparisonKind, Difference
+from core.verdicts.measurement_error import ComparisonKind
 
 CURVES, PLOT, TABLE = "curves", "plot", "table"
-CARD, WIDE_CARD = 312, 460
-WIDEST = 16_777_215  # Qt's own
-BRIEF = ("knee_stance_to_swing_deg", "knee_while_loading_deg", "ankle_push_off_deg", "stance_percent")
-IN_DEGREES = ("°", "%")  # what the axis of the differences can hold
-MOST_SAID = 3  # sentences about differences; the table has all of them
-
-ERROR = later("Grey: measurement error. It holds {sources}.")
-BORROWED = later("For the ankle the knee's figure is borrowed.")
-UNVERIFIED = later("\N{DAGGER} rests on a figure whose source could not be verified.")
+MOST_WITH_STRIDES = 3  # visits whose strides are counted beside their day
 OTHER_ZERO = later("No common zero: range and shape hold, height does not. 0° is the mean of the stride.")
 NO_COMMON_CONDITION = later(
     "This visit has no condition in common with an earlier one, so they are not compared. {walked} “Any visits and "
@@ -104,7 +88,7 @@ class ComparePage(Themed):
         self._analysis: Analysis | None = None
         self._who = NOBODY
         self._has_visits = self._is_simulated = self._is_compact = self._is_spacious = False
-        self._is_reading = False
+        self._has_view, self._is_reading = True, False
         self.comparison: Comparison | None = None
         self.side_rows: tuple[SideRow, ...] = ()
         self.kinds = Choice(look, tr("Compare"))
@@ -120,12 +104,10 @@ class ComparePage(Themed):
                 chart = ComparedChart(look, is_knee=is_knee)
                 self.frames[side, is_knee] = ComparedFrame(look, chart, side, is_knee)
         self.side_charts = CycleCharts(look, reference_curves())
-        self.title = Text(look, size=16, weight=SEMIBOLD)
-        self.error = Text(look, size=12, tone="ink2", wraps=True)
-        self.plot = DifferencePlot(look)
-        self.table = CellTable(look, tr("Differences"))
         self._mark = IconMark(look, Icon.WARNING, size=20)
         self.conclusion = Text(look, size=14, wraps=True)
+        self.error = Text(look, size=12, tone="ink2", wraps=True)
+        self.card = ComparedCard(look)
         self._build()
         self._connect()
         self._on_look_changed()
@@ -182,17 +164,21 @@ class ComparePage(Themed):
             frame.chart.redraw()
         self.side_charts.set_band_shown(is_shown)
 
-    def set_room(self, is_compact: bool, is_spacious: bool, has_two_charts: bool) -> None:
-        """Make curves and differences views of their own where room is short; where there is plenty all stand there."""
+    def set_room(self, is_compact: bool, is_spacious: bool, has_two_charts: bool, *, has_view: bool) -> None:
+        """Make curves and differences views of their own where room is short; where there is plenty all stand there.
+
+        Without `has_view` the page around places the choice of views.
+        """
         was_compact, was_spacious = self._is_compact, self._is_spacious
-        self._is_compact, self._is_spacious = is_compact, is_spacious
+        self._is_compact, self._is_spacious, self._has_view = is_compact, is_spacious, has_view
         self.view.set_offered(CURVES, is_compact)
         self.side_charts.set_side_by_side(is_compact and has_two_charts)
         self.side_charts.set_brief(is_compact)
         if is_compact != was_compact:
             self.view.choose(CURVES if is_compact else PLOT)
-        if is_spacious != was_spacious:
-            self._show()  # with more rows
+        self.card.set_room(is_compact, is_spacious)
+        if (is_compact, is_spacious) != (was_compact, was_spacious):
+            self._show()  # with more rows and columns
         self._show_parts()
 
     @property
@@ -207,7 +193,8 @@ class ComparePage(Themed):
 
     @property
     def tab_order(self) -> list[QWidget]:
-        return [self.kinds, self.bases, *self.view.segments, *self.chips.buttons, self.table]
+        card = self.card
+        return [self.kinds, self.bases, *self.view.segments, *self.chips.buttons, card.all_measures, card.table]
 
     # how it is laid out
 
@@ -220,36 +207,22 @@ class ComparePage(Themed):
         self._charts = QWidget()
         self._left = QVBoxLayout(self._charts)
         self._left.setContentsMargins(0, 0, 0, 0)
-        self._left.addWidget(self._grid_room, 1)
+        self._curves = scrolling(self._grid_room)
+        self._left.addWidget(self._curves, 1)
         self._left.addWidget(self.side_charts, 1)
         self._left.addWidget(self.chips)
-        self._card = Card(self._look)
-        self._card.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
-        inside = QWidget()
-        column = QVBoxLayout(inside)
-        column.setContentsMargins(0, 0, 0, 0)
-        words = QHBoxLayout()
-        words.addWidget(self._mark, 0, Qt.AlignmentFlag.AlignTop)
-        words.addWidget(self.conclusion, 1)
-        for widget in (self.title, self.error, self.plot, self.table):
-            column.addWidget(widget)
-        column.addLayout(words)
-        column.addStretch(1)
-        self._column = column
-        self._scroll = QScrollArea()
-        self._scroll.setWidgetResizable(True)
-        self._scroll.setFrameShape(QFrame.Shape.NoFrame)
-        self._scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        self._scroll.setWidget(inside)
-        self._card.column.addWidget(self._scroll, 1)
-        self._right = QWidget()
-        right = QVBoxLayout(self._right)
-        right.setContentsMargins(0, 0, 0, 0)
-        self._right_column = right
-        right.addWidget(self._card, 1)
+        self._words = QWidget()
+        self._head = QHBoxLayout(self._words)
+        self._head.setContentsMargins(0, 0, 0, 0)
+        self._told = QVBoxLayout()
+        self._told.addWidget(self.conclusion)
+        self._told.addWidget(self.error)
+        self._told.addStretch(1)
+        self._head.addWidget(self._mark, 0, Qt.AlignmentFlag.AlignTop)
+        self._head.addLayout(self._told, 1)
         self._columns = QHBoxLayout()
         self._columns.addWidget(self._charts, 1)
-        self._columns.addWidget(self._right)
+        self._columns.addWidget(self.card)
         self._page = QVBoxLayout(self)
         self._page.setContentsMargins(0, 0, 0, 0)
         self._page.addWidget(self.nothing)
@@ -260,41 +233,38 @@ class ComparePage(Themed):
         self.bases.currentIndexChanged.connect(self._show)
         self.view.chosen.connect(self._show_parts)
 
-    def _place_view(self) -> None:
-        """Put the choice of views over the card where the curves stay in sight; else the page around places it."""
-        if not self._is_compact:
-            self._right_column.insertWidget(0, self.view)
+    def _place_words(self) -> None:
+        """Put what is said over all of the page, or, where that is low, into the card, which scrolls."""
+        if self._is_compact:
+            self.card.begin_with(self._words)
+        else:
+            self._page.insertWidget(1, self._words)
+        if self._has_view and self._is_compact:
+            self._page.insertWidget(1, self.view, 0, Qt.AlignmentFlag.AlignLeft)
+        elif self._has_view:
+            self._head.addWidget(self.view, 0, Qt.AlignmentFlag.AlignTop)
 
     def _show_parts(self) -> None:
-        self._place_view()
+        self._place_words()
         view, has_any = self.view.choice, not self.nothing.text()
         is_alone = self._is_compact or (view == TABLE and not self._is_spacious)  # the table takes all the width
+        has_both = self._is_spacious and self.kind is not Contrast.VISITS  # the table of visits draws them itself
         has_curves = has_any and (not is_alone or view == CURVES)
+        has_card = has_any and (not self._is_compact or view != CURVES)
         self.nothing.setVisible(not has_any)
         self._charts.setVisible(has_curves)
-        self._right.setVisible(has_any and (not self._is_compact or view != CURVES))
-        self.view.setVisible(has_any and not self._is_spacious)
-        self.plot.setVisible(view != TABLE or self._is_spacious)
-        self.table.setVisible(view == TABLE or self._is_spacious)
+        for widget in (self._words, self.card):
+            widget.setVisible(has_card)
+        self.view.setVisible(has_any and not has_both)
         is_sides = self.kind is Contrast.SIDES
-        self._grid_room.setVisible(not is_sides)
+        self._curves.setVisible(not is_sides)
         self.side_charts.setVisible(is_sides)
         self.chips.setVisible(not is_sides)
-        self._fit_card()
-
-    def _fit_card(self) -> None:
-        """Give the card what its plot or table needs, but leave the curves the larger part."""
-        px = self._look.theme.px
-        is_alone = self._charts.isHidden()
-        shown = [widget for widget in (self.plot, self.table) if not widget.isHidden()]
-        needed = max(
-            [
-                px(WIDE_CARD if self._is_spacious else CARD),
-                *(widget.minimumWidth() + px(2 * 16 + 14) for widget in shown),
-            ]
+        self.card.show_parts(
+            has_plot=view != TABLE or has_both,
+            has_table=view == TABLE or has_both,
+            is_alone=self._charts.isHidden(),
         )
-        self._right.setMinimumWidth(0 if is_alone else needed)
-        self._right.setMaximumWidth(WIDEST if is_alone else needed)
 
     # what is compared
 
@@ -331,9 +301,7 @@ class ComparePage(Themed):
         return self._every if self.kind is Contrast.CHOSEN else self._conditions
 
     def _make_chips(self, parts: Sequence[Part]) -> None:
-        chips = Chips(
-            self._look, tr("What is compared"), [(part.letter, part_in_words(part)) for part in parts] or [("", " ")]
-        )
+        chips = Chips(self._look, tr("What is compared"), self._words_of(parts) or [("", " ")])
         ends = [*parts[:1], *parts[-1:]]  # of many, the oldest and the latest to begin with
         chips.choose([part.letter for part in (ends if self.kind is Contrast.CHOSEN else parts)])
         chips.turned.connect(self._on_turned)
@@ -341,6 +309,16 @@ class ComparePage(Themed):
         self.chips.hide()
         self.chips.deleteLater()
         self.chips = chips
+
+    def _words_of(self, parts: Sequence[Part]) -> list[tuple[str, str]]:
+        """Visits by their day; of many without their strides, so that the curves keep their room."""
+        if self.kind is not Contrast.VISITS:
+            return [(part.letter, part_in_words(part, part.name)) for part in parts]
+        is_few = len(parts) <= MOST_WITH_STRIDES
+        return [
+            (part.letter, part_in_words(part, day) if is_few else f"{part.letter} {day}")
+            for part, day in zip(parts, days_of(parts), strict=True)
+        ]
 
     def _offer_bases(self, parts: Sequence[Part]) -> None:
         pattern = tr("Walk: {letter}") if self.kind is Contrast.SIDES else tr("Starting point: {letter}")
@@ -398,21 +376,22 @@ class ComparePage(Themed):
             notes += [withheld_in_words(part, joint) for part in worn if not part.is_drawn(joint)]
             frame.show_curves(drawn, " ".join(notes), self._is_simulated, is_about_mean=is_about_mean)
             frame.setVisible(side in found.sides)
-        letter = found.against.letter
         visits = self._of_visits
-        title = tr("Change from {letter}") if visits is None else tr("Change from {letter}, {condition}")
+        pattern = tr("Change from {letter}") if visits is None else tr("Change from {letter}, {condition}")
         condition = "" if visits is None else condition_in_words(visits.condition)
-        self.title.setText(title.format(letter=letter, condition=condition))
-        told = [row.difference for row in found.rows if row.is_told]
+        title = pattern.format(letter=found.against.letter, condition=condition)
+        told = [row for row in found.changes if row.is_told]
         is_borrowed = any(found.error_kind(part) is not ComparisonKind.ATTACHED for part in found.others)
-        self._say_error(told, is_borrowed=is_borrowed and any(not joint.is_knee for joint in found.joints))
-        worth = sorted((row for row in found.rows if row.is_told and row.difference.is_worth_a_sentence), key=weight)
-        self._say([sentence(row) for row in worth], told, chosen)
-        self.plot.show_groups(self._groups(found), self.title.text(), self.conclusion.text())
-        heads = comparison_heads(found)
-        days = {part.letter: part.name for part in chosen} if self.kind is Contrast.VISITS else {}
-        self.table.show_rows(table_columns(heads, has_sides=True, days=days), table_rows(found, heads))
-        self.table.setAccessibleDescription(self.conclusion.text())
+        is_borrowed &= any(not joint.is_knee for joint in found.joints)
+        self.error.setText(error_in_words([row.difference for row in told], is_borrowed=is_borrowed))
+        worth = [sentence(row) for row in sorted(told, key=weight) if row.difference.is_worth_a_sentence]
+        latest = found.latest if self.kind is Contrast.VISITS else None
+        said = conclusion(worth, [row.difference for row in told], latest) if found.others else []
+        if visits is not None and visits.without:
+            without = tr("Not compared, for want of a walk of this condition: {visits}.")
+            said.append(without.format(visits=", ".join(visits.without)))
+        self._say(said, chosen, is_marked=bool(worth))
+        self.card.show_comparison(found, title, self.conclusion.text())
 
     def _show_sides(self) -> None:
         parts = [part for part in self._conditions if part.letter == self.bases.currentData()] or [self._conditions[-1]]
@@ -427,46 +406,14 @@ class ComparePage(Themed):
         self.side_charts.set_band(curves if sides else None)
         verdicts = {joint: part.verdicts.joint(joint) for joint in part.joints}
         self.side_charts.show_cycles(cycles, verdicts, self._is_simulated)
-        one, other = LETTERS[first], LETTERS[second]
-        self.title.setText(f"{self._affected_words}: {one} {MINUS} {other}")
-        told = [row.difference for row in self.side_rows if row.is_told]
-        self._say_error(told, is_borrowed=any(not joint.is_knee for joint in part.joints))
-        worth = [row for row in self.side_rows if row.is_told and row.difference.is_worth_a_sentence]
-        self._say([side_sentence(row, first, second) for row in sorted(worth, key=side_weight)], told, parts[:1])
-        groups = [
-            DifferenceGroup(
-                tr(row.measure.name),
-                (
-                    DifferenceRow(
-                        None,
-                        change_in_words(row.difference.difference, row.measure) if row.is_told else why_not_told(row),
-                        (Dot(one, row.difference.difference, row.exceeds),) if row.is_told else (),
-                        row.difference.error,
-                    ),
-                ),
-            )
-            for row in self.side_rows
-            if self._is_drawn(row)
-        ]
-        self.plot.show_groups(groups, self.title.text(), self.conclusion.text())
-        heads = [one, other, f"{one} {MINUS} {other}", tr("error"), tr("symmetry, %")]
-        rows = [side_table_row(row, heads) for row in self.side_rows]
-        self.table.show_rows(table_columns(heads, has_sides=False), rows)
-        self.table.setAccessibleDescription(self.conclusion.text())
-
-    def _groups(self, found: Comparison) -> list[DifferenceGroup]:
-        groups: dict[str, dict[Side, list[Compared]]] = {}
-        for row in found.rows:
-            if self._is_drawn(row):
-                groups.setdefault(tr(row.measure.name), {}).setdefault(row.side, []).append(row)
-        return [
-            DifferenceGroup(title, tuple(plot_row(side, rows) for side, rows in sides.items()))
-            for title, sides in groups.items()
-        ]
-
-    def _is_drawn(self, row: Compared | SideRow) -> bool:
-        """Whether a row has a place among the differences that are drawn; the table has all."""
-        return row.measure.unit in IN_DEGREES and (self._is_spacious or row.measure.column in BRIEF)
+        told = [row for row in self.side_rows if row.is_told]
+        differences = [row.difference for row in told]
+        self.error.setText(error_in_words(differences, is_borrowed=any(not joint.is_knee for joint in part.joints)))
+        worth = [row for row in sorted(told, key=side_weight) if row.difference.is_worth_a_sentence]
+        said = conclusion([side_sentence(row, first, second) for row in worth], differences)
+        self._say(said, parts[:1], is_marked=bool(worth))
+        title = f"{self._affected_words}: {LETTERS[first]} {MINUS} {LETTERS[second]}"
+        self.card.show_sides(self.side_rows, first, second, title, self.conclusion.text())
 
     def _band(self, part: Part) -> tuple[ReferenceCurves | None, frozenset[Side]]:
         """The curves that a part may stand beside, and which of its legs."""
@@ -475,39 +422,15 @@ class ComparePage(Themed):
         walk = part.walks[-1]
         return bands_of(walk, self._who).curves, sides_with_band(walk)
 
-    def _say_error(self, told: Sequence[Difference], *, is_borrowed: bool) -> None:
-        """What the error contains, and what of it is not to be relied on."""
-        judged = [found for found in told if found.error > 0]
-        said = [tr(ERROR).format(sources=sources_in_words(judged))] if judged else []
-        said += [tr(BORROWED)] if judged and is_borrowed else []
-        said += [tr(UNVERIFIED)] if any(found.is_unverified for found in judged) else []
-        self.error.setText(" ".join(said))
-
-    def _say(self, worth: Sequence[str], told: Sequence[Difference], parts: Sequence[Part]) -> None:
-        """The differences that are worth a sentence; without one, whether any exceeds its error."""
-        said = list(worth[:MOST_SAID])
-        if len(worth) > MOST_SAID:
-            said.append(tr("The table has all of them."))
-        elif not worth and any(found.exceeds for found in told):
-            said.append(
-                tr("No difference is so much larger than its error that it is said here; the table marks them.")
-            )
-        elif not worth and any(found.error > 0 for found in told):
-            said.append(tr("No difference is larger than its error."))
-        elif (not worth and self.comparison is None) or (self.comparison is not None and self.comparison.others):
-            said += [] if worth else [tr("No difference could be judged.")]
-        if self.comparison is not None and self._of_visits is not None and self._of_visits.without:
-            without = tr("Not compared, for want of a walk of this condition: {visits}.")
-            said.append(without.format(visits=", ".join(self._of_visits.without)))
-        if by_hand := left_out_of_parts(parts):
-            said.append(by_hand)
-        self.conclusion.setText("\n".join(said))
-        self._mark.setVisible(bool(worth))
+    def _say(self, said: Sequence[str], parts: Sequence[Part], *, is_marked: bool) -> None:
+        by_hand = left_out_of_parts(parts)
+        self.conclusion.setText(" ".join([*said, by_hand] if by_hand else said))
+        self._mark.setVisible(is_marked)
 
     def _on_look_changed(self) -> None:
         px = self._look.theme.px
-        for layout in (self._page, self._columns, self._left, self._right_column):
+        for layout in (self._page, self._columns, self._left, self._head):
             layout.setSpacing(px(12))
         self._grid.setSpacing(px(12))
-        self._column.setSpacing(px(8))
-        self._fit_card()
+        self._told.setSpacing(px(4))
+        self.card.fit(is_alone=self._charts.isHidden())

@@ -1,39 +1,39 @@
-"""How does a comparison stand on the screen? Its rows, its dots, and a sentence for what lies beyond the error."""
+"""How is a comparison told? Its parts, its figures, a sentence for what lies beyond the error, and what that holds."""
 
-import math
-from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Sequence
 
-from app.charts.cycles import is_mean_enough, is_spread_enough
+from app.dates import day_in_words
 from app.gates_in_words import verdict_word
-from app.icons import Icon
-from app.plots.difference_plot import DifferenceRow, Dot
-from app.reports.comparison import Compared, Comparison, Measure, Part, Reservation, SideRow
-from app.reports.patient_report.numbers_in_words import fixed, signed
+from app.reports.comparison import Compared, Measure, Part, Reservation, SideRow, sources_in_words
+from app.reports.patient_report.numbers_in_words import DAGGER, NOTHING, fixed, signed
 from app.reports.walk_figures import reason_in_words
 from app.widgets.chip import LETTERS
-from app.widgets.figures_table import CARE_MARK, FIGURE
-from app.widgets.table import TableColumn, TableRow
-from app.widgets.table_cells import EMPTY, RIGHT, TextCell
-from app.widgets.text import REGULAR, SEMIBOLD
-from app.wording import capitalised, side_name, tr
+from app.wording import capitalised, later, side_name, tr
 from core.body import Joint, Side
-from core.gait.spatiotemporal import MeanAndSd
 from core.verdicts.measurement_error import Difference, Judgement
 from core.verdicts.model import Verdict
 
 MINUS = "\N{MINUS SIGN}"
 LONGEST_LETTER = 4  # of parts: "C", "12", "12A"
-DASH = "\N{EN DASH}"
-DAGGER = "\N{DAGGER}"
-NO_DAYS: Mapping[str, str] = {}
-WALK_FIRST = {"speed_m_s": 0, "cadence_steps_min": 1, "stride_length_m": 2}  # the rows of a table
+BRIEF = ("knee_stance_to_swing_deg", "knee_while_loading_deg", "ankle_push_off_deg", "stance_percent")
+JUDGED = (Judgement.EXCEEDS_ERROR, Judgement.INSIDE_ERROR)
+MOST_SAID = 3  # sentences about differences; the table has all of them
+
+ERROR = later("Grey: measurement error. It holds {sources}.")
+BORROWED = later("For the ankle the knee's figure is borrowed.")
+UNVERIFIED = later("\N{DAGGER} rests on a figure whose source could not be verified.")
 
 
-def part_in_words(part: Part) -> str:
+def part_in_words(part: Part, name: str) -> str:
     """A part's letter and name, and how many strides it has of each leg."""
     strides = ", ".join(f"{LETTERS[side]} {part.strides(side)}" for side in part.sides)
-    return f"{part.letter} {part.name} · {strides}" if strides else f"{part.letter} {part.name}"
+    return f"{part.letter} {name} · {strides}" if strides else f"{part.letter} {name}"
+
+
+def days_of(parts: Sequence[Part]) -> list[str]:
+    """The day of each visit, or its name where the day is not known."""
+    days = [part.day for part in parts if part.day is not None]
+    return [part.name if part.day is None else day_in_words(part.day, days) for part in parts]
 
 
 def change_in_words(value: float, measure: Measure) -> str:
@@ -41,46 +41,28 @@ def change_in_words(value: float, measure: Measure) -> str:
     return signed(value, measure.decimals) + (measure.unit if measure.unit == "°" else "")
 
 
-def plot_row(side: Side, rows: Sequence[Compared]) -> DifferenceRow:
-    """One measure of one leg, a dot for each part."""
-    told = [row for row in rows if row.is_told]
-    dots = tuple(Dot(row.part.letter, row.difference.difference, row.exceeds) for row in told)
-    if not told:
-        return DifferenceRow(side, why_not_told(rows[-1]), (), math.nan)
-    last = told[-1]
-    words = f"{last.part.letter} {change_in_words(last.difference.difference, last.measure)}"
-    return DifferenceRow(side, words, dots, last.difference.error)
+def unit_behind(measure: Measure) -> str:
+    """As it stands behind a figure; a share of the stride is named before it, since "3 % more" means another thing."""
+    if measure.unit == "%":
+        return ""
+    return measure.unit if measure.unit == "°" else f"\N{NO-BREAK SPACE}{measure.unit}"
 
 
-def comparison_heads(found: Comparison) -> list[str]:
-    """What stands over the values of all parts, their differences, and the error of the last of these."""
-    others = [part.letter for part in found.others]
-    changes = [f"{letter} {MINUS} {found.against.letter}" for letter in others]
-    error = tr("error") if len(others) < 2 else tr("error of {letter}").format(letter=others[-1])
-    return [*(part.letter for part in found.parts), *changes, error]
+def is_judged(row: Compared | SideRow) -> bool:
+    """Whether it is known to be larger than its error or inside it."""
+    return row.is_told and row.difference.judgement in JUDGED
 
 
-def table_columns(heads: Sequence[str], *, has_sides: bool, days: Mapping[str, str] = NO_DAYS) -> list[TableColumn]:
-    """The legs where rows are of one of them, the names, and `heads` over values, differences and errors.
-
-    `days`: which day a head stands for.
-    """
-    columns = [TableColumn(TextCell(head, days.get(head, ""), align=RIGHT, size=12, tone="ink2")) for head in heads]
-    return [TableColumn(is_hidden=not has_sides), TableColumn(share=1), *columns]
+def error_in_figures(row: Compared | SideRow) -> str:
+    """What a difference must exceed, as in a table, whose names have the units; a dash where none was judged."""
+    degree = "°" if row.measure.unit == "°" else ""  # as its difference
+    return fixed(row.difference.error, row.measure.decimals) + degree if is_judged(row) else NOTHING
 
 
-def table_rows(found: Comparison, heads: Sequence[str]) -> list[TableRow]:
-    """Every measure of each leg: the values of all parts, their differences, and the error of the last of these."""
-    rows: dict[tuple[str, Side], list[Compared]] = {}
-    for row in sorted(found.rows, key=lambda row: WALK_FIRST.get(row.measure.column, len(WALK_FIRST))):
-        rows.setdefault((row.measure.column, row.side), []).append(row)
-    lines = []
-    for (_, side), compared in rows.items():
-        measure = compared[0].measure
-        values = [value_cell(*part.figure(measure, side), measure.decimals) for part in found.parts]
-        changes = [*(_changed(row, found.against) for row in compared), _error_cell(compared[-1])]
-        lines.append(_table_row(tr(measure.name), None if measure.is_of_walk else side, heads, (*values, *changes)))
-    return lines
+def error_in_sentence(row: Compared | SideRow) -> str:
+    """The same with its unit, and a mark where it rests on what could not be verified."""
+    figures = fixed(row.difference.error, row.measure.decimals) + unit_behind(row.measure)
+    return figures + (DAGGER if row.difference.is_unverified else "")
 
 
 def why_not_told(row: Compared | SideRow) -> str:
@@ -96,73 +78,6 @@ def withheld_in_words(part: Part, joint: Joint) -> str:
     """Why a part's curve is not drawn."""
     pattern = tr("{letter}: withheld. {reason}")
     return pattern.format(letter=part.letter, reason=reason_in_words(part.verdicts.joint(joint)))
-
-
-def side_table_row(row: SideRow, heads: Sequence[str]) -> TableRow:
-    """One measure of both legs, their difference with its error, and symmetry."""
-    symmetry = f"{row.symmetry_percent:+.1f}".replace("-", MINUS) if math.isfinite(row.symmetry_percent) else DASH
-    each = zip((row.first, row.second), row.verdicts, strict=True)
-    values = [value_cell(value, verdict, row.measure.decimals) for value, verdict in each]
-    return _table_row(tr(row.measure.name), None, heads, (*values, _changed(row), _error_cell(row), _figure(symmetry)))
-
-
-def _table_row(name: str, side: Side | None, heads: Sequence[str], cells: Sequence[TextCell]) -> TableRow:
-    """A row whose cells say which leg, measure and part they are of, for who hears one cell at a time."""
-    chip = EMPTY if side is None else TextCell(side=side, spoken=side_name(side))
-    who = name if side is None else f"{LETTERS[side]} {name}"
-    said = (replace(cell, spoken=f"{who}, {head}: {cell.words}") for head, cell in zip(heads, cells, strict=True))
-    return TableRow((chip, TextCell(name), *said))
-
-
-def _figure(value: str, small: str = "", *, is_marked: bool = False, is_grey: bool = False) -> TextCell:
-    """A value and what stands smaller behind it; marked: beyond the error; grey: not to be relied on."""
-    return TextCell(
-        value,
-        small,
-        align=RIGHT,
-        size=FIGURE,
-        weight=SEMIBOLD if is_marked else REGULAR,
-        tone="ink3" if is_grey else "ink",
-        mark=Icon.WARNING if is_marked else None,
-    )
-
-
-def value_cell(value: MeanAndSd, verdict: Verdict, decimals: int) -> TextCell:
-    """A mean with its spread, grey from few strides; where it may not be told, that alone."""
-    if verdict is Verdict.WITHHELD:
-        return TextCell(small=verdict_word(verdict), align=RIGHT, mark=Icon.WITHHELD)
-    if not value.n:
-        return _figure(DASH, is_grey=True)
-    spread = f"± {fixed(value.sd, decimals)}" if is_spread_enough(value.n) else ""
-    spread = f"{spread} {CARE_MARK}".lstrip() if verdict is Verdict.CARE else spread
-    return _figure(fixed(value.mean, decimals), spread, is_grey=not is_mean_enough(value.n))
-
-
-def _changed(row: Compared | SideRow, against: Part | None = None) -> TextCell:
-    """A difference; where it is not told against the part that the others are, that is said beside it."""
-    if not row.is_told:
-        return _figure(DASH, is_grey=True)  # the values beside it say why
-    words = change_in_words(row.difference.difference, row.measure)
-    doubt = _doubt(row.difference)
-    if against is not None and isinstance(row, Compared) and row.against is not against:
-        doubt = " ".join(filter(None, [tr("from {letter}").format(letter=row.against.letter), doubt]))
-    return _figure(words, doubt, is_marked=row.exceeds)
-
-
-def _error_cell(row: Compared | SideRow) -> TextCell:
-    """What a difference must exceed; nothing where none was judged."""
-    is_judged = row.is_told and row.difference.error > 0
-    degree = "°" if row.measure.unit == "°" else ""  # as its difference: other units are in the measure's name
-    words = fixed(row.difference.error, row.measure.decimals) + degree
-    return replace(_figure(words if is_judged else DASH), tone="ink2")
-
-
-def _doubt(found: Difference) -> str:
-    if found.judgement is Judgement.TOO_FEW_STRIDES:
-        return tr("few strides")
-    if found.judgement is Judgement.NO_PUBLISHED_FIGURE:
-        return tr("not judged")
-    return DAGGER if found.is_unverified else ""
 
 
 def weight(row: Compared) -> tuple[list[int], float]:
@@ -186,7 +101,7 @@ def sentence(row: Compared) -> str:
         change=change_in_words(row.difference.difference, row.measure),
         first=row.against.letter,
         last=row.part.letter,
-        error=_error(row.difference.error, row.measure),
+        error=error_in_sentence(row),
     )
 
 
@@ -198,11 +113,45 @@ def side_sentence(row: SideRow, first: Side, second: Side) -> str:
         change=change_in_words(row.difference.difference, row.measure),
         first=LETTERS[first],
         second=LETTERS[second],
-        error=_error(row.difference.error, row.measure),
+        error=error_in_sentence(row),
     )
 
 
-def _error(value: float, measure: Measure) -> str:
-    return fixed(value, measure.decimals) + (
-        measure.unit if measure.unit == "°" else f"\N{NO-BREAK SPACE}{measure.unit}"
-    )
+def conclusion(worth: Sequence[str], told: Sequence[Difference], latest: Part | None = None) -> list[str]:
+    """The sentences that are worth it; without one, whether any difference exceeds its error.
+
+    Parameters
+    ----------
+    told
+        The differences that the table shows; of no others anything is said.
+    latest
+        The visit that all of them lead to; None: they are those of any parts.
+    """
+    if len(worth) > MOST_SAID:
+        return [*worth[:MOST_SAID], tr("The table has all of them.")]
+    if worth:
+        return list(worth)
+    if any(found.exceeds for found in told):
+        none = tr("No difference is so much larger than its error that it is said here; the table marks them.")
+        of_visit = tr(
+            "No change to visit {visit} is so much larger than its error that it is said here; the table marks those "
+            "that are larger."
+        )
+    elif any(found.error > 0 for found in told):
+        none = tr("No difference is larger than its error.")
+        of_visit = tr("No change to visit {visit} is larger than its error.")
+    else:
+        none = tr("No difference could be judged.")
+        of_visit = tr("No change to visit {visit} could be judged.")
+    return [none if latest is None else of_visit.format(visit=latest.letter)]
+
+
+def error_in_words(told: Sequence[Difference], *, is_borrowed: bool) -> str:
+    """What the error contains, and what of it is not to be relied on."""
+    judged = [found for found in told if found.error > 0]
+    if not judged:
+        return ""
+    said = [tr(ERROR).format(sources=sources_in_words(judged))]
+    said += [tr(BORROWED)] if is_borrowed else []
+    said += [tr(UNVERIFIED)] if any(found.is_unverified for found in judged) else []
+    return " ".join(said)

@@ -355,7 +355,8 @@ class ResultPage(Themed):
             self._controls.addWidget(self.methods, 0, 3)
             self._foot.addWidget(self._notes, 0, 0)
             self._foot.addWidget(self.whole, 0, 1)
-        self.compare.set_room(self._room.is_compact, self._room.is_spacious, self._room.has_two_charts)
+        room = self._room
+        self.compare.set_room(room.is_compact, room.is_spacious, room.has_two_charts, has_view=not room.is_narrow)
         self.strides.set_charts_beside(self._room.has_strides_beside)
         self.quality.set_room(self._room.is_compact)
         for frame in (self.charts.knee, self.charts.ankle):

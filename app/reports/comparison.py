@@ -6,6 +6,7 @@ Screen, report and files take their figures from here, so that no number is draw
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from datetime import date
 from enum import StrEnum
 from functools import cached_property
 from itertools import accumulate
@@ -137,7 +138,7 @@ class Part:
     """One condition or walk, of this visit or another: its walks, whose strides are taken together.
 
     `attachment` numbers how often the sensors had been strapped on anew before; equal numbers of one visit share it.
-    `visit` numbers the visits of a comparison of several.
+    `visit` numbers the visits of a comparison of several, and `day` is when that visit was, if that is known.
     """
 
     letter: str
@@ -146,6 +147,7 @@ class Part:
     calibrated: Mapping[Joint, JointCalibration]
     attachment: int = 0
     visit: int = 0
+    day: date | None = None
 
     @property
     def sides(self) -> tuple[Side, ...]:
@@ -335,6 +337,19 @@ class Comparison:
     def has_one_zero_throughout(self) -> bool:
         """Whether the heights of all joints can be compared."""
         return all(map(self.has_one_zero, self.joints))
+
+    @property
+    def latest(self) -> Part | None:
+        """The last part but the one told against; None where it stands alone."""
+        return self.others[-1] if self.others else None
+
+    @property
+    def changes(self) -> tuple[Compared, ...]:
+        """What the screen tells: between visits the change to the latest, else the changes of all parts.
+
+        Its sentences and its table speak of these alone, so that no sentence says what the table does not show.
+        """
+        return tuple(row for row in self.rows if self.kind is not Contrast.VISITS or row.part is self.latest)
 
     @cached_property
     def rows(self) -> tuple[Compared, ...]:

@@ -6,14 +6,22 @@ nobody's gait.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from datetime import date
+from typing import NamedTuple
 
 from app.reports.comparison import Part, conditions_of
 from app.wording import tr
 from core.results import Analysis
 from core.samples import Recording
 
-WalkedVisit = tuple[str, Analysis, Sequence[Recording]]
-"""A visit's name, what came of it, and its recordings in order of time, whose conditions count."""
+
+class WalkedVisit(NamedTuple):
+    """A visit's name, what came of it, its recordings in order of time, whose conditions count, and its day."""
+
+    name: str
+    analysis: Analysis
+    recordings: Sequence[Recording]
+    day: date | None = None
 
 
 @dataclass(frozen=True)
@@ -45,17 +53,17 @@ def by_condition(analysis: Analysis, recordings: Sequence[Recording], prefix: st
 def visits_by_condition(visits: Sequence[WalkedVisit]) -> tuple[ComparedVisits, ...]:
     """The conditions of the last visit that an earlier one has as well; visits are lettered 1, 2 and so on."""
     each = [
-        (str(number), name, by_condition(analysis, recordings))
-        for number, (name, analysis, recordings) in enumerate(visits, start=1)
+        (str(number), visit, by_condition(visit.analysis, visit.recordings))
+        for number, visit in enumerate(visits, start=1)
     ]
     found = []
     for condition in each[-1][2] if each else ():
         parts = [
-            replace(walked[condition], letter=letter, name=name, visit=int(letter))
-            for letter, name, walked in each
+            replace(walked[condition], letter=letter, name=visit.name, visit=int(letter), day=visit.day)
+            for letter, visit, walked in each
             if condition in walked
         ]
-        without = tuple(name for _, name, walked in each if condition not in walked)
+        without = tuple(visit.name for _, visit, walked in each if condition not in walked)
         if len(parts) > 1:
             found.append(ComparedVisits(condition, tuple(parts), without))
     return tuple(found)
@@ -64,16 +72,16 @@ def visits_by_condition(visits: Sequence[WalkedVisit]) -> tuple[ComparedVisits, 
 def parts_of_visits(visits: Sequence[WalkedVisit]) -> tuple[Part, ...]:
     """Every condition of every visit, in order of time, to be compared as somebody chooses: 1A, 1B, 2A and so on."""
     return tuple(
-        replace(part, name=f"{name}, {condition_in_words(condition)}", visit=number)
-        for number, (name, analysis, recordings) in enumerate(visits, start=1)
-        for condition, part in by_condition(analysis, recordings, str(number)).items()
+        replace(part, name=f"{visit.name}, {condition_in_words(condition)}", visit=number, day=visit.day)
+        for number, visit in enumerate(visits, start=1)
+        for condition, part in by_condition(visit.analysis, visit.recordings, str(number)).items()
     )
 
 
 def conditions_in_words(visits: Sequence[WalkedVisit]) -> str:
     """Say of each visit that has strides under which conditions it was walked."""
     pattern = tr("{visit}: {conditions}.")
-    walked = [(name, by_condition(analysis, recordings)) for name, analysis, recordings in visits]
+    walked = [(visit.name, by_condition(visit.analysis, visit.recordings)) for visit in visits]
     return " ".join(
         pattern.format(visit=name, conditions=", ".join(map(condition_in_words, found)))
         for name, found in walked

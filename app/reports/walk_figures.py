@@ -27,10 +27,12 @@ from core.verdicts.quantities import assessment_of_both, both_sides, side_mean, 
 class Figure:
     """One row: a figure of each side, or one of both sides together, and the group's mean less and plus 1 SD.
 
-    A side whose figure would say nothing is missing in `sides`, and `unknown` says why; `unknown_both` says it of a
-    figure of both sides. `with_care` are the sides whose figure is to be read with care.
+    `column` is that of strides.csv, or the name in `BothFeet`. A side whose figure would say nothing is missing in
+    `sides`, and `unknown` says why; `unknown_both` says it of a figure of both sides. `with_care` are the sides whose
+    figure is to be read with care.
     """
 
+    column: str
     name: str
     unit: str
     decimals: int
@@ -124,13 +126,16 @@ def peak_figures(recording: RecordingAnalysis, reference: ReferenceCurves | None
         doubts = {side: why for side, joint in joints.items() if (why := doubt_of(recording, joint))}
         figures = []
         for column, name, window in rows:
-            means = {side: side_mean(recording, side, f"{kind}_{column}") for side in joints}
+            of_joint = f"{kind}_{column}"
+            means = {side: side_mean(recording, side, of_joint) for side in joints}
             unknown = {side: doubts[side] for side, mean in means.items() if not mean.assessment.is_told}
             sides = {side: mean.found for side, mean in means.items() if side not in unknown}
             unit, decimals = ("%", 0) if column.endswith("_percent") else ("°", 1)
             band = band_of_peak(reference, kind, column, window) if reference is not None and sides else None
             care = frozenset(side for side, mean in means.items() if mean.assessment.verdict is Verdict.CARE)
-            figures.append(Figure(tr(name), unit, decimals, sides, band=band, unknown=unknown, with_care=care))
+            figures.append(
+                Figure(of_joint, tr(name), unit, decimals, sides, band=band, unknown=unknown, with_care=care)
+            )
         found[kind] = tuple(figures)
     return found
 
@@ -152,7 +157,7 @@ def time_distance_figures(
         care = frozenset(side for side, mean in means.items() if mean.assessment.verdict is Verdict.CARE)
         unknown = dict.fromkeys(withheld, WITHHELD)
         return Figure(
-            label, unit, decimals, told, band=band if is_any and told else None, unknown=unknown, with_care=care
+            name, label, unit, decimals, told, band=band if is_any and told else None, unknown=unknown, with_care=care
         )
 
     def both(
@@ -161,7 +166,8 @@ def time_distance_figures(
         verdict = assessment_of_both(recording.verdicts, name).verdict
         care = frozenset(recording.gait) if verdict is Verdict.CARE else frozenset()
         why = WITHHELD if verdict is Verdict.WITHHELD else ""
-        return Figure(label, unit, decimals, {}, value, band if is_all else None, unknown_both=why, with_care=care)
+        shown = band if is_all else None
+        return Figure(name, label, unit, decimals, {}, value, shown, unknown_both=why, with_care=care)
 
     def band(name: str, factor: float = 1.0) -> tuple[float, float] | None:
         if group is None:

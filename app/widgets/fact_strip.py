@@ -21,8 +21,11 @@ NAME, VALUE, NOTE = 12, 20, 12
 
 @dataclass(frozen=True, slots=True)
 class KeyFigure:
-    """`value` is a dash or a word where it is not known, and then without `unit`; `words` is how it is heard."""
+    """`key` tells it from the others in every language. `value` is a dash or a word where it is not known, and then
+    without `unit`; `words` is how it is heard.
+    """
 
+    key: str
     name: str
     value: str
     unit: str

@@ -99,8 +99,8 @@ class Facts:
 
     @cached_property
     def time_distance(self) -> dict[str, Figure]:
-        """Rows of time and distance by name, without the band where its group walked at another speed."""
-        return {row.name: row for row in time_distance_figures(self.walk, self.values_group, self.sides_with_band)}
+        """Rows of time and distance by column, without the band where its group walked at another speed."""
+        return {row.column: row for row in time_distance_figures(self.walk, self.values_group, self.sides_with_band)}
 
     def strides(self, side: Side) -> int:
         return strides_used(self.gait[side]) if side in self.gait else 0

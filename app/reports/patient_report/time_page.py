@@ -37,6 +37,7 @@ from core.verdicts.measurement_error import Difference
 from core.verdicts.model import Verdict
 
 PLOT_WIDTH, ALONE_WIDTH = 31 * MM, 66 * MM  # of single strides, below the rails or where there are none
+DOUBLE_SUPPORT = "double_support_percent"
 TOLD = ("stride_time_s", "stride_length_m", "step_time_s")  # of these kinds is the table: timing, distance, between
 ROCKERS = ("ankle_heel_rocker_deg", "ankle_rocker_deg", "ankle_push_off_deg")
 
@@ -69,13 +70,13 @@ def time_distance_table(facts: Facts) -> list[Block]:
     ]
     bands = facts.time_distance
     rows: list[Row] = [
-        _both_row(facts, tr("Walking speed"), tr("Walking speed, m/s")),
-        _both_row(facts, tr("Cadence"), tr("Cadence, steps/min")),
+        _both_row(facts, "speed_m_s", tr("Walking speed, m/s")),
+        _both_row(facts, "cadence_steps_min", tr("Cadence, steps/min")),
         _side_row(facts, "stride_time_s", tr("Stride time, s"), 2, None),
-        _side_row(facts, "stride_length_m", tr("Stride length, m"), 2, bands[tr("Stride length")].band),
-        _side_row(facts, "stance_percent", tr("Stance, % of stride"), 1, bands[tr("Stance")].band),
+        _side_row(facts, "stride_length_m", tr("Stride length, m"), 2, bands["stride_length_m"].band),
+        _side_row(facts, "stance_percent", tr("Stance, % of stride"), 1, bands["stance_percent"].band),
         _single_support_row(facts),
-        _both_row(facts, tr("Double support"), tr("Double support, % of stride")),
+        _both_row(facts, DOUBLE_SUPPORT, tr("Double support, % of stride")),
         _side_row(facts, "step_time_s", tr("Step time, s"), 2, None),
         _lift_row(facts),
         _variation_row(facts),
@@ -91,7 +92,7 @@ def time_distance_table(facts: Facts) -> list[Block]:
     said = [band]
     if group is not None or facts.curves_group is not None:
         said.append(tr("Whose bands these are: last page."))
-    if facts.time_distance[tr("Double support")].unknown_both:
+    if facts.time_distance[DOUBLE_SUPPORT].unknown_both:
         said.append(tr("Single and double support need both legs' timing beyond doubt."))
     if len(facts.gait) == len(Side):
         said.append(tr("Bold: larger than the error of a comparison between the legs."))
@@ -104,8 +105,8 @@ def time_distance_table(facts: Facts) -> list[Block]:
     return [table(columns, rows, is_dense=True), note(" ".join(said))]
 
 
-def _both_row(facts: Facts, name: str, label: str) -> list[Cell | str]:
-    figure = facts.time_distance[name]
+def _both_row(facts: Facts, column: str, label: str) -> list[Cell | str]:
+    figure = facts.time_distance[column]
     value, band = math.nan if figure.both is None else figure.both, figure.band
     is_known = math.isfinite(value) and any(is_mean_enough(facts.strides(side)) for side in facts.gait)
     is_grey = not any(is_spread_enough(facts.strides(side)) for side in facts.gait)
@@ -162,7 +163,7 @@ def _single_support_row(facts: Facts) -> list[Cell | str]:
 
     As with double support, both legs' timing has to be beyond doubt.
     """
-    is_withheld = bool(facts.time_distance[tr("Double support")].unknown_both)
+    is_withheld = bool(facts.time_distance[DOUBLE_SUPPORT].unknown_both)
     cells: list[Cell | str] = []
     for other in (Side.RIGHT, Side.LEFT):
         value = facts.value(other, "swing_percent")

@@ -97,5 +97,4 @@ def _band(facts: Facts, column: str) -> Band | None:
 
 
 def _band_of_time(facts: Facts, column: str) -> Band | None:
-    names = {"stance_percent": tr("Stance"), "stride_length_m": tr("Stride length")}
-    return facts.time_distance[names[column]].band if column in names else None
+    return facts.time_distance[column].band if column in ("stance_percent", "stride_length_m") else None

@@ -256,8 +256,8 @@ def _beyond_band(facts: Facts, bands: tuple[str, str]) -> Iterator[Candidate]:
             band=band_in_figures((band[0] + offset, band[1] + offset), 1),
         )
         yield Candidate(Rank.SHAPE, abs(away) / MAX_AWAY_SD, (_topic(side, column, away > 0),), said)
-    for name, column in ((tr("Stance"), "stance_percent"), (tr("Stride length"), "stride_length_m")):
-        figure = facts.time_distance[name]
+    for column in ("stance_percent", "stride_length_m"):
+        figure = facts.time_distance[column]
         for side in facts.sides_with_band.intersection(figure.sides):
             value = facts.value(side, column)
             if figure.band is None or not math.isfinite(value.mean):

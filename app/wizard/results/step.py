@@ -12,7 +12,8 @@ from PySide6.QtWidgets import QWidget
 from app.icons import Icon
 from app.pages.correct_page import CorrectPage, JointLine, WalkLine
 from app.pages.sentence_page import SentencePage
-from app.reports.visits import conditions_in_words, parts_of_visits, visits_by_condition
+from app.reports.patient_report.dates import date_of
+from app.reports.visits import WalkedVisit, conditions_in_words, parts_of_visits, visits_by_condition
 from app.theme import ThemeNotifier
 from app.widgets.action_bar import BarAction, BarState
 from app.widgets.page_stack import PageStack
@@ -347,7 +348,10 @@ class ResultsStep(Step):
         if self._shown is None or self._frame is None or session is None:
             return
         visits = [*found, (session, self._shown)]
-        named = [(told.started[:10], analysis, told.recordings) for told, analysis in visits]
+        named = [
+            WalkedVisit(told.started[:10], analysis, told.recordings, date_of(told.started))
+            for told, analysis in visits
+        ]
         self.page.results().show_visits(visits_by_condition(named), conditions_in_words(named), parts_of_visits(named))
 
     def _is_in_sight(self) -> bool:

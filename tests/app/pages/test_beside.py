@@ -8,7 +8,7 @@ import pytest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.pages.beside_words import answer_beside
+from app.pages.beside_words import answer_beside, key_figures_beside
 from app.pages.result_page import STRIDES, Beside, ResultPage
 from app.reports.beside import beside_last_visit, beside_walk, changes_on_curves, walks_alone
 from app.reports.comparison import Comparison
@@ -124,6 +124,15 @@ def test_the_table_and_the_key_figures_tell_the_change_with_its_verdict(
     assert "error" not in told.note
 
 
+def test_a_key_figure_is_told_from_the_others_in_every_language(page: ResultPage, analysis: Analysis) -> None:
+    alone = walks_alone(analysis, ())
+    found = beside_walk(alone["walk 1"], alone["walk 2"], is_simulated=True)
+    told = key_figures_beside(page.key_figures.figures, found)
+    same_name = key_figures_beside([replace(one, name="?") for one in page.key_figures.figures], found)
+    assert [one.note for one in same_name] == [one.note for one in told]
+    assert len({one.note for one in told}) == len(told) == 3
+
+
 def test_the_marks_are_those_of_the_change(page: ResultPage, analysis: Analysis, session: Session) -> None:
     choose(page, "walk 2")
     alone = walks_alone(analysis, session.recordings)
@@ -155,7 +164,10 @@ def test_without_a_common_zero_shapes_are_laid_over_one_another_and_that_is_said
 ) -> None:
     choose(page, Beside.LAST_VISIT)
     other = recalibrated(analysis, [Joint.LEFT_KNEE], zero=ZeroKind.GONIOMETER)
-    give_visits(page, [("2026-06-20", other, session.recordings), ("2026-11-14", analysis, session.recordings)])
+    give_visits(
+        page,
+        [WalkedVisit("2026-06-20", other, session.recordings), WalkedVisit("2026-11-14", analysis, session.recordings)],
+    )
     knee, ankle = words_beside(page)
     assert knee == "Thin: 2026-06-20. No common zero: range and shape hold, height does not."
     assert ankle == "Thin: 2026-06-20."
@@ -175,9 +187,9 @@ def test_the_last_visit_is_asked_for_once_and_judged_as_between_visits(
         choose(page, Beside.LAST_VISIT)
     older = with_conditions(session, walk_1="AFO", walk_2="shoes")
     visits = [
-        ("2026-05-01", analysis, session.recordings),
-        ("2026-06-20", analysis, older.recordings),
-        ("2026-11-14", analysis, session.recordings),
+        WalkedVisit("2026-05-01", analysis, session.recordings),
+        WalkedVisit("2026-06-20", analysis, older.recordings),
+        WalkedVisit("2026-11-14", analysis, session.recordings),
     ]
     give_visits(page, visits)
     assert words_beside(page) == ["Thin: 2026-06-20."] * 2
@@ -193,7 +205,9 @@ def test_a_condition_that_no_earlier_visit_has_stands_beside_nothing(
 ) -> None:
     choose(page, Beside.LAST_VISIT)
     older = with_conditions(session, walk_1="stick", walk_2="AFO")
-    give_visits(page, [("June", analysis, older.recordings), ("July", analysis, session.recordings)])
+    give_visits(
+        page, [WalkedVisit("June", analysis, older.recordings), WalkedVisit("July", analysis, session.recordings)]
+    )
     assert words_beside(page) == ["No earlier visit was walked in this condition."] * 2
     assert page.cycles.charts.knee.chart.described.beside == ()
     page.recordings.setCurrentText("walk 2")
