@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 
 import pytest
+from PySide6.QtCore import QEvent
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
@@ -37,6 +38,8 @@ def look(qapp: QApplication) -> Iterator[ThemeNotifier]:
     look = ThemeNotifier()
     look.set_dark(False)
     yield look
+    # what the test closed is gone first: a scene that Python let go of must not be told of a change
+    qapp.sendPostedEvents(None, QEvent.Type.DeferredDelete)
     look.set_scale(1.0)
     qapp.setStyleSheet("")
 
