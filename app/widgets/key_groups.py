@@ -51,7 +51,7 @@ class KeyGroups(QTextEdit):
         self._write()
         self.setAccessibleName(" ".join(groups))
 
-    def createMimeDataFromSelection(self) -> QMimeData:
+    def createMimeDataFromSelection(self) -> QMimeData:  # noqa: N802  Qt calls it
         """Give what is selected as the sheet has it, so that it is whole wherever it is put: a field has one line."""
         copied = QMimeData()
         copied.setText("-".join(self.textCursor().selectedText().split()))

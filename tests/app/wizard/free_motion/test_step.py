@@ -1,10 +1,14 @@
 """The step of free motion on a simulated patient: gauges close, it ends by itself, and one leg can be repeated."""
 
+import math
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 
 import pytest
 from pytestqt.qtbot import QtBot
 
+from app import sounds
+from app.sounds import Sound
 from app.storage.stored import Limits
 from app.theme import ThemeNotifier
 from app.widgets.gauge import GaugeState
@@ -69,7 +73,7 @@ def test_it_records_at_once_and_goes_on_by_itself_when_all_gauges_are_closed(
     closed = {joint: state(0.8, 6.0, None, is_closed=True) for joint in Joint}
     step._estimator = Told(worn, FreeMotionState(closed))  # type: ignore[assignment]  # a busy machine takes its time
     with qtbot.waitSignal(step.done, timeout=10_000):
-        ticks(qtbot, step, lambda: states(step.page) == {GaugeState.READY})
+        ticks(qtbot, step, lambda: states(step.page) == {GaugeState.ENOUGH, GaugeState.CENTRE})
         verb = step.bar().primary
         assert verb is not None
         assert (verb.text, verb.is_wished) == ("Go on to walking", True)
@@ -201,7 +205,9 @@ def test_leaving_before_its_end_keeps_what_has_moved_unless_another_is_in_force(
     assert kept is not None
     assert kept.read_back is not None
     assert len(kept.read_back.imu) == len(Site)
-    assert note.endswith("of 4 ready")
+    assert note.startswith("enough motion for ")
+    assert note.endswith("of 2 ankle centres")
+    assert told.args[0] == f"Free motion was left before its end and is kept: {note}."
     step.enter()
     assert not visit.recordings.is_recording
     step.on_other(0)
@@ -213,6 +219,27 @@ def test_leaving_before_its_end_keeps_what_has_moved_unless_another_is_in_force(
     assert visit.recordings.free_motion is not None
     assert visit.recordings.free_motion.id == kept.id
     assert step.note == note
+
+
+def test_a_knee_that_is_no_hinge_is_not_counted_as_enough_but_named(
+    qtbot: QtBot, step: FreeMotionStep, visit: Visit, worn: dict[str, Site], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    heard: list[Sound] = []
+    monkeypatch.setattr(sounds, "play", heard.append)
+    visit.patient.edit(replace(visit.patient.details, prosthetic_side="left"))
+    step.enter()
+    ticks(qtbot, step, lambda: knows(step))
+    closed = {joint: state(0.4, 4.0, None, is_closed=True) for joint in Joint}
+    loose = replace(closed[Joint.LEFT_KNEE], axis_sd_with_floor_rad=math.radians(6.0))
+    step._enough = frozenset(Joint) - {Joint.LEFT_KNEE}
+    heard.clear()
+    step._estimator = Told(worn, FreeMotionState(closed | {Joint.LEFT_KNEE: loose}))  # type: ignore[assignment]
+    with qtbot.waitSignal(step.done, timeout=10_000):  # more motion would not make it one
+        ticks(qtbot, step, lambda: GaugeState.LOOSE in states(step.page))
+        assert step.page.band.hint.sentence == "Left knee: no hinge"
+    assert step.note == "enough motion for 1 of 2 knees, 2 of 2 ankle centres; left knee: no hinge"
+    assert step.state is StepState.ATTENTION
+    assert Sound.READY not in heard
 
 
 def test_a_free_motion_that_holds_is_not_recorded_again_unasked(
