@@ -60,6 +60,7 @@ from core.verdicts.measurement_error import ComparisonKind, Difference
 
 CURVES, PLOT, TABLE = "curves", "plot", "table"
 CARD, WIDE_CARD = 312, 460
+KINDS = (200, 360)  # px: the narrowest and the widest that the box becomes
 WIDEST = 16_777_215  # Qt's own
 BRIEF = ("knee_stance_to_swing_deg", "knee_while_loading_deg", "ankle_push_off_deg", "stance_percent")
 IN_DEGREES = ("°", "%")  # what the axis of the differences can hold
@@ -108,6 +109,7 @@ class ComparePage(Themed):
         self.comparison: Comparison | None = None
         self.side_rows: tuple[SideRow, ...] = ()
         self.kinds = Choice(look, tr("Compare"))
+        self.kinds.let_shrink(*KINDS)  # a condition that was typed is part of its lines
         self.bases = Choice(look, tr("Starting point"))
         self.view = Segmented(
             look, tr("View"), [(CURVES, tr("Curves"), ""), (PLOT, tr("Differences"), ""), (TABLE, tr("Table"), "")]

@@ -8,6 +8,7 @@ from app.charts.cycles import is_mean_enough, is_spread_enough
 from app.gates_in_words import verdict_word
 from app.icons import Icon
 from app.plots.difference_plot import DifferenceRow, Dot
+from app.recording_names import name_in_words
 from app.reports.comparison import Compared, Comparison, Measure, Part, Reservation, SideRow
 from app.reports.patient_report.numbers_in_words import fixed, signed
 from app.reports.walk_figures import reason_in_words
@@ -33,7 +34,8 @@ WALK_FIRST = {"speed_m_s": 0, "cadence_steps_min": 1, "stride_length_m": 2}  # t
 def part_in_words(part: Part) -> str:
     """A part's letter and name, and how many strides it has of each leg."""
     strides = ", ".join(f"{LETTERS[side]} {part.strides(side)}" for side in part.sides)
-    return f"{part.letter} {part.name} · {strides}" if strides else f"{part.letter} {part.name}"
+    name = f"{part.letter} {name_in_words(part.name)}"
+    return f"{name} · {strides}" if strides else name
 
 
 def change_in_words(value: float, measure: Measure) -> str:
