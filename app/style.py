@@ -311,7 +311,8 @@ class ControlStyle(QProxyStyle):
         theme = self.theme
         words = option.rect.adjusted(theme.px(CHOICE_PADDING), 0, -theme.px(CHOICE_PADDING + CHOICE_ICON), 0)
         painter.setPen(QColor(theme.colours.ink))
-        painter.drawText(words, LEFT, option.currentText)
+        fitting = option.fontMetrics.elidedText(option.currentText, Qt.TextElideMode.ElideRight, words.width())
+        painter.drawText(words, LEFT, fitting)
 
     def _menu_item_size(self, option: QStyleOptionMenuItem) -> QSize:
         px = self.theme.px

@@ -3,7 +3,7 @@
 What was recovered earlier and is not decided yet is said, too, at every start: the library knows it.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 from uuid import UUID
@@ -12,6 +12,7 @@ from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QFileDialog, QWidget
 
 from app.patient_words import length
+from app.recording_names import shown_names
 from app.storage.exchange import export_orphan, was_exported
 from app.storage.journal.header import JournalRefusedError
 from app.storage.recovery import adopt_home, find_interrupted, recover
@@ -28,13 +29,17 @@ from devices.decoders import DECODERS
 if TYPE_CHECKING:
     from app.storage.opened import OpenedLibrary
     from app.storage.recovery import Interrupted, Recovered
-    from app.storage.stored import UndecidedWalk
+    from app.storage.stored import StoredRecording, UndecidedWalk
+
+
+NO_NAMES: Mapping[UUID, str] = {}
 
 
 class _Outcome(NamedTuple):
     """What was recovered, what was put into the session it says it is of, and what is left of either.
 
-    `undecided`: what was recovered at an earlier start, and nobody has said yet whether it is kept.
+    `undecided`: what was recovered at an earlier start, and nobody has said yet whether it is kept. `names`: what all
+    are called in their sessions.
     """
 
     recovered: "list[Recovered]"
@@ -42,6 +47,7 @@ class _Outcome(NamedTuple):
     refused: list[tuple[str, str]]
     lost: "list[Interrupted]"
     undecided: "list[UndecidedWalk]"
+    names: Mapping[UUID, str] = NO_NAMES
 
 
 class _Message(NamedTuple):
@@ -134,10 +140,10 @@ class Recovering(QObject):
         heard = [one for one in outcome.recovered if one.recorded_s > 0]
         home = [one for one in [*heard, *outcome.adopted] if self._is_home_and_whole(one)]
         messages = [
-            *_heard_messages([one for one in heard if one not in home]),
-            *_adopted_messages([one for one in outcome.adopted if one not in home]),
+            *_heard_messages([one for one in heard if one not in home], outcome.names),
+            *_adopted_messages([one for one in outcome.adopted if one not in home], outcome.names),
             *_home_messages(home),
-            *_undecided_messages(outcome.undecided),
+            *_undecided_messages(outcome.undecided, outcome.names),
         ]
         for what, remedy in dict.fromkeys(outcome.refused):
             messages.append(_Message(f"{capitalised(tr(what))}.", f"{tr(remedy)}."))
@@ -180,20 +186,40 @@ def _recover(opened: "OpenedLibrary", interrupted: "Sequence[Interrupted]", repo
             except LibraryError:  # its session is gone, or it does not say which that is
                 if not was_exported(opened, one):
                     outcome.lost.append(one)
-    return outcome._replace(undecided=list(undecided))
+    told = [one.stored for one in [*outcome.recovered, *outcome.adopted]]
+    told += [one.recording for one in undecided]
+    return outcome._replace(undecided=list(undecided), names=_names(opened, told))
 
 
 def _still_undecided(opened: "OpenedLibrary") -> _Outcome:
-    return _Outcome([], [], [], [], list(opened.library.recordings.undecided()))
+    undecided = list(opened.library.recordings.undecided())
+    return _Outcome([], [], [], [], undecided, _names(opened, [one.recording for one in undecided]))
 
 
-def _heard_messages(heard: "Sequence[Recovered]") -> list[_Message]:
+def _names(opened: "OpenedLibrary", recordings: "Sequence[StoredRecording]") -> dict[UUID, str]:
+    """What recordings are called in their sessions; of a session that cannot be read, nothing is known."""
+    names: dict[UUID, str] = {}
+    for session_id in {one.session_id for one in recordings}:
+        try:
+            of_session = opened.library.sessions.get(session_id).recordings
+        except LibraryError:
+            continue
+        called = shown_names([one.details for one in of_session])
+        names |= {one.id: str(called[one.details.name]) for one in of_session}
+    return names
+
+
+def _name(recording: "StoredRecording", names: Mapping[UUID, str]) -> str:
+    return names.get(recording.id, recording.details.name)
+
+
+def _heard_messages(heard: "Sequence[Recovered]", names: Mapping[UUID, str] = NO_NAMES) -> list[_Message]:
     if not heard:
         return []
     is_whole = all(report.is_whole for one in heard for report in one.reports)
     if len(heard) == 1:
         what = tr("The program was closed while recording. {time} of {name} was recovered.").format(
-            time=length(heard[0].recorded_s), name=heard[0].stored.details.name
+            time=length(heard[0].recorded_s), name=_name(heard[0].stored, names)
         )
         whole, cut = tr("It is whole."), tr("It is kept up to the last record on the disk.")
         look = tr("Look at it, then keep or discard.")
@@ -220,12 +246,12 @@ def _missing(heard: "Sequence[Recovered]") -> str:
     return ""
 
 
-def _adopted_messages(adopted: "Sequence[Recovered]") -> list[_Message]:
+def _adopted_messages(adopted: "Sequence[Recovered]", names: Mapping[UUID, str]) -> list[_Message]:
     if not adopted:
         return []
     if len(adopted) == 1:
         what = tr("{time} of {name} was recorded while the library did not answer.").format(
-            time=length(adopted[0].recorded_s), name=adopted[0].stored.details.name
+            time=length(adopted[0].recorded_s), name=_name(adopted[0].stored, names)
         )
         return [_Message(what, tr("It is in its session now."))]
     what = tr("{count} recordings were made while the library did not answer.").format(count=len(adopted))
@@ -243,12 +269,12 @@ def _home_messages(home: "Sequence[Recovered]") -> list[_Message]:
     return [_Message(what, tr("What was kept on this computer meanwhile was removed there."))]
 
 
-def _undecided_messages(walks: "Sequence[UndecidedWalk]") -> list[_Message]:
+def _undecided_messages(walks: "Sequence[UndecidedWalk]", names: Mapping[UUID, str]) -> list[_Message]:
     if not walks:
         return []
     if len(walks) == 1:
         what = tr("{name} of {code} was recovered earlier, and nobody has said yet whether it is kept.").format(
-            name=walks[0].recording.details.name, code=walks[0].patient_code
+            name=_name(walks[0].recording, names), code=walks[0].patient_code
         )
         return [_Message(what, tr("Look at it, then keep or discard."))]
     what = tr("{count} walks were recovered earlier, and nobody has said yet whether they are kept.")

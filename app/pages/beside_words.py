@@ -16,6 +16,7 @@ from app.pages.compared_words import (
 from app.reports.comparison import Compared, Comparison
 from app.reports.patient_report.answer import Answer, Outcome
 from app.reports.patient_report.numbers_in_words import DAGGER, NOTHING, fixed, in_words, judged_in_words
+from app.reports.patient_report.plain_text import shortened
 from app.widgets.chip import LETTERS
 from app.widgets.fact_strip import KeyFigure
 from app.widgets.table import TableColumn, TableRow
@@ -24,16 +25,25 @@ from app.widgets.text import REGULAR, SEMIBOLD
 from app.wording import side_name, tr
 from core.verdicts.measurement_error import Judgement
 
+LONGEST_TITLE, LONGEST_HEAD = 28, 20  # letters of a walk's name, over the measures and over its figures
 SCALE = 1.8  # errors, to either edge of a strip
 
 
 def beside_columns(found: Comparison) -> list[TableColumn]:
-    """The leg, the measure, this walk, the other, and what their difference is worth."""
-    heads = (tr("this walk"), found.against.name, tr("change"))
+    """The leg, the measure, this walk, the other, and what their difference is worth.
+
+    A name that somebody typed at length is cut here; the sentence over the curves has it whole.
+    """
+    heads, beside = (tr("this walk"), found.against.name, tr("change")), tr("Beside {walk}")
+    title = TextCell(
+        beside.format(walk=shortened(found.against.name, LONGEST_TITLE)),
+        weight=SEMIBOLD,
+        spoken=beside.format(walk=found.against.name),
+    )
     return [
         TableColumn(),
-        TableColumn(TextCell(tr("Beside {walk}").format(walk=found.against.name), weight=SEMIBOLD), share=3),
-        *(TableColumn(head_cell(head), share=1) for head in heads),
+        TableColumn(title, share=3),
+        *(TableColumn(head_cell(shortened(head, LONGEST_HEAD), spoken=head), share=1) for head in heads),
         TableColumn(TextCell(tr("grey: error"), align=CENTRE, size=12, tone="ink2"), share=2),
         TableColumn(head_cell(tr("error")), share=1),
         TableColumn(TextCell(tr("in words"), size=12, tone="ink2"), share=1),

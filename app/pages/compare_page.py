@@ -52,6 +52,7 @@ from core.verdicts.measurement_error import ComparisonKind
 
 CURVES, PLOT, TABLE = "curves", "plot", "table"
 MOST_WITH_STRIDES = 3  # visits whose strides are counted beside their day
+KINDS = (200, 360)  # px: the narrowest and the widest that the box becomes
 OTHER_ZERO = later("No common zero: range and shape hold, height does not. 0° is the mean of the stride.")
 NO_COMMON_CONDITION = later(
     "This visit has no condition in common with an earlier one, so they are not compared. {walked} “Any visits and "
@@ -92,6 +93,7 @@ class ComparePage(Themed):
         self.comparison: Comparison | None = None
         self.side_rows: tuple[SideRow, ...] = ()
         self.kinds = Choice(look, tr("Compare"))
+        self.kinds.let_shrink(*KINDS)  # a condition that was typed is part of its lines
         self.bases = Choice(look, tr("Starting point"))
         self.view = Segmented(
             look, tr("View"), [(CURVES, tr("Curves"), ""), (PLOT, tr("Differences"), ""), (TABLE, tr("Table"), "")]

@@ -63,9 +63,9 @@ def side_table(rows: Sequence[SideRow], first: Side, second: Side) -> TableOfPar
     return _columns([head_cell(head) for head in heads], has_sides=False), [side_table_row(row, heads) for row in rows]
 
 
-def head_cell(words: str, small: str = "") -> TextCell:
+def head_cell(words: str, small: str = "", spoken: str = "") -> TextCell:
     """What stands over a column of figures."""
-    return TextCell(words, small, align=RIGHT, size=12, tone="ink2")
+    return TextCell(words, small, align=RIGHT, size=12, tone="ink2", spoken=spoken)
 
 
 def _told_briefly(found: Comparison) -> set[str]:

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 from app.dates import day_in_words
 from app.gates_in_words import verdict_word
+from app.recording_names import name_in_words
 from app.reports.comparison import Compared, Measure, Part, Reservation, SideRow, sources_in_words
 from app.reports.patient_report.numbers_in_words import DAGGER, NOTHING, fixed, signed
 from app.reports.walk_figures import reason_in_words
@@ -27,7 +28,8 @@ UNVERIFIED = later("\N{DAGGER} rests on a figure whose source could not be verif
 def part_in_words(part: Part, name: str) -> str:
     """A part's letter and name, and how many strides it has of each leg."""
     strides = ", ".join(f"{LETTERS[side]} {part.strides(side)}" for side in part.sides)
-    return f"{part.letter} {name} · {strides}" if strides else f"{part.letter} {name}"
+    called = f"{part.letter} {name_in_words(name)}"
+    return f"{called} · {strides}" if strides else called
 
 
 def days_of(parts: Sequence[Part]) -> list[str]:

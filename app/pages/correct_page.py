@@ -176,12 +176,10 @@ class _WalkRow(QWidget):
     def __init__(self, look: ThemeNotifier, line: WalkLine) -> None:
         super().__init__()
         self._line = line
-        self._name = Text(look, line.name, size=15, weight=SEMIBOLD)
+        self._name = Text(look, size=15, weight=SEMIBOLD, wraps=True)
         self._note = Text(look, size=12, tone="ink2", wraps=True)
-        label = tr("Condition of {walk}").format(walk=line.name)
-        self.condition = Field(look, label, has_label=False, placeholder=tr("condition"))
+        self.condition = Field(look, "", has_label=False, placeholder=tr("condition"))
         self.kept = Toggle(look, tr("Counts"), "", is_on=line.is_kept)
-        self.kept.setAccessibleName(tr("{walk} counts").format(walk=line.name))
         words = QVBoxLayout()
         words.setSpacing(0)
         words.addWidget(self._name)
@@ -197,6 +195,9 @@ class _WalkRow(QWidget):
         if line.condition != self._line.condition or not self.condition.text:
             self.condition.set_text(line.condition)
         self._line = line
+        self._name.setText(line.name)  # its condition is part of it
+        self.condition.set_label(tr("Condition of {walk}").format(walk=line.name))
+        self.kept.setAccessibleName(tr("{walk} counts").format(walk=line.name))
         self._note.setText(line.note)
         self.kept.show_on(line.is_kept)
 

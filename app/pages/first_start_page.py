@@ -95,7 +95,7 @@ class FirstStartPage(EntryPage):
     def tab_order(self) -> list[QWidget]:
         fields = [self.code, self.name, self.passphrase, self.again]
         first = [*(field.line_edit for field in fields), self.make, self.demonstration]
-        second = [self.print, self.save, self.typed.line_edit, self.go, self.renew, self.later]
+        second = [self._key_words, self.print, self.save, self.typed.line_edit, self.go, self.renew, self.later]
         return [self.look_again, self.make_another, *first, *second]
 
     @property

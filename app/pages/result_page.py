@@ -14,6 +14,7 @@ from app.pages.beside_words import answer_beside, key_figures_beside
 from app.pages.differs_card import DiffersCard
 from app.pages.result_parts import PageRoom, ResultParts
 from app.plots.angle_chart import Curve
+from app.recording_names import with_shown_names
 from app.reports.beside import beside_last_visit, beside_walk, changes_on_curves, walks_alone
 from app.reports.comparison import Comparison, Part, conditions_of
 from app.reports.patient_report.answer import Outcome, answer_of
@@ -46,6 +47,7 @@ ANSWER, COMPARE, WHOLE, STRIDES = "answer", "compare", "whole", "strides"
 WALK, RECORDING = later("Whole walk"), later("Whole recording")
 
 ANSWER_PX = 22
+RECORDINGS, BESIDE = (146, 280), (186, 320)  # px: the narrowest and the widest that their boxes become
 BOTTOM = 44  # px high: the row that closes the answer
 BESIDE_TABLE, WITHHELD, NOTE = 484, 40, 24  # px high: all else on a page, a withheld curve, strides left out by hand
 ANSWER_ICONS = {
@@ -66,7 +68,7 @@ EVENT_KEYS = later("[ ] step through contacts and toe-offs. Pre-swing is heel ri
 
 
 class Beside(Enum):
-    """What the legs' curves stand beside; another walk of the session is chosen by its name."""
+    """What the legs' curves stand beside; another walk of the session is chosen by its recording's name."""
 
     BAND = auto()
     LEGS = auto()  # each other alone
@@ -111,6 +113,8 @@ class ResultPage(Themed):
         self.to_answer = Button(look, tr("Answer"), ButtonKind.SECONDARY, Icon.BACK, tr("Esc"))
         self.recordings = Choice(look, tr("Recording"))
         self.beside = Choice(look, tr("Beside"))
+        self.recordings.let_shrink(*RECORDINGS)  # conditions are typed
+        self.beside.let_shrink(*BESIDE)
         self.methods = Segmented(
             look,
             tr("Method"),
@@ -151,7 +155,7 @@ class ResultPage(Themed):
         """
         self._visit, self._can_choose, self._is_live = visit, can_choose, is_live
         session, analysis = visit.session, visit.analysis
-        shown = self.recordings.currentText()
+        shown, called = self.recordings.currentData(), visit.shown_names
         is_prosthetic = session.patient.prosthetic_side in set(Side)
         parts = conditions_of(analysis, session.recordings)
         self.compare.show_conditions(analysis, parts, is_prosthetic, age_and_height(session))
@@ -160,7 +164,8 @@ class ResultPage(Themed):
         walks = [i for i, recording in enumerate(analysis.recordings) if recording.kind is RecordingKind.WALKING]
         self.recordings.blockSignals(True)
         self.recordings.clear()
-        self.recordings.addItems(names)
+        for name in names:
+            self.recordings.addItem(str(called.get(name, name)), name)
         first = walks[0] if walks else 0
         self.recordings.setCurrentIndex(names.index(shown) if shown in names else first)
         self.recordings.blockSignals(False)
@@ -253,6 +258,9 @@ class ResultPage(Themed):
         self._against_row.setContentsMargins(0, 0, 0, 0)
         self._against_row.addWidget(self.compare.kinds)
         self._against_row.addWidget(self.compare.bases)
+        self._compared_as = QWidget()  # the choice of the comparison's views, where its card has no room for it
+        compared_as = QHBoxLayout(self._compared_as)
+        compared_as.setContentsMargins(0, 0, 0, 0)
         self._choices = QWidget()
         choices = QHBoxLayout(self._choices)
         choices.setContentsMargins(0, 0, 0, 0)
@@ -296,6 +304,7 @@ class ResultPage(Themed):
         self.all_figures.set_face(height=BOTTOM)
         self._page = QVBoxLayout(self)
         self._page.addLayout(self._controls)
+        self._page.addWidget(self._compared_as, 0, Qt.AlignmentFlag.AlignLeft)
         self._page.addLayout(self._head)
         self._page.addLayout(self._columns, 1)
         self._page.addWidget(self.differs)
@@ -343,6 +352,8 @@ class ResultPage(Themed):
             self._against_row.insertWidget(2, self.compare.view)
         else:
             self._controls.addWidget(self._choices, 0, 2)
+            if self._room.is_compact and (row := self._compared_as.layout()) is not None:
+                row.addWidget(self.compare.view)
         if self._room.is_narrow:
             self._foot.addWidget(self.methods, 0, 0, left)
             self._foot.addWidget(self.whole, 1, 0, left)
@@ -364,14 +375,14 @@ class ResultPage(Themed):
         self.charts.phases.set_narrow(self._room.is_narrow)
         self.cycles.set_room(self._room.has_two_charts)
         self.legs.set_brief(self._room.is_compact)
-        stacked = QBoxLayout.Direction.TopToBottom if self._room.is_narrow else QBoxLayout.Direction.LeftToRight
-        self._tables.setDirection(stacked)
+        across, down = QBoxLayout.Direction.LeftToRight, QBoxLayout.Direction.TopToBottom
+        self._tables.setDirection(across if self._room.has_two_tables else down)
         self._on_look_changed()
         self._tell_answer()
         self._offer()
 
     def _offer_beside(self) -> None:
-        shown = self.recordings.currentText()
+        shown = self.recordings.currentData()
         before = self.beside.currentData()
         self.beside.blockSignals(True)
         self.beside.clear()
@@ -382,8 +393,7 @@ class ResultPage(Themed):
         self.beside.addItem(tr("The legs alone"), Beside.LEGS)
         for name in self._walks if shown in self._walks else ():
             if name != shown:
-                words = ", ".join(filter(None, [name, self._condition(name)]))
-                self.beside.addItem(tr("Beside {walk}").format(walk=words), name)
+                self.beside.addItem(tr("Beside {walk}").format(walk=self._called(name)), name)
         if self.compare.has_visits and shown in self._walks:
             self.beside.addItem(tr("Beside the last visit"), Beside.LAST_VISIT)
         self.beside.setCurrentIndex(max(self.beside.findData(before), 0))
@@ -427,6 +437,7 @@ class ResultPage(Themed):
         self.beside.setVisible(view == ANSWER and not is_quality and (has_curves or behind is Behind.FIGURES))
         self.show_legs.setVisible(view == ANSWER and behind is Behind.NOTHING)
         self._against.setVisible(view == COMPARE)
+        self._compared_as.setVisible(view == COMPARE and self._room.is_compact and not self._room.is_narrow)
         self.compare.setVisible(view == COMPARE)
         self.answer.setVisible(has_answer and behind is Behind.NOTHING and bool(self.answer.text))
         self.key_figures.setVisible(is_answer and not self._room.is_compact)
@@ -471,7 +482,8 @@ class ResultPage(Themed):
         analysis = visit.analysis
         has_orientation = any(angle.orientation_rad is not None for angle in recording.joints.values())
         self.methods.set_reason(ORIENTATION, "" if has_orientation else tr("no magnetometer"))
-        self.charts.show_recording(recording.name, recording.time_s, analysis.is_simulated, recording.gait)
+        called = self._called(recording.name)
+        self.charts.show_recording(called, recording.time_s, analysis.is_simulated, recording.gait)
         who = age_and_height(visit.session)
         self.cycles.show_walk(recording, analysis.is_simulated, who, sides_with_band(recording))
         self.strides.show_walk(recording, self._can_choose)
@@ -480,6 +492,10 @@ class ResultPage(Themed):
         self._on_method_chosen()
         self._offer()
 
+    def _called(self, name: str) -> str:
+        """What a recording of this session is called."""
+        return str(self._visit.shown_names.get(name, name)) if self._visit is not None else name
+
     def _condition(self, name: str) -> str:
         """Under which condition a recording was walked; empty where none was stated."""
         recordings = self._visit.session.recordings if self._visit is not None else ()
@@ -487,7 +503,7 @@ class ResultPage(Themed):
 
     def _compared(self) -> tuple[Comparison | None, str]:
         """The walk against what was chosen to stand beside it, or why there is nothing to compare it with."""
-        chosen, name, visit = self.beside.currentData(), self.recordings.currentText(), self._visit
+        chosen, name, visit = self.beside.currentData(), self.recordings.currentData(), self._visit
         shown = self._walks.get(name)
         if visit is None or shown is None:
             return None, ""
@@ -540,7 +556,10 @@ class ResultPage(Themed):
         sites = [site for site in Site if any(site in one.imu for one in visit.session.recordings)]
         self.door.tell(door_words(found))
         self.quality.show_quality(found, joints, sites, strides, can_repeat=self._is_live)
-        self.quality.show_engineering(calibrated, visit.analysis.findings)
+        names = visit.shown_names
+        self.quality.show_engineering(
+            calibrated, [with_shown_names(finding, names) for finding in visit.analysis.findings]
+        )
 
     def _tell_answer(self) -> None:
         """Say what came of the walk; the key figures follow where there is no room for them beside it."""
@@ -609,7 +628,7 @@ class ResultPage(Themed):
         side = px(24 if self._room.is_on_grid else 16)  # as the bar beneath it
         self._page.setContentsMargins(side, px(12 if is_compact else 16), side, px(8 if is_compact else 12))
         self._page.setSpacing(px(12))
-        self._controls.setSpacing(px(12))
+        self._controls.setSpacing(px(8 if is_compact else 12))
         self._columns.setSpacing(px(12))
         self._head.setSpacing(px(24))
         self._bottom.setSpacing(px(12))
@@ -617,7 +636,7 @@ class ResultPage(Themed):
         for part in (self._curves, self._against, self._choices):
             layout = part.layout()
             assert layout is not None
-            layout.setSpacing(px(12))
+            layout.setSpacing(px(8 if is_compact and part is self._choices else 12))
         self._foot.setHorizontalSpacing(px(16))
         self._foot.setVerticalSpacing(px(8))
 

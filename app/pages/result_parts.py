@@ -15,6 +15,7 @@ from app.widgets import grid
 COMPACT_BELOW = (940, 608)  # the charts and the rows beneath them need so much
 NARROW_BELOW = 860  # what the tools need in one row
 SPACIOUS_FROM = 1600  # what charts, differences and their table need side by side
+TWO_TABLES_FROM = 960
 TWO_CHARTS_FROM = 680
 
 
@@ -25,6 +26,7 @@ class PageRoom:
     is_compact: bool = False
     is_narrow: bool = False
     has_two_charts: bool = False
+    has_two_tables: bool = False
     has_strides_beside: bool = False
     is_spacious: bool = False
     is_on_grid: bool = False
@@ -37,6 +39,7 @@ class PageRoom:
             is_compact=is_compact,
             is_narrow=width < NARROW_BELOW,
             has_two_charts=width >= TWO_CHARTS_FROM,
+            has_two_tables=width >= TWO_TABLES_FROM,
             has_strides_beside=width >= COMPACT_BELOW[0],
             is_spacious=not is_compact and width >= SPACIOUS_FROM,
             is_on_grid=width >= grid.NARROW_BELOW,

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 from app.charts.axes import joint_of
 from app.charts.marks import Deviation, extreme_of
+from app.recording_names import shown_names
 from app.reports.comparison import Comparison, Contrast, Part, conditions_of
 from app.reports.patient_report.facts import KINDS
 from app.reports.patient_report.marks_on_curves import windows_of
@@ -19,9 +20,12 @@ MARKED = (QuantityClass.SHAPE, QuantityClass.EXCURSION)
 
 
 def walks_alone(analysis: Analysis, recordings: Sequence[Recording]) -> Mapping[str, Part]:
-    """Every walk of a session that has strides by its name, each by itself, in order of time."""
+    """Every walk of a session that has strides by its name, each by itself, in order of time; called as it is shown."""
+    names = shown_names(recordings)
     alone = {
-        walk.name: replace(part, name=walk.name, walks=(walk,), calibrated=analysis.calibrated_for(walk))
+        walk.name: replace(
+            part, name=str(names.get(walk.name, walk.name)), walks=(walk,), calibrated=analysis.calibrated_for(walk)
+        )
         for part in conditions_of(analysis, recordings)
         for walk in part.walks
     }

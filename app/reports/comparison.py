@@ -16,6 +16,7 @@ import numpy as np
 
 from app.charts.cycles import is_mean_enough
 from app.charts.stride_chart import StrideCurve
+from app.recording_names import LETTERS, condition_letters
 from app.reports.walk_figures import by_hand_in_words
 from app.wording import joined, later, tr
 from core.body import Joint, Side
@@ -61,7 +62,6 @@ ERROR_SOURCES = {
     ErrorSource.ZERO: later("the zero"),
 }
 CADENCE = "cadence_steps_min"  # of both legs; of one, two steps in each of its strides
-LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
 
 
 @dataclass(frozen=True, slots=True)
@@ -497,7 +497,8 @@ def compare_legs(part: Part, column: str, sides: tuple[Side, Side]) -> Differenc
 def conditions_of(analysis: Analysis, recordings: Sequence[Recording], prefix: str = "") -> tuple[Part, ...]:
     """The walks of one session that have strides: those of the same condition and attachment together.
 
-    Walks without a condition stay by themselves, named as recorded.
+    Walks without a condition stay by themselves, named as recorded. Each has the letter of its condition in the
+    session, as its walks are called everywhere: where a condition has no strides, its letter is left out.
 
     Parameters
     ----------
@@ -516,10 +517,14 @@ def conditions_of(analysis: Analysis, recordings: Sequence[Recording], prefix: s
     for walk in _walks(analysis):
         condition, at = told.get(walk.name, ("", 0))
         found.setdefault((condition or walk.name, at), []).append(walk)
-    return tuple(
+    letters = condition_letters(recordings)
+    others = iter(letter for letter in LETTERS if letter not in letters.values())  # of walks nobody has told of
+    parts = [
         Part(prefix + letter, name, tuple(walks), analysis.calibrated_for(walks[0]), at)
-        for letter, ((name, at), walks) in zip(LETTERS, found.items(), strict=False)
-    )
+        for (name, at), walks in found.items()
+        if (letter := letters[walks[0].name] if walks[0].name in letters else next(others, ""))
+    ]
+    return tuple(parts)
 
 
 def _walks(analysis: Analysis) -> list[RecordingAnalysis]:

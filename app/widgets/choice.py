@@ -1,6 +1,6 @@
 """One choice out of many, folded away until it is asked for."""
 
-from PySide6.QtCore import QPoint, Qt
+from PySide6.QtCore import QEvent, QPoint, QSize, Qt
 from PySide6.QtGui import QWheelEvent
 from PySide6.QtWidgets import QComboBox, QSizePolicy
 
@@ -8,28 +8,72 @@ from app.theme import ThemeNotifier
 
 
 class Choice(QComboBox):
-    def __init__(self, _look: ThemeNotifier, name: str) -> None:
+    def __init__(self, look: ThemeNotifier, name: str) -> None:
         super().__init__()
+        self._look = look
+        self._least: float | None = None
+        self._most = 0.0
         self.setAccessibleName(name)
         self.setSizePolicy(QSizePolicy.Policy.Minimum, QSizePolicy.Policy.Fixed)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToContents)  # words come after it is first shown
 
         self.ensurePolished()  # its font, and so its size, is the style's
+        self.currentIndexChanged.connect(self.updateGeometry)
+
+    def let_shrink(self, least: float, most: float) -> None:
+        """For words that somebody typed, of any length: cut them short where room is short, their whole in a tooltip.
+
+        Nothing is cut in fewer than `least` px, and the box grows to no more than `most`.
+        """
+        self._least, self._most = least, most
+        self.setSizePolicy(QSizePolicy.Policy.Maximum, QSizePolicy.Policy.Fixed)
+        self.updateGeometry()
+
+    @property
+    def is_cut(self) -> bool:
+        """Whether the choice in force is wider than its box."""
+        return self.width() < self._width_for(self.currentText())
+
+    def sizeHint(self) -> QSize:
+        wanted = super().sizeHint()
+        return wanted if self._least is None else wanted.boundedTo(QSize(self._look.theme.px(self._most), 99_999))
+
+    def minimumSizeHint(self) -> QSize:
+        hint = self.sizeHint()
+        if self._least is None:
+            return hint
+        return QSize(min(self._width_for(self.currentText()), self._look.theme.px(self._least)), hint.height())
+
+    def event(self, event: QEvent) -> bool:
+        if event.type() is QEvent.Type.ToolTip and self._least is not None:
+            self.setToolTip(self.currentText() if self.is_cut else "")
+        return super().event(event)
 
     def showPopup(self) -> None:
         """Open below the box, above it where there is no room below, and as the style does where there is none at all.
 
         The style lays the chosen line over the box, so that what comes before it covers what stands above: the tabs.
+        What is cut in the box is whole in its list.
         """
+        if self._least is not None:
+            widest = self.screen().availableGeometry().width()
+            self.view().setMinimumWidth(min(self.view().sizeHintForColumn(0), widest))
         super().showPopup()
         popup, room = self.view().window(), self.screen().availableGeometry()
         top = self.mapToGlobal(QPoint(0, 0)).y()
         below, above = top + self.height(), top - popup.height()
+        left = max(min(popup.x(), room.right() + 1 - popup.width()), room.left())
         if below + popup.height() <= room.bottom() + 1:
-            popup.move(popup.x(), below)
+            popup.move(left, below)
         elif above >= room.top():
-            popup.move(popup.x(), above)
+            popup.move(left, above)
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         event.ignore()  # who scrolls past must not change what is shown
+
+    def _width_for(self, words: str) -> int:
+        """How wide the box is in which these have their room; the widest line of all tells what is around words."""
+        widths = [self.fontMetrics().horizontalAdvance(self.itemText(row)) for row in range(self.count())]
+        around = super().sizeHint().width() - max(widths, default=0)
+        return around + self.fontMetrics().horizontalAdvance(words)

@@ -121,6 +121,11 @@ class Field(Themed):
             self._make_room(text)
             self._box.setText(text)
 
+    def set_label(self, label: str) -> None:
+        self._label = label
+        self._caption.setText(label)
+        self._name()
+
     def set_unit(self, unit: str) -> None:
         self._box.set_unit(unit)
         self._name()

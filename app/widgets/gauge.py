@@ -25,8 +25,8 @@ STEPS = 360  # of a ring: finer ones nobody sees
 DASHES, DASH = 40, 0.62  # of the right leg's rings
 CARD = QSize(400, 210)
 COMPACT_CARD = QSize(340, 130)
-RING, READY_RING = 172, 164
-OUTER, INNER, READY_OUTER, READY_INNER = 14.0, 6.0, 7.0, 3.0
+RING, CLOSED_RING = 172, 164
+OUTER, INNER, CLOSED_OUTER, CLOSED_INNER = 14.0, 6.0, 7.0, 3.0
 RING_GAP = 5.0
 VALUE, LARGEST_VALUE = 56, 72
 CHIP = 28
@@ -37,10 +37,14 @@ WIDEST = 240  # of the words: what is told and what is wanted are read together
 class GaugeState(Enum):
     OPEN = auto()
     NOW = auto()  # the joint whose motion helps most
-    READY = auto()
+    ENOUGH = auto()  # motion, for axis and centre
+    CENTRE = auto()  # motion for the centre of an ankle, whose axis is found while walking
     PLATEAU = auto()  # as good as this motion gives
     LOOSE = auto()  # of a prosthesis, and turns as no hinge does
     ABSENT = auto()  # nothing to find, or nothing to find it with
+
+
+CLOSED = (GaugeState.ENOUGH, GaugeState.CENTRE)  # what free motion can tell of the joint it has told
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,16 +60,12 @@ class GaugeMeasure:
 
 @dataclass(frozen=True, slots=True)
 class GaugeFace:
-    """`axis` is None where it is not asked for: an ankle's closes in walking. `note` says why there is no gauge."""
+    """`axis` is None where it is not asked for: walking finds an ankle's. `note` says why there is no gauge."""
 
     state: GaugeState = GaugeState.OPEN
     axis: GaugeMeasure | None = None
     centre: GaugeMeasure | None = None
     note: str = ""
-
-    @property
-    def is_settled(self) -> bool:
-        return self.state in (GaugeState.READY, GaugeState.PLATEAU, GaugeState.LOOSE)
 
 
 def gauge_face(joint: Joint, found: ExcitationState | None, wanted: Wanted, is_now: bool) -> GaugeFace:
@@ -78,16 +78,25 @@ def gauge_face(joint: Joint, found: ExcitationState | None, wanted: Wanted, is_n
     centre = _measure(centre_mm, centre_wanted, CENTRE_FROM_MM, "mm", is_closed)
     if found is None:
         return GaugeFace(GaugeState.NOW if is_now else GaugeState.OPEN, axis, centre)
-    is_loose = wanted.is_hinge and found.axis_sd_with_floor_rad > AXIS_FLOOR_HUMAN_RAD
-    if is_loose and (is_closed or found.is_plateau):
+    if _is_loose(joint, found, wanted) and (is_closed or found.is_plateau):
         state = GaugeState.LOOSE
     elif is_closed:
-        state = GaugeState.READY
+        state = GaugeState.ENOUGH if joint.is_knee else GaugeState.CENTRE
     elif found.is_plateau and not is_now:
         state = GaugeState.PLATEAU
     else:
         state = GaugeState.NOW if is_now else GaugeState.OPEN
     return GaugeFace(state, axis, centre)
+
+
+def _is_loose(joint: Joint, found: ExcitationState, wanted: Wanted) -> bool:
+    """Whether a joint that is one axis by construction turns across it as living ones do.
+
+    An axis that is merely not certain yet does not make it so, and of an ankle's, which walking finds, nothing is
+    known here.
+    """
+    floor_rad = math.sqrt(max(found.axis_sd_with_floor_rad**2 - found.axis_sd_rad**2, 0.0))
+    return wanted.is_hinge and joint.is_knee and floor_rad > AXIS_FLOOR_HUMAN_RAD
 
 
 def _words(face: GaugeFace) -> tuple[object, ...]:
@@ -249,9 +258,9 @@ class Gauge(QWidget):
 
     def _paint_rings(self, painter: QPainter, room: QRectF) -> None:
         face, unit = self._face, room.width() / RING
-        is_thin = face.state is GaugeState.READY
-        outer, inner = (READY_OUTER, READY_INNER) if is_thin else (OUTER, INNER)
-        back = (RING - READY_RING) / 2 * unit if is_thin else 0.0
+        is_thin = face.state in CLOSED
+        outer, inner = (CLOSED_OUTER, CLOSED_INNER) if is_thin else (OUTER, INNER)
+        back = (RING - CLOSED_RING) / 2 * unit if is_thin else 0.0
         first, second = (face.axis, face.centre) if face.axis is not None else (face.centre, None)
         box = room.adjusted(back, back, -back, -back)
         for measure, width in ((first, outer * unit), (second, inner * unit)):
@@ -314,20 +323,21 @@ class Gauge(QWidget):
         c, px = theme.colours, theme.px
         top = words.top() + px(CHIP + 10)
         for name, measure in ((tr("Axis"), face.axis), (tr("Centre"), face.centre)):
-            if measure is None:
-                continue
             line = QRectF(words.left(), top, words.width(), px(26))
             mark = QRectF(line.left(), line.center().y() - px(8), px(16), px(16))
-            paint_icon(painter, Icon.CHECK if measure.is_met else Icon.UNCHECKED, mark, c.ink)
+            is_met = measure is not None and measure.is_met
+            paint_icon(painter, Icon.CHECK if is_met else Icon.UNCHECKED, mark, c.ink)
             painter.setPen(QColor(c.ink))
             painter.setFont(theme.font(14, MEDIUM))
             painter.drawText(line.adjusted(px(24), 0, 0, 0), Qt.AlignmentFlag.AlignVCenter, name)
             painter.setPen(QColor(c.ink2))
             painter.setFont(theme.font(14))
-            wanted = tr("under {limit}").format(limit=measure.wanted)
+            wanted, short = tr("while walking"), tr("later")  # an ankle's axis
+            if measure is not None:
+                wanted, short = tr("under {limit}").format(limit=measure.wanted), f"< {measure.wanted}"
             metrics = painter.fontMetrics()
             if metrics.horizontalAdvance(name) + metrics.horizontalAdvance(wanted) + px(24 + 6) > line.width():
-                wanted = f"< {measure.wanted}"
+                wanted = short
             painter.drawText(line, Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignRight, wanted)
             top += px(26)
 
@@ -335,18 +345,18 @@ class Gauge(QWidget):
         theme, face = self._look.theme, self._face
         c, px = theme.colours, theme.px
         word, icon = state_word(face.state), _ICONS[face.state]
-        is_short = face.state in (GaugeState.READY, GaugeState.NOW, GaugeState.OPEN)
+        is_short = face.state in (GaugeState.NOW, GaugeState.OPEN)
         weight = REGULAR if face.state is GaugeState.OPEN else SEMIBOLD
-        font = theme.font(20 if is_short else 14, weight)
-        room = QRect(0, 0, round(words.width()) - px(26), 1000)
+        font = theme.font(20 if is_short else 16 if face.state in CLOSED else 14, weight)
+        room = QRect(0, 0, round(words.width()) - px(38 if face.state in CLOSED else 26), 1000)
         wraps = int(Qt.AlignmentFlag.AlignVCenter) | int(Qt.TextFlag.TextWordWrap)
         height = max(px(28), QFontMetrics(font).boundingRect(room, wraps, word).height())
         line = QRectF(words.left(), words.bottom() - height + px(4), words.width(), height)
         x = line.left()
         if icon is not None:
-            side = px(28) if face.state is GaugeState.READY else px(20)
+            side = px(28) if face.state in CLOSED else px(20)
             mark = QRectF(x, line.center().y() - side / 2, side, side)
-            if face.state is GaugeState.READY:
+            if face.state in CLOSED:
                 painter.setPen(Qt.PenStyle.NoPen)
                 painter.setBrush(QColor(c.inv))
                 painter.drawEllipse(mark)
@@ -354,7 +364,7 @@ class Gauge(QWidget):
                 paint_icon(painter, icon, mark.adjusted(px(5), px(5), -px(5), -px(5)), c.inv_ink)
             else:
                 paint_icon(painter, icon, mark.translated(-px(4) if face.state is GaugeState.NOW else 0, 0), c.ink)
-            x += side + (px(10) if face.state is GaugeState.READY else px(6))
+            x += side + (px(10) if face.state in CLOSED else px(6))
         painter.setPen(QColor(c.ink2 if face.state is GaugeState.OPEN else c.ink))
         painter.setFont(font)
         painter.drawText(QRectF(x, line.top(), line.right() - x + 1, line.height()), wraps, word)
@@ -362,7 +372,7 @@ class Gauge(QWidget):
     def _paint_state_word(self, painter: QPainter, place: QRectF) -> None:
         theme, state = self._look.theme, self._face.state
         word, is_open = state_word(state), state is GaugeState.OPEN
-        is_short = state in (GaugeState.READY, GaugeState.NOW, GaugeState.OPEN)
+        is_short = state in (GaugeState.NOW, GaugeState.OPEN)
         painter.setPen(QColor(theme.colours.ink2 if is_open else theme.colours.ink))
         longest = word if is_short else max(word.split(), key=len, default="")
         painter.setFont(self._fitting(longest, 18 if is_short else 14, place.width(), REGULAR if is_open else SEMIBOLD))
@@ -390,6 +400,8 @@ class Gauge(QWidget):
         """Left knee, axis 11°, under 1.5° needed, centre 34 mm, under 10 mm needed, move now."""
         face = self._face
         parts = [name_of(self._joint).capitalize()]
+        if face.axis is None and face.centre is not None:
+            parts.append(tr("axis found while walking"))
         for name, measure in ((tr("axis"), face.axis), (tr("centre"), face.centre)):
             if measure is not None:
                 space = "" if measure.unit == "°" else " "
@@ -407,7 +419,8 @@ class Gauge(QWidget):
 _ICONS: dict[GaugeState, Icon | None] = {
     GaugeState.OPEN: None,
     GaugeState.NOW: Icon.NEXT,
-    GaugeState.READY: Icon.CHECK,
+    GaugeState.ENOUGH: Icon.CHECK,
+    GaugeState.CENTRE: Icon.CHECK,
     GaugeState.PLATEAU: Icon.INFO,
     GaugeState.LOOSE: Icon.WARNING,
     GaugeState.ABSENT: None,
@@ -419,7 +432,8 @@ def state_word(state: GaugeState) -> str:
     return {
         GaugeState.OPEN: tr("Open"),
         GaugeState.NOW: tr("Now"),
-        GaugeState.READY: tr("Ready"),
+        GaugeState.ENOUGH: tr("Enough motion"),
+        GaugeState.CENTRE: tr("Enough motion for its centre"),
         GaugeState.PLATEAU: tr("as good as this motion gives"),
         GaugeState.LOOSE: tr("no hinge"),
         GaugeState.ABSENT: "",

@@ -1,51 +1,91 @@
-"""A recovery key as it is copied by hand: its groups in even columns, and told as one text."""
+"""A recovery key as it is copied by hand: its groups in even columns, and selected, copied and told as one text."""
 
 from collections.abc import Sequence
 
-from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QGridLayout
+from PySide6.QtCore import QEvent, QMimeData, QSize, Qt
+from PySide6.QtGui import QColor, QPalette, QTextBlockFormat, QTextOption
+from PySide6.QtWidgets import QFrame, QSizePolicy, QTextEdit
 
 from app.theme import ThemeNotifier
-from app.widgets.text import SEMIBOLD, Text
-from app.widgets.themed import Themed
+from app.widgets.text import SEMIBOLD
 
 COLUMNS = 3
 WIDTH = 96  # px of a column: four of the widest letters, and room before the next
 SIZE = 20
+ROW = 34  # px from one row to the next
 
 
-class KeyGroups(Themed):
-    """`text` is what is shown, a line for each row."""
+class KeyGroups(QTextEdit):
+    """`text` is what is shown, a line for each row; what is copied of it is written as on the sheet, in one line.
+
+    No button copies it: it is to be kept away from this computer, and every program reads a clipboard. Who selects it
+    and copies means to.
+    """
 
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look = look
-        self._texts: list[Text] = []
-        self._grid = QGridLayout(self)
-        self._grid.setContentsMargins(0, 0, 0, 0)
-        self._grid.setColumnStretch(COLUMNS, 1)
+        self._groups: list[str] = []
+        self.setReadOnly(True)
+        self.setUndoRedoEnabled(False)  # nothing of a key stays where it is taken away
+        self.setTextInteractionFlags(
+            Qt.TextInteractionFlag.TextSelectableByMouse | Qt.TextInteractionFlag.TextSelectableByKeyboard
+        )
+        self.setTabChangesFocus(True)
+        self.setFrameShape(QFrame.Shape.NoFrame)
+        self.setWordWrapMode(QTextOption.WrapMode.NoWrap)
+        for set_policy in (self.setHorizontalScrollBarPolicy, self.setVerticalScrollBarPolicy):
+            set_policy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        self.document().setDocumentMargin(0)
+        self.viewport().setAutoFillBackground(False)
         self._on_look_changed()
 
     @property
     def text(self) -> str:
-        groups = [one.text() for one in self._texts]
-        return "\n".join(" ".join(groups[k : k + COLUMNS]) for k in range(0, len(groups), COLUMNS))
+        return "\n".join(" ".join(row) for row in self._rows)
 
     def show_groups(self, groups: Sequence[str]) -> None:
         """Show these; none: nothing of a key stays."""
-        for one in self._texts:
-            one.setText("")
-            self._grid.removeWidget(one)
-            one.deleteLater()
-        self._texts = [Text(self._look, group, size=SIZE, weight=SEMIBOLD, is_code=True) for group in groups]
-        for number, one in enumerate(self._texts):
-            one.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
-            self._grid.addWidget(one, number // COLUMNS, number % COLUMNS)
-        self.setAccessibleName(self.text.replace("\n", " "))
+        self._groups = list(groups)
+        self._write()
+        self.setAccessibleName(" ".join(groups))
+
+    def createMimeDataFromSelection(self) -> QMimeData:  # noqa: N802  Qt calls it
+        """Give what is selected as the sheet has it, so that it is whole wherever it is put: a field has one line."""
+        copied = QMimeData()
+        copied.setText("-".join(self.textCursor().selectedText().split()))
+        return copied
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() is QEvent.Type.StyleChange:
+            self._on_look_changed()
+
+    def sizeHint(self) -> QSize:
+        return QSize(self._look.theme.px(COLUMNS * WIDTH), self._look.theme.px(ROW) * len(self._rows))
+
+    def minimumSizeHint(self) -> QSize:
+        return self.sizeHint()
+
+    @property
+    def _rows(self) -> list[list[str]]:
+        return [self._groups[k : k + COLUMNS] for k in range(0, len(self._groups), COLUMNS)]
+
+    def _write(self) -> None:
+        self.setPlainText("\n".join("\t".join(row) for row in self._rows))
+        cursor = self.textCursor()
+        cursor.select(cursor.SelectionType.Document)
+        form = cursor.blockFormat()
+        form.setLineHeight(self._look.theme.px(ROW), QTextBlockFormat.LineHeightTypes.FixedHeight.value)
+        cursor.setBlockFormat(form)
+        self.updateGeometry()
 
     def _on_look_changed(self) -> None:
-        px = self._look.theme.px
-        for column in range(COLUMNS):
-            self._grid.setColumnMinimumWidth(column, px(WIDTH))
-        self._grid.setHorizontalSpacing(0)
-        self._grid.setVerticalSpacing(px(6))
+        theme = self._look.theme
+        self.setFont(theme.font(SIZE, SEMIBOLD, is_code=True))
+        self.setTabStopDistance(theme.px(WIDTH))
+        palette = self.palette()
+        palette.setColor(QPalette.ColorRole.Text, QColor(theme.colours.ink))
+        self.setPalette(palette)
+        self._write()

@@ -11,6 +11,7 @@ from uuid import UUID
 from PySide6.QtCore import QObject, QTimer, Signal, Slot
 
 from app.acquisition.recorder import Recorder
+from app.recording_names import OWN_NAMES, ShownName, shown_names
 from app.storage.journal.disk import TOLD, Trouble
 from app.storage.stored import RecordingState, StoredRecording, StoredSession
 from app.wizard.journal_words import (
@@ -149,6 +150,17 @@ class SessionRecordings(QObject):
     @property
     def walks(self) -> tuple[SessionRecording, ...]:
         return self._of(RecordingKind.WALKING)
+
+    @property
+    def told(self) -> tuple[Recording, ...]:
+        """What is told of all of them, in order of time, the one that goes on included."""
+        ongoing = (self.ongoing.details,) if self.ongoing is not None else ()
+        return (*(recording.details for recording in self.every), *ongoing)
+
+    @property
+    def shown_names(self) -> dict[str, ShownName]:
+        """What each is called on the screen, by its name."""
+        return shown_names(self.told)
 
     @property
     def standing(self) -> SessionRecording | None:
@@ -374,7 +386,7 @@ class SessionRecordings(QObject):
 
     def _new_name(self, kind: RecordingKind) -> str:
         """`walk 2`, `free motion`, `standing 3`: the kind's name in files, numbered."""
-        word = {RecordingKind.STANDING: "standing", RecordingKind.FREE_MOTION: "free motion"}.get(kind, "walk")
+        word = OWN_NAMES[kind]
         taken = {recording.details.name for recording in self.every} | {unread.name for unread in self._unread}
         first = f"{word} 1" if kind is RecordingKind.WALKING else word
         return next(name for name in [first, *(f"{word} {k}" for k in range(2, 10_000))] if name not in taken)

@@ -2,6 +2,7 @@
 
 import logging
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 from uuid import UUID
@@ -10,6 +11,7 @@ from PySide6.QtCore import QObject, Qt, Signal
 from PySide6.QtWidgets import QFileDialog
 
 from app.pages.found_page import FoundPage
+from app.recording_names import ShownName, shown_names, with_shown_names
 from app.reports.diagnostics import write_diagnostics
 from app.reports.proposed_names import free_name, session_name
 from app.storage.audit import about
@@ -91,7 +93,12 @@ class DiagnosticsController(QObject):
         others = {recording.name for recording in self._analysis.recordings} - {self._recording.name}
         placed = [(finding, set(finding.where.split(", "))) for finding in self._analysis.findings]
         parts = {str(part) for part in (self._joint, self._joint.proximal, self._joint.distal)}
-        return [finding for finding, where in placed if parts & where and not where & others]
+        found = [finding for finding, where in placed if parts & where and not where & others]
+        return [with_shown_names(finding, self._names) for finding in found]
+
+    @property
+    def _names(self) -> dict[str, ShownName]:
+        return shown_names(self._session.recordings) if self._session is not None else {}
 
     def _on_joint_chosen(self, joint: str) -> None:
         self._joint = Joint(joint)
@@ -103,7 +110,13 @@ class DiagnosticsController(QObject):
             self._page.show_nothing(self._joint)
         else:
             assert self._session is not None
-            self._page.show_found(found, self._noticed(), self._session.is_simulated)
+            names = self._names
+            called = replace(
+                found,
+                walk=str(names.get(found.walk, found.walk)),
+                from_recordings=tuple(str(names.get(name, name)) for name in found.from_recordings),
+            )
+            self._page.show_found(called, self._noticed(), self._session.is_simulated)
 
     def _on_failed(self, error: Exception) -> None:
         _log.error("how a joint was found could not be shown", exc_info=error)

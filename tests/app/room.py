@@ -6,6 +6,7 @@ from PySide6.QtCore import QPoint, QRect, QRectF, Qt
 from PySide6.QtGui import QFontMetrics
 from PySide6.QtWidgets import QAbstractButton, QAbstractScrollArea, QApplication, QComboBox, QLabel, QLineEdit, QWidget
 
+from app.widgets.choice import Choice
 from app.widgets.painted_text import PaintedText
 
 SLACK = 1.5  # px: metrics are rounded up, letters are not that wide
@@ -50,7 +51,8 @@ def _cut_of(widget: QWidget, page: QWidget) -> Iterator[str]:
             yield from _cut_of_label(widget)
             yield from _cut_by_parents(_label_ink(widget), widget, page, widget.text())
     elif isinstance(widget, (QAbstractButton, QComboBox)):
-        needed = widget.sizeHint()
+        # what was typed may be cut in a choice, whose tooltip has it whole
+        needed = widget.minimumSizeHint() if isinstance(widget, Choice) else widget.sizeHint()
         words = widget.text() if isinstance(widget, QAbstractButton) else widget.currentText()
         if words and (needed.width() > own.width() + SLACK or needed.height() > own.height() + SLACK):
             yield _said(widget, words, f"needs {needed.width()} x {needed.height()}")

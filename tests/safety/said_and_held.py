@@ -245,9 +245,9 @@ def _of_results(wizard: "Wizard", visit: "Visit", held: HeldLibrary) -> Iterator
     if type(frame.currentWidget()).__name__ != "ResultPage":
         return
     choice = frame.currentWidget().recordings
-    said = " | ".join(choice.itemText(k) for k in range(choice.count()))
+    said = [choice.itemText(k) for k in range(choice.count())]
     for name, condition, is_kept, *_ in walks:
-        if is_kept and name not in said and (not condition or condition not in said):
+        if is_kept and not any(_calls(one, name, condition) for one in said):
             yield f"the results offer {said!r}, held is the kept {name!r} ({condition!r}), too"
 
 
@@ -271,13 +271,19 @@ def _of_banner(banner: "Banner", held: HeldLibrary) -> Iterator[str]:
         return
     text = banner.text
     one = RECOVERED_ONE.search(text)
-    if one and not held.ask(f"SELECT 1 FROM recordings WHERE state IN {READ_BACK} AND name = ?", one[1]):
+    rows = held.ask(f"SELECT name, condition FROM recordings WHERE state IN {READ_BACK}") if one else []
+    if one and not any(_calls(one[1], name, condition) for name, condition in rows):
         yield f"the banner says {text!r}, held is no recovered {one[1]!r}"
     many = RECOVERED_MANY.search(text)
     if many and held.ask(f"SELECT COUNT(*) FROM recordings WHERE state IN {READ_BACK}")[0][0] < int(many[1]):
         yield f"the banner says {text!r}, held are fewer"
     if "safe on the disk" in text and not any((held.folder / "recordings").glob("*.journal")):
         yield f"the banner says {text!r}, there is no journal"
+
+
+def _calls(said: str, name: str, condition: str) -> bool:
+    """Whether a recording may be called so: by its condition or name, with a letter and number before it or none."""
+    return re.fullmatch(rf"([A-Z]\d* )?{re.escape(condition or name)}", said) is not None
 
 
 def left_open(held: HeldLibrary, since: str = "") -> list[str]:

@@ -70,8 +70,7 @@ def comparison_of(request: ReportRequest) -> Comparison | None:
     if len(request.walks) < 2:
         return None
     conditions = [_condition(visit, name, request.walks) for name in request.walks]
-    lettered = [replace(part, letter=letter) for letter, part in zip("ABC", conditions, strict=False)]
-    return Comparison(Contrast.CONDITIONS, tuple(lettered), is_simulated=is_simulated)
+    return Comparison(Contrast.CONDITIONS, tuple(conditions), is_simulated=is_simulated)
 
 
 def not_compared_page(request: ReportRequest) -> list[Block]:
@@ -98,11 +97,14 @@ def _condition_typed(condition: str) -> str:
 
 
 def _condition(visit: AnalysedVisit, name: str, chosen: Sequence[str]) -> Part:
+    """All walks of this one's condition; this one alone where several of them are chosen."""
+    shown = visit.shown_names[name]
     for part in conditions_of(visit.analysis, visit.session.recordings):
         names = {walk.name for walk in part.walks}
         if name in names:
-            return part if len(names.intersection(chosen)) == 1 else replace(part, walks=(visit.walk(name),))
-    return Part("", visit.recording(name).condition or name, (visit.walk(name),), {})
+            is_only = len(names.intersection(chosen)) == 1
+            return part if is_only else replace(part, letter=shown.letter, walks=(visit.walk(name),))
+    return Part(shown.letter, visit.recording(name).condition or name, (visit.walk(name),), {})
 
 
 def _day_of(started: str) -> str:

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from app.recording_names import with_shown_names
 from app.reports.patient_report import quality
 from app.reports.patient_report.facts import Facts
 from app.reports.patient_report.quality import Cause
@@ -117,7 +118,10 @@ def _of_finding(finding: Finding) -> QualityLine:
 
 
 def _noticed(visit: AnalysedVisit, recording: str, gates: set[str]) -> list[Finding]:
-    """What was noticed of this recording or of the session that no verdict says already, the gravest first."""
+    """What was noticed of this recording or of the session that no verdict says already, the gravest first.
+
+    Where it was found is told as the reader knows it.
+    """
     others = {one.name for one in visit.session.recordings} - {recording} if recording else set()
     found = [
         finding
@@ -126,7 +130,11 @@ def _noticed(visit: AnalysedVisit, recording: str, gates: set[str]) -> list[Find
         and gates.isdisjoint(GATES_OF_FINDINGS.get(finding.key, ()))
         and others.isdisjoint(finding.where.split(", "))
     ]
-    return sorted(found, key=lambda finding: finding.severity is not Severity.GRAVE)
+    names = visit.shown_names
+    return [
+        with_shown_names(finding, names)
+        for finding in sorted(found, key=lambda finding: finding.severity is not Severity.GRAVE)
+    ]
 
 
 def _in_words(facts: Facts) -> tuple[str, str]:

@@ -62,14 +62,14 @@ def who(request: ReportRequest) -> str:
 def what(request: ReportRequest, facts: Facts, comparison: Comparison | None) -> str:
     """What this report is of: joints and legs, the walk and when, by whom; and what is compared with what."""
     recording = request.visit.recording(facts.walk.name)
-    condition = typed(recording.condition or facts.walk.name, CONDITION_LENGTH)
+    walk = typed(str(request.visit.shown_names[facts.walk.name]), CONDITION_LENGTH)
     speed = facts.feet.speed_m_s
     started = recording.started or request.visit.session.started
     operator, clinic = request.operator or request.visit.session.operator, request.clinic
     parts = [
         measured(facts),
         _sensors(request, facts),
-        tr("walk: {condition}").format(condition=condition),
+        tr("walk: {walk}").format(walk=walk),
         f"{fixed(speed, 2)}\u00a0m/s" if math.isfinite(speed) else "",
         tr("recorded {moment}").format(moment=moment(started)) if started else "",
         tr("by {operator}").format(operator=typed(operator, CONDITION_LENGTH)) if operator else "",

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from datetime import datetime
 
+from app.recording_names import with_shown_names
 from app.reports.patient_report import quality
 from app.reports.patient_report.blocks import Block, bullets, heading, note
 from app.reports.patient_report.evidence import evidence
@@ -64,7 +65,9 @@ def _remarks(request: ReportRequest, facts: Facts) -> list[Block]:
         and not others.intersection(finding.where.split(", "))
     ]
     causes = quality.caveats(facts)
-    said = [*(causes if len(causes) > 1 else []), *(plain(sentence(finding)) for finding in _joined(told))]
+    names = request.visit.shown_names
+    noticed = [plain(sentence(with_shown_names(finding, names))) for finding in _joined(told)]
+    said = [*(causes if len(causes) > 1 else []), *noticed]
     return [heading(tr("Remarks on this recording")), bullets(said)] if said else []
 
 

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
+from app.recording_names import ShownName, shown_names
 from app.reports.course_lanes import CourseVisit
 from core.results import Analysis, RecordingAnalysis
 from core.samples import Recording, RecordingKind, Session
@@ -35,6 +36,11 @@ class AnalysedVisit:
     def recording(self, name: str) -> Recording:
         """Give the recording as it was told."""
         return next(recording for recording in self.session.recordings if recording.name == name)
+
+    @property
+    def shown_names(self) -> dict[str, ShownName]:
+        """What each recording is called, by its name."""
+        return shown_names(self.session.recordings)
 
     def walk_names(self) -> tuple[str, ...]:
         return tuple(r.name for r in self.analysis.recordings if r.kind is RecordingKind.WALKING)

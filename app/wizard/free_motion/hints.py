@@ -5,9 +5,9 @@ from collections.abc import Collection
 from dataclasses import dataclass, replace
 
 from app.icons import Icon
-from app.widgets.gauge import AXIS_FROM_DEG, CENTRE_FROM_MM, two_digits
+from app.widgets.gauge import AXIS_FROM_DEG, CENTRE_FROM_MM, CLOSED, GaugeState, gauge_face, two_digits
 from app.widgets.hint import Hint
-from app.wording import name_of, tr
+from app.wording import capitalised, name_of, tr, tr_n
 from core.body import Joint, Segment, Side, Site
 from core.live.excitation import HUMAN, PROSTHESIS, ExcitationState, Missing, Movement, Wanted
 from core.live.free_motion import FreeMotionState
@@ -53,14 +53,53 @@ def unplaced_hint() -> Hint:
     return Hint(tr("Move the left leg first"), how, tr("Then the right one."))
 
 
-def last_hint(motion: FreeMotionState) -> Hint:
-    """When nothing is left to do: enough motion, or some joints only as good as it gave.
+def judged(motion: FreeMotionState, prosthetic_sides: frozenset[Side]) -> dict[Joint, GaugeState]:
+    """Give what is said of each joint, whichever is asked for now: the gauge's word is the rail's and the hint's."""
+    return {
+        joint: gauge_face(joint, state, wanted_of(joint, prosthetic_sides), is_now=False).state
+        for joint, state in motion.joints.items()
+    }
 
-    How well each joint is known is the walk's verdict: an ankle's axis comes from walking, too.
+
+def enough_for(motion: FreeMotionState, prosthetic_sides: frozenset[Side]) -> str:
+    """Say of which joints the motion is enough; an ankle counts by its centre, and one that is no hinge by its name.
+
+    How well a joint is known is the walk's verdict, not this one's: an ankle's axis is found while walking.
     """
-    if all(state.is_closed for state in motion.joints.values()):
-        how = tr("Walking comes next, by itself. It settles the ankles.")
+    states = judged(motion, prosthetic_sides)
+    if states and all(state in CLOSED for state in states.values()):
+        return tr("enough motion")
+    knees = [state for joint, state in states.items() if joint.is_knee]
+    ankles = [state for joint, state in states.items() if not joint.is_knee]
+    of_knees = tr_n("{enough} of {count} knee", "{enough} of {count} knees", len(knees))
+    of_ankles = tr_n("{enough} of {count} ankle centre", "{enough} of {count} ankle centres", len(ankles))
+    counts = [
+        words.format(enough=sum(state in CLOSED for state in of_kind), count=len(of_kind))
+        for words, of_kind in ((of_knees, knees), (of_ankles, ankles))
+        if of_kind
+    ]
+    said = tr("enough motion for {counts}").format(counts=", ".join(counts))
+    loose = tr("{joint}: no hinge")
+    named = [loose.format(joint=name_of(joint)) for joint, state in states.items() if state is GaugeState.LOOSE]
+    return "; ".join([said, *named])
+
+
+def last_hint(motion: FreeMotionState, prosthetic_sides: frozenset[Side] = frozenset()) -> Hint:
+    """When nothing is left to do: enough motion, a joint that is no hinge, or some only as good as it gave."""
+    states = judged(motion, prosthetic_sides)
+    then = tr("Walking comes next, by itself.")
+    if all(state in CLOSED for state in states.values()):
+        ankles = [joint for joint in states if not joint.is_knee]
+        finds = tr_n("It finds the ankle's axis.", "It finds the ankles' axes.", len(ankles)) if ankles else ""
+        how = " ".join(filter(None, [then, finds]))
         return Hint(tr("Enough motion"), how, tr("Walking comes next."), Icon.CHECK)
+    loose = [joint for joint, state in states.items() if state is GaugeState.LOOSE]
+    if loose and all(state.is_closed for state in motion.joints.values()):
+        sentence = tr("{joint}: no hinge").format(joint=capitalised(name_of(loose[0])))
+        if len(loose) > 1:
+            sentence = tr("{count} joints: no hinges").format(count=len(loose))
+        angle = tr("The angle is the part about the main axis.")
+        return Hint(sentence, f"{angle} {then}", tr("Walking comes next."), Icon.WARNING)
     how = tr("Go on to walking, or repeat one leg.")
     return Hint(tr("As good as it gets"), how, how, Icon.INFO)
 
@@ -74,13 +113,13 @@ def played_hint(has_played: bool) -> Hint:
     return Hint(tr("The replay has ended"), how, tr("Record again, or go on."), Icon.INFO)
 
 
-def recorded_hint(motion: FreeMotionState) -> Hint:
+def recorded_hint(motion: FreeMotionState, prosthetic_sides: frozenset[Side] = frozenset()) -> Hint:
     """Once it is recorded: what came of it, as far as that is known; of an earlier day it is not."""
     how = tr("Go on to walking, or repeat one leg.")
     if not motion.joints:
         return Hint(tr("Free motion is recorded"), how, how, Icon.CHECK)
     if motion.is_done:
-        return replace(last_hint(motion), how=how, how_short=how)
+        return replace(last_hint(motion, prosthetic_sides), how=how, how_short=how)
     return Hint(tr("Stopped early"), how, how, Icon.INFO)
 
 
@@ -107,7 +146,7 @@ class Asked:
 
 
 class HintHold:
-    """Keeps a hint on the screen for HELD_S, unless its joint is ready before.
+    """Keeps a hint on the screen for HELD_S, unless its joint has enough before.
 
     A joint whose motion brought no more is asked for once more when nothing else is left: another was the weakest
     meanwhile, or the motion was not the one that was meant.
@@ -136,14 +175,14 @@ class HintHold:
         else:
             self._settled_s = None
         if weakest is None:
-            return Asked(last_hint(motion) if motion.is_done else first_hint())
+            return Asked(last_hint(motion, self._prosthetic_sides) if motion.is_done else first_hint())
         missing = motion.joints[weakest].missing
         if missing is None or not any(state.moved_s for state in motion.joints.values()):
             return Asked(first_hint())
         return Asked(hint_for(missing, self._prosthetic_sides), weakest, missing.site)
 
     def _given_up(self, motion: FreeMotionState, now_s: float) -> Joint | None:
-        """The worst joint that is not ready and was not asked for a second time, or is just being."""
+        """The worst joint that wants more motion and was not asked for a second time, or is just being."""
         left = {joint: state.wanting for joint, state in motion.joints.items() if not state.is_closed}
         for joint, since_s in self._once_more.items():
             if joint in left and now_s - since_s < ONCE_MORE_S:

@@ -13,12 +13,15 @@ from app.sounds import Sound
 from app.storage.stored import RecordingState
 from app.theme import ThemeNotifier
 from app.widgets.action_bar import BarAction, BarState
+from app.widgets.gauge import CLOSED
 from app.widgets.rail_row import StepState
 from app.wizard.free_motion.estimator import FreeMotionEstimator, UnplacedFreeMotionEstimator
 from app.wizard.free_motion.hints import (
     Asked,
     HintHold,
+    enough_for,
     first_hint,
+    judged,
     played_hint,
     price_of_stopping,
     recorded_hint,
@@ -41,7 +44,7 @@ if TYPE_CHECKING:
     from core.placement.chains import Chains
 
 SENSORS = 1  # the step that says who wears what
-SETTLED_MS = 2000  # all ready: time to see it, and to say otherwise
+SETTLED_MS = 2000  # enough motion: time to see it, and to say otherwise
 TICKS = 3  # of 30 Hz: ten looks a second
 KIND = RecordingKind.FREE_MOTION
 
@@ -74,7 +77,7 @@ class FreeMotionStep(Step):
         self._elapsed_s: float | None = None
         self._kept_labels: set[tuple[Site, ...]] = set()
         self._doubted: tuple[Site, ...] = ()
-        self._ready: frozenset[Joint] = frozenset()
+        self._enough: frozenset[Joint] = frozenset()  # joints with enough motion, as their gauges say
         self._replaced: FreeMotionState | None = None  # of the free motion that is in force while another is recorded
         self._left = "", ""  # what is to be said of one that was left before its end
         self._plays_s: float | None = None  # for how long a replayed patient moves
@@ -111,16 +114,13 @@ class FreeMotionStep(Step):
             return ""
         if not joints:
             return tr("cut short") if self._is_cut_short else ""
-        ready = sum(state.is_closed for state in joints.values())
-        if ready == len(joints):
-            return tr("enough motion")
-        return tr("{ready} of {count} ready").format(ready=ready, count=len(joints))
+        return enough_for(self._motion, self._visit.prosthetic_sides)
 
     @property
     def state(self) -> StepState:
         if not self._has_moved:
             return StepState.TODO
-        is_whole = all(state.is_closed for state in self._motion.joints.values()) and not self._is_cut_short
+        is_whole = len(self._with_enough()) == len(self._motion.joints) and not self._is_cut_short
         return StepState.DONE if is_whole else StepState.ATTENTION
 
     @property
@@ -274,7 +274,7 @@ class FreeMotionStep(Step):
         self._repeated, self._motion, self._elapsed_s = side, self._before, None
         self._then, self._again_side = AfterRecording.ITSELF, None
         self._side, self._doubted = SideQuestion(), ()
-        self._ready = frozenset(joint for joint, state in self._motion.joints.items() if state.is_closed)
+        self._enough = self._with_enough()
         if side is not None:
             self._visit.place_sensors(only=side)
         self._plays_s = None
@@ -326,17 +326,22 @@ class FreeMotionStep(Step):
             self._doubt(view.exchanged)
         else:
             self._ask_for_side(view.chains if view.is_side_open else None)
-        ready = frozenset(joint for joint, state in self._motion.joints.items() if state.is_closed)
-        if ready - self._ready:
+        enough = self._with_enough()
+        if enough - self._enough:
             sounds.play(Sound.READY)
-        self._ready = ready
-        is_whole = self._is_done and len(ready) == len(self._motion.joints) and not self._doubted
+        self._enough = enough
+        is_whole = self._is_done and all(one.is_closed for one in self._motion.joints.values()) and not self._doubted
         if is_whole and not self._settled.isActive():
             self._settled.start()
         elif not is_whole:
             self._settled.stop()
         if was_done != self._is_done or had_joints != bool(self._motion.joints) or self._ticks % (5 * TICKS) == 0:
             self.changed.emit()  # what stopping costs is read, not watched
+
+    def _with_enough(self) -> frozenset[Joint]:
+        """The joints whose gauge says that the motion is enough: one that is no hinge is not among them."""
+        states = judged(self._motion, self._visit.prosthetic_sides)
+        return frozenset(joint for joint, state in states.items() if state in CLOSED)
 
     def _joined(self, motion: FreeMotionState) -> FreeMotionState:
         """With what the other leg's motion told before, if one leg alone is repeated."""
@@ -385,9 +390,8 @@ class FreeMotionStep(Step):
         elif not is_kept:
             self._left = tr("Free motion was left before a leg had moved, so it does not count."), again
         else:
-            ready = sum(state.is_closed for state in joints.values())
-            what = tr("Free motion was left before its end and is kept: {ready} of {count} joints are ready.")
-            self._left = what.format(ready=ready, count=len(joints)), again
+            what = tr("Free motion was left before its end and is kept: {enough}.")
+            self._left = what.format(enough=enough_for(self._motion, self._visit.prosthetic_sides)), again
         self._visit.recordings.stop(is_kept=is_kept)
 
     # what somebody has to answer
@@ -473,7 +477,8 @@ class FreeMotionStep(Step):
     def _asked(self) -> Asked:
         acquisition, sensors = self._visit.sensors.acquisition, self._visit.sensors
         if not self._is_recording:
-            return Asked(recorded_hint(self._motion) if self._has_moved else first_hint())
+            prosthetic = self._visit.prosthetic_sides
+            return Asked(recorded_hint(self._motion, prosthetic) if self._has_moved else first_hint())
         if self._is_played and not self._is_done:
             return Asked(played_hint(has_played=bool(self._plays_s)))
         if sensors.is_left_to_motion and not sensors.site_of:

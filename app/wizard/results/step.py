@@ -12,6 +12,7 @@ from PySide6.QtWidgets import QWidget
 from app.icons import Icon
 from app.pages.correct_page import CorrectPage, JointLine, WalkLine
 from app.pages.sentence_page import SentencePage
+from app.recording_names import shown_names, where_shown
 from app.reports.patient_report.dates import date_of
 from app.reports.visits import WalkedVisit, conditions_in_words, parts_of_visits, visits_by_condition
 from app.theme import ThemeNotifier
@@ -249,7 +250,7 @@ class ResultsStep(Step):
     def _show_corrections(self) -> None:
         page = self._correct_page()
         visit = self._visit
-        walks = []
+        walks, names = [], visit.recordings.shown_names
         for recording in visit.recordings.walks:
             strides = visit.evaluation.strides(recording.details.name)
             counted = ", ".join(f"{side[0].upper()} {count}" for side, count in strides.items())
@@ -257,7 +258,7 @@ class ResultsStep(Step):
             walks.append(
                 WalkLine(
                     str(recording.id),
-                    recording.details.name,
+                    str(names[recording.details.name]),
                     told,
                     recording.details.condition,
                     recording.details.is_kept,
@@ -295,12 +296,10 @@ class ResultsStep(Step):
         recording = self._recording(key)
         if recording is None or recording.details.condition == condition:
             return
-        before = recording.details.condition
+        before, walk = recording.details.condition, self._visit.recordings.shown_names[recording.details.name]
         self._change_condition(key, condition)
         self._offer(
-            tr("{walk} is {condition} now.").format(
-                walk=recording.details.name, condition=condition or tr("without condition")
-            ),
+            tr("{walk} is {condition} now.").format(walk=walk, condition=condition or tr("without condition")),
             lambda: self._change_condition(key, before),
         )
 
@@ -312,9 +311,12 @@ class ResultsStep(Step):
         recording = self._recording(key)
         if recording is None or recording.details.is_kept == is_kept:
             return
+        name, told = recording.details.name, self._visit.recordings.told
+        counting = [replace(one, is_kept=True) if one.name == name else one for one in told]  # else it has no letter
         self._keep(key, is_kept)
         said = tr("{walk} counts.") if is_kept else tr("{walk} is left out.")
-        self._offer(said.format(walk=capitalised(recording.details.name)), lambda: self._keep(key, not is_kept))
+        walk = capitalised(str(shown_names(counting)[name]))
+        self._offer(said.format(walk=walk), lambda: self._keep(key, not is_kept))
 
     def _keep(self, key: str, is_kept: bool) -> None:
         if (recording := self._recording(key)) is not None:
@@ -387,7 +389,7 @@ class ResultsStep(Step):
 
     def _on_progressed(self, share: float, what: str) -> None:
         if self._is_in_sight():
-            words = place(what)
+            words = place(where_shown(what, self._visit.recordings.shown_names))
             self.page.working.show_progress(share, words[:1].upper() + words[1:])
 
     def _on_sentence_pressed(self) -> None:

@@ -39,12 +39,14 @@ class StrideChoice(QObject):
         middle_s = (line.start_s + line.end_s) / 2
         times_s = tuple(sorted((*others, middle_s))) if is_left_out else others
         told = tr("{stride} of {walk} is left out.") if is_left_out else tr("{stride} of {walk} counts again.")
-        self._change(recording, {**before, line.side: times_s}, told.format(stride=line.name, walk=walk))
+        said = told.format(stride=line.name, walk=self._called(walk))
+        self._change(recording, {**before, line.side: times_s}, said)
 
     def take_all_in(self, walk: str) -> None:
         """Let all strides of a walk count that were left out by hand."""
         if (recording := self._recording(walk)) is not None:
-            self._change(recording, {}, tr("All strides of {walk} count that can be used.").format(walk=walk))
+            said = tr("All strides of {walk} count that can be used.").format(walk=self._called(walk))
+            self._change(recording, {}, said)
 
     def _change(self, recording: "SessionRecording", left_out_s: LeftOut, told: str) -> None:
         before = self._left_out(recording)
@@ -63,6 +65,9 @@ class StrideChoice(QObject):
 
     def _recording(self, walk: str) -> "SessionRecording | None":
         return next((recording for recording in self._recordings.walks if recording.details.name == walk), None)
+
+    def _called(self, walk: str) -> str:
+        return str(self._recordings.shown_names[walk])
 
     def _left_out(self, recording: "SessionRecording") -> LeftOut:
         return self._wanted.get(recording.id, recording.details.left_out_s)

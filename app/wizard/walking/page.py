@@ -15,6 +15,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.icons import Icon
+from app.recording_names import LETTERS
 from app.theme import ThemeNotifier
 from app.widgets.focus_ring import NO_RING
 from app.widgets.notice import Notice
@@ -272,7 +273,7 @@ class WalkingPage(Themed):
 
     def _name_next(self) -> None:
         """Say which letter the next walk gets: the one of its label, or the next."""
-        letters = {row.label: row.letter for row in self.rows}
+        letters = {row.label: _condition_letter(row) for row in self.rows if row.letter and not row.is_of_old_straps}
         self.next.name(letters.get(self.next.chooser.choice) or _next_letter(self.rows))
 
     def _on_chosen(self, label: str) -> None:
@@ -297,9 +298,11 @@ class WalkingPage(Themed):
         self._fit()
 
 
+def _condition_letter(row: WalkRow) -> str:
+    return row.letter.rstrip("0123456789")
+
+
 def _next_letter(rows: tuple[WalkRow, ...]) -> str:
-    """Give the letter after the last; none where letters have run out or mean something else."""
-    last = max((row.letter for row in rows), default="")
-    if not last:
-        return "A"
-    return chr(ord(last) + 1) if len(last) == 1 and "A" <= last < "Z" else ""
+    """Give the letter after the last; none where letters have run out."""
+    last = max(map(_condition_letter, rows), default="")
+    return LETTERS[LETTERS.index(last) + 1 :][:1] if last else LETTERS[0]

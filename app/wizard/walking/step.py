@@ -26,7 +26,7 @@ from app.wizard.walk_messages import (
     slip_message,
 )
 from app.wizard.walking.estimator import WalkingEstimator
-from app.wizard.walking.walk_labels import label_after, labels_for, letters_of
+from app.wizard.walking.walk_labels import label_after, labels_for
 from app.wizard.walking.walk_list import WalkRow, WalkState
 from app.wording import tr
 from core.body import Joint, Side
@@ -89,7 +89,7 @@ class WalkingStep(Step):
     def note(self) -> str:
         if self._visit.recordings.is_recording and self._visit.recordings.ongoing is not None:
             if self._visit.recordings.ongoing.details.kind is RecordingKind.WALKING:
-                return tr("Recording walk {number}").format(number=len(self._visit.recordings.walks) + 1)
+                return tr("Recording {walk}").format(walk=self._called(self._visit.recordings.ongoing.details.name))
             return ""
         if self._asked is not None:
             return tr("keep or discard?")
@@ -180,7 +180,7 @@ class WalkingStep(Step):
             return BarState(
                 primary=BarAction(tr("Stop walk"), tr("Space"), Icon.STOP),
                 recording=RecordingNote(
-                    tr("Recording {label}").format(label=recordings.ongoing.details.condition),
+                    tr("Recording {walk}").format(walk=self._called(recordings.ongoing.details.name)),
                     " ".join(filter(None, [self._saved(), tr("The space bar stops it, with a sound.")])),
                     elapsed_s,
                     sounds.is_on(),
@@ -280,10 +280,11 @@ class WalkingStep(Step):
         sounds.play(Sound.STOP)
 
     def _keep(self, recording: "SessionRecording", is_kept: bool) -> None:
+        called = self._called(recording.details.name)
         self._visit.recordings.keep(recording, is_kept)
         if not is_kept:
             self._discarded = recording.id
-            self.offered.emit(tr("{label} discarded.").format(label=recording.details.condition))
+            self.offered.emit(tr("{walk} discarded.").format(walk=called))
         self._show()
 
     # what is live
@@ -375,7 +376,7 @@ class WalkingStep(Step):
             return self._message_of_ongoing()
         asked = self._asked
         if asked is not None and asked.stored.state is RecordingState.RECOVERED:
-            return recovered_message(asked.details.name, _length_s(asked))
+            return recovered_message(self._called(asked.details.name), _length_s(asked))
         return self._few_strides_message()
 
     def _message_of_ongoing(self) -> Message:
@@ -405,6 +406,9 @@ class WalkingStep(Step):
     @property
     def _used(self) -> list[str]:
         return [recording.details.condition for recording in self._visit.recordings.walks]
+
+    def _called(self, name: str) -> str:
+        return str(self._visit.recordings.shown_names[name])
 
     @property
     def _asked(self) -> "SessionRecording | None":
@@ -437,7 +441,8 @@ class WalkingStep(Step):
             else None
         )
         conditions = [*self._used, *([ongoing.details.condition] if ongoing is not None else [])]
-        letters = letters_of(conditions)
+        names = recordings.shown_names
+        strapped_last = {recording.id for recording in recordings.since_strapped}
         rows = []
         for recording in recordings.walks:
             state = WalkState.KEPT if recording.details.is_kept else WalkState.DISCARDED
@@ -445,15 +450,11 @@ class WalkingStep(Step):
                 is_recovered = recording.stored.state is RecordingState.RECOVERED
                 state = WalkState.RECOVERED if is_recovered else WalkState.ASKING
             strides = max(self._strides_of(recording).values(), default=None)
-            letter = letters.get(recording.details.condition, "")
-            rows.append(
-                WalkRow(
-                    str(recording.id), letter, recording.details.condition or recording.details.name, state, strides
-                )
-            )
+            name, is_old = names[recording.details.name], recording.id not in strapped_last
+            rows.append(WalkRow(str(recording.id), name.letter, name.words, state, strides, is_old))
         if ongoing is not None:
-            label = ongoing.details.condition
-            rows.append(WalkRow("", letters.get(label, ""), label or ongoing.details.name, WalkState.RECORDING))
+            name = names[ongoing.details.name]
+            rows.append(WalkRow("", name.letter, name.words, WalkState.RECORDING))
         self._page.show_walks(tuple(rows), self._facts(asked) if asked is not None else "")
         self._page.show_labels(labels_for(self._visit.patient.details, conditions), self._label)
         self.changed.emit()

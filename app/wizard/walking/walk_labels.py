@@ -1,13 +1,13 @@
-"""What may the next walk be called, and which letter stands for which condition on every chart?"""
+"""What may the next walk be called?"""
 
 from collections.abc import Sequence
 
+from app.recording_names import LETTERS
 from app.wording import tr
 from core.samples import Patient
 
 MOST = 9  # as many as there are digits on caps
 ALIGNMENTS = 3
-LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
 
 
 def labels_for(patient: Patient, used: Sequence[str]) -> tuple[str, ...]:
@@ -37,11 +37,6 @@ def label_after(patient: Patient, used: Sequence[str]) -> str:
     if used or patient.prosthetic_side in ("left", "right", "both"):
         return next((label for label in alignments if label not in used), alignments[-1])
     return tr("Barefoot") if "barefoot" in patient.aids else tr("Shoes")
-
-
-def letters_of(labels: Sequence[str]) -> dict[str, str]:
-    """Give each condition its letter, in the order in which they were first walked."""
-    return dict(zip(dict.fromkeys(labels), LETTERS, strict=False))
 
 
 def _alignments(count: int) -> list[str]:

@@ -43,13 +43,17 @@ class WalkState(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class WalkRow:
-    """One walk: `letter` names its condition on every chart; `strides` None while nobody has counted them."""
+    """One walk as it is called everywhere: `letter` is its condition's, with the walk's number from the second on.
+
+    `strides` is None while nobody has counted them. `is_of_old_straps`: sensors were strapped anew since.
+    """
 
     id: str
     letter: str
     label: str
     state: WalkState
     strides: int | None = None
+    is_of_old_straps: bool = False
 
     @property
     def note(self) -> str:
@@ -188,11 +192,12 @@ class _ListedWalk(Themed):
         is_same = (walk.id, walk.label, walk.state) == (self._walk.id, self._walk.label, self._walk.state)
         self._is_edited &= is_same  # strides that are counted meanwhile take nobody's words away
         self._walk = walk
+        called = f"{walk.letter} {walk.label}".lstrip()  # apart from others of its condition
         self._label.setText(walk.label)
         self._note.setText(walk.note)
-        self.edit.setAccessibleName(tr("Rename {label}").format(label=walk.label))
+        self.edit.setAccessibleName(tr("Rename {label}").format(label=called))
         had_focus = self.undo.hasFocus()
-        self.undo.setAccessibleName(tr("Keep {label} after all").format(label=walk.label))
+        self.undo.setAccessibleName(tr("Keep {label} after all").format(label=called))
         if had_focus and walk.state is not WalkState.DISCARDED:
             self._owner.setFocus()
         if (mark := MARKS.get(walk.state)) is not None:
@@ -240,6 +245,8 @@ class _ListedWalk(Themed):
             painter.drawRoundedRect(QRectF(self.rect()), radius, radius)
             painter.setBrush(QColor(c.ink))
             painter.drawRoundedRect(QRectF(0, px(4), px(3), self.height() - 2 * px(4)), 1, 1)
+        if not self._walk.letter:  # discarded: no chart has it
+            return
         badge = QRectF(px(10), (self.height() - px(BADGE)) / 2, px(BADGE), px(BADGE))
         painter.setPen(theme.pen(c.ink if is_now else c.control, 1.25))
         painter.setBrush(QColor(c.ink) if is_now else Qt.BrushStyle.NoBrush)

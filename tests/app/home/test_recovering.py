@@ -3,6 +3,7 @@
 from dataclasses import replace
 from pathlib import Path
 from typing import cast
+from uuid import uuid4
 
 import pytest
 
@@ -21,6 +22,7 @@ WHOLE = replace(CUT, footer=Footer("stopped", 0, 0))
 class Row:
     """A recording's row, as far as it is said."""
 
+    id = uuid4()
     details = Recording("walk 3", RecordingKind.WALKING, str(Path("walk_3")), {})
 
 
@@ -36,6 +38,13 @@ def test_a_recording_that_was_cut_short_tells_its_length_and_what_its_end_may_ha
         f"the disk. Look at it, then keep or discard. {recovery_costs()}"
     )
     assert "0.1 s at most in 99 of 100 cases, a power cut up to 0.5 s and what the disk" in recovery_costs()
+
+
+def test_it_is_called_as_in_its_session_and_by_its_own_name_where_that_cannot_be_read() -> None:
+    heard = [Recovered(cast(StoredRecording, Row()), 74.2, (CUT,))]
+    for names, name in (({Row.id: "A2 Barefoot"}, "A2 Barefoot"), ({uuid4(): "A2 Barefoot"}, "walk 3")):
+        ((what, _, _),) = _heard_messages(heard, names)
+        assert what == f"The program was closed while recording. 01:14 of {name} was recovered."
 
 
 def test_one_of_which_only_the_row_was_left_open_is_whole() -> None:

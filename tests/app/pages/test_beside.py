@@ -8,7 +8,7 @@ import pytest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.pages.beside_words import answer_beside, key_figures_beside
+from app.pages.beside_words import answer_beside, beside_columns, key_figures_beside
 from app.pages.result_page import STRIDES, Beside, ResultPage
 from app.reports.beside import beside_last_visit, beside_walk, changes_on_curves, walks_alone
 from app.reports.comparison import Comparison
@@ -23,6 +23,7 @@ from core.verdicts.measurement_error import ComparisonKind, Judgement
 from devices.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
 from devices.walker_body import Tissue
 from tests.app.changed_analysis import recalibrated
+from tests.app.room import settle
 
 MINUS = "\N{MINUS SIGN}"
 
@@ -62,6 +63,10 @@ def page(qtbot: QtBot, qapp: QApplication, analysis: Analysis, session: Session)
     return page
 
 
+def show(page: ResultPage, recording: str) -> None:
+    page.recordings.setCurrentIndex(page.recordings.findData(recording))
+
+
 def choose(page: ResultPage, beside: Beside | str) -> None:
     page.beside.setCurrentIndex(page.beside.findData(beside))
 
@@ -76,9 +81,9 @@ def words_beside(page: ResultPage) -> list[str]:
 
 def test_another_walk_is_offered_with_its_condition_and_the_shown_one_is_not(page: ResultPage) -> None:
     offered = [page.beside.itemText(row) for row in range(page.beside.count())]
-    assert offered == ["Beside the band", "The legs alone", "Beside walk 2, AFO", "Beside the last visit"]
-    page.recordings.setCurrentText("walk 2")
-    assert page.beside.itemText(2) == "Beside walk 1, shoes"
+    assert offered == ["Beside the band", "The legs alone", "Beside B AFO", "Beside the last visit"]
+    show(page, "walk 2")
+    assert page.beside.itemText(2) == "Beside A shoes"
 
 
 def test_the_other_walk_is_drawn_thin_and_named(page: ResultPage, analysis: Analysis, session: Session) -> None:
@@ -89,8 +94,8 @@ def test_the_other_walk_is_drawn_thin_and_named(page: ResultPage, analysis: Anal
     assert [curve.side for curve in chart.described.beside] == list(Side)
     for curve in chart.described.beside:
         assert np.allclose(curve.angle_deg, other.cycle(Joint(f"{curve.side}_knee")).mean)
-    assert words_beside(page) == ["Thin: walk 2.", "Thin: walk 2."]
-    assert "Thin: walk 2." in chart.accessibleDescription()
+    assert words_beside(page) == ["Thin: B AFO.", "Thin: B AFO."]
+    assert "Thin: B AFO." in chart.accessibleDescription()
     assert (chart.described.band, page.band_words) == (None, "")
     choose(page, Beside.BAND)
     assert (chart.described.beside, words_beside(page)) == ((), ["", ""])
@@ -115,7 +120,7 @@ def test_the_table_and_the_key_figures_tell_the_change_with_its_verdict(
     assert {found.error_kind(part) for part in found.others} == {ComparisonKind.ATTACHED}
     (told,) = (figure for figure in page.key_figures.figures if figure.name == "Walking speed")
     assert told.note == f"+{speed.difference.difference:.2f} exceeds error"
-    assert told.words.endswith("beside walk 2.")
+    assert told.words.endswith("beside B AFO.")
     first = page.differs.table.cells.rows[0]
     assert [cell.words for cell in first.cells[1:5:3]] == ["Walking speed, m/s", f"+{speed.difference.difference:.2f}"]
     assert first.cells[-1].words == "exceeds error"
@@ -139,9 +144,29 @@ def test_the_marks_are_those_of_the_change(page: ResultPage, analysis: Analysis,
     marked = changes_on_curves(beside_walk(alone["walk 1"], alone["walk 2"], is_simulated=True))
     shown = [*page.cycles.charts.knee.chart.deviations, *page.cycles.charts.ankle.chart.deviations]
     assert [one.words for one in shown] == [one.words for one in marked]
-    assert all(one.more.endswith("than walk 2") for one in marked)
+    assert all(one.more.endswith("than B AFO") for one in marked)
     same = beside_walk(alone["walk 1"], replace(alone["walk 1"], name="again"), is_simulated=True)
     assert changes_on_curves(same) == []
+
+
+@pytest.mark.parametrize(
+    ("typed", "title", "head"),
+    [
+        ("AFO", "Beside B AFO", "B AFO"),
+        ("AFO with a carbon spring and a wedge", "Beside B AFO with a carbon spring…", "B AFO with a carbon…"),
+    ],
+)
+def test_a_long_name_is_cut_in_the_table_and_whole_where_it_is_read_aloud(
+    page: ResultPage, analysis: Analysis, session: Session, typed: str, title: str, head: str
+) -> None:
+    page.show_visit(AnalysedVisit(with_conditions(session, walk_1="shoes", walk_2=typed), analysis))
+    choose(page, "walk 2")
+    alone = walks_alone(analysis, with_conditions(session, walk_1="shoes", walk_2=typed).recordings)
+    heads = [column.head for column in beside_columns(beside_walk(alone["walk 1"], alone["walk 2"], is_simulated=True))]
+    assert (heads[1].words, heads[3].words) == (title, head)
+    assert (heads[1].said, heads[3].said) == (f"Beside B {typed}", f"B {typed}")
+    settle()
+    assert page.minimumSizeHint().width() <= page.width()
 
 
 def test_a_withheld_joint_has_no_thin_curve_and_no_difference(
@@ -152,7 +177,7 @@ def test_a_withheld_joint_has_no_thin_curve_and_no_difference(
     choose(page, "walk 2")
     knee, ankle = page.cycles.charts.frames
     assert [curve.side for curve in knee.chart.described.beside] == [Side.RIGHT]
-    assert words_beside(page) == ["Thin: walk 2. L: withheld in walk 2.", "Thin: walk 2."]
+    assert words_beside(page) == ["Thin: B AFO. L: withheld in B AFO.", "Thin: B AFO."]
     assert [curve.side for curve in ankle.chart.described.beside] == list(Side)
     alone = walks_alone(gated, session.recordings)
     found = beside_walk(alone["walk 1"], alone["walk 2"], is_simulated=True)
@@ -210,22 +235,22 @@ def test_a_condition_that_no_earlier_visit_has_stands_beside_nothing(
     )
     assert words_beside(page) == ["No earlier visit was walked in this condition."] * 2
     assert page.cycles.charts.knee.chart.described.beside == ()
-    page.recordings.setCurrentText("walk 2")
+    show(page, "walk 2")
     assert words_beside(page) == ["Thin: June."] * 2
 
 
 def test_the_sentence_is_of_what_stands_beside_and_never_of_the_legs(page: ResultPage) -> None:
     of_legs = page.answer.text
     choose(page, "walk 2")
-    assert page.answer.text.startswith("Walking speed: 0.39\N{NO-BREAK SPACE}m/s more than walk 2, ")
+    assert page.answer.text.startswith("Walking speed: 0.39\N{NO-BREAK SPACE}m/s more than B AFO, ")
     assert (
         "Larger than its error (0.08\N{NO-BREAK SPACE}m/s\N{DAGGER})." in page.answer.text
     )  # of two walks, unverified
     assert of_legs not in page.answer.text
-    page.recordings.setCurrentText("walk 2")
+    show(page, "walk 2")
     choose(page, "walk 1")
-    assert page.answer.text.startswith("Walking speed: 0.39\N{NO-BREAK SPACE}m/s less than walk 1, ")
-    page.recordings.setCurrentText("walk 1")
+    assert page.answer.text.startswith("Walking speed: 0.39\N{NO-BREAK SPACE}m/s less than A shoes, ")
+    show(page, "walk 1")
     choose(page, Beside.BAND)
     assert page.answer.text == of_legs
 
@@ -248,11 +273,11 @@ def test_where_no_change_can_be_told_as_one_that_is_said(analysis: Analysis, ses
         return beside_walk(alone["walk 1"], alone["walk 2"], is_simulated=True)
 
     inside, beyond = Judgement.INSIDE_ERROR, Judgement.EXCEEDS_ERROR
-    none = "No change from walk 2 is larger than its error."
+    none = "No change from B AFO is larger than its error."
     assert told(found(), judgement=inside, is_worth_a_sentence=False) == none
-    near = "No change from walk 2 is far larger than its error. The table marks those that exceed it."
+    near = "No change from B AFO is far larger than its error. The table marks those that exceed it."
     assert told(found(), judgement=beyond, is_worth_a_sentence=False) == near
-    nothing = "Nothing can be compared with walk 2."
+    nothing = "Nothing can be compared with B AFO."
     assert told(found(), judgement=Judgement.TOO_FEW_STRIDES, is_worth_a_sentence=False) == nothing
 
 
@@ -272,8 +297,8 @@ def test_a_figure_is_subtracted_before_it_is_rounded(analysis: Analysis, session
         vars(found)["rows"] = (row,)
         return answer_beside(found).first.replace("\N{NO-BREAK SPACE}", " ")
 
-    assert first(1.184, 0.796) == "Walking speed: 0.388 m/s more than walk 2, 1.184 against 0.796."
-    assert first(1.19, 0.80) == "Walking speed: 0.39 m/s more than walk 2, 1.19 against 0.80."
+    assert first(1.184, 0.796) == "Walking speed: 0.388 m/s more than B AFO, 1.184 against 0.796."
+    assert first(1.19, 0.80) == "Walking speed: 0.39 m/s more than B AFO, 1.19 against 0.80."
 
 
 def test_a_leg_that_the_other_walk_has_not_measured_is_named(
@@ -287,4 +312,4 @@ def test_a_leg_that_the_other_walk_has_not_measured_is_named(
     recordings = tuple(bare if one is walk else one for one in analysis.recordings)
     page.show_visit(AnalysedVisit(session, replace(analysis, recordings=recordings)))
     choose(page, "walk 2")
-    assert words_beside(page) == ["Thin: walk 2. L: not measured in walk 2.", "Thin: walk 2."]
+    assert words_beside(page) == ["Thin: B AFO. L: not measured in B AFO.", "Thin: B AFO."]

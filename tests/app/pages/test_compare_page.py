@@ -17,7 +17,7 @@ from app.icons import Icon
 from app.pages.compare_page import CURVES, PLOT, TABLE
 from app.pages.compared_table import comparison_table, side_table_row
 from app.pages.compared_words import conclusion
-from app.pages.result_page import COMPARE, ResultPage
+from app.pages.result_page import ANSWER, COMPARE, STRIDES, WHOLE, ResultPage
 from app.reports.comparison import Comparison, Contrast, Part, compare_sides, conditions_of, first_and_second
 from app.reports.differences import (
     COMPARED_CYCLES,
@@ -43,7 +43,7 @@ from core.verdicts.measurement_error import ComparisonKind, ErrorSource, Judgeme
 from devices.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
 from devices.walker_body import Tissue
 from tests.app.changed_analysis import recalibrated, with_few_strides
-from tests.app.room import words_cut
+from tests.app.room import settle, words_cut
 
 DIGITS = 1e-5
 
@@ -100,6 +100,81 @@ def test_walks_of_one_condition_are_taken_together(parts: tuple[Part, ...]) -> N
     assert [(part.letter, part.name, len(part.walks)) for part in parts] == [("A", "barefoot", 2), ("B", "AFO", 1)]
     one_by_one = [walk.gait[Side.LEFT].strides.is_used.sum() for walk in parts[0].walks]
     assert parts[0].strides(Side.LEFT) == sum(one_by_one)
+
+
+def test_a_walk_is_called_in_the_boxes_of_results_as_its_condition_is_in_the_comparison(
+    page: ResultPage, session: Session
+) -> None:
+    offered = [page.recordings.itemText(row) for row in range(page.recordings.count())]
+    assert offered == ["free motion", "A barefoot", "A2 barefoot", "B AFO"]
+    assert [page.recordings.itemData(row) for row in range(4)] == ["free motion", "walk 1", "walk 2", "walk 3"]
+    chips = [button.text() for button in page.compare.chips.buttons]
+    assert [chip.split(" · ")[0] for chip in chips] == ["A barefoot", "B AFO"]
+    walks = [row for row in range(page.beside.count()) if isinstance(page.beside.itemData(row), str)]
+    assert [page.beside.itemText(row) for row in walks] == ["Beside A2 barefoot", "Beside B AFO"]
+
+
+def test_a_walk_that_gets_another_condition_stays_on_the_screen_under_its_new_name(
+    page: ResultPage, analysis: Analysis, session: Session
+) -> None:
+    page.recordings.setCurrentIndex(page.recordings.findData("walk 3"))
+    renamed = (replace(one, condition="stick") if one.name == "walk 3" else one for one in session.recordings)
+    page.show_visit(AnalysedVisit(replace(session, recordings=tuple(renamed)), analysis))
+    assert (page.recordings.currentData(), page.recordings.currentText()) == ("walk 3", "B stick")
+    assert page.charts.accessibleName() == "Knee and ankle angles of B stick"
+
+
+@pytest.mark.parametrize("condition", ["Barefoot", "Own shoes with insoles of four millimetres"])
+def test_in_a_small_window_no_view_of_a_prosthetic_patient_scrolls_to_and_fro(
+    page: ResultPage, analysis: Analysis, session: Session, condition: str
+) -> None:
+    """With the longest words, what is compared included; a bar that scrolls up and down takes its part of the width."""
+    width, bar = 896, 12  # of a window of 960 x 600, beside the rail
+    told = (replace(one, condition=condition if one.name != "walk 3" else "AFO") for one in session.recordings)
+    patient = replace(session.patient, prosthetic_side="left", affected_side="left")
+    visit = replace(session, recordings=tuple(told), patient=patient)
+    page.set_room(700, 472)  # what was narrower before
+    page.set_room(width, 472)
+    page.set_has_visits(True)
+    page.show_visit(AnalysedVisit(visit, replace(analysis, affected_side=Side.LEFT)))
+    shown = []
+    for view in (ANSWER, COMPARE, WHOLE, STRIDES):
+        page.view.choose(view)
+        page.view.chosen.emit(view)
+        for kind in range(page.compare.kinds.count() if view == COMPARE else 1):
+            page.compare.kinds.setCurrentIndex(kind)
+            settle()
+            shown.append((view, page.compare.kinds.currentText(), page.minimumSizeHint().width()))
+    page.view.choose(ANSWER)
+    page.view.chosen.emit(ANSWER)
+    page.all_figures.click()
+    settle()
+    shown.append(("figures", "", page.minimumSizeHint().width()))
+    assert "Prosthetic against sound side" in {words for _, words, _ in shown}
+    assert [one for one in shown if one[2] > width - bar] == []
+
+
+@pytest.mark.parametrize("widths", [(896,), (700, 896), (1064, 896), (896, 700), (896, 1064), (896, 1700)])
+def test_curves_differences_and_table_can_be_reached_in_a_window_of_any_size(
+    page: ResultPage, widths: tuple[int, ...]
+) -> None:
+    """In one of 960 px their choice lay in the card that the curves hide, or beyond the edge."""
+    for width in widths:
+        page.resize(width, 672)
+        page.set_room(width, 672)
+    settle()
+    choice = page.compare.view
+    assert choice.isVisible() is (widths[-1] < 1700)  # there all of them stand side by side
+    assert words_cut(page) == []
+    page.view.choose(ANSWER)
+    page.view.chosen.emit(ANSWER)
+    assert not choice.isVisible()
+
+
+def test_a_letter_stays_its_conditions_where_another_has_no_strides(analysis: Analysis, session: Session) -> None:
+    walked = tuple(one for one in analysis.recordings if one.name not in ("walk 1", "walk 2"))
+    (part,) = conditions_of(replace(analysis, recordings=walked), session.recordings)
+    assert (part.letter, part.name) == ("B", "AFO")
 
 
 def test_walks_after_strapping_anew_are_of_another_part_and_judged_as_between_visits(

@@ -206,10 +206,10 @@ def free_motion(look: ThemeNotifier) -> QWidget:
     open_face = GaugeFace(
         GaugeState.NOW, GaugeMeasure("11", "°", "1.5°", 0.4, False), GaugeMeasure("34", "mm", "10 mm", 0.3, False)
     )
-    ready = GaugeFace(
-        GaugeState.READY, GaugeMeasure("0.8", "°", "1.5°", 1.0, True), GaugeMeasure("6", "mm", "10 mm", 1.0, True)
+    enough = GaugeFace(
+        GaugeState.ENOUGH, GaugeMeasure("0.8", "°", "1.5°", 1.0, True), GaugeMeasure("6", "mm", "10 mm", 1.0, True)
     )
-    faces = dict.fromkeys(Joint, ready) | {Joint.LEFT_KNEE: open_face}
+    faces = dict.fromkeys(Joint, enough) | {Joint.LEFT_KNEE: open_face}
     hint = Hint(tr("Circle the left lower leg"), tr("Change direction."))
     page.show_state(FreeMotionFace(faces, hint, 7.3, Site.LEFT_SHANK))
     return page

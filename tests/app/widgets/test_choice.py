@@ -1,8 +1,9 @@
-"""Where a box of choices opens: what stands above it stays in sight, whichever line is chosen."""
+"""Where a box of choices opens, what stands above it staying in sight, and what of its words is cut where."""
 
 import pytest
-from PySide6.QtCore import QPoint, QRect
-from PySide6.QtWidgets import QWidget
+from PySide6.QtCore import QEvent, QPoint, QRect
+from PySide6.QtGui import QHelpEvent
+from PySide6.QtWidgets import QApplication, QWidget
 from pytestqt.qtbot import QtBot
 
 from app.theme import ThemeNotifier
@@ -30,6 +31,54 @@ def opened(qtbot: QtBot, top: int, lines: int, chosen: int) -> tuple[QRect, QRec
     found = box, QRect(popup.mapToGlobal(QPoint(0, 0)), popup.size())
     choice.hidePopup()
     return found
+
+
+def shrinking(qtbot: QtBot, *lines: str) -> Choice:
+    choice = Choice(ThemeNotifier(), "Recording")
+    qtbot.addWidget(choice)
+    choice.addItems(lines)
+    choice.let_shrink(120, 240)
+    return choice
+
+
+def tooltip_of(choice: Choice) -> str:
+    point = QPoint(4, 4)
+    QApplication.sendEvent(choice, QHelpEvent(QEvent.Type.ToolTip, point, choice.mapToGlobal(point)))
+    return choice.toolTip()
+
+
+def test_words_that_were_typed_are_cut_where_room_is_short_and_whole_in_the_tooltip(qtbot: QtBot) -> None:
+    choice = shrinking(qtbot, "A Barefoot", "B Own shoes with insoles of four millimetres")
+    assert choice.sizeHint().width() == 240
+    choice.setCurrentIndex(1)
+    choice.resize(choice.minimumSizeHint())
+    assert (choice.width(), choice.is_cut) == (120, True)
+    assert tooltip_of(choice) == "B Own shoes with insoles of four millimetres"
+
+
+def test_words_that_have_their_room_are_not_cut_and_need_no_tooltip(qtbot: QtBot) -> None:
+    choice = shrinking(qtbot, "A", "B Own shoes with insoles of four millimetres")
+    assert choice.minimumSizeHint().width() < 120  # as the word in force asks for
+    choice.resize(choice.minimumSizeHint())
+    assert not choice.is_cut
+    assert tooltip_of(choice) == ""
+
+
+def test_other_boxes_never_cut(qtbot: QtBot) -> None:
+    choice = Choice(ThemeNotifier(), "Paper")
+    qtbot.addWidget(choice)
+    choice.addItems(["A4", "Own shoes with insoles of four millimetres, and the left one raised"])
+    assert choice.minimumSizeHint() == choice.sizeHint()
+    assert choice.sizeHint().width() > 320
+
+
+def test_what_is_cut_in_the_box_is_whole_in_its_list(qtbot: QtBot) -> None:
+    choice = shrinking(qtbot, "A Barefoot", "B Own shoes with insoles of four millimetres")
+    choice.resize(choice.minimumSizeHint())
+    choice.show()
+    choice.showPopup()
+    assert choice.view().width() >= choice.view().sizeHintForColumn(0)
+    choice.hidePopup()
 
 
 @pytest.mark.parametrize("chosen", [0, 3])

@@ -42,7 +42,7 @@ def test_what_is_not_yet_as_wanted_does_not_read_as_if_it_were(value: float, wan
 
 def test_a_knee_has_both_rings_and_shows_figures_without_floors() -> None:
     face = gauge_face(Joint.LEFT_KNEE, state(0.8, 6.2, floor_deg=4.0, is_closed=True), HUMAN, is_now=False)
-    assert face.state is GaugeState.READY
+    assert face.state is GaugeState.ENOUGH
     assert face.axis is not None
     assert face.centre is not None
     assert (face.axis.figure, face.axis.wanted, face.axis.share) == ("0.8", "1.5°", 1.0)
@@ -54,6 +54,13 @@ def test_an_ankle_has_its_centre_only() -> None:
     assert face.axis is None
     assert face.centre is not None
     assert face.centre.figure == "18"
+
+
+def test_of_an_ankle_the_motion_is_enough_for_its_centre_only() -> None:
+    """Its axis is found while walking: nothing here has judged it."""
+    found = state(20, 6, is_closed=True)
+    assert gauge_face(Joint.LEFT_ANKLE, found, HUMAN, is_now=False).state is GaugeState.CENTRE
+    assert gauge_face(Joint.LEFT_KNEE, found, HUMAN, is_now=False).state is GaugeState.ENOUGH
 
 
 def test_a_ring_closes_by_as_much_with_each_halving() -> None:
@@ -105,9 +112,20 @@ def test_a_plateau_keeps_its_figure_and_its_open_ring() -> None:
 def test_a_prosthesis_that_turns_like_no_hinge_is_called_so() -> None:
     loose = state(0.4, 4, floor_deg=6.0, is_closed=True)
     assert gauge_face(Joint.LEFT_KNEE, loose, PROSTHESIS, is_now=False).state is GaugeState.LOOSE
-    assert gauge_face(Joint.LEFT_KNEE, loose, HUMAN, is_now=False).state is GaugeState.READY
+    assert gauge_face(Joint.LEFT_KNEE, loose, HUMAN, is_now=False).state is GaugeState.ENOUGH
     firm = state(0.4, 4, floor_deg=0.6, is_closed=True)
-    assert gauge_face(Joint.LEFT_KNEE, firm, PROSTHESIS, is_now=False).state is GaugeState.READY
+    assert gauge_face(Joint.LEFT_KNEE, firm, PROSTHESIS, is_now=False).state is GaugeState.ENOUGH
+
+
+@pytest.mark.parametrize("joint", [Joint.LEFT_KNEE, Joint.LEFT_ANKLE])
+def test_an_axis_that_is_only_uncertain_is_not_called_no_hinge(joint: Joint) -> None:
+    uncertain = state(11, 4, floor_deg=0.6, is_plateau=True)
+    assert gauge_face(joint, uncertain, PROSTHESIS, is_now=False).state is GaugeState.PLATEAU
+
+
+def test_of_an_ankles_hinge_nothing_is_said_before_its_axis_is_known() -> None:
+    found = state(20, 4, floor_deg=6.0, is_closed=True)
+    assert gauge_face(Joint.LEFT_ANKLE, found, PROSTHESIS, is_now=False).state is GaugeState.CENTRE
 
 
 def test_a_gauge_is_told_to_readers_of_screens(qtbot: QtBot, look: ThemeNotifier) -> None:
@@ -119,3 +137,18 @@ def test_a_gauge_is_told_to_readers_of_screens(qtbot: QtBot, look: ThemeNotifier
     )
     gauge.show_face(GaugeFace(GaugeState.ABSENT, note="No foot sensor: no left ankle angle."))
     assert gauge.accessibleName() == "Left knee, No foot sensor: no left ankle angle."
+
+
+def test_an_ankles_gauge_tells_readers_of_screens_what_it_judges(qtbot: QtBot, look: ThemeNotifier) -> None:
+    said = {}
+    for joint in (Joint.LEFT_ANKLE, Joint.LEFT_KNEE):
+        gauge = Gauge(look, joint)
+        qtbot.addWidget(gauge)
+        gauge.show_face(gauge_face(joint, state(1, 6, is_closed=True), HUMAN, is_now=False))
+        said[joint] = gauge.accessibleName()
+    assert said[Joint.LEFT_ANKLE] == (
+        "Left ankle, axis found while walking, centre 6.0 mm, under 10 mm needed, Enough motion for its centre"
+    )
+    assert said[Joint.LEFT_KNEE] == (
+        "Left knee, axis 1.0°, under 1.5° needed, centre 6.0 mm, under 10 mm needed, Enough motion"
+    )

@@ -71,7 +71,11 @@ def filled(look: ThemeNotifier) -> WizardShell:
         ("Patient", "Left prosthetic", StepState.DONE),
         ("Sensors", "6 of 6 assigned", StepState.DONE),
         ("Stand still", "skipped, printed", StepState.SKIPPED),
-        ("Free motion", "All four ready", StepState.ATTENTION),
+        (
+            "Free motion",
+            "enough motion for 1 of 2 knees, 2 of 2 ankle centres; left knee: no hinge",
+            StepState.ATTENTION,
+        ),
         ("Walking", "3 walks, L 52, R 49", StepState.CURRENT),
         ("Results", "", StepState.TODO),
         ("Report", "", StepState.TODO),

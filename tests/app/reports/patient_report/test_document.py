@@ -164,6 +164,22 @@ def test_what_explains_the_peaks_takes_no_page_of_its_own(request_of_demonstrati
     assert len(texts(make_report(request_of_demonstration))) == 4
 
 
+def test_a_walk_is_called_as_on_the_screen(request_of_alignments: ReportRequest) -> None:
+    assert "walk: C alignment C" in first_page(request_of_alignments)
+    two = replace(request_of_alignments, walks=("walk 2", "walk 3"))
+    assert "Compared, C shown here: B alignment B · C alignment C" in first_page(two)
+    visit = request_of_alignments.visit
+    told = visit.session.recordings
+    alike = tuple(replace(one, condition="shoes" if one.name.startswith("walk") else "") for one in told)
+    same = AnalysedVisit(replace(visit.session, recordings=alike), visit.analysis)
+    first = first_page(replace(two, visit=same))
+    assert "walk: A3 shoes" in first
+    assert "Compared, A3 shown here: A2 shoes · A3 shoes" in first
+    unnamed = tuple(replace(one, condition="") for one in told)
+    bare = AnalysedVisit(replace(visit.session, recordings=unnamed), visit.analysis)
+    assert "walk: walk 3" in first_page(replace(two, visit=bare, walks=("walk 3",)))
+
+
 def test_page_one_alone_says_what_was_measured_and_what_differs(
     request_of_alignments: ReportRequest, request_of_one_leg: ReportRequest
 ) -> None:

@@ -13,11 +13,13 @@ from app.wizard.free_motion.hints import (
     RESTS_S,
     HintHold,
     absent_note,
+    enough_for,
     first_hint,
     hint_for,
     last_hint,
     played_hint,
     price_of_stopping,
+    recorded_hint,
     unplaced_hint,
 )
 from core.body import Joint, Side, Site
@@ -60,6 +62,10 @@ def every_hint() -> Iterator[str]:
     yield played_hint(has_played=False).sentence
     yield last_hint(motion({Joint.LEFT_KNEE: state(1, 9, None, is_closed=True)})).sentence
     yield last_hint(motion({Joint.LEFT_KNEE: state(4, 9, is_plateau=True)})).sentence
+    loose = state(0.4, 4, None, is_closed=True, axis_sd_with_floor_rad=float(np.deg2rad(6.0)))
+    for joint in (Joint.LEFT_KNEE, Joint.RIGHT_KNEE):
+        yield last_hint(motion({joint: loose}), frozenset(Side)).sentence
+    yield last_hint(motion({Joint.LEFT_KNEE: loose, Joint.RIGHT_KNEE: loose}), frozenset(Side)).sentence
 
 
 def test_every_hint_is_read_from_two_metres() -> None:
@@ -106,11 +112,56 @@ def test_a_hint_goes_at_once_when_its_joint_is_settled(is_closed: bool, is_plate
     assert asked.site is Site.RIGHT_SHANK
 
 
-def test_at_the_end_it_says_whether_all_are_ready_or_only_as_good_as_they_get() -> None:
-    ready = state(1, 8, None, is_closed=True)
-    assert last_hint(motion({Joint.LEFT_KNEE: ready})).sentence == "Enough motion"
-    mixed = motion({Joint.LEFT_KNEE: ready, Joint.RIGHT_KNEE: state(4, 8, is_plateau=True)})
+ENOUGH = state(0.4, 4, None, is_closed=True, axis_sd_with_floor_rad=float(np.deg2rad(0.5)))
+LOOSE = replace(ENOUGH, axis_sd_with_floor_rad=float(np.deg2rad(6.0)))
+PROSTHETIC = frozenset({Side.LEFT})
+
+
+def test_at_the_end_it_says_whether_the_motion_is_enough_or_all_only_as_good_as_they_get() -> None:
+    enough = state(1, 8, None, is_closed=True)
+    assert last_hint(motion({Joint.LEFT_KNEE: enough})).sentence == "Enough motion"
+    mixed = motion({Joint.LEFT_KNEE: enough, Joint.RIGHT_KNEE: state(4, 8, is_plateau=True)})
     assert HintHold().ask(mixed, 0.0).hint.sentence == "As good as it gets"
+
+
+@pytest.mark.parametrize(
+    ("joints", "finds"),
+    [
+        ((Joint.LEFT_KNEE, Joint.RIGHT_KNEE), ""),
+        ((Joint.LEFT_KNEE, Joint.LEFT_ANKLE), " It finds the ankle's axis."),
+        (tuple(Joint), " It finds the ankles' axes."),
+    ],
+)
+def test_walking_is_said_to_find_the_axes_of_ankles_that_wear_sensors(joints: tuple[Joint, ...], finds: str) -> None:
+    assert last_hint(motion(dict.fromkeys(joints, ENOUGH))).how == f"Walking comes next, by itself.{finds}"
+
+
+def test_a_joint_that_is_no_hinge_is_said_in_place_of_enough_motion() -> None:
+    all_four = dict.fromkeys(Joint, ENOUGH)
+    one, both = all_four | {Joint.LEFT_KNEE: LOOSE}, dict.fromkeys(Joint, LOOSE)
+    said = last_hint(motion(one), PROSTHETIC)
+    assert said.sentence == "Left knee: no hinge"
+    assert said.how == "The angle is the part about the main axis. Walking comes next, by itself."
+    assert recorded_hint(motion(one), PROSTHETIC).sentence == "Left knee: no hinge"
+    assert last_hint(motion(both), frozenset(Side)).sentence == "2 joints: no hinges"
+    assert last_hint(motion(one)).sentence == "Enough motion"  # of a living knee none is expected
+    assert last_hint(motion(all_four), PROSTHETIC).sentence == "Enough motion"
+
+
+def test_the_rail_says_which_joints_have_enough_motion_and_an_ankle_by_its_centre() -> None:
+    far, none = state(11, 34), frozenset[Side]()
+    some = motion({Joint.LEFT_KNEE: ENOUGH, Joint.RIGHT_KNEE: far, Joint.LEFT_ANKLE: ENOUGH, Joint.RIGHT_ANKLE: ENOUGH})
+    assert enough_for(some, none) == "enough motion for 1 of 2 knees, 2 of 2 ankle centres"
+    assert enough_for(motion(dict.fromkeys(Joint, ENOUGH)), none) == "enough motion"
+    assert enough_for(motion({Joint.LEFT_KNEE: far}), none) == "enough motion for 0 of 1 knee"
+    assert enough_for(motion({Joint.LEFT_ANKLE: far}), none) == "enough motion for 0 of 1 ankle centre"
+
+
+def test_a_joint_that_is_no_hinge_is_named_and_not_counted() -> None:
+    loose = motion(dict.fromkeys(Joint, ENOUGH) | {Joint.LEFT_KNEE: LOOSE})
+    said = "enough motion for 1 of 2 knees, 2 of 2 ankle centres; left knee: no hinge"
+    assert enough_for(loose, PROSTHETIC) == said
+    assert enough_for(loose, frozenset()) == "enough motion"
 
 
 def test_what_was_given_up_is_asked_for_once_more_worst_first_and_then_no_more() -> None:
@@ -125,23 +176,23 @@ def test_what_was_given_up_is_asked_for_once_more_worst_first_and_then_no_more()
     assert hold.ask(left, 60.0).hint.sentence == "As good as it gets"
 
 
-def test_what_is_ready_the_second_time_is_asked_for_no_longer() -> None:
+def test_what_has_enough_the_second_time_is_asked_for_no_longer() -> None:
     hold = HintHold()
     left = motion({Joint.LEFT_KNEE: state(4, 8, is_plateau=True)})
     for now_s in range(round(RESTS_S) + 1):
         asked = hold.ask(left, float(now_s))
     assert asked.joint is Joint.LEFT_KNEE
-    ready = motion({Joint.LEFT_KNEE: state(1, 8, None, is_closed=True)})
-    assert hold.ask(ready, RESTS_S + 1.0).hint.sentence == "Enough motion"
+    enough = motion({Joint.LEFT_KNEE: state(1, 8, None, is_closed=True)})
+    assert hold.ask(enough, RESTS_S + 1.0).hint.sentence == "Enough motion"
 
 
-def test_stopping_costs_nothing_when_all_are_ready() -> None:
+def test_stopping_costs_nothing_when_the_motion_is_enough() -> None:
     assert price_of_stopping(motion({Joint.LEFT_KNEE: state(1, 8, None, is_closed=True)})) == ""
 
 
 def test_stopping_before_a_joint_is_found_costs_its_angles() -> None:
-    unknown, ready = state(57, 250), state(1, 8, None, is_closed=True)
-    one = motion({Joint.LEFT_KNEE: unknown, Joint.RIGHT_KNEE: ready})
+    unknown, enough = state(57, 250), state(1, 8, None, is_closed=True)
+    one = motion({Joint.LEFT_KNEE: unknown, Joint.RIGHT_KNEE: enough})
     assert price_of_stopping(one) == "Stopping now leaves the left knee without angles to rely on."
     both = motion({Joint.LEFT_KNEE: unknown, Joint.RIGHT_KNEE: unknown})
     assert price_of_stopping(both) == "Stopping now leaves the left knee and the right knee without angles to rely on."

@@ -159,8 +159,13 @@ def test_a_sign_is_turned_kept_in_the_history_and_undone(
 def test_a_walk_is_left_out_comes_back_and_changes_its_condition(qtbot: QtBot, visit: Visit, step: ResultsStep) -> None:
     step.on_quiet(0)
     (row,) = step.page.correct().walk_rows.values()
-    with qtbot.waitSignal(visit.evaluation.done, timeout=30_000):
+    assert row.condition.line_edit.accessibleName() == "Condition of walk 1"
+    with (
+        qtbot.waitSignal(step.offered) as offered,
+        qtbot.waitSignal(visit.evaluation.done, timeout=30_000),
+    ):
         row.kept.click()
+    assert offered.args == ["Walk 1 is left out."]
     assert visit.evaluation.analysis is not None
     assert not any(recording.gait for recording in visit.evaluation.analysis.recordings)
     with qtbot.waitSignal(visit.evaluation.done, timeout=30_000):
@@ -169,6 +174,14 @@ def test_a_walk_is_left_out_comes_back_and_changes_its_condition(qtbot: QtBot, v
     ((key, _),) = step.page.correct().walk_rows.items()
     with qtbot.waitSignal(visit.evaluation.done, timeout=30_000):
         step.page.correct().condition_typed.emit(key, "AFO")
+    assert row.condition.line_edit.accessibleName() == "Condition of A AFO"
+    said: list[str] = []
+    step.offered.connect(said.append)
+    for is_kept in (False, True):
+        with qtbot.waitSignal(visit.evaluation.done, timeout=30_000):
+            step.page.correct().kept_turned.emit(key, is_kept)
+    assert said == ["A AFO is left out.", "A AFO counts."]
+    assert step.page.results().recordings.currentText() == "A AFO"
     assert [recording.details.condition for recording in visit.recordings.walks] == ["AFO"]
     step.page.correct().closed.emit()
     assert [part.name for part in step.page.results().compare._conditions] == ["AFO"]

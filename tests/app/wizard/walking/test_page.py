@@ -42,7 +42,7 @@ def page(qtbot: QtBot, look: ThemeNotifier, request: pytest.FixtureRequest) -> W
 
 def test_a_kept_walk_is_renamed_where_it_was_made(qtbot: QtBot, page: WalkingPage) -> None:
     page.show_walks((KEPT, DISCARDED))
-    (edit,) = [one for one in page.walks.buttons if one.accessibleName() == "Rename Barefoot"]
+    (edit,) = [one for one in page.walks.buttons if one.accessibleName() == "Rename A Barefoot"]
     assert isinstance(edit, QAbstractButton)
     edit.click()
     field = page.walks.findChildren(Field)[0]
@@ -56,7 +56,7 @@ def test_a_kept_walk_is_renamed_where_it_was_made(qtbot: QtBot, page: WalkingPag
     assert renamed.args == ["1", "Own shoes"]
     page.show_walks((replace(KEPT, label="Own shoes"), DISCARDED))
     assert not field.isVisible()
-    assert [one.accessibleName() for one in page.walks.buttons] == ["Rename Own shoes", "Keep Shoes after all"]
+    assert [one.accessibleName() for one in page.walks.buttons] == ["Rename A Own shoes", "Keep B Shoes after all"]
 
 
 def test_a_name_that_stays_or_is_empty_renames_nothing(qtbot: QtBot, page: WalkingPage) -> None:
@@ -172,7 +172,7 @@ def test_a_stopped_walk_is_kept_or_discarded(page: WalkingPage, qtbot: QtBot) ->
 def test_what_was_discarded_can_come_back(page: WalkingPage, qtbot: QtBot) -> None:
     page.show_walks((KEPT, DISCARDED))
     (undo,) = [one for one in page.walks.buttons if one.accessibleName().startswith("Keep")]
-    assert undo.accessibleName() == "Keep Shoes after all"
+    assert undo.accessibleName() == "Keep B Shoes after all"
     with qtbot.waitSignal(page.undo_pressed) as undone:
         QTest.keyClick(undo, Qt.Key.Key_Return)
     assert undone.args == ["2"]
@@ -242,6 +242,25 @@ def test_a_label_used_before_keeps_its_letter(page: WalkingPage) -> None:
     assert "Next condition: C" in texts(page)
     page.choose_digit(1)
     assert "Next condition: A" in texts(page)
+
+
+def test_a_second_walk_of_a_condition_keeps_its_letter_and_what_is_discarded_has_none(page: WalkingPage) -> None:
+    second, gone = replace(KEPT, id="5", letter="A2"), replace(DISCARDED, id="6", letter="", label="Barefoot")
+    page.show_walks((KEPT, second, gone))
+    assert "Next condition: B" in texts(page)
+    page.choose_digit(1)
+    assert "Next condition: A" in texts(page)
+    assert [one.accessibleName() for one in page.walks.buttons] == [
+        "Rename A Barefoot",
+        "Rename A2 Barefoot",
+        "Keep Barefoot after all",
+    ]
+
+
+def test_sensors_strapped_anew_begin_a_letter(page: WalkingPage) -> None:
+    page.show_walks((replace(KEPT, is_of_old_straps=True),))
+    page.choose_digit(1)
+    assert "Next condition: B" in texts(page)
 
 
 def test_sensors_strapped_anew_are_told_with_the_consequence(page: WalkingPage, qtbot: QtBot) -> None:

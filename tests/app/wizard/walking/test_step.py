@@ -87,7 +87,8 @@ def test_space_starts_and_stops_and_keeps(qtbot: QtBot, step: WalkingStep, visit
         step.on_intent(RUN)
     recording = step.bar().recording
     assert recording is not None
-    assert recording.title == "Recording Alignment A"
+    assert recording.title == "Recording A Alignment A"
+    assert step.note == "Recording A Alignment A"
     assert step.cannot_leave
     qtbot.waitUntil(lambda: max(step.page.live.strides.values(), default=0) >= 5, timeout=10_000)
     assert set(step.page.live.knees) == set(step.page.live.ankles)
@@ -126,12 +127,12 @@ def test_a_walk_is_discarded_and_comes_back(qtbot: QtBot, step: WalkingStep, vis
     walk(qtbot, step, visit, 4.0)
     with qtbot.waitSignal(step.offered) as offered:
         step.on_intent(Intent(KeyAction.DISCARD))
-    assert offered.args == ["Alignment A discarded."]
+    assert offered.args == ["A Alignment A discarded."]
     qtbot.waitUntil(lambda: not visit.recordings.walks[0].details.is_kept)
-    assert [state for _, _, state in states(step)] == [WalkState.DISCARDED]
+    assert states(step) == [("", "Alignment A", WalkState.DISCARDED)]
     step.undo()
     qtbot.waitUntil(lambda: visit.recordings.walks[0].details.is_kept)
-    assert [state for _, _, state in states(step)] == [WalkState.KEPT]
+    assert states(step) == [("A", "Alignment A", WalkState.KEPT)]
     assert step.bar().primary is not None
     qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=20_000)
 

@@ -1,6 +1,6 @@
 """Labels of walks: the usual ones with their digits, one's own kept, letters in the order of walking."""
 
-from app.wizard.walking.walk_labels import MOST, label_after, labels_for, letters_of
+from app.wizard.walking.walk_labels import MOST, label_after, labels_for
 from core.samples import Patient
 
 ANYBODY, PROSTHETIC = Patient(), Patient(prosthetic_side="left")
@@ -29,7 +29,3 @@ def test_the_next_walk_is_called_as_the_last_one() -> None:
     assert label_after(PROSTHETIC, ["Shoes"]) == "Shoes"
     assert label_after(Patient(aids="barefoot"), []) == "Barefoot"
     assert label_after(ANYBODY, []) == "Shoes"
-
-
-def test_a_condition_walked_twice_has_one_letter() -> None:
-    assert letters_of(["Shoes", "AFO", "Shoes", "Barefoot"]) == {"Shoes": "A", "AFO": "B", "Barefoot": "C"}
