@@ -10,12 +10,13 @@ from PySide6.QtWidgets import QBoxLayout, QGridLayout, QHBoxLayout, QVBoxLayout,
 
 from app.icons import Icon
 from app.pages.answer_words import door_words, figures_in_short, key_figures, strides_in_short
+from app.pages.beside_choice import Beside, BesideChoice
 from app.pages.beside_words import answer_beside, key_figures_beside
 from app.pages.differs_card import DiffersCard
 from app.pages.result_parts import PageRoom, ResultParts
 from app.plots.angle_chart import Curve
 from app.recording_names import with_shown_names
-from app.reports.beside import beside_last_visit, beside_walk, changes_on_curves, walks_alone
+from app.reports.beside import changes_on_curves
 from app.reports.comparison import Comparison, Part, conditions_of
 from app.reports.patient_report.answer import Outcome, answer_of
 from app.reports.patient_report.data_quality import data_quality, quality_without_walk
@@ -47,7 +48,7 @@ ANSWER, COMPARE, WHOLE, STRIDES = "answer", "compare", "whole", "strides"
 WALK, RECORDING = later("Whole walk"), later("Whole recording")
 
 ANSWER_PX = 22
-RECORDINGS, BESIDE = (146, 280), (186, 320)  # px: the narrowest and the widest that their boxes become
+RECORDINGS = (146, 280)  # px: the narrowest and the widest that their box becomes
 BOTTOM = 44  # px high: the row that closes the answer
 BESIDE_TABLE, WITHHELD, NOTE = 484, 40, 24  # px high: all else on a page, a withheld curve, strides left out by hand
 ANSWER_ICONS = {
@@ -65,14 +66,6 @@ HINTS = {
 }
 KEYS = later("Wheel or + \N{MINUS SIGN} zooms, drag or Page Up, Page Down moves, mouse or arrows read.")
 EVENT_KEYS = later("[ ] step through contacts and toe-offs. Pre-swing is heel rise to toe-off.")
-
-
-class Beside(Enum):
-    """What the legs' curves stand beside; another walk of the session is chosen by its recording's name."""
-
-    BAND = auto()
-    LEGS = auto()  # each other alone
-    LAST_VISIT = auto()
 
 
 class Behind(Enum):
@@ -93,7 +86,8 @@ class ResultPage(Themed):
         parts = parts or ResultParts(look)
         self._look = look
         self._visit: AnalysedVisit | None = None
-        self._walks: Mapping[str, Part] = {}  # of this session, each alone
+        self._facts: Facts | None = None  # of the walk on the screen
+        self._found: Comparison | None = None  # with what it stands beside
         self._can_choose = self._is_live = False
         self._stride: Mapping[Joint, FloatArray] = {}  # in force
         self._room = PageRoom()
@@ -112,9 +106,8 @@ class ResultPage(Themed):
         )
         self.to_answer = Button(look, tr("Answer"), ButtonKind.SECONDARY, Icon.BACK, tr("Esc"))
         self.recordings = Choice(look, tr("Recording"))
-        self.beside = Choice(look, tr("Beside"))
+        self.beside = BesideChoice(look)
         self.recordings.let_shrink(*RECORDINGS)  # conditions are typed
-        self.beside.let_shrink(*BESIDE)
         self.methods = Segmented(
             look,
             tr("Method"),
@@ -159,7 +152,7 @@ class ResultPage(Themed):
         is_prosthetic = session.patient.prosthetic_side in set(Side)
         parts = conditions_of(analysis, session.recordings)
         self.compare.show_conditions(analysis, parts, is_prosthetic, age_and_height(session))
-        self._walks = walks_alone(analysis, session.recordings)
+        self.beside.show_visit(visit)
         names = [recording.name for recording in analysis.recordings]
         walks = [i for i, recording in enumerate(analysis.recordings) if recording.kind is RecordingKind.WALKING]
         self.recordings.blockSignals(True)
@@ -381,25 +374,6 @@ class ResultPage(Themed):
         self._tell_answer()
         self._offer()
 
-    def _offer_beside(self) -> None:
-        shown = self.recordings.currentData()
-        before = self.beside.currentData()
-        self.beside.blockSignals(True)
-        self.beside.clear()
-        self.beside.addItem(tr("Beside the band"), Beside.BAND)
-        self.beside.setItemData(
-            0, tr("The band's inner part is 1 SD, its outer part 2 SD."), Qt.ItemDataRole.ToolTipRole
-        )
-        self.beside.addItem(tr("The legs alone"), Beside.LEGS)
-        for name in self._walks if shown in self._walks else ():
-            if name != shown:
-                self.beside.addItem(tr("Beside {walk}").format(walk=self._called(name)), name)
-        if self.compare.has_visits and shown in self._walks:
-            self.beside.addItem(tr("Beside the last visit"), Beside.LAST_VISIT)
-        self.beside.setCurrentIndex(max(self.beside.findData(before), 0))
-        self.beside.blockSignals(False)
-        self.beside.updateGeometry()
-
     def _offer(self) -> None:
         """Offer the views that this recording has."""
         recording = self.recording
@@ -477,6 +451,7 @@ class ResultPage(Themed):
         self._show_quality()
         if recording is None or visit is None:
             self.charts.show_recording(tr("no recording"), np.zeros(0), is_simulated=False)
+            self._facts = self._found = None
             self._offer()
             return
         analysis = visit.analysis
@@ -487,7 +462,7 @@ class ResultPage(Themed):
         who = age_and_height(visit.session)
         self.cycles.show_walk(recording, analysis.is_simulated, who, sides_with_band(recording))
         self.strides.show_walk(recording, self._can_choose)
-        self._offer_beside()
+        self.beside.offer(recording.name, has_visits=self.compare.has_visits)
         self._show_beside()
         self._on_method_chosen()
         self._offer()
@@ -496,38 +471,21 @@ class ResultPage(Themed):
         """What a recording of this session is called."""
         return str(self._visit.shown_names.get(name, name)) if self._visit is not None else name
 
-    def _condition(self, name: str) -> str:
-        """Under which condition a recording was walked; empty where none was stated."""
-        recordings = self._visit.session.recordings if self._visit is not None else ()
-        return next((one.condition for one in recordings if one.name == name), "")
-
-    def _compared(self) -> tuple[Comparison | None, str]:
-        """The walk against what was chosen to stand beside it, or why there is nothing to compare it with."""
-        chosen, name, visit = self.beside.currentData(), self.recordings.currentData(), self._visit
-        shown = self._walks.get(name)
-        if visit is None or shown is None:
-            return None, ""
-        is_simulated = visit.analysis.is_simulated
-        if chosen is Beside.LAST_VISIT:
-            self.compare.wish_visits()
-            if self.compare.visits is None:
-                return None, tr("The earlier visits are being read.")
-            condition = self._condition(name)
-            found = beside_last_visit(shown, condition, self.compare.visits, is_simulated=is_simulated)
-            return found, "" if found is not None else tr("No earlier visit was walked in this condition.")
-        other = self._walks.get(chosen) if isinstance(chosen, str) else None
-        return (None, "") if other is None else (beside_walk(shown, other, is_simulated=is_simulated), "")
-
     def _show_beside(self) -> None:
         """Show the walk with what it stands beside: its curves, what differs and the key figures."""
         recording, visit = self.recording, self._visit
         if recording is None or visit is None or recording.kind is not RecordingKind.WALKING:
+            self._facts = self._found = None
             self._tell_answer()
             return
-        facts = Facts(visit, recording)
-        found, words = self._compared()
+        chosen = self.beside.currentData()
+        if chosen is Beside.LAST_VISIT:
+            self.compare.wish_visits()
+        facts = self._facts = Facts(visit, recording)
+        found, words = self.beside.compared(self.compare.visits)
+        self._found = found
         charts = self.cycles.charts
-        charts.set_band_shown(self.beside.currentData() is Beside.BAND)
+        charts.set_band_shown(chosen is Beside.BAND)
         charts.show_beside(found, words)
         if found is None:
             self.key_figures.show_figures(key_figures(facts))
@@ -563,12 +521,11 @@ class ResultPage(Themed):
 
     def _tell_answer(self) -> None:
         """Say what came of the walk; the key figures follow where there is no room for them beside it."""
-        recording, visit = self.recording, self._visit
-        if recording is None or visit is None or recording.kind is not RecordingKind.WALKING:
+        facts, found = self._facts, self._found
+        if facts is None:
             self.answer.tell(None, "")
             return
-        facts = Facts(visit, recording)
-        answer, (found, _) = answer_of(facts), self._compared()
+        answer = answer_of(facts)
         if found is not None and answer.outcome is not Outcome.UNREADABLE:
             answer = answer_beside(found)
         then = [answer.then, figures_in_short(facts) if self._room.is_compact else ""]

@@ -8,8 +8,9 @@ import pytest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
+from app.pages.beside_choice import Beside
 from app.pages.beside_words import answer_beside, beside_columns, key_figures_beside
-from app.pages.result_page import STRIDES, Beside, ResultPage
+from app.pages.result_page import STRIDES, ResultPage
 from app.reports.beside import beside_last_visit, beside_walk, changes_on_curves, walks_alone
 from app.reports.comparison import Comparison
 from app.reports.patient_report.request import AnalysedVisit

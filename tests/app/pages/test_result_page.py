@@ -11,8 +11,9 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QLineEdit
 from pytestqt.qtbot import QtBot
 
+from app.pages.beside_choice import Beside
 from app.pages.cycle_page import NO_SIDE, NO_SPEED
-from app.pages.result_page import ANSWER, STRIDES, WHOLE, Beside, ResultPage
+from app.pages.result_page import ANSWER, STRIDES, WHOLE, ResultPage
 from app.reports.reference_bands import NOBODY, OTHER_AGES, WHY_NO_BAND
 from app.theme import ThemeNotifier, load_fonts
 from app.widgets.table import CellTable

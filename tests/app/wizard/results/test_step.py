@@ -13,7 +13,8 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QFileDialog
 from pytestqt.qtbot import QtBot
 
-from app.pages.result_page import STRIDES, Beside
+from app.pages.beside_choice import Beside
+from app.pages.result_page import STRIDES
 from app.reports.comparison import Contrast
 from app.reports.proposed_names import session_name
 from app.storage.exchange import import_session

@@ -1,0 +1,78 @@
+"""What a walk's curves stand beside: the band, the other leg, another walk of the session or the last visit."""
+
+from collections.abc import Mapping, Sequence
+from enum import Enum, auto
+
+from PySide6.QtCore import Qt
+
+from app.reports.beside import beside_last_visit, beside_walk, walks_alone
+from app.reports.comparison import Comparison, Part
+from app.reports.patient_report.request import AnalysedVisit
+from app.reports.visits import ComparedVisits
+from app.theme import ThemeNotifier
+from app.widgets.choice import Choice
+from app.wording import tr
+
+NARROWEST, WIDEST = 186, 320  # px
+
+
+class Beside(Enum):
+    """What the curves stand beside; another walk of the session is chosen by its recording's name."""
+
+    BAND = auto()
+    LEGS = auto()  # each other alone
+    LAST_VISIT = auto()
+
+
+class BesideChoice(Choice):
+    """The choice, and the comparison that comes of it."""
+
+    def __init__(self, look: ThemeNotifier) -> None:
+        super().__init__(look, tr("Beside"))
+        self.let_shrink(NARROWEST, WIDEST)  # conditions are typed
+        self._visit: AnalysedVisit | None = None
+        self._walks: Mapping[str, Part] = {}  # of this session, each alone
+        self._shown = ""
+
+    def show_visit(self, visit: AnalysedVisit) -> None:
+        """Take the walks of this session; `offer` follows."""
+        self._visit, self._walks = visit, walks_alone(visit.analysis, visit.session.recordings)
+
+    def offer(self, shown: str, *, has_visits: bool) -> None:
+        """Offer what the recording of this name can stand beside; what was chosen stays, where it can."""
+        before, self._shown = self.currentData(), shown
+        called = self._visit.shown_names if self._visit is not None else {}
+        self.blockSignals(True)
+        self.clear()
+        self.addItem(tr("Beside the band"), Beside.BAND)
+        self.setItemData(0, tr("The band's inner part is 1 SD, its outer part 2 SD."), Qt.ItemDataRole.ToolTipRole)
+        self.addItem(tr("The legs alone"), Beside.LEGS)
+        for name in self._walks if shown in self._walks else ():
+            if name != shown:
+                self.addItem(tr("Beside {walk}").format(walk=called.get(name, name)), name)
+        if has_visits and shown in self._walks:
+            self.addItem(tr("Beside the last visit"), Beside.LAST_VISIT)
+        self.setCurrentIndex(max(self.findData(before), 0))
+        self.blockSignals(False)
+        self.updateGeometry()
+
+    def compared(self, visits: Sequence[ComparedVisits] | None) -> tuple[Comparison | None, str]:
+        """The walk against what was chosen, or why there is nothing to compare it with.
+
+        Parameters
+        ----------
+        visits
+            Those of the patient; None while they are being read.
+        """
+        chosen, walk, visit = self.currentData(), self._walks.get(self._shown), self._visit
+        if visit is None or walk is None:
+            return None, ""
+        is_simulated = visit.analysis.is_simulated
+        if chosen is Beside.LAST_VISIT:
+            if visits is None:
+                return None, tr("The earlier visits are being read.")
+            condition = next((one.condition for one in visit.session.recordings if one.name == self._shown), "")
+            found = beside_last_visit(walk, condition, visits, is_simulated=is_simulated)
+            return found, "" if found is not None else tr("No earlier visit was walked in this condition.")
+        other = self._walks.get(chosen) if isinstance(chosen, str) else None
+        return (None, "") if other is None else (beside_walk(walk, other, is_simulated=is_simulated), "")
