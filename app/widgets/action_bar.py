@@ -217,12 +217,12 @@ class ActionBar(Themed):
             button.set_room(room)
         left: Row = [one for one in (self._clock, self.back, *self._quiet) if not one.isHidden()]
         right: Row = [one for one in (self.sound, *self._others, self.primary) if not one.isHidden()]
-        if _width(left, gap) + _width(right, gap) + 2 * gap > room:
+        if _width(left, gap) + _width(right, gap) + gap > room:
             for button in self._quiet:
                 button.leave_icon_away()
-        before = _width(left, gap) + (2 * gap if left else 0)
-        after = _width(right, gap) + (2 * gap if right else 0)
-        is_one_row = before + after - 2 * gap <= room
+        before = _width(left, gap) + (gap if left else 0)
+        after = _width(right, gap) + (gap if right else 0)
+        is_one_row = before + after <= room
         is_beside = is_one_row and self._fits(room - before - after)
         rows = [(left, right)] if is_one_row else [*_rows(left, room, gap), *_rows(right, room, gap, is_right=True)]
         line = px(BAR) if is_beside else px((STOP_HEIGHT if self._state.recording is not None else HEIGHT) + 8)
