@@ -58,11 +58,17 @@ def session_line(
 
 def day_of_session(started: str, now: datetime.datetime) -> datetime.date | None:
     """The day of a time as a file holds it, where `now` is; None for what is no time."""
+    at = time_of_session(started, now)
+    return at.date() if at is not None else None
+
+
+def time_of_session(started: str, now: datetime.datetime) -> datetime.datetime | None:
+    """A time as a file holds it, where `now` is; None for what is no time."""
     try:
         at = datetime.datetime.fromisoformat(started)
     except ValueError:
         return None
-    return (at.astimezone(now.tzinfo) if at.tzinfo is not None else at).date()
+    return at.astimezone(now.tzinfo) if at.tzinfo is not None else at
 
 
 def person(patient: "Patient") -> str:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from uuid import UUID
 
 from app.pages.home_lists import SessionLine
-from app.patient_words import day_of_session, session_line
+from app.patient_words import day_of_session, session_line, time_of_session
 from app.reports.course import Course
 from app.reports.course_lanes import CourseVisit
 from app.reports.course_words import LatestVisit, NextStep, next_step, recovered_step
@@ -41,9 +41,9 @@ class PatientReading:
         """Those with a day, in order of time; without those that are known to hold no walk."""
         found = []
         for session in reversed(self.sessions):
-            day, course = day_of_session(session.started, now), self.courses.get(session.id)
-            if day is not None and session.recordings and (course is None or course.conditions):
-                found.append(CourseVisit(session.id, day, course))
+            at, course = time_of_session(session.started, now), self.courses.get(session.id)
+            if at is not None and session.recordings and (course is None or course.conditions):
+                found.append(CourseVisit(session.id, at.date(), course, f"{at:%H:%M}"))
         return tuple(sorted(found, key=lambda visit: visit.day))
 
     def lines(self, now: datetime.datetime) -> list[SessionLine]:

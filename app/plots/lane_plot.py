@@ -5,12 +5,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
+import numpy as np
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QFontMetrics, QMouseEvent, QPainter, QPaintEvent, QPen, QPolygonF
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.dates import day_in_words
 from app.reports.course_lanes import CourseLane, CourseVisit, LaneKind, LaneLine, LanePoint
+from app.reports.course_words import day_of
 from app.theme import ThemeNotifier
 from app.tokens import Theme
 from app.widgets.painted_text import CENTRE, RIGHT, PaintedText
@@ -18,6 +19,7 @@ from app.widgets.themed import Themed
 from core.body import Side
 
 AXIS, INSET = 40, 10  # px: for the figures of the values, and from the plot's edges to the first and last visit
+APART = 18  # px between two visits, whatever their days
 HALF_LINE = 8  # of the figures
 LEAST_HEIGHT, DATES = 66, 26
 DOT, CAP, TICK = 5, 5, 4
@@ -77,11 +79,14 @@ class DatedPlot(Themed):
             self.update()
 
     def x_of(self, number: int) -> float:
-        """The place of a visit."""
-        plot, inset = self.plot, self._look.theme.px(INSET)
-        days = [visit.day.toordinal() for visit in self.visits]
-        share = (days[number] - days[0]) / (days[-1] - days[0]) if days[-1] > days[0] else 0.5
-        return plot.left() + inset + share * (plot.width() - 2 * inset)
+        """The place of a visit: by its day, and beside one that is too near to be told from it."""
+        plot, px = self.plot, self._look.theme.px
+        days = np.array([visit.day.toordinal() for visit in self.visits], float)
+        room, span = plot.width() - 2 * px(INSET), max(days[-1] - days[0], 1.0)
+        steps = np.arange(len(days)) * min(px(APART), room / max(len(days) - 1, 1))
+        by_day = room * (days - days[0]) / span if days[-1] > days[0] else (room - steps[-1:]) / 2 + steps
+        places = np.minimum(np.maximum.accumulate(by_day - steps), room - steps[-1]) + steps
+        return float(plot.left() + px(INSET) + places[number])
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
         if self.visits:
@@ -214,7 +219,7 @@ class DateAxis(DatedPlot):
         metrics, gap, last = QFontMetrics(font), self._look.theme.px(8), len(self.visits) - 1
         kept: dict[int, PaintedText] = {}
         for number in sorted(range(len(self.visits)), key=lambda k: (k not in (0, last), k != last, k)):
-            words = day_in_words(self.visits[number].day, [visit.day for visit in self.visits])
+            words = day_of(number, self.visits)
             width = metrics.horizontalAdvance(words) + 2
             left = min(max(self.x_of(number) - width / 2, 0), self.width() - width)
             box = QRectF(left, theme.px(TICK + 2), width, self.height() - theme.px(TICK + 2))

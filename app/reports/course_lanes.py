@@ -31,11 +31,15 @@ DECIMALS = {LaneKind.SPEED: 2, LaneKind.KNEE: 0, LaneKind.STANCE: 1}
 
 @dataclass(frozen=True, slots=True)
 class CourseVisit:
-    """One visit on the axis of dates. `course` None: it is not computed yet, or no longer holds."""
+    """One visit on the axis of dates. `course` None: it is not computed yet, or no longer holds.
+
+    `clock`: at which time of that day, where it is known; it tells visits of one day apart.
+    """
 
     id: UUID
     day: datetime.date
     course: Course | None
+    clock: str = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -52,8 +52,10 @@ class LatestVisit:
 
 
 def day_of(number: int, visits: Sequence[CourseVisit]) -> str:
-    """The day of the visit of this number."""
-    return day_in_words(visits[number].day, [visit.day for visit in visits])
+    """The day of the visit of this number, with the time where another was on that day."""
+    visit, days = visits[number], [visit.day for visit in visits]
+    said = day_in_words(visit.day, days)
+    return f"{said}, {visit.clock}" if visit.clock and days.count(visit.day) > 1 else said
 
 
 def value_in_words(value: float, kind: LaneKind) -> str:

@@ -102,6 +102,9 @@ PER_SPEED: Mapping[QuantityKind, float] = {
 }
 
 
+SPEED_TOLD_M_S = 0.005  # as far apart two speeds must be to be written as two, and to be called so
+
+
 class Sigma(NamedTuple):
     """What is added between two means.
 
@@ -356,7 +359,7 @@ def compare(
         difference=difference,
         error=error,
         judgement=Judgement.EXCEEDS_ERROR if exceeds else Judgement.INSIDE_ERROR,
-        sources=_sources(name, kind, one, other, has_speed=by_speed > 0),
+        sources=_sources(name, kind, one, other, has_speed=by_speed > 0 and abs(speed_apart_m_s) >= SPEED_TOLD_M_S),
         is_worth_a_sentence=abs(difference) > factor * error and not sigma.is_borrowed,
         is_unverified=not sigma.is_verified,
     )

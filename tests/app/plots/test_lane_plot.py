@@ -1,6 +1,7 @@
 """Lanes of a course: where visits and values lie, which dates find room, no word cut."""
 
 import datetime
+from dataclasses import replace
 from itertools import pairwise
 from uuid import UUID
 
@@ -8,9 +9,10 @@ import pytest
 from PySide6.QtGui import QColor, QImage
 from pytestqt.qtbot import QtBot
 
-from app.plots.lane_plot import DateAxis, LanePlot, LaneScale
+from app.plots.lane_plot import APART, INSET, DateAxis, LanePlot, LaneScale
 from app.reports.course import Course
 from app.reports.course_lanes import CourseVisit, LaneKind, lanes
+from app.reports.course_words import day_of
 from app.theme import ThemeNotifier
 from core.body import Joint
 from tests.app.course_material import course, unsure, walked
@@ -110,3 +112,24 @@ def test_dates_that_would_touch_are_left_out_but_for_the_first_and_the_last(qtbo
         assert text.box.left() >= 0
         assert text.box.right() <= axis.width()
         assert text.needed.width() <= text.box.width()
+
+
+def test_visits_of_one_day_are_told_apart(qtbot: QtBot, look: ThemeNotifier) -> None:
+    """By their place and by the time of the day; a visit of another day stays at its day, and none leaves the plot."""
+    morning, noon = (replace(visit(0, shoes(50.0)), id=UUID(int=90 + k), clock=f"{9 + 3 * k:02d}:00") for k in (0, 1))
+    alone = knee_plot(qtbot, look, morning, noon)
+    assert alone.x_of(1) - alone.x_of(0) == pytest.approx(APART)
+    assert [day_of(k, alone.visits) for k in (0, 1)] == ["1 Jan, 09:00", "1 Jan, 12:00"]
+    later = knee_plot(qtbot, look, morning, noon, visit(100, shoes(50.0)))
+    assert later.x_of(0) == later.plot.left() + INSET
+    assert later.x_of(1) - later.x_of(0) == pytest.approx(APART)
+    assert later.x_of(2) == pytest.approx(later.plot.right() - INSET)
+    assert day_of(2, later.visits) == "11 Apr"
+    last = knee_plot(qtbot, look, visit(0, shoes(50.0)), *[visit(100, shoes(50.0))] * 2)
+    assert last.x_of(2) == pytest.approx(last.plot.right() - INSET)
+    assert last.x_of(2) - last.x_of(1) == pytest.approx(APART)
+    many = knee_plot(qtbot, look, *[visit(k // 2, shoes(50.0)) for k in range(200)])
+    places = [many.x_of(k) for k in range(200)]
+    assert all(after > before for before, after in pairwise(places))
+    assert places[0] >= many.plot.left() + INSET - 1e-9
+    assert places[-1] <= many.plot.right() - INSET + 1e-9

@@ -142,6 +142,15 @@ def test_what_another_speed_alone_may_make_of_an_angle_or_of_stance_is_no_differ
         assert error(name, 0.2) == error(name, 0.0)
 
 
+def test_speeds_that_read_the_same_are_not_called_another_speed() -> None:
+    def sources(apart_m_s: float) -> tuple[str, ...]:
+        return compare("knee_range_deg", ATTACHED, sure(60.0), sure(60.0), TOLD, speed_apart_m_s=apart_m_s).sources
+
+    assert "speed" not in sources(0.004)
+    assert "speed" in sources(0.006)
+    assert "speed" in sources(-0.006)
+
+
 # the error of two means that are sure, by the table: 1.96 x sqrt(2) x sigma, or the published figure itself.
 # Relative ones are of a mean of 1.0: 2.77186 x 0.02 = 0.05544 and so on. None: not judged.
 TABLE = {
