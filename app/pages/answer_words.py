@@ -63,8 +63,12 @@ def _of_row(row: Figure) -> KeyFigure:
 
 def figures_in_short(facts: Facts) -> str:
     """The same in one line, of those that are known."""
-    told = [f"{one.name} {one.value} {one.unit}".strip() for one in key_figures(facts) if one.value != NOTHING]
-    return ", ".join(told) + "." if told else ""
+    told = [
+        f"{one.name} {one.value}\N{NO-BREAK SPACE}{one.unit}".strip()
+        for one in key_figures(facts)
+        if one.value != NOTHING
+    ]
+    return " · ".join(told)
 
 
 def strides_in_short(facts: Facts) -> str:

@@ -270,7 +270,6 @@ class ResultPage(Themed):
         notes.addWidget(self.shown)
         notes.addWidget(self.hint)
         self._foot = QGridLayout()
-        self._foot.setColumnStretch(0, 1)
         left.addLayout(self._foot)
         self._head = QHBoxLayout()
         self._head.addWidget(self.answer, 1)
@@ -347,14 +346,21 @@ class ResultPage(Themed):
             self._controls.addWidget(self._choices, 0, 2)
             if self._room.is_compact and (row := self._compared_as.layout()) is not None:
                 row.addWidget(self.compare.view)
+        is_in_one_row = self._room.has_two_tables and not self._room.is_spacious
+        self._foot.setColumnStretch(0, not is_in_one_row)
+        self._foot.setColumnStretch(1, is_in_one_row)
         if self._room.is_narrow:
             self._foot.addWidget(self.methods, 0, 0, left)
             self._foot.addWidget(self.whole, 1, 0, left)
             self._foot.addWidget(self._notes, 2, 0)
-        elif not self._room.is_spacious:
+        elif not self._room.has_two_tables:
             self._foot.addWidget(self.methods, 0, 0, 1, 2, left)
             self._foot.addWidget(self._notes, 1, 0)
             self._foot.addWidget(self.whole, 1, 1)
+        elif is_in_one_row:
+            self._foot.addWidget(self.methods, 0, 0, left)
+            self._foot.addWidget(self._notes, 0, 1)
+            self._foot.addWidget(self.whole, 0, 2)
         else:
             self._controls.addWidget(self.methods, 0, 3)
             self._foot.addWidget(self._notes, 0, 0)
@@ -364,7 +370,7 @@ class ResultPage(Themed):
         self.strides.set_charts_beside(self._room.has_strides_beside)
         self.quality.set_room(self._room.is_compact)
         for frame in (self.charts.knee, self.charts.ankle):
-            frame.set_narrow(self._room.is_narrow)
+            frame.set_room(is_narrow=room.is_narrow, is_wide=room.has_two_tables)
         self.charts.phases.set_narrow(self._room.is_narrow)
         self.cycles.set_room(self._room.has_two_charts)
         self.legs.set_brief(self._room.is_compact)

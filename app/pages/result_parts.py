@@ -15,7 +15,7 @@ from app.widgets import grid
 COMPACT_BELOW = (940, 608)  # the charts and the rows beneath them need so much
 NARROW_BELOW = 860  # what the tools need in one row
 SPACIOUS_FROM = 1600  # what charts, differences and their table need side by side
-TWO_TABLES_FROM = 960
+TWO_TABLES_FROM = 980
 TWO_CHARTS_FROM = 680
 
 

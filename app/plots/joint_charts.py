@@ -227,7 +227,7 @@ class ChartFrame(Card):
     def __init__(self, look: ThemeNotifier, chart: AngleChart, is_knee: bool) -> None:
         self.is_knee = is_knee
         self.chart = chart
-        self._is_narrow = False
+        self._is_narrow = self._is_wide = False
         self._title = Text(look, title_in_words(is_knee), size=16, weight=SEMIBOLD)
         self._sign = Text(look, sign_in_words(is_knee), size=12, tone="ink2")
         self._simulated = Text(look, tr("SIMULATED"), size=12, weight=SEMIBOLD)
@@ -262,9 +262,9 @@ class ChartFrame(Card):
         self._set_widened()
         self._on_look_changed()
 
-    def set_narrow(self, is_narrow: bool) -> None:
-        """Put the readings under the title where they do not fit beside it."""
-        self._is_narrow = is_narrow
+    def set_room(self, *, is_narrow: bool, is_wide: bool) -> None:
+        """Put the readings under the title where they do not fit beside it and the words of a widened axis."""
+        self._is_narrow, self._is_wide = is_narrow, is_wide
         self._place()
 
     def set_simulated(self, is_simulated: bool) -> None:
@@ -312,7 +312,7 @@ class ChartFrame(Card):
         for part in self._head:
             self._grid.removeItem(part)
         self._grid.addLayout(self._head[0], 0, 0)
-        if self._is_narrow or self.chart.is_widened:  # that it is widened takes their room
+        if self._is_narrow or (self.chart.is_widened and not self._is_wide):
             self._grid.addLayout(self._head[1], 1, 0)
         else:
             self._grid.addLayout(self._head[1], 0, 1)

@@ -79,7 +79,7 @@ def what(request: ReportRequest, facts: Facts, comparison: Comparison | None) ->
     if comparison is not None:
         names = " · ".join(f"{part.letter}\u00a0{typed(part.name, CONDITION_LENGTH)}" for part in comparison.parts)
         said.append(tr("Compared, {last} shown here: {parts}").format(parts=names, last=comparison.parts[-1].letter))
-    return " ".join(said)
+    return ". ".join(said)
 
 
 def measured(facts: Facts) -> str:

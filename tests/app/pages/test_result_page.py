@@ -13,7 +13,7 @@ from pytestqt.qtbot import QtBot
 
 from app.pages.beside_choice import Beside
 from app.pages.cycle_page import NO_SIDE, NO_SPEED
-from app.pages.result_page import ANSWER, STRIDES, WHOLE, ResultPage
+from app.pages.result_page import ANSWER, COMPARE, STRIDES, WHOLE, ResultPage
 from app.reports.reference_bands import NOBODY, OTHER_AGES, WHY_NO_BAND
 from app.theme import ThemeNotifier, load_fonts
 from app.widgets.table import CellTable
@@ -342,6 +342,29 @@ def test_the_answer_stands_over_the_mean_cycle_and_nothing_scrolls_for_it(page: 
     page.view.choose(WHOLE)
     assert page.answer.isVisible()
     assert page.answer.text.startswith("Nothing can be read of this walk")
+
+
+@pytest.mark.parametrize("room", [(1064.0, 672.0), (1150.0, 640.0)])  # of windows of 1280 x 800 and 1366 x 768
+def test_no_view_scrolls_in_the_windows_of_laptops(
+    page: ResultPage, analysis: Analysis, room: tuple[float, float]
+) -> None:
+    page.set_room(*room)
+    show(page, analysis)
+
+    def height() -> float:
+        layout = page.layout()
+        assert layout is not None
+        return layout.minimumHeightForWidth(round(room[0]))
+
+    for view in (ANSWER, WHOLE, STRIDES, COMPARE):
+        page.view.choose(view)
+        page.view.chosen.emit(view)
+        assert height() <= room[1], view
+    page.view.choose(ANSWER)
+    page.view.chosen.emit(ANSWER)
+    page.show_legs.click()
+    assert page.legs.isVisible()
+    assert height() <= room[1]
 
 
 @pytest.mark.parametrize("joints", [tuple(Joint), (Joint.RIGHT_KNEE,)])
