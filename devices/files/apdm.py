@@ -1,22 +1,25 @@
-"""CSV exports of APDM's Opal sensors: one file with all sensors of a trial, their columns side by side.
+"""Exports of APDM's Opal sensors, all sensors of a trial in one file: HDF5 (`apdm_hdf5`), or CSV.
 
-Two dialects. "Format=7" of Motion Studio: three lines of heads, sensors by number and name, time in microseconds since
-1970, no units stated. That of Moveo and Mobility Lab: a test's name and rate, columns called `Sensor/Quantity/Axis`, a
-line of units. In both the orientation is earth from sensor, scalar first, earth z up, and rates are of the instants of
-their stamps, as files of both show: the orientation turns the specific force of a sensor at rest to earth z, and its
-slope is the rate.
+CSV has the sensors' columns side by side, in two dialects. "Format=7" of Motion Studio: three lines of heads, sensors
+by number and name, time in microseconds since 1970, no units stated. That of Moveo and Mobility Lab: a test's name and
+rate, columns called `Sensor/Quantity/Axis`, a line of units. In both the orientation is earth from sensor, scalar
+first, earth z up, and rates are of the instants of their stamps, as files of both show: the orientation turns the
+specific force of a sensor at rest to earth z, and its slope is the rate.
 """
 
 import csv
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 
 import numpy as np
 
+from core.findings import Finding, Severity
 from core.samples import FloatArray, ImuBlock, RateKind, SensorInfo
+from devices.files.apdm_hdf5 import TICK_S, is_apdm_hdf5, read_apdm_hdf5
+from devices.files.hdf5 import is_hdf5
 from devices.files.refusal import FileRefusedError, quoted
 from devices.files.trial import ImportedSensor, ImportedTrial
 
@@ -35,7 +38,7 @@ Columns = tuple[tuple[int, ...], ...]
 
 @dataclass(frozen=True, slots=True)
 class ApdmFile:
-    """One trial: `rows` (n, m) as numbers, NaN where a cell is empty; `columns` of each sensor by its name.
+    """One CSV: `rows` (n, m) as numbers, NaN where a cell is empty; `columns` of each sensor by its name.
 
     `ids`: by what else a sensor may be called.
     """
@@ -48,8 +51,16 @@ class ApdmFile:
     rate_hz: float | None
 
 
-def is_apdm(_path: Path, head: bytes) -> bool:
-    """Whether a file that begins so is one of these exports."""
+def is_apdm(path: Path, head: bytes) -> bool:
+    """Whether a file that begins so is one of these exports.
+
+    Raises
+    ------
+    FileRefusedError
+        It is HDF5 and cannot be looked into.
+    """
+    if is_hdf5(head):
+        return is_apdm_hdf5(path)
     lines = head.decode("utf-8", "replace").lstrip("\ufeff").splitlines()
     if not lines:
         return False
@@ -59,7 +70,7 @@ def is_apdm(_path: Path, head: bytes) -> bool:
 
 
 def read_apdm(path: Path) -> ApdmFile:
-    """Read one file.
+    """Read one CSV.
 
     Raises
     ------
@@ -107,15 +118,38 @@ def apdm_trial(files: Sequence[Path], _rate_hz: float | None = None) -> Imported
             "an export of APDM holds all sensors of a trial in one file",
             "Import one file at a time",
         )
-    file = read_apdm(files[0])
+    with files[0].open("rb") as opened:
+        has_hdf5 = is_hdf5(opened.read(16))
+    return ImportedTrial("apdm", tuple(_of_hdf5(files[0]) if has_hdf5 else _of_csv(files[0])))
+
+
+def _of_csv(path: Path) -> Iterator[ImportedSensor]:
+    file = read_apdm(path)
     rate_hz = file.rate_hz or _rate_of(file.time_s)
-    sensors = []
     for name in file.columns:
         called = file.ids.get(name, name)
         info = SensorInfo(serial=called, rate_hz=rate_hz, rate_kind=RateKind.INSTANTANEOUS)
         ids = tuple(filter(None, [file.ids.get(name)]))
-        sensors.append(ImportedSensor(name, ids, str(files[0]), _block(file, name), info))
-    return ImportedTrial("apdm", tuple(sensors))
+        yield ImportedSensor(name, ids, str(path), _block(file, name), info)
+
+
+def _of_hdf5(path: Path) -> Iterator[ImportedSensor]:
+    opals = read_apdm_hdf5(path)
+    start = min((opal.stamps[0] for opal in opals if len(opal.stamps)), default=0.0)
+    for opal in opals:
+        _check_magnitudes(path.name, opal.name, opal.acc_m_s2, opal.gyr_rad_s)
+        block = ImuBlock(
+            sensor=opal.ids[-1],
+            time_s=(opal.stamps - start) * TICK_S,
+            gyr_rad_s=opal.gyr_rad_s,
+            acc_m_s2=opal.acc_m_s2,
+            q_earth_from_sensor=opal.q_earth_from_sensor,
+            mag=opal.mag,
+        )
+        rate_hz = opal.rate_hz or _rate_of(block.time_s)
+        info = SensorInfo(serial=opal.ids[-1], rate_hz=rate_hz, rate_kind=RateKind.INSTANTANEOUS)
+        doubled = [Finding("doubled_stamps", Severity.WARNING, "", {"count": opal.doubled})] if opal.doubled else []
+        yield ImportedSensor(opal.name, opal.ids, str(path), block, info, tuple(doubled))
 
 
 def _monitors(head: list[list[str]], where: str) -> tuple[dict[str, Columns], dict[str, str]]:
@@ -246,24 +280,26 @@ def _rate_of(time_s: FloatArray) -> float | None:
 def _check_units(file: ApdmFile) -> None:
     """By magnitude: one dialect states no units."""
     for name, columns in file.columns.items():
-        if not len(file.rows):
-            return
-        felt = np.linalg.norm(file.rows[:, list(columns[ACC])], axis=1)
-        middle = float(np.nanmedian(felt)) if np.isfinite(felt).any() else np.nan
-        least, most = GRAVITY_M_S2
-        if np.isfinite(middle) and not least < middle < most:
-            raise FileRefusedError(
-                file.path.name,
-                "the acceleration of {sensor} is {middle} in the middle, which is not gravity in m/s2",
-                "Export it again in m/s2, gravity not taken out",
-                sensor=quoted(name),
-                middle=f"{middle:.2f}",
-            )
-        rates = np.abs(file.rows[:, list(columns[GYR])])
-        if np.nanmax(rates, initial=0.0) > LARGEST_RATE_RAD_S:
-            raise FileRefusedError(
-                file.path.name,
-                "the angular rates of {sensor} are in deg/s and not in rad/s",
-                "Export it again in rad/s",
-                sensor=quoted(name),
-            )
+        if len(file.rows):
+            _check_magnitudes(file.path.name, name, file.rows[:, list(columns[ACC])], file.rows[:, list(columns[GYR])])
+
+
+def _check_magnitudes(where: str, sensor: str, acc: FloatArray, gyr: FloatArray) -> None:
+    felt = np.linalg.norm(acc, axis=1)
+    middle = float(np.nanmedian(felt)) if np.isfinite(felt).any() else np.nan
+    least, most = GRAVITY_M_S2
+    if np.isfinite(middle) and not least < middle < most:
+        raise FileRefusedError(
+            where,
+            "the acceleration of {sensor} is {middle} in the middle, which is not gravity in m/s2",
+            "Export it again in m/s2, gravity not taken out",
+            sensor=quoted(sensor),
+            middle=f"{middle:.2f}",
+        )
+    if np.nanmax(np.abs(gyr), initial=0.0) > LARGEST_RATE_RAD_S:
+        raise FileRefusedError(
+            where,
+            "the angular rates of {sensor} are in deg/s and not in rad/s",
+            "Export it again in rad/s",
+            sensor=quoted(sensor),
+        )

@@ -8,6 +8,7 @@ reads them, each followed now and then by a good one, which has to be read.
 """
 
 import argparse
+import io
 import os
 import random
 import sys
@@ -137,6 +138,23 @@ def apdm() -> bytes:
     return "\n".join([*lines, ""]).encode()
 
 
+def apdm_hdf5() -> bytes:
+    """As version 5 of APDM's files."""
+    import h5py  # an extra
+
+    content = io.BytesIO()
+    with h5py.File(content, "w") as file:
+        file.attrs["FileFormatVersion"] = 5
+        sensor = file.create_group("Sensors/1262")
+        sensor.create_group("Configuration").attrs["Label 0"] = np.bytes_("A")
+        sensor["Configuration"].attrs["Sample Rate"] = 128
+        sensor["Time"] = (1_550_879_504_438_281 + 7812 * np.arange(ROWS)).astype(np.uint64)
+        for name, sample in {"Accelerometer": (0.1, 0.2, 9.8), "Gyroscope": (0.01, 0.02, 0.03)}.items():
+            sensor.create_dataset(name, data=np.tile(sample, (ROWS, 1)), chunks=(8, 3), compression="gzip")
+        file["Processed/1262/Orientation"] = np.tile((1.0, 0.0, 0.0, 0.0), (ROWS, 1))
+    return content.getvalue()
+
+
 def read_export(reader: LimitedReader, folder: Path) -> object:
     trial = LimitedReading(reader, nobody).read_trial("xsens-mtmanager", [folder / "export.txt"], None)
     return place_trial(trial, {Site.LEFT_THIGH: "export.txt"}, "walk 1")
@@ -158,6 +176,7 @@ def importers() -> dict[str, Spoilable]:
         "session.toml": Spoilable(TOML.encode(), "session.toml", read_folder, may_be_a_link=True),
         "xsens-mtmanager": Spoilable(mtmanager(), "export.txt", read_export, may_be_a_link=False),
         "apdm": Spoilable(apdm(), "export.csv", read_unnamed, may_be_a_link=False),
+        "apdm-hdf5": Spoilable(apdm_hdf5(), "export.csv", read_unnamed, may_be_a_link=False),
     }
 
 
