@@ -35,6 +35,19 @@ SENTENCES = {
         "no angular rates were recorded, so they come from the sensor's own orientation. Fast movements are "
         "smoother than they were."
     ),
+    "columns_understood": (
+        "the columns were read as acceleration ({acc}, in {acc_unit}), angular rate ({gyr}, in {gyr_unit}) and time "
+        "({time}). Check them once for every program that writes such files."
+    ),
+    "columns_left_out": "columns that mean nothing here were left out: {names}.",
+    "unit_by_size": "the file does not tell the unit of {names}. By their size they are in {unit}.",
+    "time_from_rate": (
+        "the file tells no times, so its samples are taken to follow each other at {rate_hz:g} Hz. Lost samples do not "
+        "show; export times or a counter with them."
+    ),
+    "orientation_left_out": (
+        "the orientation ({names}) does not turn gravity upwards, so it is not earth from sensor. It was left out."
+    ),
     "sensor_changed": (
         "another sensor was worn than in the recording before. A calibration does not carry over to it; record "
         "free motion again."

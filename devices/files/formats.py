@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from devices.files.apdm import apdm_trial, is_apdm
+from devices.files.csv_tables import csv_trial, is_csv
 from devices.files.refusal import FileRefusedError
 from devices.files.trial import ImportedTrial
 from devices.files.xsens_mtmanager import is_mtmanager, mtmanager_trial
@@ -28,6 +29,9 @@ class FileFormat:
 FORMATS: Mapping[str, FileFormat] = {
     "xsens-mtmanager": FileFormat(is_mtmanager, mtmanager_trial, is_one_sensor=True),
     "apdm": FileFormat(is_apdm, apdm_trial),
+    "xsens-mtmanager": FileFormat("Xsens MT Manager", is_mtmanager, mtmanager_trial),
+    "apdm": FileFormat("APDM Moveo, Mobility Lab or Motion Studio", is_apdm, apdm_trial),
+    "csv": FileFormat("any program, as CSV with named columns", is_csv, csv_trial),  # the last that is asked
 }
 
 

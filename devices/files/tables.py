@@ -17,6 +17,7 @@ from core.samples import FloatArray
 from devices.files.refusal import FileRefusedError, quoted
 
 NUMBER = re.compile(r"\s*[+-]?((\d+\.?\d*|\.\d+)(e[+-]?\d+)?|nan|inf(inity)?)?\s*", re.IGNORECASE | re.ASCII)
+DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+(e[+-]?\d+)?", re.IGNORECASE | re.ASCII)
 LONGEST_HEADER = 100_000  # bytes; a line without end is no header
 EMPTY_CELLS = [" " * n for n in range(9)]  # Arrow compares whole cells, and a blank or two is still nothing
 UNNAMED = "column"  # a column without a name is called by its place: "column 9"
@@ -45,6 +46,40 @@ class Table:
         return matrix
 
 
+@dataclass(frozen=True, slots=True)
+class TextShape:
+    """How a text of another program is laid out, beyond its header.
+
+    Attributes
+    ----------
+    names
+        Of the columns, in their order.
+    units
+        What a line of units below the header says of each column; empty where there is no such line.
+    decimal
+        The decimal point: "," in files of some countries.
+    first
+        The cells of the first row of values; empty where there is none.
+    """
+
+    names: tuple[str, ...]
+    units: Mapping[str, str]
+    decimal: str
+    first: tuple[str, ...]
+
+
+def shape_of(path: Path, where: str, is_unit: Callable[[str], bool], *, comment: str, delimiters: str) -> TextShape:
+    """How a text is laid out; raises as `header_of` does."""
+    with path.open("rb") as file:
+        names, delimiter, _ = _read_header(file, where, comment, delimiters)
+        units = _cells_after(file, delimiter)
+        has_units = len(units) == len(names) and any(map(is_unit, units)) and not any(map(_is_value, units))
+        first = _cells_after(file, delimiter) if has_units else units
+    has_comma = delimiter != "," and any(DECIMAL_COMMA.fullmatch(cell) for cell in first)
+    told = {name: unit for name, unit in zip(names, units, strict=True) if unit} if has_units else {}
+    return TextShape(tuple(names), told, "," if has_comma else ".", first)
+
+
 def read_csv(
     path: Path,
     where: str,
@@ -53,6 +88,8 @@ def read_csv(
     comment: str | None = None,
     delimiters: str = ",",
     keep_others: bool = True,
+    has_units: bool = False,
+    decimal: str = ".",
 ) -> Table:
     """Read a text with one header line.
 
@@ -68,6 +105,10 @@ def read_csv(
         Of these, the one that divides the header most is taken.
     keep_others
         All other columns are kept as the text they are, or left out.
+    has_units
+        The line after the header holds units, see `shape_of`.
+    decimal
+        The decimal point.
 
     Raises
     ------
@@ -76,12 +117,13 @@ def read_csv(
     """
     with path.open("rb") as file:
         names, delimiter, header_line = _read_header(file, where, comment, delimiters)
+        header_line += _skip_line(file) if has_units else 0
         start = file.tell()
         wanted = [name for name in names if keep_others or name in numeric]
-        arrow = _read_body(file, names, wanted, numeric, delimiter)
+        arrow = _read_body(file, names, wanted, numeric, delimiter, decimal)
         is_open = _is_open(file, start)
         if isinstance(arrow, Exception) or _swallows_lines(arrow, numeric):
-            _refuse_line(path, where, start, header_line, names, numeric, delimiter)
+            _refuse_line(path, where, start, header_line, names, numeric, delimiter, decimal)
             if _has_content(path, start):
                 raise FileRefusedError(where, "the table cannot be read ({why})", COPY_AGAIN, why=arrow)
             arrow = None
@@ -176,6 +218,33 @@ def _read_header(file: BinaryIO, where: str, comment: str | None, delimiters: st
     raise FileRefusedError(where, "the file has no header line", COPY_AGAIN)
 
 
+def _cells_after(file: BinaryIO, delimiter: str) -> tuple[str, ...]:
+    """The cells of the next line that is not empty; none at the end, and none of a line that is no text."""
+    while raw := file.readline(LONGEST_HEADER):
+        if raw.strip():
+            try:
+                return tuple(
+                    cell.strip() for cell in next(csv.reader([raw.decode().strip("\r\n")], delimiter=delimiter))
+                )
+            except (UnicodeDecodeError, csv.Error, StopIteration):
+                return ()
+    return ()
+
+
+def _skip_line(file: BinaryIO) -> int:
+    """Pass over the next line that is not empty; how many lines that were."""
+    lines = 0
+    while raw := file.readline(LONGEST_HEADER):
+        lines += 1
+        if raw.strip():
+            break
+    return lines
+
+
+def _is_value(cell: str) -> bool:
+    return bool(cell.strip()) and NUMBER.fullmatch(cell) is not None
+
+
 def _refuse_twice(names: list[str], where: str, place: str) -> None:
     for name in names:
         if names.count(name) > 1:
@@ -183,7 +252,9 @@ def _refuse_twice(names: list[str], where: str, place: str) -> None:
             raise FileRefusedError(here, "column {name} is there twice", CORRECT_IT, name=quoted(name))
 
 
-def _read_body(file: BinaryIO, names: list[str], wanted: list[str], numeric: Collection[str], delimiter: str) -> Any:
+def _read_body(
+    file: BinaryIO, names: list[str], wanted: list[str], numeric: Collection[str], delimiter: str, decimal: str
+) -> Any:
     """The rows after the header as an Arrow table, or the error that Arrow raised."""
     import pyarrow as pa
     import pyarrow.csv as pcsv
@@ -195,7 +266,11 @@ def _read_body(file: BinaryIO, names: list[str], wanted: list[str], numeric: Col
             read_options=pcsv.ReadOptions(column_names=names),
             parse_options=pcsv.ParseOptions(delimiter=delimiter),
             convert_options=pcsv.ConvertOptions(
-                column_types=types, include_columns=wanted, null_values=EMPTY_CELLS, strings_can_be_null=False
+                column_types=types,
+                include_columns=wanted,
+                null_values=EMPTY_CELLS,
+                strings_can_be_null=False,
+                decimal_point=decimal,
             ),
         )
     except pa.ArrowMemoryError:
@@ -234,7 +309,14 @@ def _has_content(path: Path, start: int) -> bool:
 
 
 def _refuse_line(
-    path: Path, where: str, start: int, header_line: int, names: list[str], numeric: Collection[str], delimiter: str
+    path: Path,
+    where: str,
+    start: int,
+    header_line: int,
+    names: list[str],
+    numeric: Collection[str],
+    delimiter: str,
+    decimal: str,
 ) -> None:
     """Raise for the first line that cannot be read; return when there is none."""
     for number, line in _lines(path, start, header_line):
@@ -266,7 +348,7 @@ def _refuse_line(
                 whole=len(names),
             )
         for name, cell in zip(names, cells, strict=True):
-            if name in numeric and not NUMBER.fullmatch(cell):
+            if name in numeric and not NUMBER.fullmatch(cell if decimal == "." else cell.replace(decimal, ".")):
                 raise FileRefusedError(
                     here, "{cell} in column {name} is not a number", CORRECT_IT, cell=quoted(cell), name=name
                 )

@@ -166,6 +166,19 @@ def read_unnamed(reader: LimitedReader, folder: Path) -> object:
     return place_trial(trial, {Site.LEFT_THIGH: "A"}, "walk 1")
 
 
+def foreign_csv() -> bytes:
+    """As of no particular program: other names, other units, a line of units, two sensors."""
+    names = [
+        f"{sensor}_{one}" for sensor in "AB" for one in ("ax", "ay", "az", "gx", "gy", "gz", "q0", "q1", "q2", "q3")
+    ]
+    units = ["g", "g", "g", "deg/s", "deg/s", "deg/s", "", "", "", ""] * 2
+    rows = [
+        f"{10 * k};" + ";".join(["0,01", "0,02", "1,0", "1,5", "2,5", "90,0", "1", "0", "0", "0"] * 2)
+        for k in range(ROWS)
+    ]
+    return "\n".join(["# exported", "Time;" + ";".join(names), "ms;" + ";".join(units), *rows, ""]).encode()
+
+
 def nobody() -> None: ...
 
 
@@ -176,6 +189,7 @@ def importers() -> dict[str, Spoilable]:
         "session.toml": Spoilable(TOML.encode(), "session.toml", read_folder, may_be_a_link=True),
         "xsens-mtmanager": Spoilable(mtmanager(), "export.txt", read_export, may_be_a_link=False),
         "apdm": Spoilable(apdm(), "export.csv", read_unnamed, may_be_a_link=False),
+        "csv-named": Spoilable(foreign_csv(), "export.csv", read_unnamed, may_be_a_link=False),
         "apdm-hdf5": Spoilable(apdm_hdf5(), "export.csv", read_unnamed, may_be_a_link=False),
     }
 

@@ -1,0 +1,294 @@
+"""What the name of a column says: the quantity, its axis, the unit where it is told, and of which sensor it is.
+
+"acc_x_m_s2", "LeftShank Gyroscope X (deg/s)", "ax", "q0". What a name does not say is not guessed here.
+"""
+
+import re
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+
+from devices.csv_serial import FORCE_UNITS, RATE_UNITS
+from devices.files.refusal import FileRefusedError
+
+
+class Quantity(StrEnum):
+    """What a column holds."""
+
+    TIME = "time"
+    COUNTER = "counter"
+    ACC = "acceleration"
+    FREE_ACC = "free acceleration"
+    GYR = "angular rate"
+    MAG = "magnetic field"
+    QUAT = "orientation"
+    SAMPLE_RATE = "sample rate"
+
+
+WORDS = {  # a word that names a quantity
+    **dict.fromkeys(("acc", "accel", "acceleration", "accelerometer", "accelerations", "accelerometers"), Quantity.ACC),
+    "freeacc": Quantity.FREE_ACC,
+    **dict.fromkeys(("gyr", "gyro", "gyros", "gyroscope", "gyroscopes", "omega", "angvel"), Quantity.GYR),
+    **dict.fromkeys(("mag", "magn", "magneto", "magnetometer", "magnetometers"), Quantity.MAG),
+    **dict.fromkeys(("quat", "quaternion", "quaternions", "orientation"), Quantity.QUAT),
+    **dict.fromkeys(("time", "timestamp", "timestamps", "times"), Quantity.TIME),
+}
+LETTERS = {"a": Quantity.ACC, "g": Quantity.GYR, "w": Quantity.GYR, "m": Quantity.MAG, "q": Quantity.QUAT}  # "ax", "q0"
+PHRASES = (  # of several words, written as the one above
+    (r"angular[\W_]*(?:velocity|rate)|rotation[\W_]*rate|turn[\W_]*rate|rate[\W_]*of[\W_]*turn", " gyr "),
+    (r"(?:free|linear|lin|user)[\W_]*acc(?:el(?:eration|erometer)?)?", " freeacc "),
+    (r"specific[\W_]*force", " acc "),
+    (r"magnetic[\W_]*field", " mag "),
+    (r"time[\W_]*stamp", " timestamp "),
+)
+OTHER_WORDS = frozenset(
+    str.split(
+        "raw uncal uncalibrated norm magnitude mean std sd var bias offset temp temperature range scale delta inc "
+        "jerk euler angle angles roll pitch yaw error status start stop end fine"
+    )
+)
+EMPTY_WORDS = frozenset(str.split("data value values cal calib calibrated signal axis unix epoch utc elapsed the in"))
+COUNTERS = frozenset(
+    str.split(
+        "counter packetcounter samplecounter framecounter sample samplenumber sampleindex samplenr frame "
+        "framenumber frameindex packet packetnumber index seq sequence sequencenumber count"
+    )
+)
+SAMPLE_RATES = frozenset(
+    str.split(
+        "fs rate ratehz samplerate samplingrate samplefrequency samplingfrequency frequency freq sfreq srate "
+        "updaterate fshz sampleratehz samplingratehz samplingfrequencyhz"
+    )
+)
+AXES = {Quantity.QUAT: ("w", "x", "y", "z")}
+XYZ = ("x", "y", "z")
+SCALAR_FIRST = dict(zip("0123", "wxyz", strict=True))  # q0 is the scalar; where q1 to q4 have it is not agreed on
+
+SECONDS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
+SCALES: Mapping[Quantity, Mapping[str, float]] = {
+    Quantity.ACC: FORCE_UNITS,
+    Quantity.FREE_ACC: FORCE_UNITS,
+    Quantity.GYR: RATE_UNITS,
+    Quantity.TIME: SECONDS,
+}
+SPELLINGS: Mapping[Quantity, Mapping[str, str]] = {  # as `_plain_unit` leaves them
+    Quantity.ACC: {
+        **dict.fromkeys(("m/s2", "ms2", "m/s/s", "ms-2", "mps2", "m/sec2", "mpers2", "m/ss"), "m/s2"),
+        "g": "g",
+        "mg": "mg",
+    },
+    Quantity.GYR: {
+        **dict.fromkeys(("rad/s", "rads", "rad/sec", "radps", "rads-1", "radpers", "radians/s", "radian/s"), "rad/s"),
+        **dict.fromkeys(("deg/s", "degs", "dps", "°/s", "°s-1", "deg/sec", "degps", "degs-1", "degpers"), "deg/s"),
+        **dict.fromkeys(("degrees/s", "degree/s", "degrees/sec", "degree/second", "degrees/second"), "deg/s"),
+        **dict.fromkeys(("mdeg/s", "mdps", "mdegs"), "mdeg/s"),
+    },
+    Quantity.TIME: {
+        **dict.fromkeys(("s", "sec", "secs", "second", "seconds"), "s"),
+        **dict.fromkeys(("ms", "msec", "millis", "millisecond", "milliseconds"), "ms"),
+        **dict.fromkeys(("us", "µs", "μs", "usec", "micros", "microsecond", "microseconds"), "us"),
+        **dict.fromkeys(("ns", "nsec", "nanosecond", "nanoseconds"), "ns"),
+    },
+    Quantity.MAG: dict.fromkeys(("ut", "µt", "μt", "nt", "gauss", "ga", "mgauss", "au"), "any"),
+    Quantity.QUAT: {},
+}
+MOST_UNIT_WORDS = 3  # "m", "per", "s2"
+OTHER_UNITS = frozenset(str.split("m mm cm v mv counts count lsb adc raw rpm hz %"))  # in brackets; of none of these
+SUPERSCRIPTS = str.maketrans({"²": "2", "¹": "1", "⁻": "-", "−": "-"})
+LONGEST_NAME = 200
+# what capitals, digits and signs divide; a digit stays with the letters before it
+WORD = re.compile(r"[A-ZÀ-Þ]+(?![a-zß-ÿ])\d*|[A-ZÀ-Þ]?[a-zß-ÿµμ°]+\d*|\d+|[^\W_]")
+MOST_NAMES = 12  # in a sentence
+
+
+@dataclass(frozen=True, slots=True)
+class NamedQuantity:
+    """What one column's name says: `axis` empty where it names none, `unit` one of `SCALES` or empty."""
+
+    sensor: str
+    quantity: Quantity
+    axis: str
+    unit: str
+
+
+@dataclass(frozen=True, slots=True)
+class SensorColumns:
+    """The names of one sensor's columns; `mag`, `quat`, `time` and `counter` empty where there are none."""
+
+    sensor: str
+    acc: tuple[str, ...]
+    gyr: tuple[str, ...]
+    mag: tuple[str, ...] = ()
+    quat: tuple[str, ...] = ()
+    time: str = ""
+    counter: str = ""
+
+    def names(self) -> tuple[str, ...]:
+        """All of them."""
+        return (*self.acc, *self.gyr, *self.mag, *self.quat, *filter(None, (self.time, self.counter)))
+
+
+def meaning_of(name: str, unit: str = "") -> NamedQuantity | None:
+    """What a column's name says, with its unit where that stands elsewhere; None where it is something else."""
+    text, bracketed = without_brackets(name)
+    plain = re.sub(r"[\W_]+", "", text).lower()
+    if plain in COUNTERS:
+        return NamedQuantity("", Quantity.COUNTER, "", "")
+    if plain in SAMPLE_RATES:
+        return NamedQuantity("", Quantity.SAMPLE_RATE, "", "")
+    for phrase, word in PHRASES:
+        text = re.sub(phrase, word, text, flags=re.IGNORECASE)
+    spans = [(match.start(), match.end()) for match in WORD.finditer(text)]
+    words = [text[start:end] for start, end in spans]
+    if any(word.lower() in OTHER_WORDS for word in words):
+        return None
+    found = {at: said for at, word in enumerate(words) if (said := _said_by(word)) is not None}
+    if not found and words[:1] == ["t"] and (len(words) == 1 or unit_of(Quantity.TIME, "".join(words[1:]))):
+        found = {0: (Quantity.TIME, "")}
+    if len({quantity for quantity, _ in found.values()}) != 1:
+        return None
+    quantity = next(iter(found.values()))[0]
+    axis = next((axis for _, axis in found.values() if axis), "")
+    spent = {*found, *(at for at, word in enumerate(words) if word.lower() in EMPTY_WORDS)}
+    if not axis and quantity is not Quantity.TIME:
+        at = next((k for k in reversed(range(len(words))) if k not in spent and _axis(quantity, words[k])), -1)
+        axis = _axis(quantity, words[at]) if at >= 0 else ""
+        spent.add(at)
+    after = [k for k in range(min(found), len(words)) if k not in spent]
+    spoken, of_unit = _spoken_unit(quantity, words, after)
+    told = next(filter(None, (unit_of(quantity, one) for one in (unit, bracketed))), "")
+    return NamedQuantity(_left_of(text, spans, spent | of_unit), quantity, axis, told or spoken)
+
+
+def is_unit(text: str) -> bool:
+    """Whether a text is a unit of any quantity."""
+    return any(unit_of(quantity, text) for quantity in SPELLINGS)
+
+
+def sensor_columns(names: Sequence[str], units: Mapping[str, str] | None = None) -> tuple[SensorColumns, ...]:
+    """The sensors that have acceleration and angular rates about three axes each.
+
+    Raises
+    ------
+    FileRefusedError
+        Two columns that mean the same; its `where` is empty.
+    """
+    told = units or {}
+    meant = {name: meaning for name in names if (meaning := meaning_of(name, told.get(name, ""))) is not None}
+    places: dict[tuple[str, Quantity], dict[str, list[str]]] = {}
+    called: dict[str, str] = {}
+    for name, meaning in meant.items():
+        key = meaning.sensor.casefold()
+        called.setdefault(key, meaning.sensor)
+        places.setdefault((key, meaning.quantity), {}).setdefault(meaning.axis, []).append(name)
+
+    def whole(key: str, quantity: Quantity) -> tuple[str, ...]:
+        axes = places.get((key, quantity), {})
+        wanted = AXES.get(quantity, XYZ)
+        if not all(axis in axes for axis in wanted):
+            return ()
+        for axis in wanted:
+            _refuse_both(axes[axis])
+        return tuple(axes[axis][0] for axis in wanted)
+
+    sensors = []
+    for key, sensor in called.items():
+        acc = whole(key, Quantity.ACC) or whole(key, Quantity.FREE_ACC)
+        gyr = whole(key, Quantity.GYR)
+        if not acc or not gyr:
+            continue
+        sensors.append(
+            SensorColumns(
+                sensor,
+                acc,
+                gyr,
+                whole(key, Quantity.MAG),
+                whole(key, Quantity.QUAT),
+                _one_time(places, meant, key),
+                next(iter(places.get(("", Quantity.COUNTER), {}).get("", [])), ""),
+            )
+        )
+    return tuple(sensors)
+
+
+def _one_time(
+    places: Mapping[tuple[str, Quantity], Mapping[str, list[str]]], meant: Mapping[str, NamedQuantity], key: str
+) -> str:
+    """The column of times of a sensor, or of all; of several the one that tells its unit."""
+    for owner in (key, ""):
+        names = places.get((owner, Quantity.TIME), {}).get("", [])
+        told = [name for name in names if meant[name].unit]
+        if names:
+            _refuse_both(told or names)
+            return (told or names)[0]
+    return ""
+
+
+def _refuse_both(names: Sequence[str]) -> None:
+    if len(names) > 1:
+        raise FileRefusedError(
+            "", "the columns {names} mean the same", "Leave out all but one of them", names=listed(names)
+        )
+
+
+def without_brackets(name: str) -> tuple[str, str]:
+    """The name without the unit in its brackets, and that unit; brackets that hold something else are opened."""
+    name, unit = name[:LONGEST_NAME], ""
+    for bracket in re.findall(r"\[[^\[\]]*\]|\([^()]*\)", name):
+        content = bracket[1:-1].strip()
+        if is_unit(content) or "/" in content or content.lower() in OTHER_UNITS:
+            name, unit = name.replace(bracket, " "), content
+    return re.sub(r"[\[\](){}]", " ", name), unit
+
+
+def _left_of(text: str, spans: Sequence[tuple[int, int]], spent: Collection[int]) -> str:
+    """A name without the words that are spent: what it calls the sensor, as it is written there."""
+    for at in spent:
+        if at >= 0:
+            start, end = spans[at]
+            text = text[:start] + "\0" * (end - start) + text[end:]
+    pieces = (re.sub(r"^[\W_]+|[\W_]+$", "", piece) for piece in text.split("\0"))
+    return "_".join(filter(None, pieces))
+
+
+def _said_by(word: str) -> tuple[Quantity, str] | None:
+    """The quantity and the axis that one word names: "Acc", "accx", "q0"."""
+    lower = word.lower()
+    if lower in WORDS:
+        return WORDS[lower], ""
+    quantity = LETTERS.get(lower[:-1]) or WORDS.get(lower[:-1])
+    axis = "" if quantity is None or quantity is Quantity.TIME else _axis(quantity, lower[-1])
+    return (quantity, axis) if quantity is not None and axis else None
+
+
+def _axis(quantity: Quantity, word: str) -> str:
+    """The axis that a word names; empty where it names none."""
+    lower = word.lower()
+    if quantity is Quantity.QUAT:
+        lower = SCALAR_FIRST.get(lower, lower)
+    return lower if lower in AXES.get(quantity, XYZ) else ""
+
+
+def _spoken_unit(quantity: Quantity, words: Sequence[str], after: Sequence[int]) -> tuple[str, set[int]]:
+    """The unit that words after the quantity make, and which words these are: the last, else the first."""
+    for many in range(min(MOST_UNIT_WORDS, len(after)), 0, -1):
+        for chosen in (after[-many:], after[:many]):
+            if unit := unit_of(quantity, "".join(words[k] for k in chosen)):
+                return unit, set(chosen)
+    return "", set()
+
+
+def unit_of(quantity: Quantity, text: str) -> str:
+    """The unit of a quantity that a text means, one of `SCALES`; empty where it means none."""
+    known = SPELLINGS.get(Quantity.ACC if quantity is Quantity.FREE_ACC else quantity, {})
+    return known.get(_plain_unit(text), "")
+
+
+def _plain_unit(text: str) -> str:
+    return re.sub(r"[\s_^*·.]|\\", "", text.strip().strip("[](){}").lower()).translate(SUPERSCRIPTS)
+
+
+def listed(names: Sequence[str]) -> str:
+    """Names as they can stand in a sentence."""
+    more = f" (+{len(names) - MOST_NAMES})" if len(names) > MOST_NAMES else ""
+    return ", ".join(name[:40] for name in names[:MOST_NAMES]) + more

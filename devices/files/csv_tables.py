@@ -1,0 +1,78 @@
+"""CSV of any program: columns that say by their names and units what they are, see `named_columns`.
+
+One sensor in each file, or all side by side. The header is the first line that is no comment (#); a line of units may
+follow. Our own session's columns are among those that are understood. It is asked last of all formats.
+"""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from devices.files.column_names import is_unit, sensor_columns
+from devices.files.named_columns import NamedTable, trial_of_tables
+from devices.files.refusal import FileRefusedError
+from devices.files.tables import TextShape, read_csv, shape_of
+from devices.files.trial import ImportedTrial
+
+COMMENT, DELIMITERS = "#", ",;\t"
+OF_OTHERS = frozenset({"packetcounter", "sampletimefine"})  # Xsens and Movella: what their ticks are differs by program
+
+
+def is_csv(path: Path, head: bytes) -> bool:
+    """Whether a file is a table with acceleration and angular rates about three axes of one sensor or more.
+
+    Strict, so that no file of another program comes in by the way of its columns' names alone.
+    """
+    if not head or b"\0" in head:
+        return False
+    try:
+        shape = _shape(path)
+        sensors = sensor_columns(shape.names, shape.units)
+    except FileRefusedError:
+        return False
+    has_others = any(name.strip().lower() in OF_OTHERS for name in shape.names)
+    return bool(sensors) and not has_others and (not shape.first or len(shape.first) == len(shape.names))
+
+
+def csv_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedTrial:
+    """The sensors of one trial, in one file or in several.
+
+    Parameters
+    ----------
+    rate_hz
+        Samples per second where the files hold no times.
+
+    Raises
+    ------
+    FileRefusedError
+        What `tables` and `named_columns` refuse of the only file.
+    """
+    return trial_of_tables("csv", files, _table, rate_hz)
+
+
+def _table(path: Path) -> NamedTable:
+    where = path.name
+    shape = _shape(path)
+    wanted = {name for one in sensor_columns(shape.names, shape.units) for name in one.names()}
+    table = read_csv(
+        path,
+        where,
+        wanted,
+        comment=COMMENT,
+        delimiters=DELIMITERS,
+        keep_others=False,
+        has_units=bool(shape.units),
+        decimal=shape.decimal,
+    )
+    return NamedTable(
+        columns={name: table.numbers[name] for name in shape.names if name in wanted},
+        where=where,
+        file=str(path),
+        called=path.stem,
+        place=table.place,
+        units=shape.units,
+        left_out=[name for name in shape.names if name not in wanted],
+    )
+
+
+def _shape(path: Path) -> TextShape:
+    return shape_of(path, path.name, is_unit, comment=COMMENT, delimiters=DELIMITERS)
