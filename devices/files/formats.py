@@ -6,6 +6,7 @@ from pathlib import Path
 
 from devices.files.apdm import apdm_trial, is_apdm
 from devices.files.csv_tables import csv_trial, is_csv
+from devices.files.parquet_tables import is_parquet, parquet_trial
 from devices.files.refusal import FileRefusedError
 from devices.files.trial import ImportedTrial
 from devices.files.xsens_mtmanager import is_mtmanager, mtmanager_trial
@@ -31,6 +32,7 @@ FORMATS: Mapping[str, FileFormat] = {
     "apdm": FileFormat(is_apdm, apdm_trial),
     "xsens-mtmanager": FileFormat("Xsens MT Manager", is_mtmanager, mtmanager_trial),
     "apdm": FileFormat("APDM Moveo, Mobility Lab or Motion Studio", is_apdm, apdm_trial),
+    "parquet": FileFormat("any program, as Parquet with named columns", is_parquet, parquet_trial),
     "csv": FileFormat("any program, as CSV with named columns", is_csv, csv_trial),  # the last that is asked
 }
 

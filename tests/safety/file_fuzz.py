@@ -179,6 +179,15 @@ def foreign_csv() -> bytes:
     return "\n".join(["# exported", "Time;" + ";".join(names), "ms;" + ";".join(units), *rows, ""]).encode()
 
 
+def foreign_parquet() -> bytes:
+    axes = {f"A_acc_{axis}_g": value for axis, value in zip("xyz", (0.1, 0.2, 1.0), strict=True)}
+    axes |= {f"A_gyr_{axis}_deg_s": value for axis, value in zip("xyz", (1.0, 2.0, 90.0), strict=True)}
+    sink = pa.BufferOutputStream()
+    table = pa.table({"time_ms": 10 * np.arange(ROWS)} | {name: np.full(ROWS, value) for name, value in axes.items()})
+    pq.write_table(table, sink)
+    return bytes(sink.getvalue().to_pybytes())
+
+
 def nobody() -> None: ...
 
 
@@ -190,6 +199,7 @@ def importers() -> dict[str, Spoilable]:
         "xsens-mtmanager": Spoilable(mtmanager(), "export.txt", read_export, may_be_a_link=False),
         "apdm": Spoilable(apdm(), "export.csv", read_unnamed, may_be_a_link=False),
         "csv-named": Spoilable(foreign_csv(), "export.csv", read_unnamed, may_be_a_link=False),
+        "parquet-named": Spoilable(foreign_parquet(), "export.csv", read_unnamed, may_be_a_link=False),
         "apdm-hdf5": Spoilable(apdm_hdf5(), "export.csv", read_unnamed, may_be_a_link=False),
     }
 

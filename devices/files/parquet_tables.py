@@ -1,0 +1,79 @@
+"""Parquet of any program: columns that say by their names and units what they are, see `named_columns`.
+
+One sensor in each file, or all side by side. A unit may stand in a column's name or in its metadata ("unit", "units").
+"""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from devices.files.column_names import sensor_columns
+from devices.files.named_columns import NamedTable, trial_of_tables
+from devices.files.refusal import FileRefusedError
+from devices.files.tables import COPY_AGAIN, read_parquet
+from devices.files.trial import ImportedTrial
+
+SIGNATURE = b"PAR1"
+UNIT_KEYS = (b"unit", b"units")
+
+
+def is_parquet(path: Path, head: bytes) -> bool:
+    """Whether a file is Parquet with acceleration and angular rates about three axes of one sensor or more."""
+    if not head.startswith(SIGNATURE):
+        return False
+    try:
+        units = _columns(path)
+        return bool(sensor_columns(list(units), units))
+    except FileRefusedError:
+        return False
+
+
+def parquet_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedTrial:
+    """The sensors of one trial, in one file or in several.
+
+    Parameters
+    ----------
+    rate_hz
+        Samples per second where the files hold no times.
+
+    Raises
+    ------
+    FileRefusedError
+        What `tables` and `named_columns` refuse of the only file.
+    """
+    return trial_of_tables("parquet", files, _table, rate_hz)
+
+
+def _table(path: Path) -> NamedTable:
+    units = _columns(path)
+    wanted = {name for one in sensor_columns(list(units), units) for name in one.names()}
+    table = read_parquet(path, path.name, wanted)
+    return NamedTable(
+        columns={name: table.numbers[name] for name in units if name in wanted},
+        where=path.name,
+        file=str(path),
+        called=path.stem,
+        place=table.place,
+        units={name: unit for name, unit in units.items() if unit},
+        left_out=[name for name in units if name not in wanted],
+    )
+
+
+def _columns(path: Path) -> dict[str, str]:
+    """The units of the columns by their names; empty where none is told."""
+    import pyarrow as pa  # here, not above: the window starts without it
+    import pyarrow.parquet as pq
+
+    try:
+        with path.open("rb") as file:
+            schema = pq.read_schema(file)
+        return {field.name.strip(): _unit(field.metadata or {}) for field in schema}
+    except pa.ArrowMemoryError:
+        raise
+    except (pa.ArrowException, OSError, ValueError, OverflowError) as error:
+        raise FileRefusedError(
+            path.name, "this is not a readable Parquet file ({why})", COPY_AGAIN, why=error
+        ) from error
+
+
+def _unit(metadata: dict[bytes, bytes]) -> str:
+    return next((metadata[key].decode("utf-8", "replace")[:40] for key in UNIT_KEYS if key in metadata), "")
