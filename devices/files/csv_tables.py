@@ -8,7 +8,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from devices.files.column_names import is_unit, sensor_columns
-from devices.files.named_columns import NamedTable, trial_of_tables
+from devices.files.named_columns import trial_of_tables
+from devices.files.named_table import NamedTable
 from devices.files.refusal import FileRefusedError
 from devices.files.tables import TextShape, read_csv, shape_of
 from devices.files.trial import ImportedTrial

@@ -30,10 +30,8 @@ class FileFormat:
 FORMATS: Mapping[str, FileFormat] = {
     "xsens-mtmanager": FileFormat(is_mtmanager, mtmanager_trial, is_one_sensor=True),
     "apdm": FileFormat(is_apdm, apdm_trial),
-    "xsens-mtmanager": FileFormat("Xsens MT Manager", is_mtmanager, mtmanager_trial),
-    "apdm": FileFormat("APDM Moveo, Mobility Lab or Motion Studio", is_apdm, apdm_trial),
-    "parquet": FileFormat("any program, as Parquet with named columns", is_parquet, parquet_trial),
-    "csv": FileFormat("any program, as CSV with named columns", is_csv, csv_trial),  # the last that is asked
+    "parquet": FileFormat(is_parquet, parquet_trial, is_one_sensor=True),
+    "csv": FileFormat(is_csv, csv_trial, is_one_sensor=True),  # the last that is asked
 }
 
 

@@ -4,8 +4,8 @@ What a name does not say is found by size where size leaves one answer only, and
 the file is refused with the name that would settle it. What is told is held to its size, too.
 """
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -16,7 +16,6 @@ from core.samples import BoolArray, FloatArray, ImuBlock, SensorInfo
 from devices.csv_serial import FORCE_UNITS, RATE_UNITS
 from devices.files.column_names import (
     SCALES,
-    SECONDS,
     Quantity,
     SensorColumns,
     listed,
@@ -25,56 +24,19 @@ from devices.files.column_names import (
     unit_of,
     without_brackets,
 )
+from devices.files.named_table import NamedTable
+from devices.files.named_times import stamps_of
 from devices.files.refusal import FileRefusedError, quoted
 from devices.files.trial import ImportedSensor, ImportedTrial, UnreadFile
 
 GRAVITY_M_S2 = (7.0, 14.0)  # the middle of what a sensor on a leg at rest or walking feels
 MOST_RAD_S = 70.0  # twice the widest range of such sensors, 2000 deg/s
-LIKELY_HZ = (20.0, 2000.0)  # rates by which a unit of time is found: no two units leave the same steps
-POSSIBLE_HZ = (1.0, 20_000.0)
-WRAPS = tuple(float(1 << bits) for bits in (8, 16, 24, 32))
-MOST_DOUBLED = 0.2  # of the samples: beyond, the stamps are too coarse to go by
 UP = 0.95  # cosine of the angle to the vertical at which an orientation turns the mean specific force
 
 NAME_THEM = (
     "Name its columns acc_x, acc_y, acc_z and gyr_x, gyr_y, gyr_z, with their units as in acc_x_m_s2 and gyr_x_deg_s;"
     " of several sensors left_shank_acc_x and so on"
 )
-
-
-@dataclass(frozen=True, slots=True)
-class NamedTable:
-    """Columns of one table or file, all that is told of them, and where they stand.
-
-    Attributes
-    ----------
-    columns : name -> (n,)
-        Numbers, NaN where empty; of one sensor all of one length.
-    units
-        Of columns whose unit stands elsewhere than in their name.
-    where, file
-        The file's name in refusals, and its path.
-    called
-        The sensor's name where the columns name none.
-    place
-        Where a row stands in the file ("line 12").
-    rate_hz
-        Samples per second as the file tells; None where it does not.
-    time_s : (n,) or None
-        Stamps in seconds that the file keeps beside its columns.
-    left_out
-        Columns that were not even read as numbers.
-    """
-
-    columns: Mapping[str, FloatArray]
-    where: str
-    file: str
-    called: str
-    place: Callable[[int], str]
-    units: Mapping[str, str] = field(default_factory=dict)
-    rate_hz: float | None = None
-    time_s: FloatArray | None = None
-    left_out: Sequence[str] = ()
 
 
 def sensors_of_table(table: NamedTable, rate_hz: float | None) -> list[ImportedSensor]:
@@ -147,7 +109,7 @@ def _sensor(table: NamedTable, named: SensorColumns, asked_hz: float | None, oth
     findings: list[Finding] = []
     acc, gyr = _matrix(table, named.acc), _matrix(table, named.gyr)
     is_there: BoolArray = np.isfinite(np.hstack([acc, gyr])).any(axis=1)  # a row of another sensor's is none of its
-    stamps = _stamps(table, named, asked_hz, is_there, findings)
+    stamps = stamps_of(table, named, asked_hz, is_there, findings)
     acc_unit = _acc_unit(table, named, acc, findings)
     gyr_unit = _gyr_unit(table, named, gyr, findings)
     acc, gyr = acc * FORCE_UNITS[acc_unit], gyr * RATE_UNITS[gyr_unit]
@@ -179,158 +141,6 @@ def _sensor(table: NamedTable, named: SensorColumns, asked_hz: float | None, oth
     return ImportedSensor(
         name, ids, table.file, block, SensorInfo(serial=name, rate_hz=stamps.rate_hz), tuple(findings)
     )
-
-
-@dataclass(frozen=True, slots=True)
-class _Stamps:
-    """Seconds of the samples that are new; of all samples which are; how many are not; by what they are told."""
-
-    time_s: FloatArray
-    is_new: BoolArray
-    doubled: int
-    rate_hz: float | None
-    told: str
-
-
-def _stamps(
-    table: NamedTable, named: SensorColumns, asked_hz: float | None, is_there: BoolArray, findings: list[Finding]
-) -> _Stamps:
-    told_hz = _one_rate(table, asked_hz)
-    rows = np.flatnonzero(is_there)
-    if table.time_s is not None:
-        values, scale, told = _ascending(table, table.time_s[rows], rows, "time"), 1.0, "time [s]"
-    elif named.time and len(table.columns[named.time]) == len(is_there):
-        values = _ascending(table, table.columns[named.time][rows], rows, named.time)
-        meaning = meaning_of(named.time, table.units.get(named.time, ""))
-        unit = _time_unit(table, named.time, meaning.unit if meaning else "", values, told_hz, findings)
-        scale, told = (
-            (1.0 / (told_hz or 1.0), named.time) if unit == "samples" else (SECONDS[unit], f"{named.time} [{unit}]")
-        )
-    elif told_hz is None:
-        raise FileRefusedError(
-            table.where,
-            "nothing tells the times of its samples",
-            "Add a column time_s, time_ms or time_us, or give the samples per second with --rate",
-        )
-    elif named.counter and len(table.columns[named.counter]) == len(is_there):
-        values, scale, told = (
-            _ascending(table, table.columns[named.counter][rows], rows, named.counter),
-            1.0 / told_hz,
-            f"{named.counter} / {told_hz:g} Hz",
-        )
-    else:
-        values, scale, told = rows.astype(float), 1.0 / told_hz, f"{told_hz:g} Hz"
-        findings.append(Finding("time_from_rate", Severity.WARNING, "", {"rate_hz": told_hz}))
-    is_new = np.concatenate([np.ones(len(values[:1]), dtype=bool), np.diff(values) > 0])
-    doubled = int(np.sum(~is_new))
-    if doubled > MOST_DOUBLED * len(values):
-        raise FileRefusedError(
-            table.where,
-            "of {count} samples {doubled} have the time of the one before",
-            "Export the times with more digits",
-            count=len(values),
-            doubled=doubled,
-        )
-    time_s = values[is_new] * scale
-    return _Stamps(time_s, is_new, doubled, _checked_rate(table, time_s, told_hz), told)
-
-
-def _one_rate(table: NamedTable, asked_hz: float | None) -> float | None:
-    told_hz = table.rate_hz
-    if asked_hz is not None and told_hz is not None and abs(asked_hz - told_hz) > 0.02 * asked_hz:
-        raise FileRefusedError(
-            table.where,
-            "it tells {told} samples per second, --rate {asked}",
-            "Give the rate it was recorded at, or leave --rate out",
-            told=f"{told_hz:g}",
-            asked=f"{asked_hz:g}",
-        )
-    return asked_hz or told_hz
-
-
-def _checked_rate(table: NamedTable, time_s: FloatArray, told_hz: float | None) -> float | None:
-    """Samples per second by the stamps, which have to be near what is told."""
-    if len(time_s) < 2:
-        return told_hz
-    step_s = np.diff(time_s)
-    found_hz = 1.0 / float(np.mean(step_s[step_s < 1.5 * np.median(step_s)]))  # stamps may be rounded, and have gaps
-    least, most = POSSIBLE_HZ
-    if not least < found_hz < most or (told_hz is not None and abs(found_hz - told_hz) > 0.05 * told_hz):
-        raise FileRefusedError(
-            table.where,
-            "its times make {found} samples per second, {told} are expected",
-            "Name the column of times with its unit, such as time_ms, or correct the rate",
-            found=f"{found_hz:.4g}",
-            told=f"{least:g} to {most:g}" if told_hz is None else f"{told_hz:g}",
-        )
-    return round(found_hz, 1)
-
-
-def _ascending(
-    table: NamedTable, values: FloatArray, rows: np.ndarray[tuple[int], np.dtype[np.intp]], name: str
-) -> FloatArray:
-    """(n,) stamps or counts without their turns.
-
-    Raises
-    ------
-    FileRefusedError
-        One is missing or lies before its predecessor.
-    """
-    missing = np.flatnonzero(~np.isfinite(values))
-    if len(missing):
-        raise FileRefusedError(
-            f"{table.where}, {table.place(int(rows[missing[0]]))}",
-            "a sample has no time in column {name}",
-            "Correct the file or export it again",
-            name=quoted(name),
-        )
-    step = np.diff(values)
-    back = step < 0
-    if back.any():
-        usual = float(np.median(step[~back])) if (~back).any() else 0.0
-        for turn in WRAPS:
-            turned = step + turn
-            is_turn = (values[1:][back] < 0.1 * turn) & (values[:-1][back] > 0.9 * turn)
-            if values.max() < turn and is_turn.all() and (turned[back] <= max(100.0 * usual, 1.0)).all():
-                return np.concatenate([values[:1], values[0] + np.cumsum(np.where(back, turned, step))])
-        row = int(np.flatnonzero(back)[0]) + 1
-        raise FileRefusedError(
-            f"{table.where}, {table.place(int(rows[row]))}",
-            "{name} steps back from {before} to {after}",
-            "Split the recording there or export it again",
-            name=quoted(name),
-            before=f"{values[row - 1]:.12g}",
-            after=f"{values[row]:.12g}",
-        )
-    return values
-
-
-def _time_unit(
-    table: NamedTable, name: str, told: str, values: FloatArray, told_hz: float | None, findings: list[Finding]
-) -> str:
-    """A unit of time, or "samples" where samples are counted."""
-    step = np.diff(values)
-    usual = float(np.median(step[step > 0])) if (step > 0).any() else np.nan
-    if told or not np.isfinite(usual):
-        return told or "s"
-    if told_hz is not None:
-        fits = [unit for unit, scale in SECONDS.items() if abs(usual * scale * told_hz - 1.0) < 0.05]
-        fits = fits or (["samples"] if usual == 1.0 else [])
-    else:
-        least, most = LIKELY_HZ
-        fits = [unit for unit, scale in SECONDS.items() if least <= 1.0 / (usual * scale) <= most]
-        fits = [] if usual == 1.0 else fits  # it may be a count, and it may be milliseconds
-    if not fits:
-        raise FileRefusedError(
-            table.where,
-            "nothing tells the unit of {name}, which grows by {step} from one sample to the next",
-            "Name it with its unit, such as time_s, time_ms or time_us, or give the samples per second with --rate",
-            name=quoted(name),
-            step=f"{usual:.6g}",
-        )
-    if fits[0] != "samples":
-        findings.append(Finding("unit_by_size", Severity.INFO, "", {"names": name, "unit": fits[0]}))
-    return fits[0]
 
 
 def _acc_unit(table: NamedTable, named: SensorColumns, acc: FloatArray, findings: list[Finding]) -> str:

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from devices.files.column_names import sensor_columns
-from devices.files.named_columns import NamedTable, trial_of_tables
+from devices.files.named_columns import trial_of_tables
+from devices.files.named_table import NamedTable
 from devices.files.refusal import FileRefusedError
 from devices.files.tables import COPY_AGAIN, read_parquet
 from devices.files.trial import ImportedTrial

@@ -124,7 +124,7 @@ def test_amid_a_walk(qtbot: QtBot, start_again: Start, untouched_library: Path, 
     """All of it is there but the last moment, and it is asked whether it is kept."""
     told = killed_at(Point.WALKING, tmp_path, untouched_library)
     home, wizard = start_again(told["session"])
-    assert "of walk 1 was recovered" in home.banner.text
+    assert "of A Shoes was recovered" in home.banner.text
     visit = visit_of(wizard)
     (walk,) = visit.recordings.walks
     assert walk.stored.state is RecordingState.RECOVERED

@@ -1,0 +1,41 @@
+"""A table of no particular program, as its readers hand it on to `named_columns`."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from core.samples import FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class NamedTable:
+    """Columns of one table or file, all that is told of them, and where they stand.
+
+    Attributes
+    ----------
+    columns : name -> (n,)
+        Numbers, NaN where empty; of one sensor all of one length.
+    units
+        Of columns whose unit stands elsewhere than in their name.
+    where, file
+        The file's name in refusals, and its path.
+    called
+        The sensor's name where the columns name none.
+    place
+        Where a row stands in the file ("line 12").
+    rate_hz
+        Samples per second as the file tells; None where it does not.
+    time_s : (n,) or None
+        Stamps in seconds that the file keeps beside its columns.
+    left_out
+        Columns that were not even read as numbers.
+    """
+
+    columns: Mapping[str, FloatArray]
+    where: str
+    file: str
+    called: str
+    place: Callable[[int], str]
+    units: Mapping[str, str] = field(default_factory=dict)
+    rate_hz: float | None = None
+    time_s: FloatArray | None = None
+    left_out: Sequence[str] = ()
