@@ -203,16 +203,16 @@ class _Watch:
         """Hear of every curve that is painted from now on; before any is, since Qt asks Python only once."""
         from PySide6.QtCore import QTimer
 
-        from app.wizard.walking.live_strip import _HistoryItem
+        from app.wizard.walking.live_strip import _History
 
-        paint = _HistoryItem.paint
+        paint = _History.paintEvent
 
         def heard(item: Any, *arguments: Any) -> None:
             paint(item, *arguments)
             if cls.current is not None:
                 QTimer.singleShot(0, partial(cls.current.on_sent, item))  # once the frame is on the display
 
-        _HistoryItem.paint = heard  # type: ignore[assignment,method-assign]  # only to measure
+        _History.paintEvent = heard  # type: ignore[assignment,method-assign]  # only to measure
 
     def __init__(self, wizard: "Wizard") -> None:
         visit = wizard.visit

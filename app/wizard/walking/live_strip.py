@@ -1,7 +1,8 @@
 """One kind of joint while the patient walks: the last seconds of both legs, left solid, right dashed, gaps as gaps.
 
-Axes and frame are pyqtgraph's. What moves is one item of our own that keeps its history in a picture, since a wide,
-smooth line of pyqtgraph's is drawn whole in every frame, for more than ten times as long.
+Axes and frame are pyqtgraph's. What moves is a widget of our own over them that keeps its history in a picture: a wide,
+smooth line of pyqtgraph's is drawn whole in every frame, for more than ten times as long, and a scene asks all of its
+items in every frame where they are.
 """
 
 from collections.abc import Iterator, Mapping
@@ -11,8 +12,8 @@ from itertools import pairwise
 import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import QEvent, QRectF, QSize, Qt
-from PySide6.QtGui import QColor, QPainter, QPen, QShowEvent
-from PySide6.QtWidgets import QGraphicsView, QStyleOptionGraphicsItem, QWidget
+from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen, QResizeEvent, QShowEvent
+from PySide6.QtWidgets import QWidget
 
 from app.charts.axes import AXIS_WIDTH, RIGHT_MARGIN, range_for
 from app.plots.angle_chart import AngleAxis
@@ -56,8 +57,6 @@ class LiveStrip(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no type
     def __init__(self, look: ThemeNotifier, fixed_deg: tuple[float, float], tick_deg: float) -> None:
         super().__init__(useOpenGL=False)
         self._look, self._tick_deg = look, tick_deg
-        only_what_moves = QGraphicsView.OptimizationFlag.DontAdjustForAntialiasing  # else the axes beside it too
-        self.setOptimizationFlag(only_what_moves)
         for part in (self, self.viewport()):
             part.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self._view = pg.ViewBox(enableMenu=False, enableMouse=False)
@@ -73,9 +72,8 @@ class LiveStrip(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no type
         self._base.setStyle(showValues=False)
         self._base.setTicks([])  # only its line
         self.setCentralItem(self._layout)
-        self._history = _HistoryItem(look, fixed_deg, self._view)
-        self._view.sigResized.connect(self._history.on_resized)
-        self._view.sigResized.connect(self._set_range)
+        self._history = _History(look, fixed_deg, self.viewport())
+        self._view.sigResized.connect(self._on_view_resized)
         self._set_range()
         self._on_look_changed()
 
@@ -109,6 +107,12 @@ class LiveStrip(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no type
     def clear(self) -> None:
         """Begin with an empty strip and the axis as it is for everybody."""
         self._history.clear()
+        self._set_range()
+
+    def _on_view_resized(self) -> None:
+        self._history.setGeometry(
+            self._view.mapRectToScene(self._view.rect()).toRect()
+        )  # a scene's units are our pixels
         self._set_range()
 
     def _set_range(self) -> None:
@@ -230,15 +234,16 @@ class _Trace:
         return pieces
 
 
-class _HistoryItem(pg.GraphicsObject):  # type: ignore[misc]  # pyqtgraph has no types
-    """The moving part, as large as the view it lies in. Nothing is drawn while it is out of sight."""
+class _History(QWidget):
+    """The moving part, over the view of the axes. Nothing is drawn while it is out of sight."""
 
-    def __init__(self, look: ThemeNotifier, fixed_deg: tuple[float, float], view: pg.ViewBox) -> None:
-        super().__init__()
-        self._look, self._view = look, view
+    def __init__(self, look: ThemeNotifier, fixed_deg: tuple[float, float], parent: QWidget) -> None:
+        super().__init__(parent)
+        self.setAttribute(Qt.WidgetAttribute.WA_OpaquePaintEvent)  # the scene beneath is not painted for it
+        self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
+        self._look = look
         self._fixed = self.range_deg = fixed_deg
         self._seconds = SHOWN_S
-        self._place = QRectF()  # what boundingRect answers, which Qt asks several times a frame
         self._pens: dict[tuple[Side, bool, float], QPen] = {}
         self._picture: ScrollingPicture | None = None
         self._now_s, self._began_s = 0.0, np.nan
@@ -246,14 +251,9 @@ class _HistoryItem(pg.GraphicsObject):  # type: ignore[misc]  # pyqtgraph has no
         self._dirty_s = np.inf  # what is later must be drawn anew
         self._drawn: tuple[MissingSpan, ...] = ()
         self.missing: tuple[MissingSpan, ...] = ()
-        self.setParentItem(view)
 
-    def boundingRect(self) -> QRectF:
-        return self._place
-
-    def on_resized(self) -> None:
-        self.prepareGeometryChange()
-        self._place = QRectF(0, 0, self._view.width(), self._view.height())
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
         self.redraw()
 
     def set_seconds(self, seconds: float) -> None:
@@ -292,16 +292,18 @@ class _HistoryItem(pg.GraphicsObject):  # type: ignore[misc]  # pyqtgraph has no
         self.missing = tuple(self._missing())
         self.update()
 
-    def paint(self, painter: QPainter, _option: QStyleOptionGraphicsItem, widget: QWidget | None = None) -> None:
-        ratio = widget.devicePixelRatioF() if widget is not None else 1.0
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        ratio = self.devicePixelRatioF()
         picture = self._up_to_date(ratio)
-        picture.paint(painter, self._place, ratio)
+        painter = QPainter(self)
+        picture.paint(painter, QRectF(self.rect()), ratio)
         if self.missing:
             self._paint_words(painter, picture, ratio)
+        painter.end()
 
     def _up_to_date(self, ratio: float) -> ScrollingPicture:
         """Bring the picture to the present: what is new, what changed since, or all of it."""
-        columns, rows = (max(1, round(length * ratio)) for length in (self._place.width(), self._place.height()))
+        columns, rows = (max(1, round(length * ratio)) for length in (self.width(), self.height()))
         picture = self._picture
         if picture is None or (picture.columns, picture.rows) != (columns, rows):
             picture = self._picture = ScrollingPicture(columns, rows, self._seconds)
