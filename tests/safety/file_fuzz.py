@@ -20,6 +20,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
+import openpyxl
 import pyarrow as pa
 import pyarrow.parquet as pq
 
@@ -155,6 +156,27 @@ def apdm_hdf5() -> bytes:
     return content.getvalue()
 
 
+def movella_dot_rows() -> list[list[object]]:
+    names = ["PacketCounter", "SampleTimeFine", "Quat_W", "Quat_X", "Quat_Y", "Quat_Z"]
+    names += ("Acc_X", "Acc_Y", "Acc_Z", "Gyr_X", "Gyr_Y", "Gyr_Z")
+    head: list[list[object]] = [["sep=", ""], ["DeviceTag:", "A"], ["OutputRate:", "60Hz"], [], list(names)]
+    return head + [[k, 16667 * k, 1.0, 0.0, 0.0, 0.0, 0.1, 0.2, 9.8, 1.5, 2.5, 3.5] for k in range(ROWS)]
+
+
+def movella_dot() -> bytes:
+    return "\n".join([*(",".join(map(str, row)) for row in movella_dot_rows()), ""]).encode()
+
+
+def movella_dot_xlsx() -> bytes:
+    book = openpyxl.Workbook()
+    assert book.active is not None
+    for row in movella_dot_rows():
+        book.active.append(row)
+    with io.BytesIO() as file:
+        book.save(file)
+        return file.getvalue()
+
+
 def read_export(reader: LimitedReader, folder: Path) -> object:
     trial = LimitedReading(reader, nobody).read_trial("xsens-mtmanager", [folder / "export.txt"], None)
     return place_trial(trial, {Site.LEFT_THIGH: "export.txt"}, "walk 1")
@@ -197,6 +219,8 @@ def importers() -> dict[str, Spoilable]:
         "parquet": Spoilable(parquet(), "walk_1/left_thigh.parquet", read_folder, may_be_a_link=True),
         "session.toml": Spoilable(TOML.encode(), "session.toml", read_folder, may_be_a_link=True),
         "xsens-mtmanager": Spoilable(mtmanager(), "export.txt", read_export, may_be_a_link=False),
+        "movella-dot": Spoilable(movella_dot(), "export.csv", read_unnamed, may_be_a_link=False),
+        "movella-dot-xlsx": Spoilable(movella_dot_xlsx(), "export.csv", read_unnamed, may_be_a_link=False),
         "apdm": Spoilable(apdm(), "export.csv", read_unnamed, may_be_a_link=False),
         "csv-named": Spoilable(foreign_csv(), "export.csv", read_unnamed, may_be_a_link=False),
         "parquet-named": Spoilable(foreign_parquet(), "export.csv", read_unnamed, may_be_a_link=False),
