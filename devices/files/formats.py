@@ -8,6 +8,7 @@ from devices.files.apdm import apdm_trial, is_apdm
 from devices.files.csv_tables import csv_trial, is_csv
 from devices.files.parquet_tables import is_parquet, parquet_trial
 from devices.files.movella_dot import is_movella_dot, movella_dot_trial
+from devices.files.mvnx import is_mvnx, mvnx_trial
 from devices.files.refusal import FileRefusedError
 from devices.files.trial import ImportedTrial
 from devices.files.xsens_mtmanager import is_mtmanager, mtmanager_trial
@@ -31,6 +32,7 @@ class FileFormat:
 FORMATS: Mapping[str, FileFormat] = {
     "xsens-mtmanager": FileFormat(is_mtmanager, mtmanager_trial, is_one_sensor=True),
     "movella-dot": FileFormat(is_movella_dot, movella_dot_trial, is_one_sensor=True),
+    "mvnx": FileFormat(is_mvnx, mvnx_trial),
     "apdm": FileFormat(is_apdm, apdm_trial),
     "parquet": FileFormat(is_parquet, parquet_trial, is_one_sensor=True),
     "csv": FileFormat(is_csv, csv_trial, is_one_sensor=True),  # the last that is asked

@@ -83,7 +83,9 @@ def read_xlsx(path: Path, where: str, numeric: Collection[str], header_names: st
                 if found is not None:
                     return found
     except DAMAGED as error:
-        raise FileRefusedError(where, "this is not a readable Excel file ({why})", COPY_AGAIN, why=error) from error
+        raise FileRefusedError(
+            where, "this is not a readable Excel file ({why})", COPY_AGAIN, why=quoted(error)
+        ) from error
     raise FileRefusedError(where, "there is no column {name}", CORRECT_IT, name=header_names)
 
 

@@ -177,6 +177,18 @@ def movella_dot_xlsx() -> bytes:
         return file.getvalue()
 
 
+def mvnx() -> bytes:
+    frames = "".join(
+        f'<frame time="{10 * k}" index="{k}" type="normal"><sensorFreeAcceleration>0.1 0.2 0.3</sensorFreeAcceleration>'
+        f"<sensorOrientation>1.0 0.0 0.0 0.0</sensorOrientation></frame>\n"
+        for k in range(ROWS)
+    )
+    return (
+        '<?xml version="1.0" encoding="UTF-8"?>\n<mvnx version="4"><subject label="S" frameRate="100">\n'
+        f'<sensors><sensor label="A"/></sensors>\n<frames sensorCount="1">\n{frames}</frames></subject></mvnx>\n'
+    ).encode()
+
+
 def read_export(reader: LimitedReader, folder: Path) -> object:
     trial = LimitedReading(reader, nobody).read_trial("xsens-mtmanager", [folder / "export.txt"], None)
     return place_trial(trial, {Site.LEFT_THIGH: "export.txt"}, "walk 1")
@@ -221,6 +233,7 @@ def importers() -> dict[str, Spoilable]:
         "xsens-mtmanager": Spoilable(mtmanager(), "export.txt", read_export, may_be_a_link=False),
         "movella-dot": Spoilable(movella_dot(), "export.csv", read_unnamed, may_be_a_link=False),
         "movella-dot-xlsx": Spoilable(movella_dot_xlsx(), "export.csv", read_unnamed, may_be_a_link=False),
+        "mvnx": Spoilable(mvnx(), "export.csv", read_unnamed, may_be_a_link=False),
         "apdm": Spoilable(apdm(), "export.csv", read_unnamed, may_be_a_link=False),
         "csv-named": Spoilable(foreign_csv(), "export.csv", read_unnamed, may_be_a_link=False),
         "parquet-named": Spoilable(foreign_parquet(), "export.csv", read_unnamed, may_be_a_link=False),
