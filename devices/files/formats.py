@@ -9,6 +9,7 @@ from devices.files.csv_tables import csv_trial, is_csv
 from devices.files.parquet_tables import is_parquet, parquet_trial
 from devices.files.movella_dot import is_movella_dot, movella_dot_trial
 from devices.files.mvnx import is_mvnx, mvnx_trial
+from devices.files.opensim_orientations import is_opensim_orientations, opensim_trial
 from devices.files.refusal import FileRefusedError
 from devices.files.trial import ImportedTrial
 from devices.files.xsens_mtmanager import is_mtmanager, mtmanager_trial
@@ -36,6 +37,7 @@ FORMATS: Mapping[str, FileFormat] = {
     "apdm": FileFormat(is_apdm, apdm_trial),
     "parquet": FileFormat(is_parquet, parquet_trial, is_one_sensor=True),
     "csv": FileFormat(is_csv, csv_trial, is_one_sensor=True),  # the last that is asked
+    "opensim": FileFormat(is_opensim_orientations, opensim_trial),
 }
 
 

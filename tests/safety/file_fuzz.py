@@ -189,6 +189,11 @@ def mvnx() -> bytes:
     ).encode()
 
 
+def opensim() -> bytes:
+    head = "DataRate=100.000000\nDataType=Quaternion\nversion=3\nOpenSimVersion=4.4\nendheader\ntime\tA\tB\n"
+    return (head + "".join(f"{k / 100:.2f}\t1.0,0.0,0.0,0.0\t0.6,0.8,0.0,0.0\n" for k in range(ROWS))).encode()
+
+
 def read_export(reader: LimitedReader, folder: Path) -> object:
     trial = LimitedReading(reader, nobody).read_trial("xsens-mtmanager", [folder / "export.txt"], None)
     return place_trial(trial, {Site.LEFT_THIGH: "export.txt"}, "walk 1")
@@ -238,6 +243,7 @@ def importers() -> dict[str, Spoilable]:
         "csv-named": Spoilable(foreign_csv(), "export.csv", read_unnamed, may_be_a_link=False),
         "parquet-named": Spoilable(foreign_parquet(), "export.csv", read_unnamed, may_be_a_link=False),
         "apdm-hdf5": Spoilable(apdm_hdf5(), "export.csv", read_unnamed, may_be_a_link=False),
+        "opensim": Spoilable(opensim(), "export.csv", read_unnamed, may_be_a_link=False),
     }
 
 
