@@ -13,9 +13,10 @@ PROGRAMS: Mapping[str, str] = {  # what writes each of `formats.FORMATS`, whose 
     "movella-dot": "the Movella DOT app",
     "mvnx": "Xsens MVN (MVNX)",
     "apdm": "APDM Moveo, Mobility Lab or Motion Studio",
+    "opensim": "OpenSim (orientations)",
+    "bids-motion": "BIDS-Motion",
     "parquet": "any program, as Parquet with named columns",
     "csv": "any program, as CSV with named columns",
-    "opensim": "OpenSim (orientations)",
 }
 
 

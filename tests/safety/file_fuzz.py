@@ -15,7 +15,7 @@ import sys
 import tempfile
 import time
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -67,12 +67,13 @@ DEEP = (b"[" * 3000, b"{a=" * 2000, b"[" + b"a." * 3000 + b"b]", b"a" + b".a" * 
 
 @dataclass(frozen=True, slots=True)
 class Spoilable:
-    """A good file, where it lies in the folder, and how the folder is read."""
+    """A good file, where it lies in the folder, how the folder is read, and good files that belong to it."""
 
     content: bytes
     place: str
     read: Callable[[LimitedReader, Path], object]
     may_be_a_link: bool
+    beside: Mapping[str, bytes] = field(default_factory=dict)
 
 
 @dataclass(slots=True)
@@ -194,6 +195,21 @@ def opensim() -> bytes:
     return (head + "".join(f"{k / 100:.2f}\t1.0,0.0,0.0,0.0\t0.6,0.8,0.0,0.0\n" for k in range(ROWS))).encode()
 
 
+def bids_rows() -> bytes:
+    return "".join(f"{k / 100}\t0.1\t0.2\t9.8\t0.01\t0.02\t0.03\n" for k in range(ROWS)).encode()
+
+
+def bids_channels() -> bytes:
+    kinds = [("ACCEL", "m/s^2"), ("GYRO", "rad/s")]
+    rows = [f"A_{kind}_{axis}\t{axis}\t{kind}\tA\t{unit}\n" for kind, unit in kinds for axis in "xyz"]
+    return "".join(["name\tcomponent\ttype\ttracked_point\tunits\n", "latency\tn/a\tLATENCY\tn/a\ts\n", *rows]).encode()
+
+
+def read_bids(reader: LimitedReader, folder: Path) -> object:
+    trial = LimitedReading(reader, nobody).read_trial("bids-motion", [folder / "export_motion.tsv"], None)
+    return place_trial(trial, {Site.LEFT_THIGH: "A"}, "walk 1")
+
+
 def read_export(reader: LimitedReader, folder: Path) -> object:
     trial = LimitedReading(reader, nobody).read_trial("xsens-mtmanager", [folder / "export.txt"], None)
     return place_trial(trial, {Site.LEFT_THIGH: "export.txt"}, "walk 1")
@@ -244,6 +260,20 @@ def importers() -> dict[str, Spoilable]:
         "parquet-named": Spoilable(foreign_parquet(), "export.csv", read_unnamed, may_be_a_link=False),
         "apdm-hdf5": Spoilable(apdm_hdf5(), "export.csv", read_unnamed, may_be_a_link=False),
         "opensim": Spoilable(opensim(), "export.csv", read_unnamed, may_be_a_link=False),
+        "bids-motion": Spoilable(
+            bids_rows(),
+            "export_motion.tsv",
+            read_bids,
+            may_be_a_link=False,
+            beside={"export_channels.tsv": bids_channels()},
+        ),
+        "bids-channels": Spoilable(
+            bids_channels(),
+            "export_channels.tsv",
+            read_bids,
+            may_be_a_link=False,
+            beside={"export_motion.tsv": bids_rows()},
+        ),
     }
 
 
@@ -339,6 +369,8 @@ def fuzz(importer: Spoilable, files: int, seed: int, reader: LimitedReader) -> R
         target = root / "session" / importer.place
         if target.parent.name != "walk_1":
             (root / "session" / "walk_1" / "left_thigh.csv").write_bytes(csv_text())
+        for name, content in importer.beside.items():
+            (root / "session" / name).write_bytes(content)
         before = _everything(root, target)
         for number in range(files):
             is_link = importer.may_be_a_link and number % 100 == 99
