@@ -19,6 +19,19 @@ PROGRAMS: Mapping[str, str] = {  # what writes each of `formats.FORMATS`, whose 
     "csv": "any program, as CSV with named columns",
 }
 
+PROOFS: Mapping[str, str] = {  # what the reader of each was held against
+    "xsens-mtmanager": "Real exports of wired and wireless sensors, with every delimiter.",
+    "movella-dot": "Excerpts of public files of the app, its export and the SDK. No Excel file and no delta quantities "
+    "were at hand.",
+    "mvnx": "The MVN manual. No real file was at hand.",
+    "apdm": "Real CSV exports of both dialects; for HDF5 the published layout. No real HDF5 file was at hand.",
+    "opensim": "OpenSim's documentation. No real file was at hand.",
+    "bids-motion": "Its specification, a public table of channels, and our own exports, in which its validator finds no "
+    "error. No samples of another program's set were at hand.",
+    "parquet": "Files with columns of many names and units, made for it.",
+    "csv": "Files with columns of many names and units, made for it.",
+}
+
 
 @dataclass(frozen=True, slots=True)
 class ImportedSensor:

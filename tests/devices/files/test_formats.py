@@ -5,8 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from devices.files.formats import recognised
+from devices.files.formats import FORMATS, recognised
 from devices.files.refusal import FileRefusedError
+from devices.files.trial import PROGRAMS, PROOFS
 
 FindData = Callable[[str], Path]
 MT = "// Update Rate: 100.0Hz\nPacketCounter\tAcc_X\tAcc_Y\tAcc_Z\n"
@@ -24,6 +25,12 @@ def test_every_export_there_is(test_data: FindData) -> None:
         files = [path for path in texts if not path.name.startswith("LICENSE")]
         assert files
         assert {recognised([path]) for path in files} == {name}
+
+
+def test_every_format_says_what_writes_it_and_what_it_was_held_against() -> None:
+    assert set(PROGRAMS) == set(FORMATS)
+    assert set(PROOFS) == set(FORMATS)
+    assert all(proof.endswith(".") for proof in PROOFS.values())
 
 
 def test_the_name_of_a_file_says_nothing(tmp_path: Path) -> None:
