@@ -19,7 +19,7 @@ MOVEMENTS = {"f": "free_motion", "w": "walking", "s": "standing"}
 
 
 def list_devices(streams_in: str = "") -> Iterator[str]:
-    """What is heard now, at which port nothing is, and how each driver was proved; takes a second or two.
+    """What is heard now, at which port nothing is, how drivers and readers of files were proved; takes a second or two.
 
     Parameters
     ----------
@@ -28,6 +28,7 @@ def list_devices(streams_in: str = "") -> Iterator[str]:
     """
     from app.known_columns import known_columns
     from devices.catalogue import DRIVERS
+    from devices.files.trial import PROGRAMS, PROOFS
     from devices.live import SourceRefusedError
     from devices.search import SearchResult, search, search_streams
 
@@ -54,6 +55,9 @@ def list_devices(streams_in: str = "") -> Iterator[str]:
     yield "How the drivers were proved:"
     for driver in DRIVERS:
         yield f"- {driver.name}: {driver.proof}"
+    yield "What the readers of files were held against:"
+    for name, proof in PROOFS.items():
+        yield f"- {PROGRAMS[name]}: {proof}"
 
 
 def emulate(kind: str, count: int, seconds: float, tell: Callable[[str], None], asked: Iterable[str] = ()) -> None:

@@ -18,7 +18,7 @@ from devices.files.refusal import FileRefusedError, one_line
 if TYPE_CHECKING:
     from app.storage.pseudonyms import Typed
 
-FORMATS = ("xlsx", "c3d", "mot", "fhir")  # as app.exports.exports has them, whose import takes long
+FORMATS = ("xlsx", "c3d", "mot", "fhir", "bids-motion")  # as app.exports.exports has them, whose import takes long
 
 TYPED = ("device", "aids", "surface", "conditions")  # as app.storage.pseudonyms has it
 
@@ -28,7 +28,7 @@ Report = Callable[[float, str], None]
 def add_export_arguments(parser: argparse.ArgumentParser) -> None:
     parser.description = (
         "Analyse a session and write its results for other programs: a spreadsheet, C3D, OpenSim's mot, a FHIR R4 "
-        "bundle. Names are taken away unless identity is asked for."
+        "bundle; or what its sensors measured, as BIDS-Motion. Names are taken away unless identity is asked for."
     )
     help_text = "the session folder, results with their session inside, or library:ID"
     parser.add_argument("session", metavar="SESSION", type=session_place, help=help_text)

@@ -48,6 +48,18 @@ SENTENCES = {
     "orientation_left_out": (
         "the orientation ({names}) does not turn gravity upwards, so it is not earth from sensor. It was left out."
     ),
+    "gravity_from_orientation": (
+        "the acceleration was recorded without gravity, which was added again by the sensor's own orientation. Where "
+        "that is off, the acceleration is too."
+    ),
+    "gravity_for_acceleration": (
+        "no acceleration was recorded, so gravity stands in for it. What rests on acceleration, such as the landing of "
+        "a foot, cannot be told."
+    ),
+    "not_synchronised": (
+        "this sensor was not synchronised with the others, so its recording was set to start with theirs. Joints of "
+        "which the motion cannot tell the rest are left out; synchronise the sensors before the next recording."
+    ),
     "sensor_changed": (
         "another sensor was worn than in the recording before. A calibration does not carry over to it; record "
         "free motion again."

@@ -27,6 +27,7 @@ class Format(StrEnum):
     C3D = "c3d"
     MOT = "mot"
     FHIR = "fhir"
+    BIDS = "bids-motion"
 
 
 SPREADSHEET, BUNDLE = "gaitwright.xlsx", "fhir_bundle.json"
@@ -158,6 +159,10 @@ def _write_format(session: Session, analysis: Analysis, wanted: Format, folder: 
         from app.exports.fhir_bundle import write_bundle
 
         write_bundle(session, analysis, folder / BUNDLE)
+    elif wanted is Format.BIDS:
+        from app.exports.bids_motion import FOLDER, write_bids
+
+        write_bids(session, folder / FOLDER)
     elif wanted is Format.C3D:
         from app.exports.c3d_angles import write_c3d
 

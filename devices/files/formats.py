@@ -5,7 +5,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from devices.files.apdm import apdm_trial, is_apdm
+from devices.files.bids_motion import bids_motion_trial, bids_recording, is_bids_motion
 from devices.files.csv_tables import csv_trial, is_csv
+from devices.files.movella_dot import is_movella_dot, movella_dot_trial
+from devices.files.mvnx import is_mvnx, mvnx_trial
+from devices.files.opensim_orientations import is_opensim_orientations, opensim_trial
 from devices.files.parquet_tables import is_parquet, parquet_trial
 from devices.files.refusal import FileRefusedError
 from devices.files.trial import ImportedTrial
@@ -19,17 +23,23 @@ class FileFormat:
     """`is_it`: whether a file, whose first bytes are given, is of this format; a folder has none.
 
     `trial`: what the files of one trial hold, with the samples per second where they do not tell. `is_one_sensor`: a
-    file holds one sensor, and a trial has several; else it holds all of them.
+    file holds one sensor, and a trial has several; else it holds all of them. `trial_name`: what the names of all files
+    of a trial have in common, where the format itself says how they are called.
     """
 
     is_it: Callable[[Path, bytes], bool]
     trial: Callable[[Sequence[Path], float | None], ImportedTrial]
     is_one_sensor: bool = False
+    trial_name: Callable[[Path], str] | None = None
 
 
 FORMATS: Mapping[str, FileFormat] = {
     "xsens-mtmanager": FileFormat(is_mtmanager, mtmanager_trial, is_one_sensor=True),
+    "movella-dot": FileFormat(is_movella_dot, movella_dot_trial, is_one_sensor=True),
+    "mvnx": FileFormat(is_mvnx, mvnx_trial),
     "apdm": FileFormat(is_apdm, apdm_trial),
+    "opensim": FileFormat(is_opensim_orientations, opensim_trial),
+    "bids-motion": FileFormat(is_bids_motion, bids_motion_trial, trial_name=bids_recording),
     "parquet": FileFormat(is_parquet, parquet_trial, is_one_sensor=True),
     "csv": FileFormat(is_csv, csv_trial, is_one_sensor=True),  # the last that is asked
 }

@@ -32,9 +32,7 @@ def gather(paths: Sequence[Path]) -> Gathered:
         if name is None:
             refused.append(FileRefusedError(path.name, "this is of no program whose files can be read", "Leave it out"))
             continue
-        is_one_sensor = name != SESSION and FORMATS[name].is_one_sensor
-        common = without_site(path.stem) if is_one_sensor else path.name
-        found.setdefault((name, path.parent, common), []).append(str(path))
+        found.setdefault((name, path.parent, _common(name, path)), []).append(str(path))
     if not found and not refused:
         raise FileRefusedError(
             paths[0].name,
@@ -46,6 +44,16 @@ def gather(paths: Sequence[Path]) -> Gathered:
         for (name, folder, common), files in found.items()
     )
     return Gathered(trials, tuple(refused))
+
+
+def _common(name: str, path: Path) -> str:
+    """What the names of the files of one trial have in common."""
+    if name == SESSION:
+        return path.name
+    own = FORMATS[name]
+    if own.trial_name is not None and path.is_file():
+        return own.trial_name(path)
+    return without_site(path.stem) if own.is_one_sensor else path.name
 
 
 def _opened_up(paths: Sequence[Path]) -> list[Path]:

@@ -90,6 +90,7 @@ def read_csv(
     keep_others: bool = True,
     has_units: bool = False,
     decimal: str = ".",
+    header_names: str = "",
 ) -> Table:
     """Read a text with one header line.
 
@@ -109,6 +110,8 @@ def read_csv(
         The line after the header holds units, see `shape_of`.
     decimal
         The decimal point.
+    header_names
+        The header is the first line in which this stands; lines before it are passed over.
 
     Raises
     ------
@@ -116,7 +119,7 @@ def read_csv(
         Not a text, no header, a column twice, a line with too few or too many columns, a text that is not a number.
     """
     with path.open("rb") as file:
-        names, delimiter, header_line = _read_header(file, where, comment, delimiters)
+        names, delimiter, header_line = _read_header(file, where, comment, delimiters, header_names)
         header_line += _skip_line(file) if has_units else 0
         start = file.tell()
         wanted = [name for name in names if keep_others or name in numeric]
@@ -180,8 +183,10 @@ def read_parquet(path: Path, where: str, numeric: Collection[str]) -> Table:
     return Table(numbers, texts, arrow.num_rows, lambda row: f"row {row + 1}")
 
 
-def header_of(path: Path, where: str, *, comment: str, delimiters: str) -> tuple[list[str], list[str]]:
-    """The comment lines before the header, without their mark, and the names of the columns.
+def header_of(
+    path: Path, where: str, *, comment: str | None = None, delimiters: str, header_names: str = ""
+) -> tuple[list[str], list[str]]:
+    """The lines before the header, without the mark of a comment, and the names of the columns; as `read_csv`.
 
     Raises
     ------
@@ -189,17 +194,21 @@ def header_of(path: Path, where: str, *, comment: str, delimiters: str) -> tuple
         Not a text, no header, a column twice.
     """
     with path.open("rb") as file:
-        names, _, header_line = _read_header(file, where, comment, delimiters)
+        names, _, header_line = _read_header(file, where, comment, delimiters, header_names)
         file.seek(0)
-        before = [file.readline().decode("utf-8-sig").strip() for _ in range(header_line - 1)]
-    return [line.removeprefix(comment).strip() for line in before], names
+        before = [file.readline().decode("utf-8-sig", "replace").strip() for _ in range(header_line - 1)]
+    return [line.removeprefix(comment or "").strip() for line in before], names
 
 
-def _read_header(file: BinaryIO, where: str, comment: str | None, delimiters: str) -> tuple[list[str], str, int]:
+def _read_header(
+    file: BinaryIO, where: str, comment: str | None, delimiters: str, header_names: str = ""
+) -> tuple[list[str], str, int]:
     """Names, delimiter and number of the header's line; leaves `file` at the line after it."""
     number = 0
     while raw := file.readline(LONGEST_HEADER):
         number += 1
+        if header_names.encode() not in raw:
+            continue
         try:
             text = raw.decode("utf-8-sig" if number == 1 else "utf-8").strip(" \r\n")
         except UnicodeDecodeError as error:

@@ -10,9 +10,26 @@ from devices.files.refusal import FileRefusedError
 SESSION = "session"  # in place of a format: a session folder
 PROGRAMS: Mapping[str, str] = {  # what writes each of `formats.FORMATS`, whose import takes longer than most files
     "xsens-mtmanager": "Xsens MT Manager",
+    "movella-dot": "the Movella DOT app",
+    "mvnx": "Xsens MVN (MVNX)",
     "apdm": "APDM Moveo, Mobility Lab or Motion Studio",
+    "opensim": "OpenSim (orientations)",
+    "bids-motion": "BIDS-Motion",
     "parquet": "any program, as Parquet with named columns",
     "csv": "any program, as CSV with named columns",
+}
+
+PROOFS: Mapping[str, str] = {  # what the reader of each was held against
+    "xsens-mtmanager": "Real exports of wired and wireless sensors, with every delimiter.",
+    "movella-dot": "Excerpts of public files of the app, its export and the SDK. No Excel file and no delta quantities "
+    "were at hand.",
+    "mvnx": "The MVN manual. No real file was at hand.",
+    "apdm": "Real CSV exports of both dialects; for HDF5 the published layout. No real HDF5 file was at hand.",
+    "opensim": "OpenSim's documentation. No real file was at hand.",
+    "bids-motion": "Its specification, a public table of channels, and our own exports, in which its validator finds no "
+    "error. No samples of another program's set were at hand.",
+    "parquet": "Files with columns of many names and units, made for it.",
+    "csv": "Files with columns of many names and units, made for it.",
 }
 
 

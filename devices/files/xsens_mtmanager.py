@@ -11,11 +11,11 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from core.findings import Finding, Severity
 from core.samples import BoolArray, FloatArray, ImuBlock, RateKind, SensorInfo
+from devices.files.orientation_rates import Numbers, derive_rates, rate_kind_by
 from devices.files.refusal import FileRefusedError
 from devices.files.tables import CORRECT_IT, Table, header_of, read_csv
 from devices.files.trial import ImportedSensor, ImportedTrial, UnreadFile
@@ -38,7 +38,6 @@ ROTATION_ERROR = 0.01  # of a matrix or norm; six decimals leave 1e-5
 LARGEST_RATE_RAD_S = 35.0  # 2000 deg/s, the widest range of these sensors
 EXPORT_AGAIN = "Export it again from MT Manager"
 WITH_IT = "Export it again from MT Manager, with it"
-Numbers = NDArray[np.int64]
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,7 +139,7 @@ def mtmanager_trial(files: Sequence[Path], rate_hz: float | None = None) -> Impo
     sensors = []
     for file, counter in zip(read, _start_together(read), strict=True):
         block = _block(file, counter, rate_hz)
-        info = replace(file.info, rate_hz=rate_hz, rate_kind=_rate_kind(file, block, rate_hz))
+        info = replace(file.info, rate_hz=rate_hz, rate_kind=_rate_kind(file, rate_hz))
         ids = tuple(sensor_ids(file.path))
         sensors.append(ImportedSensor(file.path.name, ids, str(file.path), block, info, tuple(_findings(file, block))))
     return ImportedTrial("xsens-mtmanager", tuple(sensors), tuple(unread))
@@ -155,47 +154,6 @@ def sensor_ids(path: Path) -> list[str]:
     ids = [line.split(":", 1)[1].strip() for line in comments if line.startswith("DeviceId:")]
     named = re.search(r"_([0-9A-Fa-f]{8})$", path.stem)
     return list(dict.fromkeys([*ids, *([named[1]] if named else [])]))
-
-
-def derive_rates(q_earth_from_sensor: FloatArray, counter: Numbers, rate_hz: float) -> FloatArray:
-    """Angular rate at the instant of every sample, (n, 3) in sensor axes, from the orientation, (n, 4).
-
-    Around a sample the orientation is a curve of rotation vectors in that sample's own axes, and the rate is the slope
-    of this curve where it passes zero. The slope is the central difference over two neighbours to each side (fourth
-    order: 0.2 % low at a tenth of the sampling rate), or over one where a second is missing. Both are symmetric about
-    the stamp: the rate belongs to it and not to an instant half a sample beside it. Samples at a border or gap have no
-    neighbour on one side, and no rate.
-
-    Parameters
-    ----------
-    q_earth_from_sensor : (n, 4)
-        Unit quaternions, scalar first.
-    counter : (n,)
-        Ascending packet numbers.
-    rate_hz
-        Packets per second.
-
-    Returns
-    -------
-    (n, 3)
-        rad/s, in sensor axes; NaN where a neighbour is missing.
-    """
-    before_2, before, after, after_2 = (_turn_to(q_earth_from_sensor, counter, steps) for steps in (-2, -1, 1, 2))
-    over_two = (8.0 * (after - before) - (after_2 - before_2)) * rate_hz / 12.0
-    over_one = (after - before) * rate_hz / 2.0
-    return np.where(np.isfinite(over_two), over_two, over_one)
-
-
-def _turn_to(q: FloatArray, counter: Numbers, steps: int) -> FloatArray:
-    """(n, 3) rotation vector from each orientation to the one `steps` packets later; NaN where there is none."""
-    turn = np.full((len(q), 3), np.nan)
-    n = abs(steps)
-    here, there = (slice(None, -n), slice(n, None)) if steps > 0 else (slice(n, None), slice(None, -n))
-    is_there = np.isfinite(q[here] + q[there]).all(axis=1) & (counter[there] - counter[here] == steps)
-    if is_there.any():
-        start, end = (Rotation.from_quat(q[part][is_there], scalar_first=True) for part in (here, there))
-        turn[here][is_there] = (start.inv() * end).as_rotvec()
-    return turn
 
 
 def _unwrap(table: Table, where: str) -> tuple[Numbers, BoolArray]:
@@ -333,22 +291,12 @@ def _block(file: MtFile, counter: Numbers, rate_hz: float) -> ImuBlock:
     )
 
 
-def _rate_kind(file: MtFile, block: ImuBlock, rate_hz: float) -> RateKind | None:
-    """Which rate of the orientation the gyroscope's agrees with by far: the one at the stamp or the mean before it."""
+def _rate_kind(file: MtFile, rate_hz: float) -> RateKind | None:
     if file.gyr_rad_s is None:
         return RateKind.INSTANTANEOUS
     if file.q_earth_from_sensor is None:
         return None
-    at_stamp = derive_rates(file.q_earth_from_sensor, file.counter, rate_hz)
-    before = -_turn_to(file.q_earth_from_sensor, file.counter, -1) * rate_hz
-    errors = [np.linalg.norm(block.gyr_rad_s - rate, axis=1) for rate in (at_stamp, before)]
-    is_known = np.isfinite(errors[0]) & np.isfinite(errors[1])
-    if np.sum(is_known) < rate_hz:  # less than a second decides nothing
-        return None
-    at_stamp_error, before_error = (float(np.sqrt(np.mean(error[is_known] ** 2))) for error in errors)
-    if before_error < 0.6 * at_stamp_error:
-        return RateKind.AVERAGED
-    return RateKind.INSTANTANEOUS if at_stamp_error < 0.6 * before_error else None
+    return rate_kind_by(file.q_earth_from_sensor, file.gyr_rad_s, file.counter, rate_hz)
 
 
 def _check_units(file: MtFile) -> None:

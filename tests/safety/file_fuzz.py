@@ -15,11 +15,12 @@ import sys
 import tempfile
 import time
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
+import openpyxl
 import pyarrow as pa
 import pyarrow.parquet as pq
 
@@ -66,12 +67,13 @@ DEEP = (b"[" * 3000, b"{a=" * 2000, b"[" + b"a." * 3000 + b"b]", b"a" + b".a" * 
 
 @dataclass(frozen=True, slots=True)
 class Spoilable:
-    """A good file, where it lies in the folder, and how the folder is read."""
+    """A good file, where it lies in the folder, how the folder is read, and good files that belong to it."""
 
     content: bytes
     place: str
     read: Callable[[LimitedReader, Path], object]
     may_be_a_link: bool
+    beside: Mapping[str, bytes] = field(default_factory=dict)
 
 
 @dataclass(slots=True)
@@ -155,6 +157,59 @@ def apdm_hdf5() -> bytes:
     return content.getvalue()
 
 
+def movella_dot_rows() -> list[list[object]]:
+    names = ["PacketCounter", "SampleTimeFine", "Quat_W", "Quat_X", "Quat_Y", "Quat_Z"]
+    names += ("Acc_X", "Acc_Y", "Acc_Z", "Gyr_X", "Gyr_Y", "Gyr_Z")
+    head: list[list[object]] = [["sep=", ""], ["DeviceTag:", "A"], ["OutputRate:", "60Hz"], [], list(names)]
+    return head + [[k, 16667 * k, 1.0, 0.0, 0.0, 0.0, 0.1, 0.2, 9.8, 1.5, 2.5, 3.5] for k in range(ROWS)]
+
+
+def movella_dot() -> bytes:
+    return "\n".join([*(",".join(map(str, row)) for row in movella_dot_rows()), ""]).encode()
+
+
+def movella_dot_xlsx() -> bytes:
+    book = openpyxl.Workbook()
+    assert book.active is not None
+    for row in movella_dot_rows():
+        book.active.append(row)
+    with io.BytesIO() as file:
+        book.save(file)
+        return file.getvalue()
+
+
+def mvnx() -> bytes:
+    frames = "".join(
+        f'<frame time="{10 * k}" index="{k}" type="normal"><sensorFreeAcceleration>0.1 0.2 0.3</sensorFreeAcceleration>'
+        f"<sensorOrientation>1.0 0.0 0.0 0.0</sensorOrientation></frame>\n"
+        for k in range(ROWS)
+    )
+    return (
+        '<?xml version="1.0" encoding="UTF-8"?>\n<mvnx version="4"><subject label="S" frameRate="100">\n'
+        f'<sensors><sensor label="A"/></sensors>\n<frames sensorCount="1">\n{frames}</frames></subject></mvnx>\n'
+    ).encode()
+
+
+def opensim() -> bytes:
+    head = "DataRate=100.000000\nDataType=Quaternion\nversion=3\nOpenSimVersion=4.4\nendheader\ntime\tA\tB\n"
+    return (head + "".join(f"{k / 100:.2f}\t1.0,0.0,0.0,0.0\t0.6,0.8,0.0,0.0\n" for k in range(ROWS))).encode()
+
+
+def bids_rows() -> bytes:
+    return "".join(f"{k / 100}\t0.1\t0.2\t9.8\t0.01\t0.02\t0.03\n" for k in range(ROWS)).encode()
+
+
+def bids_channels() -> bytes:
+    kinds = [("ACCEL", "m/s^2"), ("GYRO", "rad/s")]
+    rows = [f"A_{kind}_{axis}\t{axis}\t{kind}\tA\t{unit}\n" for kind, unit in kinds for axis in "xyz"]
+    return "".join(["name\tcomponent\ttype\ttracked_point\tunits\n", "latency\tn/a\tLATENCY\tn/a\ts\n", *rows]).encode()
+
+
+def read_bids(reader: LimitedReader, folder: Path) -> object:
+    trial = LimitedReading(reader, nobody).read_trial("bids-motion", [folder / "export_motion.tsv"], None)
+    return place_trial(trial, {Site.LEFT_THIGH: "A"}, "walk 1")
+
+
 def read_export(reader: LimitedReader, folder: Path) -> object:
     trial = LimitedReading(reader, nobody).read_trial("xsens-mtmanager", [folder / "export.txt"], None)
     return place_trial(trial, {Site.LEFT_THIGH: "export.txt"}, "walk 1")
@@ -197,10 +252,28 @@ def importers() -> dict[str, Spoilable]:
         "parquet": Spoilable(parquet(), "walk_1/left_thigh.parquet", read_folder, may_be_a_link=True),
         "session.toml": Spoilable(TOML.encode(), "session.toml", read_folder, may_be_a_link=True),
         "xsens-mtmanager": Spoilable(mtmanager(), "export.txt", read_export, may_be_a_link=False),
+        "movella-dot": Spoilable(movella_dot(), "export.csv", read_unnamed, may_be_a_link=False),
+        "movella-dot-xlsx": Spoilable(movella_dot_xlsx(), "export.csv", read_unnamed, may_be_a_link=False),
+        "mvnx": Spoilable(mvnx(), "export.csv", read_unnamed, may_be_a_link=False),
         "apdm": Spoilable(apdm(), "export.csv", read_unnamed, may_be_a_link=False),
         "csv-named": Spoilable(foreign_csv(), "export.csv", read_unnamed, may_be_a_link=False),
         "parquet-named": Spoilable(foreign_parquet(), "export.csv", read_unnamed, may_be_a_link=False),
         "apdm-hdf5": Spoilable(apdm_hdf5(), "export.csv", read_unnamed, may_be_a_link=False),
+        "opensim": Spoilable(opensim(), "export.csv", read_unnamed, may_be_a_link=False),
+        "bids-motion": Spoilable(
+            bids_rows(),
+            "export_motion.tsv",
+            read_bids,
+            may_be_a_link=False,
+            beside={"export_channels.tsv": bids_channels()},
+        ),
+        "bids-channels": Spoilable(
+            bids_channels(),
+            "export_channels.tsv",
+            read_bids,
+            may_be_a_link=False,
+            beside={"export_motion.tsv": bids_rows()},
+        ),
     }
 
 
@@ -296,6 +369,8 @@ def fuzz(importer: Spoilable, files: int, seed: int, reader: LimitedReader) -> R
         target = root / "session" / importer.place
         if target.parent.name != "walk_1":
             (root / "session" / "walk_1" / "left_thigh.csv").write_bytes(csv_text())
+        for name, content in importer.beside.items():
+            (root / "session" / name).write_bytes(content)
         before = _everything(root, target)
         for number in range(files):
             is_link = importer.may_be_a_link and number % 100 == 99

@@ -31,6 +31,7 @@ TOLD = {
     "prosthetic_toe_off",
     "events_from_shank",
     "rate_from_orientation",
+    "gravity_from_orientation",
 }
 
 

@@ -5,8 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from devices.files.formats import recognised
+from devices.files.formats import FORMATS, recognised
 from devices.files.refusal import FileRefusedError
+from devices.files.trial import PROGRAMS, PROOFS
 
 FindData = Callable[[str], Path]
 MT = "// Update Rate: 100.0Hz\nPacketCounter\tAcc_X\tAcc_Y\tAcc_Z\n"
@@ -26,17 +27,30 @@ def test_every_export_there_is(test_data: FindData) -> None:
         assert {recognised([path]) for path in files} == {name}
 
 
+def test_every_format_says_what_writes_it_and_what_it_was_held_against() -> None:
+    assert set(PROGRAMS) == set(FORMATS)
+    assert set(PROOFS) == set(FORMATS)
+    assert all(proof.endswith(".") for proof in PROOFS.values())
+
+
 def test_the_name_of_a_file_says_nothing(tmp_path: Path) -> None:
     assert recognised([put(tmp_path / "apdm.csv", MT)]) == "xsens-mtmanager"
     assert recognised([put(tmp_path / "PacketCounter.txt", APDM)]) == "apdm"
 
 
+def test_movella_dot_is_told_from_mt_manager_by_more_than_its_columns(tmp_path: Path) -> None:
+    columns = "PacketCounter,SampleTimeFine,Acc_X,Acc_Y,Acc_Z,Gyr_X,Gyr_Y,Gyr_Z\n"
+    assert recognised([put(tmp_path / "a.csv", f"sep=,\nDeviceTag:,D4\n\n{columns}")]) == "movella-dot"
+    assert recognised([put(tmp_path / "b.csv", "SampleTimeFine,Euler_X,FreeAcc_X\n1,2,3\n")]) == "movella-dot"
+    assert recognised([put(tmp_path / "c.csv", f"// Update Rate: 100.0Hz\n{columns}")]) == "xsens-mtmanager"
+
+
 def test_what_is_not_known_is_refused(tmp_path: Path) -> None:
     with pytest.raises(FileRefusedError, match=r"a.csv: no format that can be imported is recognised in it.*--as"):
         recognised([put(tmp_path / "a.csv", "time,left,right\n")])
-    dot = "DeviceTag:,D4\nPacketCounter,SampleTimeFine,Acc_X,Acc_Y,Acc_Z,Gyr_X,Gyr_Y,Gyr_Z\n1,16667,0,0,9.8,0,0,0\n"
-    with pytest.raises(FileRefusedError, match="no format"):  # Movella DOT counts microseconds, MT Manager 0.1 ms
-        recognised([put(tmp_path / "dot.csv", dot)])
+    bare = "PacketCounter,SampleTimeFine,Acc_X,Acc_Y,Acc_Z,Gyr_X,Gyr_Y,Gyr_Z\n1,16667,0,0,9.8,0,0,0\n"
+    with pytest.raises(FileRefusedError, match="no format"):  # of MT Manager in rad/s, or of Movella DOT in deg/s
+        recognised([put(tmp_path / "bare.csv", bare)])
     with pytest.raises(FileRefusedError, match="no format"):
         recognised([put(tmp_path / "b.csv", "")])
     with pytest.raises(FileRefusedError, match=r"b.txt: it is of apdm, a.txt of xsens-mtmanager"):

@@ -14,8 +14,9 @@ from scipy.spatial.transform import Rotation
 from core.body import Site
 from core.samples import RateKind
 from devices.files.imports import ImportedFiles
+from devices.files.orientation_rates import derive_rates
 from devices.files.refusal import FileRefusedError
-from devices.files.xsens_mtmanager import MtFile, derive_rates, mtmanager_trial, read_mtmanager
+from devices.files.xsens_mtmanager import MtFile, mtmanager_trial, read_mtmanager
 from tests.trials_of_files import import_with
 
 FindData = Callable[[str], Path]

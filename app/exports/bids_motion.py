@@ -1,0 +1,252 @@
+"""How does a set of BIDS data hold what the sensors measured? A recording's samples, their channels and settings.
+
+As the Brain Imaging Data Structure has it for motion: one table without heads for each tracking system, which is all
+sensors of one time base, with the latencies from the start of the recording in its first column. Samples and times are
+those of the recording to their last digit; what is missing is n/a. Two columns of ours say what BIDS has no word for,
+the sensor's number and what its rates are, so that `gaitwright import` gives back the same recording.
+"""
+
+import json
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+
+import numpy as np
+
+from app.exports.figures import RESEARCH, SIMULATED, software
+from app.storage.pseudonyms import AGE, age_in_words
+from core.body import Site
+from core.samples import FloatArray, ImuBlock, Recording, RecordingKind, SensorInfo, Session
+
+FOLDER = "bids"
+BIDS_VERSION = "1.10.0"
+TASKS = {
+    RecordingKind.STANDING: "standing",
+    RecordingKind.FREE_MOTION: "freeMotion",
+    RecordingKind.WALKING: "walking",
+}
+SEXES = {"female": "F", "male": "M", "other": "O"}
+OLDEST_YEARS = 89  # BIDS has one age for all from here on
+UNKNOWN_START = "1900-01-01T00:00:00"  # BIDS takes years before 1926 for moved ones
+MISSING = "n/a"
+DERIVED = "derived"
+AXES, QUATERNION = ("x", "y", "z"), ("quat_w", "quat_x", "quat_y", "quat_z")
+COLUMNS = ("name", "component", "type", "tracked_point", "units", "reference_frame", "sensor", "rate_kind")
+ABOUT_COLUMNS = {
+    "reference_frame": {
+        "Levels": {
+            "sensor": {"Description": "The axes of the sensor itself, as its maker has them; right-hand."},
+            "earth": {
+                "Description": "From sensor to earth, as the sensor tells it: z is up, the heading is any.",
+                "SpatialAxes": "__S",
+                "RotationRule": "right-hand",
+            },
+        }
+    },
+    "sensor": {"Description": "Number or name of the sensor."},
+    "rate_kind": {
+        "Description": "What one sample of the gyroscope stands for.",
+        "Levels": {
+            "instantaneous": "The instant of its latency.",
+            "averaged": "The mean over the interval before its latency.",
+            DERIVED: "Computed from the sensor's own orientation: no rates were measured.",
+        },
+    },
+}
+
+
+@dataclass(frozen=True, slots=True)
+class BidsChannel:
+    """A column of the table of samples and its row in the table of channels."""
+
+    row: Mapping[str, str]
+    values: FloatArray
+
+
+def write_bids(session: Session, folder: Path) -> None:
+    """Write the recordings that were kept as a set of data of one participant, into `folder`, which is new.
+
+    Raises
+    ------
+    OSError
+        The files cannot be written.
+    """
+    participant = f"sub-{_label(session.patient.code) or 'unknown'}"
+    motion = folder / participant / "motion"
+    motion.mkdir(parents=True)
+    scans = ["filename\tacq_time"]
+    runs: dict[RecordingKind, int] = {}
+    for recording in session.recordings:
+        if not recording.is_kept or not any(len(block) for block in recording.imu.values()):
+            continue
+        run = runs[recording.kind] = runs.get(recording.kind, 0) + 1
+        for system, sites in _systems(recording).items():
+            base = f"{participant}_task-{TASKS[recording.kind]}_tracksys-{system}_run-{run}"
+            _write_system(session, recording, sites, motion / base, system)
+            scans.append(f"motion/{base}_motion.tsv\t{_acquired(recording.started)}")
+    (folder / participant / f"{participant}_scans.tsv").write_text("\n".join([*scans, ""]), encoding="utf-8")
+    _write_participant(session, participant, folder)
+    _write_json(
+        folder / "dataset_description.json",
+        {
+            "Name": f"{SIMULATED if session.is_simulated else 'A session with inertial sensors'} ({participant})",
+            "BIDSVersion": BIDS_VERSION,
+            "DatasetType": "raw",
+            "GeneratedBy": [{"Name": software()}],
+        },
+    )
+    said = [SIMULATED] if session.is_simulated else []
+    said += [
+        f"What inertial sensors on thighs, shanks and feet measured in one session. Made by {software()}. {RESEARCH}",
+        "Accelerations hold gravity. Axes are those of the sensors, whose alignment to the body is not known.",
+    ]
+    (folder / "README").write_text("\n".join([*said, ""]), encoding="utf-8")
+
+
+def _systems(recording: Recording) -> dict[str, list[Site]]:
+    """The sites of each time base, under the name of its tracking system."""
+    groups: list[list[Site]] = []
+    for site, block in recording.imu.items():
+        if not len(block):
+            continue
+        for group in groups:
+            if np.array_equal(recording.imu[group[0]].time_s, block.time_s):
+                group.append(site)
+                break
+        else:
+            groups.append([site])
+    if len(groups) == 1:
+        return {"imu": groups[0]}
+    return {f"imu{number}": group for number, group in enumerate(groups, 1)}
+
+
+def _write_system(session: Session, recording: Recording, sites: Sequence[Site], base: Path, system: str) -> None:
+    time_s = recording.imu[sites[0]].time_s
+    latency = {"name": "latency", "component": MISSING, "type": "LATENCY", "tracked_point": MISSING, "units": "s"}
+    channels = [BidsChannel(latency, time_s)]
+    for site in sites:
+        info = session.sensors.get(site, SensorInfo())
+        channels += _channels(_point(site), recording.imu[site], info)
+    table = ["\t".join(COLUMNS)]
+    table += ["\t".join(one.row.get(name) or MISSING for name in COLUMNS) for one in channels]
+    base.with_name(f"{base.name}_channels.tsv").write_text("\n".join([*table, ""]), encoding="utf-8")
+    _write_json(base.with_name(f"{base.name}_channels.json"), ABOUT_COLUMNS)
+    columns = [one.values for one in channels]
+    with base.with_name(f"{base.name}_motion.tsv").open("w", encoding="ascii", newline="\n") as file:
+        for k in range(len(time_s)):
+            cells = (repr(float(column[k])) if np.isfinite(column[k]) else MISSING for column in columns)
+            file.write("\t".join(cells) + "\n")
+    _write_json(base.with_name(f"{base.name}_motion.json"), _settings(session, recording, sites, channels, system))
+
+
+def _channels(point: str, block: ImuBlock, info: SensorInfo) -> list[BidsChannel]:
+    rate_kind = DERIVED if block.is_rate_derived else (info.rate_kind or "")
+    quantities = [
+        ("ACCEL", AXES, "m/s^2", "sensor", block.acc_m_s2),
+        ("GYRO", AXES, "rad/s", "sensor", block.gyr_rad_s),
+        ("MAGN", AXES, MISSING, "sensor", block.mag),
+        ("ORNT", QUATERNION, MISSING, "earth", block.q_earth_from_sensor),
+    ]
+    found = []
+    for kind, components, units, frame, values in quantities:
+        for k, component in enumerate(components) if values is not None else ():
+            assert values is not None  # none of its components is reached
+            row = {
+                "name": f"{point}_{kind}_{component}",
+                "component": component,
+                "type": kind,
+                "tracked_point": point,
+                "units": units,
+                "reference_frame": frame,
+                "sensor": _cell(block.sensor),
+                "rate_kind": rate_kind if kind == "GYRO" else "",
+            }
+            found.append(BidsChannel(row, values[:, k]))
+    return found
+
+
+def _settings(
+    session: Session, recording: Recording, sites: Sequence[Site], channels: Sequence[BidsChannel], system: str
+) -> dict[str, object]:
+    time_s = recording.imu[sites[0]].time_s
+    length_s = float(time_s[-1] - time_s[0])
+    effective_hz = (len(time_s) - 1) / length_s if length_s > 0 else 0.0
+    told = [session.sensors.get(site, SensorInfo()) for site in sites]
+    rates_hz, models = {info.rate_hz for info in told}, {info.model for info in told}
+    said_hz = next(iter(rates_hz)) if len(rates_hz) == 1 else None
+    kinds = [one.row["type"] for one in channels]
+    settings: dict[str, object] = {
+        "TaskName": TASKS[recording.kind],
+        "TaskDescription": ", ".join(filter(None, [recording.name, recording.condition])),
+        "TrackingSystemName": system,
+        "SamplingFrequency": said_hz or round(effective_hz, 3),
+        "SamplingFrequencyEffective": effective_hz,
+        "RecordingDuration": length_s,
+        "MissingValues": MISSING,
+        "TrackedPointsCount": len(sites),
+        "MotionChannelCount": len(channels),
+    }
+    settings |= {f"{kind}ChannelCount": kinds.count(kind) for kind in dict.fromkeys(kinds)}
+    if len(models) == 1 and (model := next(iter(models))):
+        settings["ManufacturersModelName"] = model
+    return settings
+
+
+def _write_participant(session: Session, participant: str, folder: Path) -> None:
+    patient = session.patient
+    age = str(patient.unknown.get(AGE) or age_in_words(session))
+    is_old = age.endswith("+") or (age.isdigit() and int(age) >= OLDEST_YEARS)
+    row = {
+        "participant_id": participant,
+        "age": str(OLDEST_YEARS) if is_old else age,
+        "sex": SEXES.get(patient.sex, ""),
+        "height": "" if patient.height_m is None else f"{patient.height_m:g}",
+        "weight": "" if patient.mass_kg is None else f"{patient.mass_kg:g}",
+        "affected_side": patient.affected_side,
+        "prosthetic_side": patient.prosthetic_side,
+    }
+    lines = ["\t".join(row), "\t".join(_cell(value) or MISSING for value in row.values())]
+    (folder / "participants.tsv").write_text("\n".join([*lines, ""]), encoding="utf-8")
+    _write_json(
+        folder / "participants.json",
+        {
+            "age": {"Description": "Age in the year of the session.", "Units": "year"},
+            "sex": {"Description": "Sex, as it was typed.", "Levels": {"F": "female", "M": "male", "O": "other"}},
+            "height": {"Description": "Height of the body.", "Units": "m"},
+            "weight": {"Description": "Mass of the body.", "Units": "kg"},
+            "affected_side": {"Description": "The side or sides that are affected."},
+            "prosthetic_side": {"Description": "The side or sides with a prosthesis."},
+        },
+    )
+
+
+def _acquired(started: str) -> str:
+    """A start as BIDS writes it, without an offset from UTC."""
+    try:
+        moment = datetime.fromisoformat(started)
+    except ValueError:
+        return UNKNOWN_START
+    if moment.tzinfo is None:
+        return moment.isoformat()
+    return moment.astimezone(UTC).replace(tzinfo=None).isoformat() + "Z"
+
+
+def _point(site: Site) -> str:
+    """LeftThigh for left_thigh."""
+    return "".join(word.capitalize() for word in site.value.split("_"))
+
+
+def _label(text: str) -> str:
+    """Letters and digits, of which alone BIDS makes names of files."""
+    return re.sub(r"[^A-Za-z0-9]", "", text)
+
+
+def _cell(text: str) -> str:
+    """Text that breaks no line and no column."""
+    return " ".join(text.split())
+
+
+def _write_json(path: Path, content: Mapping[str, object]) -> None:
+    path.write_text(json.dumps(content, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")

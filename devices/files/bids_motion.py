@@ -1,0 +1,311 @@
+"""Recordings of BIDS-Motion: a table of samples, one of its channels, and a file of settings for each tracking system.
+
+`*_motion.tsv` has no heads: its columns are the rows of `*_channels.tsv`, which says what each is of which tracked
+point and in which unit; `*_motion.json` has the sampling frequency. The files belong together by their names, as BIDS
+has it; which they are is told by the table of channels. Times are those of a LATENCY channel, in seconds from
+`acq_time` in `*_scans.tsv`, else even. Settings that BIDS lets stand in a folder above are not looked for there.
+
+Two columns that `gaitwright export` adds say what BIDS has no word for: the sensor's number, and what its rates are.
+Held against the table of channels of a public set of a commercial system, and against our own exports.
+"""
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from datetime import UTC, datetime
+from pathlib import Path
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from core.findings import Finding, Severity
+from core.samples import BoolArray, FloatArray, ImuBlock, RateKind, SensorInfo
+from devices.files.bids_tables import (
+    CHANNELS,
+    ENDINGS,
+    EXPORT_AGAIN,
+    MOTION,
+    MotionSystem,
+    common_base,
+    has_channels,
+    is_channels,
+    read_system,
+)
+from devices.files.refusal import FileRefusedError, quoted
+from devices.files.trial import ImportedSensor, ImportedTrial, UnreadFile
+
+SYSTEM = re.compile(r"_tracksys-([A-Za-z0-9]+)")
+LAST_MOVED_YEAR = 1925  # BIDS moves times that must not be known to before its end
+DERIVED = "derived"  # in our column of what rates are
+AXES, QUATERNION = ("x", "y", "z"), ("quat_w", "quat_x", "quat_y", "quat_z")
+ACC_UNITS = {"m/s^2": 1.0, "m/s²": 1.0, "m/s2": 1.0, "m.s-2": 1.0, "g": 9.80665}
+RATE_UNITS = {"rad/s": 1.0, "deg/s": np.pi / 180, "°/s": np.pi / 180, "dps": np.pi / 180}
+LARGEST_RATE_RAD_S = 70.0  # twice the widest range of most sensors, 2000 deg/s
+WINDOW_S = 0.25  # over which a sensor turns enough to see whether its acceleration turns with it
+IN_SENSOR_AXES = "Export what the sensors measured, in their own axes"
+
+
+def is_bids_motion(path: Path, head: bytes) -> bool:
+    """Whether a file is a table of channels, or one that such a table belongs to; a folder: of one recording."""
+    if path.is_dir():
+        tables = sorted(path.glob(f"*{MOTION}"))
+        return len(tables) == 1 and has_channels(tables[0])
+    return is_channels(head) or (path.name.endswith(ENDINGS) and has_channels(path))
+
+
+def bids_recording(path: Path) -> str:
+    """What the names of all files of one recording have in common: all but the tracking system and what each holds."""
+    return SYSTEM.sub("", common_base(path).name)
+
+
+def bids_motion_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedTrial:
+    """The tracked points with accelerometer and gyroscope, of all tracking systems of one recording.
+
+    Parameters
+    ----------
+    rate_hz
+        Samples per second where the files do not tell.
+
+    Raises
+    ------
+    FileRefusedError
+        Files of several recordings, files that are missing or do not fit each other, no such tracked point, other
+        units, times that step back.
+    """
+    if len(files) == 1 and files[0].is_dir():
+        files = sorted(files[0].glob(f"*{MOTION}"))
+    bases = list(dict.fromkeys(map(common_base, files)))
+    if len({bids_recording(path) for path in files}) > 1:
+        raise FileRefusedError(
+            ", ".join(path.name for path in files), "they are of several recordings", "Import one recording at a time"
+        )
+    systems: list[MotionSystem] = []
+    unread: list[UnreadFile] = []
+    for base in bases:
+        try:
+            system = read_system(base)
+            unread += _read_sensors(system, rate_hz)
+            systems.append(system)
+        except FileRefusedError as refusal:
+            unread.append(UnreadFile(f"{base}{MOTION}", (), refusal))
+    if not any(system.sensors for system in systems) and unread:
+        raise unread[0].refusal
+    started = systems[0].started
+    is_real = started[:4].isdigit() and int(started[:4]) > LAST_MOVED_YEAR
+    return ImportedTrial("bids-motion", tuple(_on_one_clock(systems)), tuple(unread), started if is_real else "")
+
+
+def _read_sensors(system: MotionSystem, asked_hz: float | None) -> list[UnreadFile]:
+    """Add the tracked points that are sensors, and give those that are only half of one."""
+    unread = []
+    for point in system.points:
+        of_point = system.points[point]
+        has = [all((kind, axis) in of_point for axis in AXES) for kind in ("ACCEL", "GYRO")]
+        if all(has):
+            system.sensors.append(_sensor(system, point, asked_hz))
+        elif any(has):
+            lacking = "ACCEL" if has[1] else "GYRO"
+            refusal = FileRefusedError(
+                system.base.name,
+                "{point} has no {lacking} channels",
+                "Leave it out, or export both",
+                point=quoted(point),
+                lacking=lacking,
+            )
+            unread.append(UnreadFile(point, (point,), refusal))
+    if not system.sensors:
+        raise FileRefusedError(
+            f"{system.base.name}{CHANNELS}",
+            "no tracked point has three channels ACCEL and three GYRO",
+            "Choose a recording of inertial sensors",
+        )
+    return unread
+
+
+def _sensor(system: MotionSystem, point: str, asked_hz: float | None) -> ImportedSensor:
+    where, of_point = f"{system.base.name}{MOTION}", system.points[point]
+
+    def values(kind: str, components: Sequence[str]) -> FloatArray | None:
+        if not all((kind, one) in of_point for one in components):
+            return None
+        return system.rows[:, [of_point[kind, one] for one in components]]
+
+    acc, gyr = values("ACCEL", AXES), values("GYRO", AXES)
+    assert acc is not None  # `_read_sensors` leaves out a point without
+    assert gyr is not None
+    acc = acc * _scale(system, of_point, "ACCEL", ACC_UNITS, point)
+    gyr = gyr * _scale(system, of_point, "GYRO", RATE_UNITS, point)
+    time_s, rate_hz, is_new = _times(system, of_point, asked_hz, where)
+    is_kept = is_new & (np.isfinite(acc).any(axis=1) | np.isfinite(gyr).any(axis=1))  # what is missing is a gap
+    acc, gyr, time_s = acc[is_kept], gyr[is_kept], time_s[is_kept]
+    first = system.channels[of_point["GYRO", "x"]]
+    _check(acc, gyr, point, where)
+    if first.frame.casefold() == "global" and rate_hz is not None:
+        _check_axes(acc, gyr, rate_hz, point, where)
+    q, mag = values("ORNT", QUATERNION), values("MAGN", AXES)
+    q = None if q is None else q[is_kept]
+    is_up = q is not None and _turns_gravity_up(q, acc)
+    block = ImuBlock(
+        sensor=first.sensor or point,
+        time_s=time_s,
+        gyr_rad_s=gyr,
+        acc_m_s2=acc,
+        q_earth_from_sensor=q if is_up else None,
+        mag=None if mag is None else mag[is_kept],
+        is_rate_derived=first.rate_kind == DERIVED,
+    )
+    kind = RateKind.INSTANTANEOUS if first.rate_kind == DERIVED else None
+    kind = RateKind(first.rate_kind) if first.rate_kind in set(RateKind) else kind
+    info = SensorInfo(serial=first.sensor or point, model=system.maker, rate_hz=rate_hz, rate_kind=kind)
+    findings = []
+    if block.is_rate_derived:
+        findings.append(Finding("rate_from_orientation", Severity.INFO, ""))
+    if q is not None and not is_up:
+        findings.append(Finding("orientation_left_out", Severity.INFO, "", {"names": "ORNT"}))
+    if not is_new.all():
+        findings.append(Finding("doubled_stamps", Severity.WARNING, "", {"count": int(np.sum(~is_new))}))
+    ids = (first.sensor,) if first.sensor else ()
+    return ImportedSensor(point, ids, f"{system.base}{MOTION}", block, info, tuple(findings))
+
+
+def _scale(
+    system: MotionSystem,
+    of_point: Mapping[tuple[str, str], int],
+    kind: str,
+    units: Mapping[str, float],
+    point: str,
+) -> FloatArray:
+    """(3,) what brings the three channels to SI units."""
+    said = [system.channels[of_point[kind, axis]].units for axis in AXES]
+    for unit in said:
+        if unit not in units:
+            raise FileRefusedError(
+                f"{system.base.name}{CHANNELS}",
+                "{kind} of {point} is in {unit}, which is none of {known}",
+                EXPORT_AGAIN,
+                kind=kind,
+                point=quoted(point),
+                unit=quoted(unit),
+                known=", ".join(units),
+            )
+    return np.array([units[unit] for unit in said])
+
+
+def _times(
+    system: MotionSystem, of_point: Mapping[tuple[str, str], int], asked_hz: float | None, where: str
+) -> tuple[FloatArray, float | None, BoolArray]:
+    """Seconds (n,), samples per second, and which rows do not repeat the time before."""
+    n = len(system.rows)
+    own = [place for (kind, _), place in of_point.items() if kind == "LATENCY"]
+    common = [place for place, one in enumerate(system.channels) if one.type == "LATENCY"]
+    rate_hz = system.rate_hz or asked_hz
+    if not common:
+        if rate_hz is None:
+            raise FileRefusedError(where, "its sampling frequency is not told", "Give it in Hz (--rate)")
+        return np.arange(n) / rate_hz, rate_hz, np.ones(n, dtype=bool)
+    time_s = system.rows[:, (own or common)[0]]
+    steps_s = np.diff(time_s)
+    is_wrong = np.isnan(time_s)
+    is_wrong[1:] |= ~(steps_s >= 0)
+    if is_wrong.any():
+        raise FileRefusedError(
+            f"{where}, line {int(np.argmax(is_wrong)) + 1}",
+            "its latency does not come after that of the line before",
+            EXPORT_AGAIN,
+        )
+    is_new = np.concatenate([np.ones(min(n, 1), dtype=bool), steps_s > 0])
+    step_s = float(np.median(steps_s)) if len(steps_s) else np.nan
+    if rate_hz is not None and np.isfinite(step_s) and not 0.5 < step_s * rate_hz < 2.0:
+        raise FileRefusedError(
+            where,
+            "its latencies grow by {step}, which does not fit {rate} samples per second",
+            "Give latencies in seconds, as BIDS has them",
+            step=f"{step_s:g}",
+            rate=f"{rate_hz:g}",
+        )
+    if rate_hz is None and step_s > 0:
+        rate_hz = round(1.0 / step_s, 2)
+    return time_s, rate_hz, is_new
+
+
+def _check(acc_m_s2: FloatArray, gyr_rad_s: FloatArray, point: str, where: str) -> None:
+    felt = np.linalg.norm(acc_m_s2, axis=1)
+    felt = felt[np.isfinite(felt)]
+    middle = float(np.median(felt)) if len(felt) else np.nan
+    if not (np.isnan(middle) or 7.0 < middle < 14.0):
+        raise FileRefusedError(
+            where,
+            "the acceleration of {sensor} is {middle} m/s2 in the middle, which is not gravity",
+            "Export it in the unit it is said to be in, gravity not taken out",
+            sensor=quoted(point),
+            middle=f"{middle:.2f}",
+        )
+    if np.nanmax(np.abs(gyr_rad_s), initial=0.0) > LARGEST_RATE_RAD_S:
+        raise FileRefusedError(
+            where,
+            "the angular rates of {sensor} are larger than any, as if they were in deg/s and not in rad/s",
+            "Correct their unit in the table of channels",
+            sensor=quoted(point),
+        )
+
+
+def _check_axes(acc_m_s2: FloatArray, gyr_rad_s: FloatArray, rate_hz: float, point: str, where: str) -> None:
+    """What is said to be in global axes may be: where a sensor turns, gravity has to turn in its own axes."""
+    rows = max(int(WINDOW_S * rate_hz), 2)
+    turned = -np.cross(gyr_rad_s, acc_m_s2) / rate_hz
+    windows = len(turned) // rows
+    if windows < 8:
+        return
+    expected = turned[: windows * rows].reshape(windows, rows, 3).sum(axis=1)[:-1]
+    seen = np.diff(acc_m_s2[: windows * rows : rows], axis=0)
+    is_there = np.isfinite(expected + seen).all(axis=1)
+    weight = float(np.sum(expected[is_there] ** 2))
+    if weight < 1.0 * max(int(is_there.sum()), 1):
+        return  # it hardly turns: no axes can be told from others
+    if float(np.sum(expected[is_there] * seen[is_there])) < 0.4 * weight:
+        raise FileRefusedError(
+            where,
+            "the acceleration of {sensor} does not turn with it, so it is in global axes",
+            IN_SENSOR_AXES,
+            sensor=quoted(point),
+        )
+
+
+def _turns_gravity_up(q: FloatArray, acc_m_s2: FloatArray) -> bool:
+    is_there = np.isfinite(q).all(axis=1) & np.isfinite(acc_m_s2).all(axis=1)
+    if not is_there.any() or np.any(np.abs(np.linalg.norm(q[is_there], axis=1) - 1.0) > 0.01):
+        return False
+    up = Rotation.from_quat(q[is_there], scalar_first=True).apply(acc_m_s2[is_there]).mean(axis=0)
+    return bool(up[2] > 0.9 * np.linalg.norm(up))
+
+
+def _on_one_clock(systems: Sequence[MotionSystem]) -> Iterator[ImportedSensor]:
+    """The sensors of all systems, each brought to the start of the first by the times of acquisition."""
+    known = [system for system in systems if system.sensors]
+    starts = [_moment(system.started) for system in known]
+    first = min((start for start in starts if start is not None), default=None)
+    names = [sensor.name for system in known for sensor in system.sensors]
+    for system, start in zip(known, starts, strict=True):
+        is_apart = len(known) > 1 and (start is None or None in starts)
+        offset_s = start - first if start is not None and first is not None and not is_apart else 0.0
+        found = SYSTEM.search(system.base.name)
+        label = found[1] if found else system.base.name
+        for sensor in system.sensors:
+            block, info, findings = sensor.block, sensor.info, sensor.findings
+            if offset_s:
+                block = replace(block, time_s=block.time_s + offset_s)
+            if is_apart:
+                info = replace(info, clock=label)
+                findings = (*findings, Finding("not_synchronised", Severity.WARNING, ""))
+            name = sensor.name if names.count(sensor.name) == 1 else f"{sensor.name} ({label})"
+            yield ImportedSensor(name, sensor.ids, sensor.file, block, info, findings)
+
+
+def _moment(started: str) -> float | None:
+    """Seconds, on a clock that is the same for all times of one file."""
+    try:
+        moment = datetime.fromisoformat(started)
+    except ValueError:
+        return None
+    utc = moment if moment.tzinfo is not None else moment.replace(tzinfo=UTC)
+    return (utc - datetime(1900, 1, 1, tzinfo=UTC)).total_seconds()

@@ -1,0 +1,230 @@
+"""The files of a BIDS-Motion recording: which belong together, and their tables as they are."""
+
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from core.samples import FloatArray
+from devices.files.refusal import FileRefusedError, quoted
+from devices.files.trial import ImportedSensor
+
+MOTION, CHANNELS, SETTINGS = "_motion.tsv", "_channels.tsv", "_motion.json"
+ENDINGS = (MOTION, CHANNELS, SETTINGS, "_channels.json")
+SCANS = "*_scans.tsv"
+REQUIRED = ("name", "type", "tracked_point", "component", "units")  # columns of a table of channels
+SENSOR, RATE_KIND = "sensor", "rate_kind"  # columns of ours
+MISSING = frozenset(("n/a", "nan", ""))
+LONGEST_LINE = 1_000_000  # bytes
+MOST_SETTINGS = 4_000_000  # bytes
+MOST_CHANNELS = 10_000
+LEAST_RATE_HZ, MOST_RATE_HZ = 1.0, 10_000.0
+EXPORT_AGAIN = "Correct the file or export it again"
+
+
+@dataclass(frozen=True, slots=True)
+class MotionChannel:
+    """A row of a table of channels; a column that is not there is empty."""
+
+    type: str
+    component: str
+    units: str
+    frame: str
+    sensor: str
+    rate_kind: str
+
+
+@dataclass(slots=True)
+class MotionSystem:
+    """One tracking system: samples (n, channels), NaN where one is missing, and the columns of each tracked point."""
+
+    base: Path
+    rows: FloatArray
+    points: dict[str, dict[tuple[str, str], int]]
+    channels: list[MotionChannel]
+    rate_hz: float | None
+    maker: str = ""
+    started: str = ""
+    sensors: list[ImportedSensor] = field(default_factory=list)
+
+
+def common_base(path: Path) -> Path:
+    """The file without what it holds: `sub-1_task-walk_tracksys-imu`."""
+    for ending in ENDINGS:
+        if path.name.endswith(ending):
+            return path.with_name(path.name.removesuffix(ending))
+    return path.with_name(path.stem)
+
+
+def _beside(base: Path, ending: str) -> Path:
+    return base.with_name(base.name + ending)
+
+
+def has_channels(path: Path) -> bool:
+    """Whether a table of channels stands beside a file."""
+    channels = _beside(common_base(path), CHANNELS)
+    if not channels.is_file():
+        return False
+    with channels.open("rb") as file:
+        return is_channels(file.read(4096))
+
+
+def is_channels(head: bytes) -> bool:
+    """Whether a file that begins so is a table of channels."""
+    names = head.removeprefix(b"\xef\xbb\xbf").split(b"\n", 1)[0].decode("utf-8", "replace").strip().split("\t")
+    return set(names) >= {"name", "type", "tracked_point", "units"}
+
+
+def read_system(base: Path) -> MotionSystem:
+    """Read the files of one tracking system.
+
+    Raises
+    ------
+    FileRefusedError
+        One is not there, what is no table, no JSON or no number, lines of another length than their heads.
+    """
+    channels_path, motion_path = _beside(base, CHANNELS), _beside(base, MOTION)
+    for path in (channels_path, motion_path):
+        if not path.is_file():
+            raise FileRefusedError(
+                path.name, "this file belongs to the recording and is not there", "Put it beside the others"
+            )
+    points, channels = _read_channels(channels_path)
+    settings = _read_settings(_beside(base, SETTINGS))
+    try:
+        rate_hz = float(str(settings.get("SamplingFrequency", "nan")))
+    except ValueError:
+        rate_hz = np.nan
+    maker = " ".join(str(settings.get(name, "")) for name in ("Manufacturer", "ManufacturersModelName"))
+    return MotionSystem(
+        base=base,
+        rows=_read_rows(motion_path, len(channels)),
+        points=points,
+        channels=channels,
+        rate_hz=rate_hz if LEAST_RATE_HZ <= rate_hz <= MOST_RATE_HZ else None,
+        maker=maker.replace("n/a", "").strip()[:100],
+        started=_acquired(base),
+    )
+
+
+def _read_channels(path: Path) -> tuple[dict[str, dict[tuple[str, str], int]], list[MotionChannel]]:
+    points: dict[str, dict[tuple[str, str], int]] = {}
+    channels: list[MotionChannel] = []
+    names: list[str] = []
+    for number, text in _lines(path):
+        cells = [cell.strip() for cell in text.split("\t")]
+        here = f"{path.name}, line {number}"
+        if not names:
+            names = cells
+            missing = [name for name in REQUIRED if name not in names]
+            if missing:
+                raise FileRefusedError(here, "there is no column {name}", EXPORT_AGAIN, name=missing[0])
+            continue
+        if not text.strip():
+            continue
+        if len(cells) != len(names):
+            raise FileRefusedError(
+                here, "it has {count} cells, the heads {width}", EXPORT_AGAIN, count=len(cells), width=len(names)
+            )
+        row = {name: "" if cell == "n/a" else cell for name, cell in zip(names, cells, strict=True)}
+        one = MotionChannel(
+            type=row["type"].upper(),
+            component=row["component"].lower(),
+            units=row["units"],
+            frame=row.get("reference_frame", ""),
+            sensor=row.get(SENSOR, ""),
+            rate_kind=row.get(RATE_KIND, ""),
+        )
+        of_point = points.setdefault(row["tracked_point"], {})
+        if (one.type, one.component) in of_point:
+            raise FileRefusedError(
+                here,
+                "{point} has two channels {type} {component}",
+                EXPORT_AGAIN,
+                point=quoted(row["tracked_point"]),
+                type=quoted(one.type),
+                component=quoted(one.component),
+            )
+        of_point[one.type, one.component] = len(channels)
+        channels.append(one)
+        if len(channels) > MOST_CHANNELS:
+            raise FileRefusedError(here, "these are more than {most} channels", EXPORT_AGAIN, most=MOST_CHANNELS)
+    return points, channels
+
+
+def _read_settings(path: Path) -> Mapping[str, object]:
+    if not path.is_file():
+        return {}
+    with path.open("rb") as file:
+        content = file.read(MOST_SETTINGS)
+    try:
+        settings = json.loads(content)
+    except (ValueError, RecursionError) as error:
+        raise FileRefusedError(path.name, "this is no readable JSON", EXPORT_AGAIN) from error
+    if not isinstance(settings, dict):
+        raise FileRefusedError(path.name, "this is no table of settings", EXPORT_AGAIN)
+    return settings
+
+
+def _read_rows(path: Path, width: int) -> FloatArray:
+    """(n, width) samples."""
+    rows = []
+    for number, text in _lines(path):
+        if not text.strip():
+            continue
+        cells = text.split("\t")
+        here = f"{path.name}, line {number}"
+        if len(cells) != width:
+            raise FileRefusedError(
+                here,
+                "it has {count} cells, and the table of channels {width} channels",
+                EXPORT_AGAIN,
+                count=len(cells),
+                width=width,
+            )
+        try:
+            rows.append(
+                np.array([np.nan if cell.strip().lower() in MISSING else float(cell) for cell in cells], dtype=float)
+            )
+        except ValueError as error:
+            if number == 1:
+                raise FileRefusedError(
+                    here,
+                    "it holds what is no number ({why})",
+                    "Remove its line of names: BIDS has none there",
+                    why=quoted(error),
+                ) from error
+            raise FileRefusedError(
+                here, "it holds what is no number ({why})", EXPORT_AGAIN, why=quoted(error)
+            ) from error
+    values = np.array(rows, dtype=np.float64).reshape(len(rows), width)
+    values[~np.isfinite(values)] = np.nan
+    return values
+
+
+def _lines(path: Path) -> Iterator[tuple[int, str]]:
+    """Number and text of each line, without its end."""
+    with path.open("rb") as file:
+        for number, raw in enumerate(iter(lambda: file.readline(LONGEST_LINE), b""), 1):
+            try:
+                yield number, raw.decode("utf-8-sig" if number == 1 else "utf-8").rstrip("\r\n")
+            except UnicodeDecodeError as error:
+                raise FileRefusedError(f"{path.name}, line {number}", "this is not UTF-8 text", EXPORT_AGAIN) from error
+
+
+def _acquired(base: Path) -> str:
+    """When the recording started, as the table of scans says it; empty where none does."""
+    for folder in (base.parent, base.parent.parent):
+        for scans in sorted(folder.glob(SCANS))[:10]:
+            names: list[str] = []
+            for _, text in _lines(scans):
+                cells = text.split("\t")
+                if not names:
+                    names = cells
+                elif {"filename", "acq_time"} <= set(names) and len(cells) == len(names):
+                    row = dict(zip(names, cells, strict=True))
+                    if Path(row["filename"]).name == f"{base.name}{MOTION}":
+                        return "" if row["acq_time"] in MISSING else row["acq_time"]
+    return ""

@@ -1,0 +1,430 @@
+"""Recordings of Movella (Xsens) DOT sensors: one CSV or Excel file per sensor, by the app, its export, or the PC SDK.
+
+The app heads its columns with lines such as `DeviceTag:`; the SDK writes columns only. Rates are deg/s, specific force
+m/s2 in sensor axes, free acceleration (without gravity) m/s2 in earth axes, z up; the orientation is earth from sensor,
+as quaternion, scalar first, or as Euler angles in degrees about x, y and z, turned about z first. Time counts from the
+sensor's start: microseconds from the app, tenths of a millisecond from the SDK, 32 bits in both.
+
+Held against excerpts of public files: of the app at 60 Hz, of its export of a recording at 120 Hz, whose rates are
+means over the interval before their stamps, and of the SDK. The Excel form, delta quantities and a turn of the clock
+are read as they are described and not held against a real file.
+"""
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from core.findings import Finding, Severity
+from core.samples import BoolArray, FloatArray, ImuBlock, RateKind, SensorInfo
+from devices.files.orientation_rates import Numbers, derive_rates, rate_kind_by
+from devices.files.refusal import FileRefusedError
+from devices.files.spreadsheets import ZIP, read_xlsx, sheet_says
+from devices.files.tables import CORRECT_IT, Table, header_of, read_csv
+from devices.files.trial import ImportedSensor, ImportedTrial, UnreadFile
+
+TIME = "SampleTimeFine"
+ACC = ("Acc_X", "Acc_Y", "Acc_Z")
+GYR = ("Gyr_X", "Gyr_Y", "Gyr_Z")
+MAG = ("Mag_X", "Mag_Y", "Mag_Z")
+FREE_ACC = ("FreeAcc_X", "FreeAcc_Y", "FreeAcc_Z")
+QUAT = ("Quat_W", "Quat_X", "Quat_Y", "Quat_Z")
+EULER = ("Euler_X", "Euler_Y", "Euler_Z")
+TURNS = ("dq_W", "dq_X", "dq_Y", "dq_Z")
+VELOCITIES = ("dv[1]", "dv[2]", "dv[3]")
+NUMERIC = frozenset((TIME, *ACC, *GYR, *MAG, *FREE_ACC, *QUAT, *EULER, *TURNS, *VELOCITIES))
+ONLY_DOT = {"Quat_W", "Euler_X", "dq_W"}  # MT Manager calls its own otherwise
+TAG = "DeviceTag"
+DELIMITERS = ",;\t"
+
+TICKS_TURN_AT = 2**32
+MICROSECOND_S, TENTH_OF_A_MILLISECOND_S = 1e-6, 1e-4
+RATES_HZ = (1.0, 4.0, 10.0, 12.0, 15.0, 20.0, 30.0, 60.0, 120.0)  # all that these sensors have
+RATE_ERROR = 0.03  # the steps of 120 Hz in tenths of a millisecond are 83 or 84
+FEW_STEPS = 0.05  # a shorter step than this share of them all is no period but a mistake in some
+SAME_GRID_S = 2e-5  # synchronised sensors stamp the same instants; two that are not do so once in two hundred times
+ONE_TRIAL_S = 60.0  # the app starts its sensors one after the other
+CLOCK = "Movella DOT"
+GRAVITY_M_S2 = 9.8127  # by which the sensors make free acceleration
+ROTATION_ERROR = 0.01
+MEASURE_ANEW = (
+    'Record again in the mode "Custom mode 5" or, in the sensor, with orientation, acceleration and angular velocity'
+)
+EXPORT_AGAIN = "Export it again from the Movella DOT app"
+
+
+@dataclass(frozen=True, slots=True)
+class DotFile:
+    """One sensor's file: n samples in sensor axes, NaN where a value is missing.
+
+    `ticks` ascend: turns of their 32 bits are taken out. `counter`: the whole periods since the first sample.
+    `is_synced` None: the file does not say.
+    """
+
+    path: Path
+    ids: tuple[str, ...]
+    info: SensorInfo
+    started: str
+    is_synced: bool | None
+    ticks: Numbers
+    tick_s: float
+    counter: Numbers
+    acc_m_s2: FloatArray
+    gyr_rad_s: FloatArray
+    q_earth_from_sensor: FloatArray | None
+    mag: FloatArray | None
+    is_rate_derived: bool
+    is_gravity_added: bool
+    doubled: int
+
+
+def is_movella_dot(path: Path, head: bytes) -> bool:
+    """Whether a file that begins so is one of these, by the lines above its columns or by the columns."""
+    if head.startswith(ZIP):
+        return sheet_says(path, TIME.encode())
+    lines = head.decode("utf-8", "replace").lstrip("\ufeff").splitlines()
+    header = next((number for number, line in enumerate(lines) if TIME in line), None)
+    if header is None or lines[0].startswith("//"):  # of MT Manager, whose columns have the same names
+        return False
+    names = [name.strip() for name in re.split(f"[{DELIMITERS}]", lines[header])]
+    if TIME not in names:
+        return False
+    is_headed = any(line.startswith(f"{TAG}:") for line in lines[:header])
+    return (
+        is_headed or bool(ONLY_DOT & set(names)) or (names[0] == TIME and {ACC[0], FREE_ACC[0]} & set(names) != set())
+    )
+
+
+def read_dot(path: Path, asked_hz: float | None = None) -> DotFile:
+    """Read one file.
+
+    Raises
+    ------
+    FileRefusedError
+        None of these, no specific force and nothing to make it of, neither rates nor orientation, times that step
+        back, other units.
+    """
+    where = path.name
+    settings, table = _read(path, where)
+    ticks, is_new = _unwrap(table, where)
+    told_hz = _told_rate(settings) or asked_hz
+    tick_s, rate_hz = _clock(np.diff(ticks[is_new]), told_hz, where)
+    counter = _counter(ticks[is_new], tick_s, rate_hz)
+    q = _orientation(table, where)
+    q = None if q is None else q[is_new]
+    gyr, rate_kind = _rates(table, is_new, q, counter, rate_hz, where)
+    acc, is_gravity_added = _specific_force(table, is_new, q, rate_hz, where)
+    is_empty = np.logical_and.accumulate((acc == 0.0).all(axis=1) & (gyr == 0.0).all(axis=1))
+    if not is_empty.all():  # the export begins with a row of nothing but zeros
+        acc[is_empty] = gyr[is_empty] = np.nan
+    _check_gravity(acc, where)
+    is_rate_derived = not (set(GYR) <= set(table.numbers) or set(TURNS) <= set(table.numbers))
+    ids = tuple(dict.fromkeys([*_named(path), *filter(None, [settings.get(TAG)])]))
+    return DotFile(
+        path=path,
+        ids=ids,
+        info=SensorInfo(
+            serial=(*ids, path.stem)[0],
+            model="Movella DOT",
+            firmware=settings.get("FirmwareVersion", ""),
+            rate_hz=rate_hz,
+            rate_kind=rate_kind,
+        ),
+        started=settings.get("StartTime", ""),
+        is_synced=settings["SyncStatus"].casefold() == "synced" if settings.get("SyncStatus") else None,
+        ticks=ticks[is_new],
+        tick_s=tick_s,
+        counter=counter,
+        acc_m_s2=acc,
+        gyr_rad_s=gyr,
+        q_earth_from_sensor=q,
+        mag=table.matrix(MAG)[is_new] if set(MAG) <= set(table.numbers) else None,
+        is_rate_derived=is_rate_derived,
+        is_gravity_added=is_gravity_added,
+        doubled=int(np.sum(~is_new)),
+    )
+
+
+def movella_dot_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedTrial:
+    """The files of one trial, one sensor in each.
+
+    Synchronised sensors share one clock, and their samples stand at its times. Others start together at zero, each
+    on a clock of its own: how far they are apart is for the motion to tell.
+
+    Parameters
+    ----------
+    rate_hz
+        Samples per second where neither the files nor their times tell.
+
+    Raises
+    ------
+    FileRefusedError
+        What `read_dot` refuses of the only file.
+    """
+    read, unread = [], []
+    for path in files:
+        try:
+            read.append(read_dot(path, rate_hz))
+        except FileRefusedError as refusal:
+            unread.append(UnreadFile(str(path), tuple(_named(path)), refusal))
+    if not read and unread:
+        raise unread[0].refusal
+    starts_s = _starts_s(read)
+    is_one_grid = _is_one_grid(read, starts_s)
+    is_shared = len(read) < 2 or all(file.is_synced for file in read) or is_one_grid
+    sensors = []
+    for file, start_s in zip(read, starts_s, strict=True):
+        info = replace(file.info, clock=(CLOCK if is_one_grid else "") if is_shared else file.info.serial)
+        since_s = (file.ticks - file.ticks[:1]) * file.tick_s
+        block = ImuBlock(
+            sensor=info.serial,
+            time_s=since_s + start_s if is_shared else since_s,
+            gyr_rad_s=file.gyr_rad_s,
+            acc_m_s2=file.acc_m_s2,
+            q_earth_from_sensor=file.q_earth_from_sensor,
+            mag=file.mag,
+            is_rate_derived=file.is_rate_derived,
+        )
+        findings = tuple(_findings(file, is_shared))
+        sensors.append(ImportedSensor(file.path.name, file.ids, str(file.path), block, info, findings))
+    return ImportedTrial("movella-dot", tuple(sensors), tuple(unread), started=read[0].started if read else "")
+
+
+def _named(path: Path) -> list[str]:
+    """The sensor's address in a file's name, with or without hyphens."""
+    address = re.search(r"(?<![0-9A-Fa-f])((?:[0-9A-Fa-f]{2}-?){5}[0-9A-Fa-f]{2})(?![0-9A-Fa-f])", path.stem)
+    return [address[1].replace("-", "").upper()] if address else []
+
+
+def _read(path: Path, where: str) -> tuple[dict[str, str], Table]:
+    with path.open("rb") as file:
+        is_zip = file.read(len(ZIP)) == ZIP
+    if is_zip:
+        before, table = read_xlsx(path, where, NUMERIC, TIME)
+    else:
+        lines, names = header_of(path, where, delimiters=DELIMITERS, header_names=TIME)
+        if TIME not in names:
+            raise FileRefusedError(where, "there is no column {name}", EXPORT_AGAIN, name=TIME)
+        before = [re.split(f"[{DELIMITERS}]", line, maxsplit=1) for line in lines]
+        table = read_csv(path, where, NUMERIC, delimiters=DELIMITERS, keep_others=False, header_names=TIME)
+    settings = {
+        cells[0].strip().rstrip(":"): cells[1].strip(f" {DELIMITERS}")
+        for cells in before
+        if len(cells) > 1 and cells[0]
+    }
+    return settings, table
+
+
+def _unwrap(table: Table, where: str) -> tuple[Numbers, BoolArray]:
+    """(n,) the ticks without their turns, and which rows are no repetition of the time before."""
+    raw = table.numbers[TIME]
+    is_tick = (raw >= 0) & (raw < TICKS_TURN_AT) & (raw == np.floor(raw))
+    if not is_tick.all():
+        raise FileRefusedError(
+            f"{where}, {table.place(int(np.argmin(is_tick)))}",
+            "{name} is not a whole number from 0 to {most}",
+            CORRECT_IT,
+            name=TIME,
+            most=TICKS_TURN_AT - 1,
+        )
+    ticks: Numbers = raw.astype(np.int64)
+    step: Numbers = np.diff(ticks) % np.int64(TICKS_TURN_AT)
+    back = np.flatnonzero(step >= TICKS_TURN_AT // 2)
+    if len(back):
+        row = int(back[0]) + 1
+        raise FileRefusedError(
+            f"{where}, {table.place(row)}",
+            "{name} steps back from {before} to {after}",
+            EXPORT_AGAIN,
+            name=TIME,
+            before=f"{raw[row - 1]:.0f}",
+            after=f"{raw[row]:.0f}",
+        )
+    first = ticks[:1]
+    return np.concatenate([first, first + np.cumsum(step)]), np.concatenate([np.ones(len(first), dtype=bool), step > 0])
+
+
+def _told_rate(settings: Mapping[str, str]) -> float | None:
+    rate = re.match(r"(\d{1,4}(\.\d{1,3})?)\s*Hz", settings.get("OutputRate", ""))
+    return float(rate[1]) or None if rate else None
+
+
+def _clock(steps: Numbers, told_hz: float | None, where: str) -> tuple[float, float]:
+    """Length of a tick in s and samples per second: the unit in which the common step is one of the sensors' rates."""
+    if not len(steps):
+        return MICROSECOND_S, told_hz or 60.0
+    step = float(np.sort(steps)[int(FEW_STEPS * len(steps))])
+    for tick_s in (MICROSECOND_S, TENTH_OF_A_MILLISECOND_S):
+        for rate_hz in [told_hz] if told_hz else RATES_HZ:
+            if abs(step * tick_s * rate_hz - 1.0) < RATE_ERROR:
+                return tick_s, rate_hz
+    if told_hz:  # so many are lost that hardly two follow each other
+        for tick_s in (MICROSECOND_S, TENTH_OF_A_MILLISECOND_S):
+            periods = step * tick_s * told_hz
+            if 1.5 < periods < 20.0 and abs(periods - round(periods)) < RATE_ERROR * periods:
+                return tick_s, told_hz
+        raise FileRefusedError(
+            where,
+            "its times grow by {step}, which does not fit {rate} samples per second",
+            "Give the rate it was recorded at in Hz (--rate), or export it again",
+            step=f"{step:.0f}",
+            rate=f"{told_hz:g}",
+        )
+    raise FileRefusedError(
+        where,
+        "its times grow by {step}, which is no rate of these sensors in microseconds or tenths of a millisecond",
+        "Give the rate it was recorded at in Hz (--rate)",
+        step=f"{step:.0f}",
+    )
+
+
+def _counter(ticks: Numbers, tick_s: float, rate_hz: float) -> Numbers:
+    periods: Numbers = np.rint(np.diff(ticks) * (tick_s * rate_hz)).astype(np.int64)
+    return np.concatenate([np.zeros(len(ticks[:1]), dtype=np.int64), np.cumsum(periods)])
+
+
+def _orientation(table: Table, where: str) -> FloatArray | None:
+    """(n, 4) earth from sensor, scalar first."""
+    names = set(table.numbers)
+    if names >= set(QUAT):
+        q = table.matrix(QUAT)
+        _refuse_no_rotation(q, table, where)
+        return q
+    if not names >= set(EULER):
+        return None
+    about_xyz = table.matrix(EULER)
+    is_there = np.isfinite(about_xyz.sum(axis=1)) & (np.abs(about_xyz) <= 360.0).all(axis=1)
+    q = np.full((len(about_xyz), 4), np.nan)
+    if is_there.any():
+        turn = Rotation.from_euler("ZYX", about_xyz[is_there][:, ::-1], degrees=True)
+        q[is_there] = turn.as_quat(scalar_first=True)
+    return q
+
+
+def _refuse_no_rotation(q: FloatArray, table: Table, where: str) -> None:
+    is_wrong = np.abs(np.linalg.norm(q, axis=1) - 1.0) > ROTATION_ERROR
+    if is_wrong.any():
+        row = table.place(int(np.argmax(is_wrong)))
+        raise FileRefusedError(f"{where}, {row}", "the orientation is no rotation", EXPORT_AGAIN)
+
+
+def _rates(
+    table: Table, is_new: BoolArray, q: FloatArray | None, counter: Numbers, rate_hz: float, where: str
+) -> tuple[FloatArray, RateKind | None]:
+    names = set(table.numbers)
+    if names >= set(GYR):
+        gyr = np.radians(table.matrix(GYR)[is_new])
+        if q is None:
+            return gyr, None
+        _check_rates(gyr, derive_rates(q, counter, rate_hz), where)
+        return gyr, rate_kind_by(q, gyr, counter, rate_hz)
+    if names >= set(TURNS):
+        turns = table.matrix(TURNS)
+        _refuse_no_rotation(turns, table, where)
+        turns = turns[is_new]
+        gyr = np.full((len(turns), 3), np.nan)
+        is_there = np.isfinite(turns.sum(axis=1))
+        if is_there.any():
+            gyr[is_there] = Rotation.from_quat(turns[is_there], scalar_first=True).as_rotvec() * rate_hz
+        return gyr, RateKind.AVERAGED
+    if q is None:
+        raise FileRefusedError(
+            where, "there are neither angular rates (Gyr_X) nor an orientation to derive them from", MEASURE_ANEW
+        )
+    return derive_rates(q, counter, rate_hz), RateKind.INSTANTANEOUS
+
+
+def _specific_force(
+    table: Table, is_new: BoolArray, q: FloatArray | None, rate_hz: float, where: str
+) -> tuple[FloatArray, bool]:
+    """(n, 3) and whether gravity had to be added."""
+    names = set(table.numbers)
+    if names >= set(ACC):
+        return table.matrix(ACC)[is_new], False
+    if names >= set(VELOCITIES):
+        return table.matrix(VELOCITIES)[is_new] * rate_hz, False
+    if not names >= set(FREE_ACC):
+        raise FileRefusedError(where, "there is no acceleration (Acc_X, Acc_Y, Acc_Z)", MEASURE_ANEW)
+    if q is None:
+        raise FileRefusedError(
+            where,
+            "gravity is taken out of its acceleration (FreeAcc_X), and no orientation is there to add it again",
+            MEASURE_ANEW,
+        )
+    felt = table.matrix(FREE_ACC)[is_new] + np.array([0.0, 0.0, GRAVITY_M_S2])
+    acc = np.full_like(felt, np.nan)
+    is_there = np.isfinite(felt.sum(axis=1) + q.sum(axis=1))
+    if is_there.any():
+        acc[is_there] = Rotation.from_quat(q[is_there], scalar_first=True).inv().apply(felt[is_there])
+    return acc, True
+
+
+def _check_rates(gyr_rad_s: FloatArray, turned_rad_s: FloatArray, where: str) -> None:
+    speed, turned = (np.linalg.norm(rate, axis=1) for rate in (gyr_rad_s, turned_rad_s))
+    is_turning = np.isfinite(speed) & (turned > 0.2)
+    if is_turning.any() and np.median(speed[is_turning] / turned[is_turning]) < 0.05:
+        raise FileRefusedError(where, "the angular rates are in rad/s and not in deg/s", EXPORT_AGAIN)
+
+
+def _check_gravity(acc_m_s2: FloatArray, where: str) -> None:
+    felt = np.linalg.norm(acc_m_s2, axis=1)
+    felt = felt[np.isfinite(felt)]
+    middle = float(np.median(felt)) if len(felt) else np.nan
+    if 0.7 < middle < 1.4:
+        raise FileRefusedError(
+            where,
+            "the acceleration is {middle} in the middle, as if it were in g and not in m/s2",
+            EXPORT_AGAIN,
+            middle=f"{middle:.2f}",
+        )
+    if not (np.isnan(middle) or 7.0 < middle < 14.0):
+        raise FileRefusedError(
+            where,
+            "the acceleration is {middle} m/s2 in the middle, which is not gravity",
+            MEASURE_ANEW,
+            middle=f"{middle:.2f}",
+        )
+
+
+def _starts_s(files: Sequence[DotFile]) -> list[float]:
+    """When each file starts after the first that does, by the turns of the clocks that lie nearest to each other."""
+    filled = [file for file in files if len(file.ticks)]
+    if not filled:
+        return [0.0] * len(files)
+    near_s = float(filled[0].ticks[0]) * filled[0].tick_s
+    starts_s = []
+    for file in files:
+        start_s = float(file.ticks[0]) * file.tick_s if len(file.ticks) else near_s
+        turn_s = TICKS_TURN_AT * file.tick_s
+        starts_s.append(start_s + round((near_s - start_s) / turn_s) * turn_s)
+    first_s = min(starts_s)
+    return [start_s - first_s for start_s in starts_s]
+
+
+def _is_one_grid(files: Sequence[DotFile], starts_s: Sequence[float]) -> bool:
+    """Whether the stamps of several sensors are the same instants, as only one clock makes them."""
+    filled = [(file, start_s) for file, start_s in zip(files, starts_s, strict=True) if len(file.ticks) > 1]
+    if len(filled) < 2 or any(file.is_synced is False for file, _ in filled):
+        return False
+    first, reference_s = filled[0]
+    period_s = first.tick_s * float(first.ticks[-1] - first.ticks[0]) / max(float(first.counter[-1]), 1.0)
+    for file, start_s in filled[1:]:
+        apart_s = start_s - reference_s
+        beside_s = apart_s - round(apart_s / period_s) * period_s
+        if file.tick_s != first.tick_s or abs(apart_s) > ONE_TRIAL_S or abs(beside_s) > max(SAME_GRID_S, file.tick_s):
+            return False
+    return True
+
+
+def _findings(file: DotFile, is_shared: bool) -> Iterator[Finding]:
+    if file.is_rate_derived:
+        yield Finding("rate_from_orientation", Severity.INFO, "")
+    if file.is_gravity_added:
+        yield Finding("gravity_from_orientation", Severity.INFO, "")
+    if file.doubled:
+        yield Finding("doubled_stamps", Severity.WARNING, "", {"count": file.doubled})
+    if not is_shared:
+        yield Finding("not_synchronised", Severity.WARNING, "")

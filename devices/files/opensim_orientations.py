@@ -1,0 +1,190 @@
+"""Orientations of OpenSim (OpenSense), `.sto`: one table with the quaternions of all sensors of a trial.
+
+Lines of a head up to `endheader`, a line of names, then a time in seconds and for each sensor four numbers with commas
+between, scalar first: earth from sensor, earth z up, as OpenSim's own readers of sensors write them. Rates are derived
+from them. There is no acceleration: gravity stands in for it, which tells the shape of angles and no landing of a foot.
+
+Not held against a real file: read as OpenSim's documentation describes it.
+"""
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from core.findings import Finding, Severity
+from core.samples import FloatArray, ImuBlock, RateKind, SensorInfo
+from devices.files.orientation_rates import Numbers, derive_rates
+from devices.files.refusal import FileRefusedError, quoted
+from devices.files.trial import ImportedSensor, ImportedTrial
+
+END_OF_HEAD = b"endheader"
+KIND = re.compile(rb"^\s*DataType\s*=\s*Quaternion\s*$", re.MULTILINE | re.IGNORECASE)
+TIME = "time"
+LONGEST_LINE = 100_000  # bytes
+HEAD_WITHIN = 100  # lines
+GRAVITY_M_S2 = 9.81
+ROTATION_ERROR = 0.01
+UNEVEN = 0.2  # of a step: rates derived over uneven steps would be wrong by as much
+EXPORT_AGAIN = "Export it again from OpenSim"
+
+
+@dataclass(frozen=True, slots=True)
+class OrientationTable:
+    """Times (n,) and earth from sensor (n, sensors, 4), NaN where a cell is empty."""
+
+    time_s: FloatArray
+    sensors: tuple[str, ...]
+    q_earth_from_sensor: FloatArray
+
+
+def is_opensim_orientations(_path: Path, head: bytes) -> bool:
+    """Whether a file that begins so is one of these, and not one of OpenSim's other tables."""
+    before, end, _ = head.partition(END_OF_HEAD)
+    return bool(end) and KIND.search(before) is not None
+
+
+def read_opensim_orientations(path: Path) -> OrientationTable:
+    """Read one file.
+
+    Raises
+    ------
+    FileRefusedError
+        No such table, a sensor twice, lines of another length, what is no number or no rotation, times that step back.
+    """
+    where = path.name
+    names: list[str] = []
+    rows: list[list[float]] = []
+    lines: list[int] = []
+    has_head = False
+    with path.open("rb") as file:
+        for number, raw in enumerate(iter(lambda: file.readline(LONGEST_LINE), b""), 1):
+            here = f"{where}, line {number}"
+            try:
+                text = raw.decode("utf-8-sig" if number == 1 else "utf-8").strip()
+            except UnicodeDecodeError as error:
+                raise FileRefusedError(here, "this is not UTF-8 text", EXPORT_AGAIN) from error
+            if not has_head:
+                has_head = text == END_OF_HEAD.decode()
+                if number > HEAD_WITHIN:
+                    break
+            elif text in ("", END_OF_HEAD.decode()):  # which some writers repeat
+                continue
+            elif not names:
+                names = _names(text, here)
+            else:
+                rows.append(_row(text, len(names), here))
+                lines.append(number)
+    if not names:
+        raise FileRefusedError(where, "there is no line of columns after {name}", EXPORT_AGAIN, name="endheader")
+    values = np.array(rows, dtype=np.float64).reshape(len(rows), 1 + 4 * (len(names) - 1))
+    values[~np.isfinite(values)] = np.nan
+    time_s, q = values[:, 0], values[:, 1:].reshape(len(rows), -1, 4)
+    is_wrong = np.isnan(time_s)
+    is_wrong[1:] |= ~(np.diff(time_s) > 0)
+    if is_wrong.any():
+        line = lines[int(np.argmax(is_wrong))]
+        raise FileRefusedError(
+            f"{where}, line {line}", "its time does not come after that of the line before", EXPORT_AGAIN
+        )
+    is_wrong = (np.abs(np.linalg.norm(q, axis=2) - 1.0) > ROTATION_ERROR).any(axis=1)
+    if is_wrong.any():
+        line = lines[int(np.argmax(is_wrong))]
+        raise FileRefusedError(f"{where}, line {line}", "the orientation is no rotation", EXPORT_AGAIN)
+    return OrientationTable(time_s - time_s[:1], tuple(names[1:]), q)
+
+
+def opensim_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedTrial:
+    """The sensors of one trial, all in one file.
+
+    Parameters
+    ----------
+    rate_hz
+        Rows per second where there are too few to tell.
+
+    Raises
+    ------
+    FileRefusedError
+        What `read_opensim_orientations` refuses, several files, uneven times, of which no rates can be derived.
+    """
+    if len(files) != 1:
+        raise FileRefusedError(
+            ", ".join(path.name for path in files),
+            "a table of orientations holds all sensors of a trial",
+            "Import one file at a time",
+        )
+    table = read_opensim_orientations(files[0])
+    steps_s = np.diff(table.time_s)
+    rate_hz = round(1.0 / float(np.median(steps_s)), 2) if len(steps_s) else rate_hz
+    counter = _counter(table.time_s, rate_hz or 1.0, files[0].name)
+    findings = [
+        Finding("rate_from_orientation", Severity.INFO, ""),
+        Finding("gravity_for_acceleration", Severity.WARNING, ""),
+    ]
+    sensors = []
+    for k, name in enumerate(table.sensors):
+        q = table.q_earth_from_sensor[:, k]
+        acc = np.full((len(q), 3), np.nan)
+        is_there = np.isfinite(q).all(axis=1)
+        if is_there.any():
+            turn = Rotation.from_quat(q[is_there], scalar_first=True)
+            acc[is_there] = turn.inv().apply([0.0, 0.0, GRAVITY_M_S2])
+        block = ImuBlock(
+            sensor=name,
+            time_s=table.time_s,
+            gyr_rad_s=derive_rates(q, counter, rate_hz or 1.0),
+            acc_m_s2=acc,
+            q_earth_from_sensor=q,
+            is_rate_derived=True,
+        )
+        info = SensorInfo(serial=name, rate_hz=rate_hz, rate_kind=RateKind.INSTANTANEOUS)
+        sensors.append(ImportedSensor(name, (), str(files[0]), block, info, tuple(findings)))
+    return ImportedTrial("opensim", tuple(sensors))
+
+
+def _names(text: str, here: str) -> list[str]:
+    names = text.split()
+    if names[0].casefold() != TIME or len(names) < 2:
+        raise FileRefusedError(here, "the line of columns does not begin with {name}", EXPORT_AGAIN, name=TIME)
+    for name in names:
+        if names.count(name) > 1:
+            raise FileRefusedError(here, "column {name} is there twice", EXPORT_AGAIN, name=quoted(name))
+    return names
+
+
+def _row(text: str, columns: int, here: str) -> list[float]:
+    cells = [cell.strip() for cell in (text.split("\t") if "\t" in text else text.split())]
+    if len(cells) != columns:
+        raise FileRefusedError(
+            here, "it has {count} cells, the heads {width}", EXPORT_AGAIN, count=len(cells), width=columns
+        )
+    try:
+        row = [float(cells[0])]
+        for cell in cells[1:]:
+            four = [float(part) for part in cell.split(",")] if cell else [np.nan] * 4
+            if len(four) != 4:
+                raise FileRefusedError(
+                    here, "{cell} is no orientation of four numbers", EXPORT_AGAIN, cell=quoted(cell)
+                )
+            row += four
+    except ValueError as error:
+        raise FileRefusedError(here, "it holds what is no number ({why})", EXPORT_AGAIN, why=quoted(error)) from error
+    return row
+
+
+def _counter(time_s: FloatArray, rate_hz: float, where: str) -> Numbers:
+    """(n,) the even steps since the first row."""
+    steps = np.diff(time_s) * rate_hz
+    whole = np.rint(steps)
+    is_uneven = (np.abs(steps - whole) > UNEVEN) & (steps < 10.0)
+    if is_uneven.any() or np.any(steps > 1e9):
+        raise FileRefusedError(
+            where,
+            "its times are not evenly apart, so no angular rates can be derived from the orientation",
+            "Export it again at an even rate",
+        )
+    counter: Numbers = np.concatenate([np.zeros(len(time_s[:1])), np.cumsum(whole)]).astype(np.int64)
+    return counter

@@ -1,0 +1,99 @@
+"""Angular rates that a device's own orientation tells, and which of two kinds its gyroscope's rates are."""
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+
+from core.samples import FloatArray, RateKind
+
+Numbers = NDArray[np.int64]
+CLEARLY = 0.6  # of the other's error: then the rates are of this kind and not of the other
+
+
+def derive_rates(q_earth_from_sensor: FloatArray, counter: Numbers, rate_hz: float) -> FloatArray:
+    """Angular rate at the instant of every sample, (n, 3) in sensor axes, from the orientation, (n, 4).
+
+    Around a sample the orientation is a curve of rotation vectors in that sample's own axes, and the rate is the slope
+    of this curve where it passes zero. The slope is the central difference over two neighbours to each side (fourth
+    order: 0.2 % low at a tenth of the sampling rate), or over one where a second is missing. Both are symmetric about
+    the stamp: the rate belongs to it and not to an instant half a sample beside it. Samples at a border or gap have no
+    neighbour on one side, and no rate.
+
+    Parameters
+    ----------
+    q_earth_from_sensor : (n, 4)
+        Unit quaternions, scalar first.
+    counter : (n,)
+        Ascending packet numbers.
+    rate_hz
+        Packets per second.
+
+    Returns
+    -------
+    (n, 3)
+        rad/s, in sensor axes; NaN where a neighbour is missing.
+    """
+    before_2, before, after, after_2 = (turn_to(q_earth_from_sensor, counter, steps) for steps in (-2, -1, 1, 2))
+    over_two = (8.0 * (after - before) - (after_2 - before_2)) * rate_hz / 12.0
+    over_one = (after - before) * rate_hz / 2.0
+    return np.where(np.isfinite(over_two), over_two, over_one)
+
+
+def rate_kind_by(
+    q_earth_from_sensor: FloatArray, gyr_rad_s: FloatArray, counter: Numbers, rate_hz: float
+) -> RateKind | None:
+    """Which rate of the orientation the gyroscope's agrees with by far: that at the stamp or the mean before it.
+
+    Parameters
+    ----------
+    q_earth_from_sensor : (n, 4)
+        Unit quaternions, scalar first.
+    gyr_rad_s : (n, 3)
+        In sensor axes.
+    counter : (n,)
+        Ascending packet numbers.
+    rate_hz
+        Packets per second.
+
+    Returns
+    -------
+    RateKind or None
+        None: neither by far, or less than a second tells.
+    """
+    at_stamp = derive_rates(q_earth_from_sensor, counter, rate_hz)
+    before = -turn_to(q_earth_from_sensor, counter, -1) * rate_hz
+    errors = [np.linalg.norm(gyr_rad_s - rate, axis=1) for rate in (at_stamp, before)]
+    is_known = np.isfinite(errors[0]) & np.isfinite(errors[1])
+    if np.sum(is_known) < rate_hz:  # less than a second decides nothing
+        return None
+    at_stamp_error, before_error = (float(np.sqrt(np.mean(error[is_known] ** 2))) for error in errors)
+    if before_error < CLEARLY * at_stamp_error:
+        return RateKind.AVERAGED
+    return RateKind.INSTANTANEOUS if at_stamp_error < CLEARLY * before_error else None
+
+
+def turn_to(q: FloatArray, counter: Numbers, steps: int) -> FloatArray:
+    """The rotation vector from each orientation to the one `steps` packets later.
+
+    Parameters
+    ----------
+    q : (n, 4)
+        Unit quaternions, scalar first, earth from sensor.
+    counter : (n,)
+        Ascending packet numbers.
+    steps
+        Negative: packets before it.
+
+    Returns
+    -------
+    (n, 3)
+        rad, in sensor axes; NaN where there is no such packet.
+    """
+    turn = np.full((len(q), 3), np.nan)
+    n = abs(steps)
+    here, there = (slice(None, -n), slice(n, None)) if steps > 0 else (slice(n, None), slice(None, -n))
+    is_there = np.isfinite(q[here] + q[there]).all(axis=1) & (counter[there] - counter[here] == steps)
+    if is_there.any():
+        start, end = (Rotation.from_quat(q[part][is_there], scalar_first=True) for part in (here, there))
+        turn[here][is_there] = (start.inv() * end).as_rotvec()
+    return turn
