@@ -26,8 +26,8 @@ PROOFS: Mapping[str, str] = {  # what the reader of each was held against
     "mvnx": "The MVN manual. No real file was at hand.",
     "apdm": "Real CSV exports of both dialects; for HDF5 the published layout. No real HDF5 file was at hand.",
     "opensim": "OpenSim's documentation. No real file was at hand.",
-    "bids-motion": "Its specification, a public table of channels, and our own exports, in which its validator finds no "
-    "error. No samples of another program's set were at hand.",
+    "bids-motion": "Its specification, a public table of channels, and our own exports, in which its validator finds "
+    "no error. No samples of another program's set were at hand.",
     "parquet": "Files with columns of many names and units, made for it.",
     "csv": "Files with columns of many names and units, made for it.",
 }
