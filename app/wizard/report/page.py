@@ -12,9 +12,9 @@ from app.widgets.card import Card
 from app.widgets.chips import Chips
 from app.widgets.choice import Choice
 from app.widgets.segmented import Segmented
+from app.widgets.sheets import Sheet, Sheets, SmallSheets
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed
-from app.wizard.report.sheets import Sheet, Sheets, SmallSheets
 from app.wording import tr
 
 WORDS_WIDTH = 320

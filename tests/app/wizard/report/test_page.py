@@ -6,8 +6,8 @@ from PySide6.QtGui import QImage
 from pytestqt.qtbot import QtBot
 
 from app.theme import ThemeNotifier
+from app.widgets.sheets import PAPER_INCH
 from app.wizard.report.page import REBUILT_AFTER_MS, ReportPage
-from app.wizard.report.sheets import PAPER_INCH
 
 
 @pytest.fixture

@@ -1,4 +1,4 @@
-"""Pages of the report as pictures: all of them to be read, and small ones beside that lead to each."""
+"""Pages of a document as pictures: all of them to be read, and small ones beside that lead to each."""
 
 from collections.abc import Sequence
 
@@ -8,7 +8,7 @@ from PySide6.QtWidgets import QSizePolicy, QVBoxLayout, QWidget
 
 from app.theme import ThemeNotifier
 from app.widgets.themed import Themed
-from app.wording import tr
+from app.wording import tr, tr_n
 
 PAGE_WIDTH = 560  # a page of A4 that can be read
 PAPER_INCH = 8.27  # how wide A4 is
@@ -71,7 +71,7 @@ class Sheets(QWidget):
 
     def show_pages(self, pages: Sequence[Sheet]) -> None:
         self.pages = list(pages)
-        self.setAccessibleName(tr("The report, {count} pages").format(count=len(pages)))
+        self.setAccessibleName(tr_n("{count} page", "{count} pages", len(pages)).format(count=len(pages)))
         self._fit()
         self.update()
 
