@@ -92,8 +92,8 @@ def _strides(path: Path) -> tuple[ReferenceTrial, ...]:
     is_known = np.isfinite(values).all(axis=1)
     trials = []
     for name, rows in _trials(table):
-        strides = {side: values[rows][(sides[rows] == side) & is_known[rows]] for side in Side}
-        trials.append(ReferenceTrial(name, strides={side: found for side, found in strides.items() if len(found)}))
+        of_side = {side: [row for row in rows if sides[row] == side and is_known[row]] for side in Side}
+        trials.append(ReferenceTrial(name, strides={side: values[found] for side, found in of_side.items() if found}))
     return tuple(trials)
 
 
