@@ -118,7 +118,7 @@ def find_offset(trial: ComparedTrial) -> FoundOffset | Misfit:
         likeness[joint] = np.where(both > 1e-6, _over_lags(one, other) / both, 0.0)
         score += np.maximum(count, 0.0) / GRID_HZ * -np.log1p(NOISE_SHARE - np.minimum(likeness[joint] ** 2, 1.0))
         seconds = np.maximum(seconds, count / GRID_HZ)
-        power = np.maximum(power, both / np.maximum(count, 1.0))
+        power = np.maximum(power, np.minimum(*powers) / np.maximum(count, 1.0))  # a leg that stands is no walk
     is_long, is_moving = seconds >= MIN_OVERLAP_S, power >= MIN_RATE_RAD_S**2
     if not is_long.any():
         return Misfit.TOO_SHORT
@@ -139,6 +139,8 @@ def align(trials: Sequence[ComparedTrial], found: Sequence[FoundOffset]) -> tupl
     """Offset of each walk and the clock rate of all, polished together, with signs and gains of the joints."""
     polished = [_PolishedTrial(trial, start) for trial, start in zip(trials, found, strict=True)]
     rate = 0.0
+    if not polished:
+        return ()
     for _ in range(ROUNDS):
         information = np.array([one.linearised(rate) for one in polished])
         rate_step, offset_steps = _solved(information, rate)
@@ -179,11 +181,12 @@ class _PolishedTrial:
         self.at_s = 0.5 * (min(first for first, _ in ends) + max(last for _, last in ends))
         self.gain = dict.fromkeys(start.likeness, 1.0)
         self.likeness = dict(start.likeness)
-        self._offset_sd_s = np.nan
+        self._of_joint: dict[Joint, tuple[float, float]] = {}
 
     def linearised(self, rate: float) -> FloatArray:
         """`aa, ab, bb, ra, rb`: the normal equations of offset and rate, weighed by how independent errors are."""
         total = np.zeros(5)
+        self._of_joint.clear()
         clock = ReferenceClock(self.at_s, self.offset_s, rate)
         for joint, parts in self._measured.items():
             time_s = np.concatenate([part.time_s for part in parts])
@@ -210,14 +213,28 @@ class _PolishedTrial:
                 np.sum(trust * by_offset * error),
                 np.sum(trust * by_rate * error),
             ]
-        self._offset_sd_s = float(max(total[0], 1e-12) ** -0.5)
+            self._of_joint[joint] = (float(np.sum(trust * by_offset**2)), float(np.sum(trust * by_offset * error)))
         return total
 
+    def _settle(self) -> float:
+        """Move the offset to where the joints have it on the whole, and give its standard deviation, s.
+
+        Tissue makes one joint seem early and another late by some milliseconds, which is no noise of one joint: what
+        they differ by beyond their own noise weighs all of them alike.
+        """
+        weight = np.array([information for information, _ in self._of_joint.values()])
+        own_s = np.array([right / max(information, 1e-12) for information, right in self._of_joint.values()])
+        between = max(0.0, float(np.var(own_s, ddof=1) - np.mean(1.0 / weight))) if len(own_s) > 1 else 0.0
+        weight = 1.0 / (1.0 / np.maximum(weight, 1e-12) + between)
+        self.offset_s += float(np.sum(weight * own_s) / np.sum(weight))
+        return float(np.sum(weight) ** -0.5)
+
     def alignment(self, rate: float, rate_sd: float) -> Alignment:
+        offset_sd_s = self._settle() if self._of_joint else float("nan")
         sign = {joint: 1 if gain >= 0 else -1 for joint, gain in self.gain.items()}
         return Alignment(
             ReferenceClock(self.at_s, float(self.offset_s), float(rate)),
-            self._offset_sd_s,
+            offset_sd_s,
             rate_sd,
             sign,
             {joint: abs(gain) for joint, gain in self.gain.items()},

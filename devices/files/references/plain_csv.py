@@ -89,10 +89,10 @@ def _strides(path: Path) -> tuple[ReferenceTrial, ...]:
     table = _table(path, ENDS_AND_LENGTH)
     values = table.matrix(ENDS_AND_LENGTH)
     sides = _words(table, SIDE, set(Side), path.name)
-    is_known = np.isfinite(values).all(axis=1)
     trials = []
     for name, rows in _trials(table):
-        of_side = {side: [row for row in rows if sides[row] == side and is_known[row]] for side in Side}
+        known = [row for row in rows if np.isfinite(values[row]).all()]
+        of_side = {side: [row for row in known if sides[row] == side] for side in Side}
         trials.append(ReferenceTrial(name, strides={side: values[found] for side, found in of_side.items() if found}))
     return tuple(trials)
 
