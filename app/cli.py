@@ -15,6 +15,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
+from app.agree_command import add_agree_arguments, agree
 from app.compare_command import add_compare_arguments, compare
 from app.device_commands import EMULATED
 from app.export_command import add_export_arguments, export
@@ -33,7 +34,7 @@ DONE, REFUSED, INTERRUPTED = 0, 2, 3
 # as core.results.Method and core.published.angles have them, whose imports would cost half a second here
 DEFAULT_TAU_S = 2.0
 METHODS = ("robust", "published")
-SUBCOMMANDS = ("analyse", "demo", "report", "compare", "export", "import", "recover", "audit", "devices")
+SUBCOMMANDS = ("analyse", "demo", "report", "compare", "agree", "export", "import", "recover", "audit", "devices")
 OF_LIBRARY = "the folder of the library (your own)"
 
 
@@ -116,6 +117,7 @@ def _parser() -> argparse.ArgumentParser:
     for name, what, add_arguments, work in (
         ("report", "make the report of a session as a PDF", add_report_arguments, make),
         ("compare", "tell what differs between conditions or sessions", add_compare_arguments, compare),
+        ("agree", "compare the angles of a session with an optical system", add_agree_arguments, agree),
         ("export", "write results for other programs", add_export_arguments, export),
         ("import", "add recordings of another program to a session", add_import_arguments, import_files),
     ):

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from core.samples import Session
     from devices.files.limited_reader import LimitedReader, Waiting
+    from devices.files.references.trial import ReferenceFile
     from devices.files.trial import Gathered, ImportedTrial
 
 
@@ -64,6 +65,19 @@ def read_foreign_trial(
     from devices.files.limited_reader import LimitedReading
 
     return LimitedReading(the_reader(), waiting).read_trial(format_name, files, rate_hz)
+
+
+def read_foreign_reference(path: Path, waiting: "Waiting") -> "ReferenceFile":
+    """What a file of an optical system holds, as `devices.files.references.reading.read_reference` reads it.
+
+    Raises
+    ------
+    FileRefusedError
+        It is no reference, or cannot be read within the limits.
+    """
+    from devices.files.limited_reader import LimitedReading
+
+    return LimitedReading(the_reader(), waiting).read_reference(path)
 
 
 def gather_foreign(paths: Sequence[Path], waiting: "Waiting") -> "Gathered":

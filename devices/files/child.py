@@ -15,7 +15,8 @@ from devices.files.limits import limit_processor_time, limit_this_process
 if TYPE_CHECKING:
     from devices.files.answers import Array, Details
 
-TOML, SITE, TRIAL, GATHER = "toml", "site", "trial", "gather"
+TOML, SITE, TRIAL, GATHER, REFERENCE = "toml", "site", "trial", "gather", "reference"
+REFERENCE_S, REFERENCE_BYTES_A_SECOND = 10.0, 1_000_000.0  # of processor time; ten times what a text takes
 READ, REFUSED, MEMORY, UNFORESEEN = "read", "refused", "memory", "unforeseen"
 
 
@@ -80,6 +81,14 @@ def _read(asked: "Details", arrays: "list[Array]") -> object:
             Path(asked["path"]), asked["where"], asked["place"], asked["sensor"], asked["is_rate_derived"]
         )
         return {"block": details_of_block(block, arrays), "findings": details_of_findings(findings)}
+    if task == REFERENCE:
+        from devices.files.references.answers import details_of_reference
+        from devices.files.references.reading import read_reference
+
+        path = Path(asked["path"])
+        # the library that reads C3D may go on for ever, and a reference is a walk or two
+        limit_processor_time(REFERENCE_S + (path.stat().st_size if path.is_file() else 0) / REFERENCE_BYTES_A_SECOND)
+        return details_of_reference(read_reference(path), arrays)
     files = list(map(Path, asked["files"]))
     if task == GATHER:
         from devices.files.gathering import gather

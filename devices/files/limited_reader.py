@@ -31,6 +31,8 @@ from devices.files.answers import (
     send,
     trial_from,
 )
+from devices.files.references.answers import reference_from
+from devices.files.references.trial import ReferenceFile
 from devices.files.refusal import FileRefusedError
 from devices.files.session_toml import FILE_NAME
 from devices.files.site_files import ReadSite, SiteFile
@@ -275,6 +277,11 @@ class LimitedReading:
         }
         where = ", ".join(path.name for path in files)
         return self._reader.ask(task, files, where, trial_from, self.waiting)
+
+    def read_reference(self, path: Path) -> ReferenceFile:
+        """As `references.reading.read_reference` does."""
+        task = {"task": child.REFERENCE, "path": str(path)}
+        return self._reader.ask(task, [path], path.name, reference_from, self.waiting)
 
     def gather(self, paths: Sequence[Path]) -> Gathered:
         """As `gathering.gather` does."""

@@ -22,6 +22,7 @@ from app.reports.patient_report.time_page import time_page
 from app.reports.patient_report.trend_page import trend_page
 from app.wording import spoken_language, tr
 
+PAGES = files("resources") / "report" / "pages.typ"  # what all documents share
 TEMPLATE = files("resources") / "report" / "report.typ"
 CODE_LENGTH = 16  # of the running head
 TITLE_CODE_LENGTH = 24
@@ -35,14 +36,19 @@ def make_report(request: ReportRequest) -> bytes:
     KeyError
         A walk is not among those analysed.
     """
+    return set_pages(PAGES.read_bytes() + TEMPLATE.read_bytes(), report_data(request), request.made_at)
+
+
+def set_pages(template: bytes, data: dict[str, Any], made_at: datetime) -> bytes:
+    """Set a document's data by a template that begins with PAGES; the same give the same bytes."""
     pdf, _ = typst.compile_with_warnings(
-        TEMPLATE.read_bytes(),
+        template,
         format="pdf",
         font_paths=_fonts(),
         ignore_system_fonts=True,
-        sys_inputs={"data": json.dumps(report_data(request), ensure_ascii=False)},
+        sys_inputs={"data": json.dumps(data, ensure_ascii=False)},
         pdf_standards=["a-2a", "ua-1"],
-        timestamp=_whole_seconds(request.made_at),
+        timestamp=_whole_seconds(made_at),
     )
     return pdf
 
@@ -52,7 +58,7 @@ class ReportPreview:
 
     def __init__(self) -> None:
         self._lock = Lock()  # a look that nobody waits for any more may not have ended when the next begins
-        self._template = TEMPLATE.read_bytes()
+        self._template = PAGES.read_bytes() + TEMPLATE.read_bytes()
         self._compiler = typst.Compiler(self._template, font_paths=_fonts(), ignore_system_fonts=True)
         self._known: tuple[ReportRequest, Facts, dict[str, Any]] | None = None
 

@@ -1,0 +1,222 @@
+"""The agreement as a PDF: Table 1, the further figures, Figures 8 and 9, and what they do not show."""
+
+import math
+from collections.abc import Mapping
+from datetime import datetime
+from importlib.resources import files
+from typing import Any
+
+from app.charts.drawing import Picture
+from app.reports.agreement.pictures import ANKLE, KNEE, caption
+from app.reports.agreement.printed import (
+    clock_words,
+    dagger_words,
+    figures_of_table_1,
+    optical_words,
+    rows_of_table_1,
+)
+from app.reports.agreement.study import AgreementStudy, AngleKind
+from app.reports.agreement.tables import events_together, lengths_together
+from app.reports.patient_report.blocks import (
+    Block,
+    Cell,
+    Column,
+    Row,
+    bullets,
+    figures,
+    heading,
+    note,
+    paragraph,
+    table,
+)
+from app.reports.patient_report.dates import day
+from app.reports.patient_report.document import CODE_LENGTH, PAGES, set_pages
+from app.reports.patient_report.numbers_in_words import fixed, signed
+from app.reports.patient_report.plain_text import isolated, plain, shortened, typed
+from app.wording import capitalised, spoken_language, tr
+from core.agreement.figures import NAMED_PHASES, Agreement
+from core.gait.phases import Phase
+from core.samples import Patient, Session
+
+TEMPLATE = files("resources") / "report" / "agreement.typ"
+NAME_LENGTH = 40
+
+
+def agreement_report(
+    study: AgreementStudy, session: Session, pictures: Mapping[str, Picture], made_at: datetime, version: str
+) -> bytes:
+    """Make the agreement's PDF. The same study gives the same bytes."""
+    return set_pages(PAGES.read_bytes() + TEMPLATE.read_bytes(), _data(study, session, pictures, version), made_at)
+
+
+def _data(study: AgreementStudy, session: Session, pictures: Mapping[str, Picture], version: str) -> dict[str, Any]:
+    code = isolated(shortened(plain(session.patient.code), CODE_LENGTH)) or tr("no patient code")
+    recorded = day(session.started) if session.started else ""
+    return {
+        "paper": "a4",
+        "language": spoken_language(),
+        "title": tr("Agreement with a reference"),
+        "subject": tr("Joint angles of inertial sensors beside an optical system. Research use. Not a medical device."),
+        "head": {
+            "brand": "Gaitwright",
+            "kind": tr("Agreement"),
+            "simulated": tr("SIMULATED DATA, not a person") if study.is_simulated else "",
+            "code": code,
+            "date": recorded,
+        },
+        "foot": {
+            "use": tr("Research use. Not a medical device."),
+            "software": f"Gaitwright {plain(version)[:CODE_LENGTH]}",
+            "page": tr("Page {page} of {pages}"),
+        },
+        "pages": _pages(study, session.patient, pictures),
+    }
+
+
+def _pages(study: AgreementStudy, patient: Patient, pictures: Mapping[str, Picture]) -> list[list[Block]]:
+    first: list[Block] = [heading(tr("Agreement with a reference"))]
+    first.append(paragraph(_what_was_compared(study)))
+    if study.with_angles:
+        for mark, title, of_walk, of_all in figures_of_table_1():
+            first += [heading(f"{mark}: {title}", 2), _table_1(study, patient, of_walk, of_all)]
+        first += [heading(tr("Over all walks"), 2), _over_walks(study, patient)]
+        if any(walk.recording.gait for walk in study.with_angles):
+            first += [heading(tr("Errors by phase, degrees RMSE with the walk's mean removed"), 2)]
+            first += [_phases(study, patient)]
+    if events_together(study) or len(lengths_together(study)):
+        first += [heading(tr("Events and strides"), 2), bullets(_of_events(study))]
+    first += [paragraph(optical_words()), note(f"{dagger_words()} {_what_is_not_shown()}")]
+    drawn = [(name, is_knee) for name, is_knee in ((KNEE, True), (ANKLE, False)) if name in pictures]
+    more: list[list[Block]] = [
+        [
+            heading(tr("Knee over time") if is_knee else tr("Ankle over time")),
+            figures([pictures[name]]),
+            note(caption(study, is_knee=is_knee)),
+        ]
+        for name, is_knee in drawn
+    ]
+    clocks = [typed(clock_words(walk), 400) for walk in study.with_angles]
+    if clocks:
+        more += [[heading(tr("Clocks and signs")), bullets(clocks)]]
+    return [first, *more]
+
+
+def _what_was_compared(study: AgreementStudy) -> str:
+    names = dict.fromkeys(walk.reference.file for walk in study.walks if walk.reference is not None)
+    said = tr("Measured less reference. Reference: {files}. Walks, by their numbers below: {walks}.").format(
+        files=", ".join(typed(name, NAME_LENGTH) for name in names),
+        walks=", ".join(f"{k} {typed(w.recording.name, NAME_LENGTH)}" for k, w in enumerate(study.walks, 1)),
+    )
+    if study.left_over:
+        left = ", ".join(typed(name, NAME_LENGTH) for name in study.left_over)
+        said += " " + tr("Not compared, as nothing fits them: {names}.").format(names=left)
+    return said
+
+
+def _table_1(study: AgreementStudy, patient: Patient, of_walk: Any, of_all: Any) -> Block:
+    walks = study.with_angles
+    columns = [Column("", is_number=False), Column("", "1fr", is_number=False)]
+    columns += [*(Column(str(k)) for k in range(1, len(walks) + 1)), Column(tr("SD")), Column(tr("Mean"))]
+    rows: list[Row] = []
+    for joint, role in rows_of_table_1(study, patient):
+        over = study.over_walks(joint)
+        assert over is not None  # the joint is there because a walk has it
+        found = [walk.figures.get((joint, AngleKind.RESULT)) for walk in walks]
+        cells = [fixed(None if one is None else math.degrees(of_walk(one)), 2) for one in found]
+        rows.append(
+            [
+                tr("knee") if joint.is_knee else tr("ankle"),
+                role,
+                *cells,
+                fixed(math.degrees(of_all(over)), 2),
+                Cell(fixed(math.degrees(of_walk(over.whole)), 2), is_bold=True),
+            ]
+        )
+    return table(columns, rows, is_dense=True)
+
+
+def _over_walks(study: AgreementStudy, patient: Patient) -> Block:
+    heads = (tr("Bias, °"), tr("SD, °"), tr("Limits of agreement, °"), tr("r"), tr("Range error, °"), tr("Inside 1 SD"))
+    columns = [Column("", is_number=False), Column("", "1fr", is_number=False)]
+    columns += [*map(Column, heads), Column(tr("Inside 2 SD"))]
+    rows: list[Row] = []
+    for joint, role in rows_of_table_1(study, patient):
+        over = study.over_walks(joint)
+        assert over is not None  # as above
+        found = over.whole
+        shares = [
+            f"{100 * s:.0f} %" if math.isfinite(s) else fixed(None, 0) for s in (found.within_1_sd, found.within_2_sd)
+        ]
+        rows.append(
+            [
+                tr("knee") if joint.is_knee else tr("ankle"),
+                role,
+                signed(math.degrees(found.bias_rad), 2),
+                fixed(math.degrees(found.sd_rad), 2),
+                f"{signed(math.degrees(found.low_rad), 1)}, {signed(math.degrees(found.high_rad), 1)}",
+                fixed(found.correlation, 3),
+                _range(found),
+                *shares,
+            ]
+        )
+    return table(columns, rows, is_dense=True)
+
+
+def _range(found: Agreement) -> str:
+    mean = signed(math.degrees(found.range_error_rad), 1)
+    return f"{mean} ± {fixed(math.degrees(found.range_error_sd_rad), 1)}" if found.ranges > 1 else mean
+
+
+def _phases(study: AgreementStudy, patient: Patient) -> Block:
+    names = {
+        Phase.LOADING: tr("Loading"),
+        Phase.FOOT_FLAT: tr("Foot flat"),
+        Phase.PRE_SWING: tr("Pre-swing"),
+        Phase.SWING: tr("Swing"),
+    }
+    columns = [
+        Column("", is_number=False),
+        Column("", "1fr", is_number=False),
+        *(Column(names[p]) for p in NAMED_PHASES),
+    ]
+    rows: list[Row] = []
+    for joint, role in rows_of_table_1(study, patient):
+        over = study.over_walks(joint)
+        assert over is not None  # as above
+        errors = [over.whole.in_phases((phase,)) for phase in NAMED_PHASES]
+        cells = [fixed(math.degrees(error.rms_rad), 2) for error in errors]
+        rows.append([tr("knee") if joint.is_knee else tr("ankle"), role, *cells])
+    return table(columns, rows, is_dense=True)
+
+
+def _of_events(study: AgreementStudy) -> list[str]:
+    said = [
+        tr("{event}: {found} of {count} found, {more} more; {bias} ms late, SD {sd} ms.").format(
+            event=capitalised(kind.replace("_", " ")),
+            found=found.found,
+            count=found.count,
+            more=found.more,
+            bias=fixed(1e3 * found.bias_s, 1),
+            sd=fixed(1e3 * found.sd_s, 1),
+        )
+        for kind, found in events_together(study).items()
+    ]
+    lengths = lengths_together(study)
+    if len(lengths) > 1:
+        error = lengths[:, 0] - lengths[:, 1]
+        bias = 100 * float(error.mean()) / float(lengths[:, 1].mean())
+        said.append(
+            tr("Stride length: {count} strides, bias {bias} %, SD {sd} cm.").format(
+                count=len(lengths), bias=signed(bias, 2), sd=fixed(100 * float(error.std(ddof=1)), 2)
+            )
+        )
+    return said
+
+
+def _what_is_not_shown() -> str:
+    return tr(
+        "Z is the RMSE as measured, so it holds what both zeros differ by; M has the mean removed. SD in both tables "
+        "is that between walks (n − 1), as in Table 1 of Seel, Raisch and Schauer 2014, doi 10.3390/s140406891. "
+        "Limits: bias ± 1.96 SD within and between walks. The stated SD is of the shape, not of the zero. Clock and "
+        "sign were found from the rates of the same angles, so a delay common to all joints is not in these errors."
+    )

@@ -1,0 +1,147 @@
+"""Table 1 of an agreement, as lines and as words: who disagrees by how much, and what optical systems disagree by."""
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+
+from app.reports.agreement.study import AgreementStudy, AngleKind, ComparedWalk
+from app.reports.agreement.tables import events_together, lengths_together
+from app.wording import capitalised, joined, name_of, tr, tr_n
+from core.agreement.figures import Agreement, AgreementOverWalks
+from core.body import Joint, Side
+from core.samples import Patient
+from devices.files.refusal import one_line
+
+# their own measurements, ALGORITHMS section 4; the review's 5 degrees are of sessions, its abstract was read
+OPTICAL_DEG = (2, 4)
+
+
+def optical_words() -> str:
+    """What two optical systems would differ by, and where that is from."""
+    return tr(
+        "Optical models of one walk disagree among themselves by {low} to {high}° at the knee, and by 6 to 8° in "
+        "standing (measured by the makers on recordings of people, not published). Between two sessions of one system "
+        "most reports have under 5° (McGinley et al. 2009, Gait & Posture 29:360, a review †). A smaller difference "
+        "says nothing of which is right."
+    ).format(low=OPTICAL_DEG[0], high=OPTICAL_DEG[1])
+
+
+def dagger_words() -> str:
+    return tr("† From its abstract; the full text could not be had.")
+
+
+def side_role(side: Side, patient: Patient) -> str:
+    """The side as in Table 1: prosthesis and contralateral where there is one, else left and right."""
+    if patient.prosthetic_side in set(Side):
+        is_prosthesis = patient.prosthetic_side == side
+        role = tr("prosthesis") if is_prosthesis else tr("contralateral")
+        return f"{role} ({tr('left') if side is Side.LEFT else tr('right')})"
+    return tr("left") if side is Side.LEFT else tr("right")
+
+
+def rows_of_table_1(study: AgreementStudy, patient: Patient) -> list[tuple[Joint, str]]:
+    """Knee before ankle, the prosthesis before the other side."""
+    first = Side(patient.prosthetic_side) if patient.prosthetic_side in set(Side) else Side.LEFT
+    joints = sorted(study.joints, key=lambda joint: (not joint.is_knee, joint.side is not first))
+    return [(joint, side_role(joint.side, patient)) for joint in joints]
+
+
+Figure = tuple[str, str, Callable[[Agreement], float], Callable[[AgreementOverWalks], float]]
+
+
+def figures_of_table_1() -> tuple[Figure, ...]:
+    """The two tables: their titles, marks, and the figure of a walk and the spread over walks."""
+    return (
+        ("M", tr("RMSE with its mean removed, degrees"), lambda found: found.m_rad, lambda over: over.m_sd_rad),
+        ("Z", tr("RMSE as measured, degrees"), lambda found: found.z_rad, lambda over: over.z_sd_rad),
+    )
+
+
+def printed(study: AgreementStudy, patient: Patient) -> Iterator[str]:
+    """All lines for a terminal."""
+    if study.is_simulated:
+        yield "SIMULATED."
+    walks = study.with_angles
+    if walks:
+        for mark, title, of_walk, of_all in figures_of_table_1():
+            yield f"{mark}: {title}"
+            yield f"  {'':7} {'':22}" + "".join(f"{k:>8}" for k in range(1, len(walks) + 1)) + f"{'sd':>8}{'mean':>8}"
+            for joint, role in rows_of_table_1(study, patient):
+                over = study.over_walks(joint)
+                assert over is not None  # the joint is there because a walk has it
+                cells = [_of(walk, joint, of_walk) for walk in walks]
+                cells += [math.degrees(of_all(over)), math.degrees(of_walk(over.whole))]
+                kind = "knee" if joint.is_knee else "ankle"
+                yield f"  {kind:7} {role:22}" + "".join(f"{_short(cell):>8}" for cell in cells)
+            yield ""
+        yield f"  {'':30}{'bias':>8}{'limits of agreement':>22}{'r':>8}{'range':>14}{'in 1 sd':>9}{'in 2 sd':>9}"
+        for joint, role in rows_of_table_1(study, patient):
+            over = study.over_walks(joint)
+            assert over is not None  # as above
+            yield _more(joint, role, over.whole)
+        yield ""
+        for number, walk in enumerate(walks, 1):
+            yield f"  {number}: {clock_words(walk)}"
+    yield from _events(study)
+    for one in study.left_over:
+        yield f"- {one_line(one)}: no walk and trial belong together here, so it was not compared."
+    yield ""
+    yield f"{optical_words()}"
+    yield dagger_words()
+
+
+def clock_words(walk: ComparedWalk) -> str:
+    """How the reference was brought to a walk."""
+    found = walk.alignment
+    assert found is not None  # only walks with angles are told of
+    said = (
+        f"{one_line(walk.recording.name)}: the reference's clock shows {found.clock.offset_s:+.4f} s "
+        f"(sd {1e3 * found.offset_sd_s:.1f} ms) and runs {1e6 * found.clock.rate:+.0f} ppm "
+        f"(sd {1e6 * found.rate_sd:.0f})"
+    )
+    turned = [name_of(joint) for joint, sign in found.sign.items() if sign < 0]
+    if turned:
+        said += f"; it counts the other way: {', '.join(turned)}"
+    if not found.is_offset_certain:
+        said += "; another offset fits nearly as well, so it may be off by a stride"
+    return f"{said}."
+
+
+def _more(joint: Joint, role: str, found: Agreement) -> str:
+    kind = "knee" if joint.is_knee else "ankle"
+    limits = f"{_short(math.degrees(found.low_rad))} .. {_short(math.degrees(found.high_rad))}"
+    ranges = f"{_short(math.degrees(found.range_error_rad))} ({found.ranges})"
+    shares = [
+        f"{100 * share:.0f} %" if math.isfinite(share) else "-" for share in (found.within_1_sd, found.within_2_sd)
+    ]
+    return (
+        f"  {kind:7} {role:22}{_short(math.degrees(found.bias_rad)):>8}{limits:>22}{_short(found.correlation):>8}"
+        f"{ranges:>14}{shares[0]:>9}{shares[1]:>9}"
+    )
+
+
+def _events(study: AgreementStudy) -> Iterator[str]:
+    for kind, found in events_together(study).items():
+        yield (
+            f"{capitalised(kind.replace('_', ' '))}: {found.found} of {found.count} found, {found.more} more; "
+            f"{_short(1e3 * found.bias_s)} ms late, sd {_short(1e3 * found.sd_s)} ms."
+        )
+    lengths = lengths_together(study)
+    if len(lengths) > 1:
+        error = lengths[:, 0] - lengths[:, 1]
+        bias = 100 * float(error.mean()) / float(lengths[:, 1].mean())
+        yield f"Stride length: {len(lengths)} strides, bias {bias:+.2f} %, sd {100 * float(error.std(ddof=1)):.2f} cm."
+
+
+def _of(walk: ComparedWalk, joint: Joint, of_walk: Callable[[Agreement], float]) -> float:
+    found = walk.figures.get((joint, AngleKind.RESULT))
+    return math.nan if found is None else math.degrees(of_walk(found))
+
+
+def _short(value: float) -> str:
+    return f"{round(value, 2) + 0.0:.2f}" if math.isfinite(value) else "-"
+
+
+def named(walks: Sequence[ComparedWalk]) -> str:
+    """The walks in words."""
+    names = joined([one_line(walk.recording.name) for walk in walks])
+    return tr_n("walk: {names}", "walks: {names}", len(walks)).format(names=names)

@@ -1,0 +1,270 @@
+"""Which trial of a reference belongs to which walk, and what both differ by?
+
+A trial named as a walk is that walk's. Else every trial is tried on every walk, by the rates of all joints, and the
+best fits go first. No instant of a reference is used for two walks: a trial of a walk that was not kept is left over.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from enum import StrEnum
+from pathlib import Path
+
+import numpy as np
+
+from core.agreement.clock import MIN_OVERLAP_S, Alignment, FoundOffset, Misfit, align, find_offset
+from core.agreement.curves import ComparedTrial, TimedAngle, angle_at
+from core.agreement.events import EventAgreement, EventKey, Events, compare_events, compare_lengths, event_offset
+from core.agreement.figures import Agreement, AgreementOverWalks, agreement_of, over_walks
+from core.body import Joint, Side
+from core.results import Analysis, JointAngle, RecordingAnalysis, ZeroKind
+from core.samples import FloatArray, IntArray, RecordingKind
+from devices.files.references.trial import EVENTS, ReferenceFile, ReferenceTrial
+from devices.files.refusal import FileRefusedError
+
+
+class AngleKind(StrEnum):
+    """Which of our angles is compared: the result, eq (15), or eq (10) of the sensors' orientations."""
+
+    RESULT = "result"
+    PUBLISHED = "published"
+    ORIENTATION = "orientation"
+
+
+JointAndKind = tuple[Joint, AngleKind]
+
+
+@dataclass(frozen=True, slots=True)
+class NamedTrial:
+    """A trial and the file that it is from."""
+
+    file: str
+    source: str
+    trial: ReferenceTrial
+
+    @property
+    def names(self) -> set[str]:
+        """What it may be called by: its own name, else its file's."""
+        return {self.trial.name} if self.trial.name else {Path(self.file).stem}
+
+
+@dataclass(frozen=True, slots=True)
+class ComparedWalk:
+    """One walk beside its reference. `reference_rad` (n,) by joint, at the walk's instants and in its sign."""
+
+    recording: RecordingAnalysis
+    reference: NamedTrial | None
+    alignment: Alignment | None
+    reference_rad: Mapping[Joint, FloatArray] = field(default_factory=dict)
+    figures: Mapping[JointAndKind, Agreement] = field(default_factory=dict)
+    events: Mapping[EventKey, EventAgreement] = field(default_factory=dict)
+    events_later_s: float = 0.0
+    lengths_m: Mapping[Side, FloatArray] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class AgreementStudy:
+    """All walks of a session that a reference tells of; `left_over` are trials and walks that found no partner."""
+
+    walks: tuple[ComparedWalk, ...]
+    left_over: tuple[str, ...]
+    is_simulated: bool
+
+    @property
+    def joints(self) -> tuple[Joint, ...]:
+        return tuple(joint for joint in Joint if any((joint, AngleKind.RESULT) in walk.figures for walk in self.walks))
+
+    @property
+    def with_angles(self) -> tuple[ComparedWalk, ...]:
+        return tuple(walk for walk in self.walks if walk.figures)
+
+    def over_walks(self, joint: Joint, kind: AngleKind = AngleKind.RESULT) -> AgreementOverWalks | None:
+        return over_walks([walk.figures[joint, kind] for walk in self.walks if (joint, kind) in walk.figures])
+
+
+def study_of(analysis: Analysis, files: Sequence[tuple[str, ReferenceFile]]) -> AgreementStudy:
+    """Compare the walks of a session (without one, its other recordings) with references of these names.
+
+    Raises
+    ------
+    FileRefusedError
+        None of the trials fits any walk.
+    """
+    trials = [NamedTrial(name, file.source, trial) for name, file in files for trial in file.trials]
+    walks = [one for one in analysis.recordings if one.kind is RecordingKind.WALKING] or list(analysis.recordings)
+    if not walks:
+        raise FileRefusedError("SESSION", "it holds no walk that could be compared", "Record a walk first")
+    with_angles = [one for one in trials if one.trial.angles]
+    pairs, misfits = _paired(walks, with_angles)
+    order = sorted(pairs)
+    aligned = dict(
+        zip(order, align([_trial(walks[w], with_angles[t]) for w, t in order], [pairs[p] for p in order]), strict=True)
+    )
+    compared: dict[int, ComparedWalk] = {
+        w: _angles_compared(analysis, walks[w], with_angles[t], aligned[w, t]) for w, t in order
+    }
+    for one in trials:
+        for w, found in _events_compared(walks, compared, one):
+            compared[w] = found
+    if not compared:
+        raise _refusal(walks, trials, misfits)
+    used = {id(walk.reference) for walk in compared.values()}
+    left = [f"{one.file}{', ' * bool(one.trial.name)}{one.trial.name}" for one in with_angles if id(one) not in used]
+    left += [walk.name for w, walk in enumerate(walks) if w not in compared]
+    return AgreementStudy(tuple(compared[w] for w in sorted(compared)), tuple(left), analysis.is_simulated)
+
+
+def _paired(
+    walks: Sequence[RecordingAnalysis], trials: Sequence[NamedTrial]
+) -> tuple[dict[tuple[int, int], FoundOffset], list[Misfit]]:
+    """Walks and trials that belong together by their indices, and why the others do not."""
+    called = [{walk.name, walk.folder} for walk in walks]
+    found: dict[tuple[int, int], FoundOffset] = {}
+    misfits = []
+    for t, trial in enumerate(trials):
+        own = [w for w, names in enumerate(called) if names & trial.names]
+        for w in own or range(len(walks)):
+            fit = find_offset(_trial(walks[w], trial))
+            if isinstance(fit, Misfit):
+                misfits.append(fit)
+            else:
+                found[w, t] = fit
+    taken: dict[tuple[int, int], FoundOffset] = {}
+    for (w, t), fit in sorted(found.items(), key=lambda one: -one[1].score):
+        rivals = [other for (v, u), other in taken.items() if v != w and u == t and _overlap(walks, w, fit, v, other)]
+        if w not in [v for v, _ in taken] and not rivals:
+            taken[w, t] = fit
+    return taken, misfits
+
+
+def _overlap(walks: Sequence[RecordingAnalysis], one: int, its: FoundOffset, other: int, others: FoundOffset) -> bool:
+    """Whether two walks lie on the same instants of a reference."""
+    (a, b), (c, d) = (
+        (walks[w].time_s[0] + fit.offset_s, walks[w].time_s[-1] + fit.offset_s)
+        for w, fit in ((one, its), (other, others))
+    )
+    return bool(min(b, d) - max(a, c) > MIN_OVERLAP_S)
+
+
+def _trial(walk: RecordingAnalysis, named: NamedTrial) -> ComparedTrial:
+    return ComparedTrial(
+        {joint: TimedAngle(walk.time_s, angle.angle_rad) for joint, angle in walk.joints.items()},
+        {joint: TimedAngle(time_s, angle) for joint, (time_s, angle) in named.trial.angles.items()},
+    )
+
+
+def _angles_compared(
+    analysis: Analysis, walk: RecordingAnalysis, named: NamedTrial, alignment: Alignment
+) -> ComparedWalk:
+    trial = _trial(walk, named)
+    at_s = alignment.clock.at(walk.time_s)
+    references, figures = {}, {}
+    for joint in trial.joints:
+        # a joint that took no part in the alignment has no sign of its own: its likelier one is 1
+        reference = alignment.sign.get(joint, 1) * angle_at(trial.reference[joint], at_s)
+        is_sure = walk.time_s < walk.slipped_from_s.get(joint.side, np.inf)
+        references[joint] = np.where(is_sure, reference, np.nan)
+        calibration = analysis.calibrated_for(walk).get(joint)
+        has_zero = calibration is not None and calibration.zero is not ZeroKind.NONE
+        for kind, angle in _angles_of(walk.joints[joint]):
+            sd = walk.joints[joint].sd_rad if kind is AngleKind.RESULT else None
+            phase = walk.gait[joint.side].phase if joint.side in walk.gait else None
+            strides = _rows_of_strides(walk, joint.side)
+            found = agreement_of(angle, references[joint], sd, phase, strides, has_zero=has_zero)
+            if found is not None:
+                figures[joint, kind] = found
+    return ComparedWalk(walk, named, alignment, references, figures)
+
+
+def _angles_of(angle: JointAngle) -> Iterator[tuple[AngleKind, FloatArray]]:
+    yield AngleKind.RESULT, angle.angle_rad
+    yield AngleKind.PUBLISHED, angle.published_rad
+    if angle.orientation_rad is not None:
+        yield AngleKind.ORIENTATION, angle.orientation_rad
+
+
+def _rows_of_strides(walk: RecordingAnalysis, side: Side) -> IntArray | None:
+    """First and last row (k, 2) of each stride used; None where the walk has no gait of this side."""
+    if side not in walk.gait:
+        return None
+    strides = walk.gait[side].strides
+    used = strides.is_used
+    ends = [np.searchsorted(walk.time_s, at_s[used]) for at_s in (strides.start_s, strides.end_s)]
+    return np.minimum(np.stack(ends, axis=1), len(walk.time_s) - 1)
+
+
+def _events_compared(
+    walks: Sequence[RecordingAnalysis], compared: Mapping[int, ComparedWalk], one: NamedTrial
+) -> Iterator[tuple[int, ComparedWalk]]:
+    """The walks that a trial's events or strides tell of, with them."""
+    told = {(side, event): at_s for side, by_event in one.trial.events.items() for event, at_s in by_event.items()}
+    if not told and not one.trial.strides:
+        return
+    for w, walk in enumerate(walks):
+        before = compared.get(w)
+        names = {walk.name, walk.folder}
+        is_own = before is not None and before.reference is one
+        is_meant = bool(names & one.names) or len(walks) == 1 or not one.trial.name
+        if not walk.gait or not (is_own or (is_meant and not one.trial.angles)):
+            continue
+        ours = _events_of(walk)
+        if before is not None and before.alignment is not None and is_own:
+            middle_s = before.alignment.clock.at_s
+            later_s = float(before.alignment.clock.at(np.array([middle_s]))[0]) - middle_s
+        else:
+            later_s = event_offset(ours, told) if told else (before.events_later_s if before is not None else 0.0)
+        within = {key: at_s - later_s for key, at_s in told.items()}
+        events = compare_events(ours, {key: at_s for key, at_s in within.items() if key[0] in walk.gait})
+        lengths = {
+            side: compare_lengths(walk.gait[side].strides, strides - [later_s, later_s, 0.0])
+            for side, strides in one.trial.strides.items()
+            if side in walk.gait
+        }
+        base = before or ComparedWalk(walk, one, None)
+        yield (
+            w,
+            ComparedWalk(
+                walk,
+                base.reference,
+                base.alignment,
+                base.reference_rad,
+                base.figures,
+                {**base.events, **events},
+                later_s,
+                {**base.lengths_m, **lengths},
+            ),
+        )
+
+
+def _events_of(walk: RecordingAnalysis) -> Events:
+    found: dict[EventKey, FloatArray] = {}
+    for side, gait in walk.gait.items():
+        for event in EVENTS:
+            times = [getattr(stretch, f"{event}_s") for stretch in gait.events]
+            known = np.sort(np.concatenate(times)) if times else np.empty(0)
+            found[side, event] = known[np.isfinite(known)]
+    return found
+
+
+def _refusal(
+    walks: Sequence[RecordingAnalysis], trials: Sequence[NamedTrial], misfits: Sequence[Misfit]
+) -> FileRefusedError:
+    """Say the reason that came nearest to a comparison."""
+    where = ", ".join(dict.fromkeys(one.file for one in trials))
+    theirs = sorted({str(joint) for one in trials for joint in one.trial.angles})
+    ours = sorted({str(joint) for walk in walks for joint in walk.joints})
+    if Misfit.NOT_ALIKE in misfits:
+        what = "its angles move unlike those of any walk of the session"
+        return FileRefusedError(where, what, "Give the reference of this session, and see that left is left in it")
+    if Misfit.TOO_LITTLE_MOTION in misfits:
+        what = "the joints hardly move in it, so its clock cannot be found"
+        return FileRefusedError(where, what, "Give the reference of a walk, not of standing")
+    if Misfit.TOO_SHORT in misfits:
+        what = "there are not two seconds of motion without gaps that both systems saw"
+        return FileRefusedError(where, what, "Give the reference of a whole walk, at 20 or more samples a second")
+    return FileRefusedError(
+        where,
+        "it tells of {theirs}, the session of {ours}, and there is nothing to compare",
+        "Give a reference of a joint whose two sensors were worn",
+        theirs=", ".join(theirs) or "no joint",
+        ours=", ".join(ours) or "no joint",
+    )

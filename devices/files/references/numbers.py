@@ -1,0 +1,109 @@
+"""Texts of tab or blank separated numbers under a header, as motion laboratories' programs write them."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from core.samples import FloatArray
+from devices.files.refusal import FileRefusedError, quoted
+from devices.files.tables import COPY_AGAIN, CORRECT_IT
+
+
+def lines_of(path: Path) -> list[str]:
+    """The lines of a text.
+
+    Raises
+    ------
+    FileRefusedError
+        It is no text.
+    """
+    content = path.read_bytes()
+    try:
+        return content.decode("utf-8-sig").splitlines()
+    except UnicodeDecodeError as error:
+        line = content[: error.start].count(b"\n") + 1
+        raise FileRefusedError(f"{path.name}, line {line}", "this is not UTF-8 text", CORRECT_IT) from error
+
+
+def numbers_below(
+    lines: Sequence[str], first: int, columns: Sequence[int], count: int, where: str, delimiter: str | None = None
+) -> FloatArray:
+    """Some columns of the lines from index `first` on; an empty cell is NaN.
+
+    Parameters
+    ----------
+    columns
+        Which of the `count` that each line has.
+    delimiter
+        None: blanks and tabs, however many.
+
+    Returns
+    -------
+    (n, len(columns))
+        As they stand in the file.
+
+    Raises
+    ------
+    FileRefusedError
+        A line with fewer or more cells, a cell that is no number.
+    """
+    rows = []
+    for number, line in enumerate(lines[first:], first + 1):
+        if not line.strip():
+            continue
+        cells = line.split(delimiter)
+        if delimiter is not None and len(cells) == count + 1 and not cells[-1].strip():
+            cells.pop()  # some programs end their lines with the delimiter
+        if len(cells) != count:
+            raise FileRefusedError(
+                f"{where}, line {number}",
+                "the line has {count} columns, the header {whole}",
+                COPY_AGAIN,
+                count=len(cells),
+                whole=count,
+            )
+        rows.append([_number(cells[k], f"{where}, line {number}") for k in columns])
+    if not rows:
+        raise FileRefusedError(where, "there are no rows below the header", COPY_AGAIN)
+    return np.array(rows)
+
+
+def check_ascending(time_s: FloatArray, where: str) -> None:
+    """Refuse a clock that stands still or steps back.
+
+    Parameters
+    ----------
+    time_s : (n,)
+        Stamps of one trial.
+
+    Raises
+    ------
+    FileRefusedError
+        It does, or a stamp is missing.
+    """
+    if not np.isfinite(time_s).all():
+        row = int(np.argmin(np.isfinite(time_s))) + 1
+        raise FileRefusedError(where, "row {row} has no time", CORRECT_IT, row=row)
+    steps = np.diff(time_s)
+    if (steps <= 0).any():
+        k = int(np.argmax(steps <= 0))
+        raise FileRefusedError(
+            where,
+            "time goes from {one} s to {other} s in row {row}",
+            "Export it again with ascending times",
+            one=f"{time_s[k]:g}",
+            other=f"{time_s[k + 1]:g}",
+            row=k + 2,
+        )
+
+
+def _number(cell: str, where: str) -> float:
+    text = cell.strip()
+    if not text:
+        return np.nan
+    try:
+        value = float(text)
+    except ValueError:
+        raise FileRefusedError(where, "{cell} is not a number", CORRECT_IT, cell=quoted(text)) from None
+    return value if np.isfinite(value) else np.nan

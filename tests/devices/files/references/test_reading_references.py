@@ -1,0 +1,325 @@
+"""Is what stands in a reference file what is read of it, by the process that reads files of others?
+
+No recording of a laboratory is at hand for these formats: the fixtures are built from their published descriptions, the
+C3D by the library that reads them elsewhere, too.
+"""
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import ezc3d
+import numpy as np
+import pytest
+
+from core.body import Joint, Side
+from devices.files.answers import Array, BrokenAnswerError
+from devices.files.limited_reader import LimitedReader, LimitedReading
+from devices.files.references import c3d_angles
+from devices.files.references.answers import details_of_reference, reference_from
+from devices.files.references.markers import angles_of_markers, landmark_of
+from devices.files.references.reading import read_reference
+from devices.files.references.trial import ReferenceFile, joint_of_name
+from devices.files.refusal import FileRefusedError
+
+Read = Callable[[str | bytes], ReferenceFile]
+TIME_S = np.arange(0, 60) / 100.0
+KNEE_DEG, ANKLE_DEG = 20 + 15 * np.sin(9 * TIME_S), 5 * np.cos(7 * TIME_S)
+
+
+@pytest.fixture(scope="module")
+def limited() -> Iterator[LimitedReading]:
+    reader = LimitedReader()
+    yield LimitedReading(reader, lambda: None)
+    reader.close()
+
+
+@pytest.fixture
+def read(tmp_path: Path, limited: LimitedReading) -> Read:
+    """Read a content under a name that says nothing."""
+
+    def of(content: str | bytes) -> ReferenceFile:
+        path = tmp_path / "reference"
+        path.write_bytes(content.encode() if isinstance(content, str) else content)
+        return limited.read_reference(path)
+
+    return of
+
+
+def degrees(file: ReferenceFile, joint: Joint, trial: int = 0) -> np.ndarray:
+    return np.rad2deg(file.trials[trial].angles[joint][1])
+
+
+def csv_of(header: str, *columns: np.ndarray) -> str:
+    return header + "\n" + "".join(",".join(f"{v:.6f}" for v in row) + "\n" for row in np.column_stack(columns))
+
+
+def test_a_csv_of_angles_is_read_in_degrees(read: Read) -> None:
+    found = read(csv_of("time_s,left_knee,right_ankle_deg,note", TIME_S, KNEE_DEG, ANKLE_DEG, TIME_S))
+    assert (found.format, found.source) == ("csv", "angles")
+    (trial,) = found.trials
+    assert set(trial.angles) == {Joint.LEFT_KNEE, Joint.RIGHT_ANKLE}
+    np.testing.assert_allclose(trial.angles[Joint.LEFT_KNEE][0], TIME_S)
+    np.testing.assert_allclose(degrees(found, Joint.LEFT_KNEE), KNEE_DEG, atol=1e-5)
+    np.testing.assert_allclose(degrees(found, Joint.RIGHT_ANKLE), ANKLE_DEG, atol=1e-5)
+
+
+def test_a_column_of_recordings_makes_trials_each_with_a_clock_of_its_own(read: Read) -> None:
+    rows = [f"walk {k};{t:.2f};{k + t:.3f}" for k in (1, 2) for t in (0.0, 0.01, 0.02)]
+    found = read("# a laboratory\nrecording;time_s;left_ankle\n" + "\n".join(rows) + "\n")
+    assert [trial.name for trial in found.trials] == ["walk 1", "walk 2"]
+    np.testing.assert_allclose(degrees(found, Joint.LEFT_ANKLE, 1), [2.0, 2.01, 2.02])
+
+
+def test_an_empty_cell_is_a_gap(read: Read) -> None:
+    found = read("time_s,left_knee\n0.0,1.0\n0.1,\n0.2,3.0\n")
+    np.testing.assert_array_equal(np.isnan(degrees(found, Joint.LEFT_KNEE)), [False, True, False])
+
+
+def test_events_and_strides_have_tables_of_their_own(read: Read) -> None:
+    events = read("time_s,side,event\n2.5,left,initial_contact\n1.5,left,initial_contact\n2.1,right,toe_off\n")
+    assert events.source == "events"
+    np.testing.assert_array_equal(events.trials[0].events[Side.LEFT]["initial_contact"], [1.5, 2.5])
+    assert set(events.trials[0].events[Side.RIGHT]) == {"toe_off"}
+    strides = read("side,start_s,end_s,stride_length_m\nright,1.0,2.1,1.31\n")
+    np.testing.assert_array_equal(strides.trials[0].strides[Side.RIGHT], [[1.0, 2.1, 1.31]])
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        ("time_s,hip\n0,1\n", r'its columns are neither angles nor events nor strides \("time_s, hip"\)\. Name them'),
+        ("time_s,left_knee\n0.0,1\n0.2,2\n0.1,3\n", r"time goes from 0\.2 s to 0\.1 s in row 3\. Export it again"),
+        ("time_s,left_knee\n0.0,one\n", r'line 2: "one" in column left_knee is not a number'),
+        ("time_s,left_knee\n,1\n", r"row 1 has no time"),
+        ("time_s,side,event\n1,left,landing\n", r'line 2: "landing" is no event'),
+        ("time_s,side,event\n1,middle,toe_off\n", r'line 2: "middle" is no side'),
+        ("<xml>\n", r"no reference is recognised in it\. Give a CSV"),
+        ("", r"no reference is recognised in it"),
+    ],
+)
+def test_what_is_no_reference_is_refused_with_what_where_and_what_to_do(read: Read, content: str, said: str) -> None:
+    with pytest.raises(FileRefusedError, match=said) as refused:
+        read(content)
+    assert str(refused.value).startswith("reference")
+    assert "\n" not in str(refused.value)
+
+
+def test_a_folder_and_a_file_that_is_not_there_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(FileRefusedError, match=r"this is a folder\. Give the reference's file"):
+        read_reference(tmp_path)
+    with pytest.raises(FileRefusedError, match="there is no such file"):
+        read_reference(tmp_path / "gone.csv")
+
+
+def motion(in_degrees: str = "yes", names: str = "time\tpelvis_tilt\tknee_angle_r\tankle_angle_l") -> str:
+    values = KNEE_DEG if in_degrees == "yes" else np.deg2rad(KNEE_DEG)
+    rows = [f"{t:.4f}\t0.1\t{knee:.8f}\tnan" for t, knee in zip(TIME_S, values, strict=True)]
+    head = (
+        f"Coordinates\nversion=1\nnRows={len(rows)}\nnColumns=4\ninDegrees={in_degrees}\n\nUnits are S.I.\nendheader\n"
+    )
+    return head + names + "\n" + "\n".join(rows) + "\n"
+
+
+@pytest.mark.parametrize("in_degrees", ["yes", "no"])
+def test_opensim_says_whether_it_is_degrees(read: Read, in_degrees: str) -> None:
+    found = read(motion(in_degrees))
+    assert found.format == "opensim"
+    np.testing.assert_allclose(degrees(found, Joint.RIGHT_KNEE), KNEE_DEG, atol=1e-5)
+    assert np.isnan(degrees(found, Joint.LEFT_ANKLE)).all()
+
+
+def test_a_state_is_named_by_its_path(read: Read) -> None:
+    state = "/jointset/walker_knee_r/knee_angle_r/"
+    found = read(motion("no", f"time\t{state}speed\t{state}value\tpelvis_tx"))
+    assert set(found.trials[0].angles) == {Joint.RIGHT_KNEE}
+    np.testing.assert_allclose(degrees(found, Joint.RIGHT_KNEE), KNEE_DEG, atol=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        (
+            motion(names="time\tpelvis_tilt\thip_flexion_r\tlumbar"),
+            "line 9: there is no column time, or none of knee_ang",
+        ),
+        (motion()[:-30], r"line 6[89]: the line has \d columns, the header 4\. Copy the file again"),
+        (
+            motion().replace("Coordinates", "DataType=Quaternion"),
+            "orientations of sensors, not joint angles. Run inverse",
+        ),
+        ("Coordinates\nendheader\n", "there are no columns below the header"),
+        ("Coordinates\nendheader\ntime\tknee_angle_r\n", "there are no rows below the header"),
+    ],
+)
+def test_an_opensim_file_without_angles_is_refused(read: Read, content: str, said: str) -> None:
+    with pytest.raises(FileRefusedError, match=said):
+        read(content)
+
+
+def visual3d(time: str = "TIME", knee: str = "RKneeAngle") -> str:
+    head = [
+        ["", r"D:\lab\walk 1.c3d", r"D:\lab\walk 1.c3d", r"D:\lab\walk 1.c3d", r"D:\lab\walk 2.c3d"],
+        ["", time, knee, knee, knee],
+        ["", "FRAME_NUMBERS", "LINK_MODEL_BASED", "LINK_MODEL_BASED", "LINK_MODEL_BASED"],
+        ["", "ORIGINAL", "ORIGINAL", "ORIGINAL", "ORIGINAL"],
+        ["ITEM", "X", "X", "Y", "X"],
+    ]
+    rows = [
+        [str(k + 1), f"{t:.4f}", f"{-a:.6f}", "99.0", f"{a:.6f}"]
+        for k, (t, a) in enumerate(zip(TIME_S, KNEE_DEG, strict=True))
+    ]
+    for row in rows[40:]:
+        row[4] = ""  # the second trial is shorter
+    return "\n".join("\t".join(row) for row in [*head, *rows]) + "\n"
+
+
+def test_visual3d_has_trials_beside_one_another(read: Read) -> None:
+    found = read(visual3d())
+    assert found.format == "visual3d"
+    assert [trial.name for trial in found.trials] == ["walk 1", "walk 2"]
+    np.testing.assert_allclose(degrees(found, Joint.RIGHT_KNEE), -KNEE_DEG, atol=1e-5)
+    second = degrees(found, Joint.RIGHT_KNEE, 1)
+    np.testing.assert_allclose(second[:40], KNEE_DEG[:40], atol=1e-5)
+    assert np.isnan(second[40:]).all()
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        (visual3d(time="FRAMES"), "there is no signal TIME, so the frames have no instants. Export TIME with them"),
+        (visual3d(knee="RElbowAngle"), "no signal is the angle of a knee or an ankle"),
+        (visual3d() + "61\t0.1\n", "line 66: the line has 2 columns, the header 5"),
+    ],
+)
+def test_a_visual3d_text_that_lacks_something_is_refused(read: Read, content: str, said: str) -> None:
+    with pytest.raises(FileRefusedError, match=said):
+        read(content)
+
+
+@pytest.mark.parametrize(
+    ("name", "joint"),
+    [
+        ("LKneeAngles", Joint.LEFT_KNEE),
+        ("patient:RAnkleAngles", Joint.RIGHT_ANKLE),
+        ("r_kne_angle", Joint.RIGHT_KNEE),
+        ("LKNEE_ANGLE", Joint.LEFT_KNEE),
+        ("Left Ankle Angle", Joint.LEFT_ANKLE),
+        ("LKneeAngles_SHAPE", Joint.LEFT_KNEE),
+        ("LKneeMoment", None),
+        ("LKNE", None),
+        ("LHipAngles", None),
+        ("KneeAngle", None),
+        ("LKneeAngleVelocity", None),
+        ("Left Right Knee", None),
+    ],
+)
+def test_a_signal_is_told_by_its_name(name: str, joint: Joint | None) -> None:
+    assert joint_of_name(name) is joint
+
+
+def c3d_of(path: Path, points: dict[str, np.ndarray], residual: np.ndarray | None = None) -> bytes:
+    """A C3D of points (3, n) at 100 Hz with two events, as bytes."""
+    c3d = ezc3d.c3d()
+    values = np.ones((4, len(points), len(TIME_S)))
+    values[:3] = np.stack(list(points.values()), axis=1)
+    c3d["parameters"]["POINT"]["RATE"]["value"] = [100.0]
+    c3d["parameters"]["POINT"]["LABELS"]["value"] = list(points)
+    c3d["data"]["points"] = values
+    if residual is not None:
+        c3d["data"]["meta_points"]["residuals"] = np.tile(residual, (len(points), 1))[None]
+    c3d.add_parameter("EVENT", "USED", [2])
+    c3d.add_parameter("EVENT", "CONTEXTS", ["Left", "Right"])
+    c3d.add_parameter("EVENT", "LABELS", ["Foot Strike", "Foot Off"])
+    c3d.add_parameter("EVENT", "TIMES", np.array([[0.0, 1.0], [0.31, 2.5]]))
+    c3d.write(str(path))
+    return path.read_bytes()
+
+
+def bent(angle_deg: np.ndarray) -> np.ndarray:
+    return np.stack([angle_deg, 0.5 + 0 * angle_deg, 0.5 + 0 * angle_deg])
+
+
+def test_a_c3d_has_angles_by_name_events_and_gaps_where_residuals_say_so(read: Read, tmp_path: Path) -> None:
+    residual = np.zeros(len(TIME_S))
+    residual[10:15] = -1.0
+    points = {"P1:LKneeAngles": bent(KNEE_DEG), "P1:RAnkleAngles": bent(ANKLE_DEG), "P1:LKNE": bent(KNEE_DEG)}
+    found = read(c3d_of(tmp_path / "made.c3d", {k: v for k, v in points.items() if k != "P1:LKNE"}, residual))
+    assert (found.format, found.source) == ("c3d", "angles")
+    knee = degrees(found, Joint.LEFT_KNEE)
+    assert np.isnan(knee[10:15]).all()
+    np.testing.assert_allclose(np.delete(knee, range(10, 15)), np.delete(KNEE_DEG, range(10, 15)), atol=1e-4)
+    np.testing.assert_allclose(np.diff(found.trials[0].angles[Joint.LEFT_KNEE][0]), 0.01)
+    np.testing.assert_allclose(found.trials[0].events[Side.LEFT]["initial_contact"], [0.31], atol=1e-6)
+    np.testing.assert_allclose(found.trials[0].events[Side.RIGHT]["toe_off"], [62.5], atol=1e-4)
+
+
+def leg(turn: np.ndarray | None = None) -> dict[str, np.ndarray]:
+    """Markers (3, n) in mm of a right leg that goes along y with its joints bent by KNEE_DEG and ANKLE_DEG."""
+    thigh = np.deg2rad(10.0) + 0 * TIME_S  # forward of the vertical
+    shank = thigh - np.deg2rad(KNEE_DEG)
+    foot = shank + np.deg2rad(ANKLE_DEG)  # toes above the level
+    forward, up = np.array([[0.0], [1.0], [0.0]]), np.array([[0.0], [0.0], [1.0]])
+    down = {name: forward * np.sin(a) - up * np.cos(a) for name, a in (("thigh", thigh), ("shank", shank))}
+    hip = forward * (1200 * TIME_S) + up * 900 + np.array([[90.0], [0.0], [0.0]])
+    knee = hip + 430 * down["thigh"]
+    ankle = knee + 430 * down["shank"]
+    toe = ankle + 200 * (forward * np.cos(foot) + up * np.sin(foot))
+    return {"RHIP": hip, "RKNE": knee, "RANK": ankle, "RHEE": ankle + 0 * toe, "RTOE": toe}
+
+
+def test_a_c3d_without_angles_has_them_made_of_markers(read: Read, tmp_path: Path) -> None:
+    found = read(c3d_of(tmp_path / "made.c3d", leg()))
+    assert found.source == "markers"
+    np.testing.assert_allclose(degrees(found, Joint.RIGHT_KNEE), KNEE_DEG, atol=0.01)
+    np.testing.assert_allclose(degrees(found, Joint.RIGHT_ANKLE), ANKLE_DEG, atol=0.01)
+
+
+def test_markers_may_go_any_way_and_one_that_is_hidden_is_a_gap() -> None:
+    points = {label: np.stack([-p[1], p[2], -p[0]], axis=1) for label, p in leg().items()}  # y up, walking along -x
+    markers = {at: p for label, p in points.items() if (at := landmark_of(label)) is not None}
+    assert len(markers) == 5
+    hidden = next(p for (_, landmark), p in markers.items() if landmark == "toe")
+    hidden[20:25] = np.nan
+    angles = angles_of_markers(markers)
+    np.testing.assert_allclose(np.rad2deg(angles[Joint.RIGHT_KNEE]), KNEE_DEG, atol=0.01)
+    ankle = np.rad2deg(angles[Joint.RIGHT_ANKLE])
+    assert np.isnan(ankle[20:25]).all()
+    np.testing.assert_allclose(np.delete(ankle, range(20, 25)), np.delete(ANKLE_DEG, range(20, 25)), atol=0.01)
+
+
+def test_a_c3d_of_other_points_and_a_broken_one_are_refused(read: Read, tmp_path: Path) -> None:
+    content = c3d_of(tmp_path / "made.c3d", {"C7": bent(KNEE_DEG)})
+    with pytest.raises(FileRefusedError, match="no angles of knees or ankles, and not the markers to make them of"):
+        read(content)
+    for length in (512, 700, len(content) // 2, len(content) - 512):
+        with pytest.raises(
+            FileRefusedError, match=r"ends before its data do, it may have been cut\. Copy the file again"
+        ):
+            read(content[:length])
+
+
+def test_without_the_library_a_c3d_says_what_to_install(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(c3d_angles, "find_spec", lambda _name: None)
+    with pytest.raises(FileRefusedError, match=r"Install gaitwright\[imports\]"):
+        c3d_angles.read_c3d(tmp_path / "any.c3d")
+
+
+def test_an_answer_that_no_reader_gives_is_not_believed(tmp_path: Path) -> None:
+    path = tmp_path / "reference"
+    path.write_text(csv_of("time_s,left_knee", TIME_S, KNEE_DEG), encoding="utf-8")
+    arrays: list[Array] = []
+    details = details_of_reference(read_reference(path), arrays)
+    assert reference_from(details, arrays).trials[0].angles.keys() == {Joint.LEFT_KNEE}
+    (trial,) = details["trials"]
+    for broken in (
+        {**details, "format": "exe"},
+        {**details, "trials": [{**trial, "angles": {"left_elbow": [0, 1]}}]},
+        {**details, "trials": [{**trial, "angles": {"left_knee": [0, 9]}}]},
+        {**details, "trials": [{**trial, "name": 5}]},
+        {**details, "trials": [{**trial, "strides": {"left": 0}}]},
+        {**details, "trials": [{**trial, "events": {"left": {"landing": 0}}}]},
+    ):
+        with pytest.raises(BrokenAnswerError):
+            reference_from(broken, arrays)
+    with pytest.raises(BrokenAnswerError):
+        reference_from(details, [arrays[0][::-1], arrays[1]])

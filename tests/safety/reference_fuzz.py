@@ -1,0 +1,83 @@
+"""T13 for references: spoilt files of optical systems. Does one end the application, hang it, or write anywhere?
+
+    python -m tests.safety.reference_fuzz --files 10000
+
+As `file_fuzz` does it for recordings, by the same process.
+"""
+
+import argparse
+import sys
+import tempfile
+from pathlib import Path
+
+import ezc3d
+import numpy as np
+
+from devices.files.limited_reader import LimitedReader, LimitedReading
+from tests.safety.file_fuzz import Read, Spoilable, fuzz, nobody
+
+FRAMES = 30
+
+
+def read_it(reader: LimitedReader, folder: Path) -> object:
+    return LimitedReading(reader, nobody).read_reference(folder / "reference")
+
+
+def plain_csv() -> bytes:
+    rows = (f"walk {1 + k // 15},{k % 15 / 100:.2f},{20 + k},{k / 7:.3f}" for k in range(FRAMES))
+    return "\n".join(["recording,time_s,left_knee,right_ankle", *rows, ""]).encode()
+
+
+def opensim() -> bytes:
+    rows = (f"{k / 100:.3f}\t{20 + k}\t{k / 7:.3f}" for k in range(FRAMES))
+    head = ["Coordinates", "version=1", "inDegrees=yes", "endheader", "time\tknee_angle_r\tankle_angle_l"]
+    return "\n".join([*head, *rows, ""]).encode()
+
+
+def visual3d() -> bytes:
+    columns = (("", "", "", "", "ITEM"), ("a.c3d", "TIME", "F", "O", "X"), ("a.c3d", "RKneeAngle", "L", "O", "X"))
+    rows = (f"{k + 1}\t{k / 100:.3f}\t{20 + k}" for k in range(FRAMES))
+    return "\n".join([*("\t".join(row) for row in zip(*columns, strict=True)), *rows, ""]).encode()
+
+
+def c3d() -> bytes:
+    made = ezc3d.c3d()
+    made["parameters"]["POINT"]["RATE"]["value"] = [100.0]
+    made["parameters"]["POINT"]["LABELS"]["value"] = ["LKneeAngles", "RAnkleAngles"]
+    made["data"]["points"] = np.ones((4, 2, FRAMES))
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "made.c3d"
+        made.write(str(path))
+        return path.read_bytes()
+
+
+def reference_readers() -> dict[str, Spoilable]:
+    made = {"csv": plain_csv(), "opensim": opensim(), "visual3d": visual3d(), "c3d": c3d()}
+    return {name: Spoilable(content, "reference", read_it, may_be_a_link=False) for name, content in made.items()}
+
+
+def faults_of(name: str, found: Read) -> list[str]:
+    """What is wrong. That the library for C3D ends its process, or has to be ended, is none."""
+    ended = ("the reader ended, crash", "the reader ended, time")
+    return [fault for fault in found.faults if not (name == "c3d" and fault.endswith(ended))]
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--files", type=int, default=500)
+    parser.add_argument("--seed", type=int, default=1)
+    wanted = parser.parse_args()
+    faults = 0
+    for name, one in reference_readers().items():
+        reader = LimitedReader()
+        try:
+            found = fuzz(one, wanted.files, wanted.seed, reader)
+        finally:
+            reader.close()
+        print(f"{name}: {found}", *faults_of(name, found), sep="\n  ")
+        faults += len(faults_of(name, found))
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
