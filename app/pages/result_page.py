@@ -91,7 +91,8 @@ class ResultPage(Themed):
         self._can_choose = self._is_live = False
         self._stride: Mapping[Joint, FloatArray] = {}  # in force
         self._room = PageRoom()
-        self._height = 0.0
+        self._width = self._height = 0.0
+        self._has_tools = False  # views, recordings and methods in one row
         self._behind = Behind.NOTHING
         self._wanted = ANSWER  # of a walk; kept while recordings without it are looked at
         self.view = Segmented(
@@ -164,6 +165,8 @@ class ResultPage(Themed):
         self.recordings.blockSignals(False)
         self.recordings.updateGeometry()
         self.recordings.setVisible(bool(names))
+        if self._has_tools != self._do_tools_fit():
+            self._place()
         self._on_recording_changed()
 
     def set_has_visits(self, has_visits: bool) -> None:
@@ -182,10 +185,10 @@ class ResultPage(Themed):
         Where there is little room the key figures join the sentence, and the controls take two rows.
         """
         room = PageRoom.of(width, height)
-        if room != self._room:
+        self._width, self._height = width, height
+        if room != self._room or self._has_tools != self._do_tools_fit():
             self._room = room
             self._place()
-        self._height = height
         self._fit_table()
 
     def _fit_table(self) -> None:
@@ -270,6 +273,7 @@ class ResultPage(Themed):
         notes.addWidget(self.shown)
         notes.addWidget(self.hint)
         self._foot = QGridLayout()
+        self._foot.setColumnStretch(0, 1)
         left.addLayout(self._foot)
         self._head = QHBoxLayout()
         self._head.addWidget(self.answer, 1)
@@ -336,6 +340,7 @@ class ResultPage(Themed):
         for widget in (self._notes, self.methods, self.whole):
             self._foot.removeWidget(widget)
         left = Qt.AlignmentFlag.AlignLeft
+        self._has_tools = self._do_tools_fit()
         self._controls.addWidget(self.view, 0, 0, left)
         self._controls.addWidget(self.to_answer, 0, 1, left)
         self._controls.setColumnStretch(4, 1)
@@ -346,21 +351,14 @@ class ResultPage(Themed):
             self._controls.addWidget(self._choices, 0, 2)
             if self._room.is_compact and (row := self._compared_as.layout()) is not None:
                 row.addWidget(self.compare.view)
-        is_in_one_row = self._room.has_two_tables and not self._room.is_spacious
-        self._foot.setColumnStretch(0, not is_in_one_row)
-        self._foot.setColumnStretch(1, is_in_one_row)
         if self._room.is_narrow:
             self._foot.addWidget(self.methods, 0, 0, left)
             self._foot.addWidget(self.whole, 1, 0, left)
             self._foot.addWidget(self._notes, 2, 0)
-        elif not self._room.has_two_tables:
+        elif not self._has_tools:
             self._foot.addWidget(self.methods, 0, 0, 1, 2, left)
             self._foot.addWidget(self._notes, 1, 0)
             self._foot.addWidget(self.whole, 1, 1)
-        elif is_in_one_row:
-            self._foot.addWidget(self.methods, 0, 0, left)
-            self._foot.addWidget(self._notes, 0, 1)
-            self._foot.addWidget(self.whole, 0, 2)
         else:
             self._controls.addWidget(self.methods, 0, 3)
             self._foot.addWidget(self._notes, 0, 0)
@@ -379,6 +377,12 @@ class ResultPage(Themed):
         self._on_look_changed()
         self._tell_answer()
         self._offer()
+
+    def _do_tools_fit(self) -> bool:
+        """Whether views, recordings and methods fit into one row."""
+        tools = (self.view, self.recordings, self.methods)
+        side, gap = 24, 12
+        return self._look.theme.px(self._width - 2 * side - 3 * gap) >= sum(one.sizeHint().width() for one in tools)
 
     def _offer(self) -> None:
         """Offer the views that this recording has."""
