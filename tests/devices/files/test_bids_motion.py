@@ -152,6 +152,14 @@ def test_a_frequency_that_nothing_tells_is_asked_for(tmp_path: Path) -> None:
     assert bids_motion_trial([path], 100.0).sensors[0].info.rate_hz == 100.0
 
 
+@pytest.mark.parametrize("rows", [0, 1])
+def test_hardly_any_samples_are_a_short_recording(tmp_path: Path, rows: int) -> None:
+    held = [(row, values[:rows]) for row, values in channels("leftThigh", swinging_sensor())]
+    assert len(bids_motion_trial([bids(tmp_path, held)]).sensors[0].block) == rows
+    latency = other("LATENCY", "n/a", np.zeros(rows), unit="s")
+    assert len(bids_motion_trial([bids(tmp_path, [latency, *held])]).sensors[0].block) == rows
+
+
 def test_an_orientation_is_taken_where_it_turns_gravity_up(tmp_path: Path) -> None:
     truth = swinging_sensor()
     names = ("quat_w", "quat_x", "quat_y", "quat_z")
