@@ -237,8 +237,11 @@ def test_files_are_told_by_their_table_of_channels_and_gathered(tmp_path: Path) 
         bids_motion_trial(sorted(tmp_path.glob("*imuA*_motion.tsv")))
     only = tmp_path / "only"
     bids(only, channels("leftThigh", swinging_sensor()))
-    assert format_of(only) == "bids-motion"
-    assert len(bids_motion_trial([only]).sensors) == 1
+    (only / "walk_00B42D4B.txt").write_text("// Update Rate: 100.0Hz\nPacketCounter\tAcc_X\tAcc_Y\tAcc_Z\n")
+    assert [(one.format, one.name) for one in gather([only]).trials] == [
+        ("bids-motion", "sub-01_task-walk"),
+        ("xsens-mtmanager", "walk_00B42D4B"),
+    ]
     (only / f"{IMU}_channels.tsv").write_text("name\ttime\n")
     assert format_of(only / f"{IMU}_motion.tsv") is None
 
