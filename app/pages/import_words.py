@@ -30,21 +30,27 @@ SITE_WORDS = {
     Site.RIGHT_SHANK: later("Right shank"),
     Site.RIGHT_FOOT: later("Right foot"),
 }
+GRAVITY_WORDS = {  # by the finding that says so
+    "gravity_from_orientation": later("gravity added by the orientation"),
+    "gravity_for_acceleration": later("no acceleration: gravity stands in for it"),
+}
 FEWEST_COLUMNS = 80  # of a small curve
 
 
 def facts(trial: "ImportedTrial") -> str:
-    """Sensors, length, rates, gaps and clock of a recording in one line."""
+    """Sensors, length, rates, gravity, gaps and clock of a recording in one line."""
     blocks = [sensor.block for sensor in trial.sensors]
     filled = [block for block in blocks if len(block)]
     first_s = min((float(block.time_s[0]) for block in filled), default=0.0)
     last_s = max((float(block.time_s[-1]) for block in filled), default=0.0)
     count = len(blocks)
+    keys = {finding.key for sensor in trial.sensors for finding in sensor.findings}
     parts = [
         tr_n("{count} sensor", "{count} sensors", count).format(count=count),
         tr("{length} s").format(length=f"{last_s - first_s:.1f}"),
         _rates(trial),
         _gravity(filled),
+        *(tr(words) for key, words in GRAVITY_WORDS.items() if key in keys),
         _gaps(filled),
         _clock(trial),
         tr("rates derived from the orientation") if any(block.is_rate_derived for block in blocks) else "",

@@ -46,10 +46,7 @@ IN_SENSOR_AXES = "Export what the sensors measured, in their own axes"
 
 
 def is_bids_motion(path: Path, head: bytes) -> bool:
-    """Whether a file is a table of channels, or one that such a table belongs to; a folder: of one recording."""
-    if path.is_dir():
-        tables = sorted(path.glob(f"*{MOTION}"))
-        return len(tables) == 1 and has_channels(tables[0])
+    """Whether a file is a table of channels, or one that such a table belongs to; a folder may hold other files."""
     return is_channels(head) or (path.name.endswith(ENDINGS) and has_channels(path))
 
 
@@ -72,8 +69,6 @@ def bids_motion_trial(files: Sequence[Path], rate_hz: float | None = None) -> Im
         Files of several recordings, files that are missing or do not fit each other, no such tracked point, other
         units, times that step back.
     """
-    if len(files) == 1 and files[0].is_dir():
-        files = sorted(files[0].glob(f"*{MOTION}"))
     bases = list(dict.fromkeys(map(common_base, files)))
     if len({bids_recording(path) for path in files}) > 1:
         raise FileRefusedError(

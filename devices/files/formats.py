@@ -7,7 +7,7 @@ from pathlib import Path
 from devices.files.apdm import apdm_trial, is_apdm
 from devices.files.bids_motion import bids_motion_trial, bids_recording, is_bids_motion
 from devices.files.csv_tables import csv_trial, is_csv
-from devices.files.movella_dot import is_movella_dot, movella_dot_trial
+from devices.files.movella_dot import dot_recording, is_movella_dot, movella_dot_trial
 from devices.files.mvnx import is_mvnx, mvnx_trial
 from devices.files.opensim_orientations import is_opensim_orientations, opensim_trial
 from devices.files.parquet_tables import is_parquet, parquet_trial
@@ -35,7 +35,7 @@ class FileFormat:
 
 FORMATS: Mapping[str, FileFormat] = {
     "xsens-mtmanager": FileFormat(is_mtmanager, mtmanager_trial, is_one_sensor=True),
-    "movella-dot": FileFormat(is_movella_dot, movella_dot_trial, is_one_sensor=True),
+    "movella-dot": FileFormat(is_movella_dot, movella_dot_trial, is_one_sensor=True, trial_name=dot_recording),
     "mvnx": FileFormat(is_mvnx, mvnx_trial),
     "apdm": FileFormat(is_apdm, apdm_trial),
     "opensim": FileFormat(is_opensim_orientations, opensim_trial),

@@ -51,7 +51,7 @@ def _common(name: str, path: Path) -> str:
     if name == SESSION:
         return path.name
     own = FORMATS[name]
-    if own.trial_name is not None and path.is_file():
+    if own.trial_name is not None:
         return own.trial_name(path)
     return without_site(path.stem) if own.is_one_sensor else path.name
 

@@ -22,6 +22,7 @@ from core.findings import Finding, Severity
 from core.samples import BoolArray, FloatArray, ImuBlock, RateKind, SensorInfo
 from devices.files.orientation_rates import Numbers, derive_rates, rate_kind_by
 from devices.files.refusal import FileRefusedError
+from devices.files.site_names import without_site
 from devices.files.spreadsheets import ZIP, read_xlsx, sheet_says
 from devices.files.tables import CORRECT_IT, Table, header_of, read_csv
 from devices.files.trial import ImportedSensor, ImportedTrial, UnreadFile
@@ -96,6 +97,15 @@ def is_movella_dot(path: Path, head: bytes) -> bool:
     return (
         is_headed or bool(ONLY_DOT & set(names)) or (names[0] == TIME and {ACC[0], FREE_ACC[0]} & set(names) != set())
     )
+
+
+def dot_recording(path: Path) -> str:
+    """What the names of a recording's files have in common: for those the app calls by tag, address and time, the time.
+
+    The milliseconds, at which each sensor's file was begun, are left out.
+    """
+    dated = re.fullmatch(r".*?(?:_[0-9A-F]{12}_(\d{8}_\d{6})|_(\d{8}_\d{6})_\d{3})", path.stem)
+    return dated[1] or dated[2] if dated else without_site(path.stem)
 
 
 def read_dot(path: Path, asked_hz: float | None = None) -> DotFile:

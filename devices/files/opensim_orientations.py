@@ -82,7 +82,7 @@ def read_opensim_orientations(path: Path) -> OrientationTable:
         raise FileRefusedError(where, "there is no line of columns after {name}", EXPORT_AGAIN, name="endheader")
     values = np.array(rows, dtype=np.float64).reshape(len(rows), 1 + 4 * (len(names) - 1))
     values[~np.isfinite(values)] = np.nan
-    time_s, q = values[:, 0], values[:, 1:].reshape(len(rows), -1, 4)
+    time_s, q = values[:, 0], values[:, 1:].reshape(len(rows), len(names) - 1, 4)
     is_wrong = np.isnan(time_s)
     is_wrong[1:] |= ~(np.diff(time_s) > 0)
     if is_wrong.any():

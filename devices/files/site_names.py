@@ -49,11 +49,8 @@ def site_of_name(name: str) -> Site | None:
 def without_site(name: str) -> str:
     """A name less what says where its sensor was worn: what the sensors of one trial have in common.
 
-    A number of the sensor at the end goes with it: eight hexadecimal digits, or twelve. Of a tag or an address with a
-    date and a time after it, the app of Movella DOT's name for a sensor's file, the date and time are left.
+    A number of the sensor at the end goes with it: eight hexadecimal digits, or twelve.
     """
-    if dated := re.fullmatch(r".*?(?:_[0-9A-F]{12}_(\d{8}_\d{6})|_(\d{8}_\d{6})_\d{3})", name):
-        return dated[1] or dated[2]
     parts = re.split(r"[_\s-]+", name)
     if site_of_name(name) is not None:
         of_site = {word for group in (SIDES, SEGMENTS) for words in group.values() for word in words} | OF_LEGS

@@ -65,6 +65,20 @@ def test_what_was_understood_is_shown_before_anything_is_stored(qtbot: QtBot, ho
     assert len(home.page.patients.lines) == 2
 
 
+def test_what_was_made_of_the_orientation_is_shown(qtbot: QtBot, home: Home, tmp_path: Path) -> None:
+    """Gravity and rates of a sensor that turns, of which neither was recorded."""
+    lines = ["sep=,", "DeviceTag:,left thigh", "SyncStatus:,Synced", "OutputRate:,60Hz", ""]
+    lines.append("PacketCounter,SampleTimeFine,Euler_X,Euler_Y,Euler_Z,FreeAcc_X,FreeAcc_Y,FreeAcc_Z")
+    lines += [f"{k},{16667 * k},{30 * np.sin(k / 20):.4f},0,0,0.1,0,0" for k in range(180)]
+    path = tmp_path / "LFemur_20230101_101112_831.csv"
+    path.write_text("\n".join([*lines, ""]))
+    said = shown(read(qtbot, home, path))
+    assert "1 recording of the Movella DOT app" in said
+    told = "1 sensor · 3.0 s · 60 Hz · gravity 9.8 m/s² · gravity added by the orientation · no gaps"
+    assert f"{told} · rates derived from the orientation" in said
+    assert "from its name" in said
+
+
 def test_a_recording_of_another_program_comes_into_the_library(
     qtbot: QtBot, home: Home, controller: LibraryController, tmp_path: Path
 ) -> None:

@@ -152,6 +152,14 @@ def test_a_frequency_that_nothing_tells_is_asked_for(tmp_path: Path) -> None:
     assert bids_motion_trial([path], 100.0).sensors[0].info.rate_hz == 100.0
 
 
+@pytest.mark.parametrize("rows", [0, 1])
+def test_hardly_any_samples_are_a_short_recording(tmp_path: Path, rows: int) -> None:
+    held = [(row, values[:rows]) for row, values in channels("leftThigh", swinging_sensor())]
+    assert len(bids_motion_trial([bids(tmp_path, held)]).sensors[0].block) == rows
+    latency = other("LATENCY", "n/a", np.zeros(rows), unit="s")
+    assert len(bids_motion_trial([bids(tmp_path, [latency, *held])]).sensors[0].block) == rows
+
+
 def test_an_orientation_is_taken_where_it_turns_gravity_up(tmp_path: Path) -> None:
     truth = swinging_sensor()
     names = ("quat_w", "quat_x", "quat_y", "quat_z")
@@ -229,8 +237,11 @@ def test_files_are_told_by_their_table_of_channels_and_gathered(tmp_path: Path) 
         bids_motion_trial(sorted(tmp_path.glob("*imuA*_motion.tsv")))
     only = tmp_path / "only"
     bids(only, channels("leftThigh", swinging_sensor()))
-    assert format_of(only) == "bids-motion"
-    assert len(bids_motion_trial([only]).sensors) == 1
+    (only / "walk_00B42D4B.txt").write_text("// Update Rate: 100.0Hz\nPacketCounter\tAcc_X\tAcc_Y\tAcc_Z\n")
+    assert [(one.format, one.name) for one in gather([only]).trials] == [
+        ("bids-motion", "sub-01_task-walk"),
+        ("xsens-mtmanager", "walk_00B42D4B"),
+    ]
     (only / f"{IMU}_channels.tsv").write_text("name\ttime\n")
     assert format_of(only / f"{IMU}_motion.tsv") is None
 

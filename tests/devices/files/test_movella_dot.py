@@ -239,6 +239,12 @@ def test_the_row_of_zeros_that_an_export_begins_with_is_no_measurement(tmp_path:
     assert np.isfinite(block.acc_m_s2[1:]).all()
 
 
+@pytest.mark.parametrize("rows", [0, 1, 2])
+def test_hardly_any_samples_are_a_short_recording(tmp_path: Path, rows: int) -> None:
+    files = [dot(tmp_path / f"{name}.csv", "Quat", "Acc", "Gyr", keep=slice(rows)) for name in ("a", "b")]
+    assert [len(sensor.block) for sensor in movella_dot_trial(files).sensors] == [rows, rows]
+
+
 def test_what_the_mode_left_out_is_named_with_the_mode_to_choose(tmp_path: Path) -> None:
     assert "no orientation is there to add it again. Record again in the mode" in refusal(
         dot(tmp_path / "a.csv", "FreeAcc", "Gyr")

@@ -123,6 +123,13 @@ def test_missing_frames_are_a_gap_and_a_repeated_one_is_told(tmp_path: Path) -> 
     )
 
 
+def test_a_file_without_frames_is_an_empty_recording(tmp_path: Path) -> None:
+    held = elements(two(), "sensorAcceleration", "sensorOrientation")
+    assert "there is no acceleration" in refusal(mvnx(tmp_path / "a.mvnx", held, index=()))
+    one = mvnx_trial([mvnx(tmp_path / "b.mvnx", held, index=[7])]).sensors[0]
+    assert len(one.block) == 1
+
+
 def test_sensors_are_placed_by_their_segments(tmp_path: Path) -> None:
     path = mvnx(tmp_path / "a.mvnx", elements(two(), "sensorFreeAcceleration", "sensorOrientation"))
     placed = {Site.LEFT_THIGH: "LeftUpperLeg", Site.LEFT_SHANK: "leftlowerleg"}

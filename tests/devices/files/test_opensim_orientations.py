@@ -100,6 +100,11 @@ def test_missing_rows_and_cells_are_gaps(tmp_path: Path) -> None:
     assert np.isnan(block.gyr_rad_s[53:56]).any(axis=1).all()
 
 
+def test_a_table_without_rows_is_an_empty_recording(tmp_path: Path) -> None:
+    (sensor,) = opensim_trial([sto(tmp_path / "a.sto", swinging_sensor(), keep=slice(0))]).sensors
+    assert len(sensor.block) == 0
+
+
 def test_what_is_damaged_is_refused_where_it_is(tmp_path: Path) -> None:
     path = tmp_path / "a.sto"
 
