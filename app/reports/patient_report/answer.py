@@ -59,7 +59,7 @@ def answer_of(facts: Facts) -> Answer:
         return Answer(Outcome.DIFFERS, found[0].said, " ".join(filter(None, [found[0].evidence, *beside])))
     first, *others = nothing_found(facts, None)
     judged = judged_differences(facts, None)
-    is_none = bool(judged) and not any(one.exceeds for one in judged)
+    is_none = bool(judged) and not any(one.exceeds for one in judged.values())
     return Answer(Outcome.NOTHING if is_none else Outcome.OPEN, first, " ".join([*others, *last]))
 
 

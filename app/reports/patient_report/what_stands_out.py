@@ -123,28 +123,34 @@ def nothing_found(facts: Facts, comparison: Comparison | None) -> list[str]:
     judged = judged_differences(facts, comparison)
     away = [abs(sd) for side, column in _peaks(facts) if math.isfinite(sd := facts.away_sd(side, column))]
     said = []
-    if judged:
-        is_any = any(row.exceeds for row in judged)
+    has_angles = any(joint_of_column(column, Side.LEFT) is not None for column in judged)
+    if any(difference.exceeds for difference in judged.values()):
         said.append(
             tr("No difference is so much larger than its error that it is told here; the tables mark what exceeds it.")
-            if is_any
-            else tr("No difference is larger than its error.")
         )
+    elif judged and (has_angles or not any(map(facts.is_measured, Joint))):
+        said.append(tr("No difference is larger than its error."))
+    elif judged:
+        said.append(tr("No angle can be compared. No difference of times or steps is larger than its error."))
     if away and max(away) <= MAX_AWAY_SD:
         said.append(tr("Every peak that could be judged lies within 2\u00a0SD of the band, at its curve's height."))
     return said or [tr("Nothing could be judged.")]
 
 
-def judged_differences(facts: Facts, comparison: Comparison | None) -> list[Difference]:
-    """Those that are told and have an error, whether they exceed it or not."""
-    return [one for one in _differences(facts, comparison) if one.is_told and one.error > 0]
+def judged_differences(facts: Facts, comparison: Comparison | None) -> dict[str, Difference]:
+    """Those that are told and have an error, whether they exceed it or not: of each column the largest."""
+    found: dict[str, Difference] = {}
+    for column, one in _differences(facts, comparison):
+        if one.is_told and one.error > 0 and (column not in found or one.ratio > found[column].ratio):
+            found[column] = one
+    return found
 
 
-def _differences(facts: Facts, comparison: Comparison | None) -> Iterator[Difference]:
+def _differences(facts: Facts, comparison: Comparison | None) -> Iterator[tuple[str, Difference]]:
     if comparison is not None:
-        yield from (row.difference for row in comparison.rows if row.is_told)
+        yield from ((row.measure.column, row.difference) for row in comparison.rows if row.is_told)
     if len(facts.gait) == len(Side):
-        yield from (compare_legs(facts.alone, column, facts.first_and_second) for column in BETWEEN_LEGS)
+        yield from ((column, compare_legs(facts.alone, column, facts.first_and_second)) for column in BETWEEN_LEGS)
 
 
 def _changes(facts: Facts, comparison: Comparison | None) -> Iterator[Candidate]:

@@ -77,3 +77,14 @@ def test_the_screen_and_the_report_say_the_same(request_of_demonstration: Report
         changed = with_more(analysis, side, name, more)
         first = answer(request_of_demonstration, changed).first.replace("\u00a0", " ")
         assert any(sentence.startswith(first) for sentence in said(request_of_demonstration, changed))
+
+
+@pytest.mark.parametrize("joints", [tuple(Joint), (Joint.LEFT_KNEE, Joint.LEFT_ANKLE), (Joint.LEFT_KNEE,)])
+def test_where_no_angle_can_be_compared_it_is_said_before_what_times_tell(
+    request_of_demonstration: ReportRequest, analysis: Analysis, joints: tuple[Joint, ...]
+) -> None:
+    found = answer(request_of_demonstration, recalibrated(analysis, joints, is_same_joint=False, sign_margin=1.05))
+    assert found.outcome is Outcome.NOTHING
+    has_pair = joints == (Joint.LEFT_KNEE,)  # the ankles
+    assert found.first.startswith("No angle can be compared.") is not has_pair
+    assert found.first.startswith("No difference is larger than its error.") is has_pair
