@@ -12,12 +12,13 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from core.analysis import analyse
 from core.body import Joint, Segment, Side, Site
 from core.samples import FloatArray, Session
+from devices.files.references.reading import read_reference
 from devices.walker import (
     FreeMotion,
     MovedRecording,
-    SimulatedSession,
     Standing,
     Tissue,
     Walk,
@@ -64,6 +65,27 @@ def experiment(seed: int, folder: Path, tissue: Tissue = Tissue.REAL, walks: int
     return simulated.session, path
 
 
+def against_bones(seed: int, tissue: Tissue, folder: Path, walks: int = WALKS) -> tuple[float, float, float]:
+    """The sound knee, degrees RMSE, means removed: ours and the optics' against the bones, ours against the optics."""
+    wanted = settings(seed, tissue, walks)
+    simulated, joint = simulate(wanted), Joint(f"{PROSTHESIS.other}_knee")
+    session, path = experiment(seed, folder, tissue, walks)
+    optics = {trial.name: trial.angles[joint] for trial in read_reference(path).trials}
+    found = []
+    for walk in analyse(session).recordings:
+        if walk.name in optics:
+            number = [one.name for one in simulated.moved].index(walk.name)
+            shown_s, seen_rad = optics[walk.name]
+            own_s = (shown_s - LATER_S * number) / (1.0 + FASTER)
+            truth = simulated.truth.recordings[walk.name].joints[joint]
+            bones = np.interp(walk.time_s, truth.time_s, truth.angle_rad)
+            seen = np.interp(walk.time_s, own_s, seen_rad, left=np.nan, right=np.nan)
+            ours = walk.joints[joint].angle_rad
+            found.append([np.nanstd(pair) for pair in (ours - bones + 0 * seen, seen - bones + 0 * ours, ours - seen)])
+    ours_deg, seen_deg, both_deg = np.rad2deg(np.mean(found, axis=0)).tolist()
+    return ours_deg, seen_deg, both_deg
+
+
 def _seen(
     wanted: WalkerSettings, moved: MovedRecording, number: int, clusters: Mapping[Site, Ride]
 ) -> tuple[FloatArray, dict[Joint, FloatArray]]:
@@ -92,7 +114,7 @@ def _cluster(
     tissue = Tissue.RIGID if bare else wanted.tissue
     index = list(Site).index(site)
     first = next(k for k, one in enumerate(wanted.recordings) if isinstance(one, Walk))
-    # sensor and markers on one socket ride as one: as the walker draws it, in the first walk for all, its wobble in each
+    # sensor and markers on one socket ride as one: drawn as the walker draws it, once for all walks, its wobble in each
     strapped = np.random.default_rng([wanted.seed, AS_STRAPPED, index, number])
     own = draw_ride(np.random.default_rng([wanted.seed, AS_STRAPPED, index, first]))
     draw_ride(strapped)  # the walker draws one before each recording's wobble

@@ -14,6 +14,7 @@ from core.analysis import analyse
 from core.body import Joint, Side
 from core.results import Analysis, ZeroKind
 from core.samples import Patient, Session
+from core.verdicts.model import Assessment, JointVerdicts, Verdict
 from devices.files.references.reading import read_reference
 from devices.files.references.trial import ReferenceFile, ReferenceTrial
 from devices.files.refusal import FileRefusedError
@@ -216,6 +217,26 @@ def test_table_1_is_printed_with_the_prosthesis_first(study: AgreementStudy) -> 
     assert any("Optical models of one walk disagree among themselves by 2 to 4° at the knee" in line for line in lines)
     plain = list(printed(study, Patient()))
     assert not any("prosthesis" in line for line in plain)
+
+
+def test_a_joint_that_is_withheld_is_named_and_another_is_not(study: AgreementStudy) -> None:
+    assert not any("withheld" in line for line in printed(study, Patient()))
+    withheld = JointVerdicts(Assessment(Verdict.WITHHELD), Assessment(Verdict.WITHHELD), Assessment(Verdict.READ))
+    walks = [
+        replace(
+            walk,
+            recording=replace(
+                walk.recording,
+                verdicts=replace(walk.recording.verdicts, joints={**walk.recording.verdicts.joints, joint: withheld}),
+            ),
+        )
+        for walk, joint in zip(study.walks, (Joint.LEFT_KNEE, Joint.LEFT_ANKLE), strict=True)
+    ]
+    lines = [line for line in printed(replace(study, walks=tuple(walks)), Patient()) if "withheld" in line]
+    assert lines == [
+        "- Left knee: withheld in walk 1. Its figures stand here as evidence.",
+        "- Left ankle: withheld in walk 2. Its figures stand here as evidence.",
+    ]
 
 
 def test_both_figures_are_drawn_with_the_phases_and_say_what_they_are(study: AgreementStudy) -> None:
