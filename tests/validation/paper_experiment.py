@@ -18,7 +18,6 @@ from core.samples import FloatArray, Session
 from devices.files.references.reading import read_reference
 from devices.walker import (
     FreeMotion,
-    MovedRecording,
     Standing,
     Tissue,
     Walk,
@@ -27,6 +26,7 @@ from devices.walker import (
 )
 from devices.walker_body import make_leg
 from devices.walker_sensors import Mounting, Ride, draw_ride, sensor_poses
+from devices.walker_truth import MovedRecording
 
 PROSTHESIS = Side.LEFT
 WALKS, STRIDES = 6, 8  # of 1.28 m: ten metres
@@ -93,7 +93,7 @@ def _seen(
     fine_s = moved.legs[Side.LEFT].time_s
     inside = (fine_s >= 0.0) & (fine_s <= fine_s[-1] - 0.3)
     at_s = np.arange(fine_s[inside][0], fine_s[inside][-1], 1.0 / OPTICS_HZ)
-    angles = {}
+    angles: dict[Joint, FloatArray] = {}
     for joint in Joint:
         leg = make_leg(wanted, joint.side)
         poses = [_cluster(wanted, moved, number, site, clusters) for site in (joint.proximal, joint.distal)]
