@@ -110,8 +110,15 @@ def clock_words(walk: ComparedWalk) -> str:
 
 
 def verdict_words(study: AgreementStudy) -> list[str]:
-    """Which joints the program itself would not let be read, so that nobody takes their figures for its word."""
+    """What keeps the figures from being taken at their word: sides exchanged, joints that the program withholds."""
+    exchanged = [one_line(walk.recording.name) for walk in study.with_angles if walk.is_exchanged]
     said = []
+    if exchanged:
+        said.append(
+            tr("Left and right look exchanged in the reference of {walks}: the other way round it fits better.").format(
+                walks=joined(exchanged)
+            )
+        )
     for joint in study.joints:
         names = [
             one_line(walk.recording.name)

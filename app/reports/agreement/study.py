@@ -5,7 +5,7 @@ best fits go first. No instant of a reference is used for two walks: a trial of 
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from pathlib import Path
 
@@ -30,6 +30,8 @@ class AngleKind(StrEnum):
     ORIENTATION = "orientation"
 
 
+CLEARLY = 1.1  # of the score: a leg is like itself with 0.99 and more, like the other with 0.97 and less
+
 JointAndKind = tuple[Joint, AngleKind]
 
 
@@ -49,7 +51,10 @@ class NamedTrial:
 
 @dataclass(frozen=True, slots=True)
 class ComparedWalk:
-    """One walk beside its reference. `reference_rad` (n,) by joint, at the walk's instants and in its sign."""
+    """One walk beside its reference. `reference_rad` (n,) by joint, at the walk's instants and in its sign.
+
+    `is_exchanged`: the reference fits clearly better with left and right exchanged.
+    """
 
     recording: RecordingAnalysis
     reference: NamedTrial | None
@@ -59,6 +64,7 @@ class ComparedWalk:
     events: Mapping[EventKey, EventAgreement] = field(default_factory=dict)
     events_later_s: float = 0.0
     lengths_m: Mapping[Side, FloatArray] = field(default_factory=dict)
+    is_exchanged: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,7 +106,11 @@ def study_of(analysis: Analysis, files: Sequence[tuple[str, ReferenceFile]]) -> 
         zip(order, align([_trial(walks[w], with_angles[t]) for w, t in order], [pairs[p] for p in order]), strict=True)
     )
     compared: dict[int, ComparedWalk] = {
-        w: _angles_compared(analysis, walks[w], with_angles[t], aligned[w, t]) for w, t in order
+        w: replace(
+            _angles_compared(analysis, walks[w], with_angles[t], aligned[w, t]),
+            is_exchanged=_is_exchanged(walks[w], with_angles[t], pairs[w, t]),
+        )
+        for w, t in order
     }
     for one in trials:
         for w, found in _events_compared(walks, compared, one):
@@ -150,6 +160,16 @@ def _trial(walk: RecordingAnalysis, named: NamedTrial) -> ComparedTrial:
         {joint: TimedAngle(walk.time_s, angle.angle_rad) for joint, angle in walk.joints.items()},
         {joint: TimedAngle(time_s, angle) for joint, (time_s, angle) in named.trial.angles.items()},
     )
+
+
+def _is_exchanged(walk: RecordingAnalysis, named: NamedTrial, fit: FoundOffset) -> bool:
+    """Half a stride away, each leg looks like the other, but not as much as like itself."""
+    trial = _trial(walk, named)
+    if len({joint.side for joint in trial.joints}) < len(Side):
+        return False
+    other = {Joint(joint.replace(joint.side, joint.side.other)): curve for joint, curve in trial.reference.items()}
+    found = find_offset(replace(trial, reference=other))
+    return isinstance(found, FoundOffset) and found.score > CLEARLY * fit.score
 
 
 def _angles_compared(
@@ -222,15 +242,11 @@ def _events_compared(
         base = before or ComparedWalk(walk, one, None)
         yield (
             w,
-            ComparedWalk(
-                walk,
-                base.reference,
-                base.alignment,
-                base.reference_rad,
-                base.figures,
-                {**base.events, **events},
-                later_s,
-                {**base.lengths_m, **lengths},
+            replace(
+                base,
+                events={**base.events, **events},
+                events_later_s=later_s,
+                lengths_m={**base.lengths_m, **lengths},
             ),
         )
 
