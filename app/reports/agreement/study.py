@@ -214,41 +214,44 @@ def _rows_of_strides(walk: RecordingAnalysis, side: Side) -> IntArray | None:
 
 def _events_compared(
     walks: Sequence[RecordingAnalysis], compared: Mapping[int, ComparedWalk], one: NamedTrial
-) -> Iterator[tuple[int, ComparedWalk]]:
-    """The walks that a trial's events or strides tell of, with them."""
+) -> list[tuple[int, ComparedWalk]]:
+    """The walk that a trial's events or strides tell of, with them: its own, that of its name, else the likeliest."""
+    if not one.trial.events and not one.trial.strides:
+        return []
+    with_gait = [w for w, walk in enumerate(walks) if walk.gait]
+    own = [w for w in with_gait if w in compared and compared[w].reference is one]
+    if not own and one.trial.angles:
+        return []  # its angles fit no walk
+    named = [w for w in with_gait if {walks[w].name, walks[w].folder} & one.names]
+    found = [(w, _with_events(walks[w], compared.get(w), one)) for w in own or named or with_gait]
+    return sorted(found, key=lambda pair: -_likely(pair[1]))[:1]
+
+
+def _likely(walk: ComparedWalk) -> int:
+    """How many events and strides of a reference this walk has."""
+    return sum(found.found - found.more for found in walk.events.values()) + sum(map(len, walk.lengths_m.values()))
+
+
+def _with_events(walk: RecordingAnalysis, before: ComparedWalk | None, one: NamedTrial) -> ComparedWalk:
+    base = before or ComparedWalk(walk, one, None)
     told = {(side, event): at_s for side, by_event in one.trial.events.items() for event, at_s in by_event.items()}
-    if not told and not one.trial.strides:
-        return
-    for w, walk in enumerate(walks):
-        before = compared.get(w)
-        names = {walk.name, walk.folder}
-        is_own = before is not None and before.reference is one
-        is_meant = bool(names & one.names) or len(walks) == 1 or not one.trial.name
-        if not walk.gait or not (is_own or (is_meant and not one.trial.angles)):
-            continue
-        ours = _events_of(walk)
-        if before is not None and before.alignment is not None and is_own:
-            middle_s = before.alignment.clock.at_s
-            later_s = float(before.alignment.clock.at(np.array([middle_s]))[0]) - middle_s
-        else:
-            later_s = event_offset(ours, told) if told else (before.events_later_s if before is not None else 0.0)
-        within = {key: at_s - later_s for key, at_s in told.items()}
-        events = compare_events(ours, {key: at_s for key, at_s in within.items() if key[0] in walk.gait})
-        lengths = {
-            side: compare_lengths(walk.gait[side].strides, strides - [later_s, later_s, 0.0])
-            for side, strides in one.trial.strides.items()
-            if side in walk.gait
-        }
-        base = before or ComparedWalk(walk, one, None)
-        yield (
-            w,
-            replace(
-                base,
-                events={**base.events, **events},
-                events_later_s=later_s,
-                lengths_m={**base.lengths_m, **lengths},
-            ),
-        )
+    ours = _events_of(walk)
+    if base.alignment is not None and (base.reference is one or not told):
+        later_s = base.alignment.clock.offset_s
+    else:
+        later_s = event_offset(ours, told) if told else base.events_later_s
+    within = {key: at_s - later_s for key, at_s in told.items() if key[0] in walk.gait}
+    lengths = {
+        side: compare_lengths(walk.gait[side].strides, strides - [later_s, later_s, 0.0])
+        for side, strides in one.trial.strides.items()
+        if side in walk.gait
+    }
+    return replace(
+        base,
+        events={**base.events, **compare_events(ours, within)},
+        events_later_s=later_s,
+        lengths_m={**base.lengths_m, **lengths},
+    )
 
 
 def _events_of(walk: RecordingAnalysis) -> Events:

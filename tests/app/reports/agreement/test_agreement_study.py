@@ -203,8 +203,9 @@ def test_events_of_the_reference_are_found_and_strides_are_as_long(
     for side, foot in feet.items():
         contact_s = foot.events.initial_contact_s + 20.0
         strides[side] = np.stack([contact_s[:-1], contact_s[1:], foot.stride_lengths_m[1 : len(contact_s)]], axis=1)
-    reference = ReferenceFile("csv", "events", (ReferenceTrial("walk 1", {}, events, strides),))
+    reference = ReferenceFile("csv", "events", (ReferenceTrial("", {}, events, strides),))
     (walk,) = study_of(analysis, [("events.csv", reference)]).walks
+    assert walk.recording.name == "walk 1"  # of two, though nothing names it
     assert walk.events_later_s == pytest.approx(20.0, abs=0.05)
     for (side, event), found in walk.events.items():
         assert found.found == found.count == len(events[side][event])
