@@ -101,10 +101,11 @@ class StrappedSensors:
 
 @dataclass(frozen=True, slots=True)
 class SimulatedSession:
-    """A session as sensors would have recorded it, and what is true of it."""
+    """A session as sensors would have recorded it, what is true of it, and how each recording was moved."""
 
     session: Session
     truth: SessionTruth
+    moved: tuple[MovedRecording, ...]
 
 
 def simulate(settings: WalkerSettings) -> SimulatedSession:
@@ -139,7 +140,7 @@ def simulate(settings: WalkerSettings) -> SimulatedSession:
         recordings.append(recording)
         moved.append(take)
     truth = tell_truth(settings, legs, moved, {site: fault.acc_bias_m_s2 for site, fault in start_faults.items()})
-    return SimulatedSession(_session(settings, recordings), truth)
+    return SimulatedSession(_session(settings, recordings), truth, tuple(moved))
 
 
 def _session(settings: WalkerSettings, recordings: list[Recording]) -> Session:

@@ -23,6 +23,7 @@ class Topic(StrEnum):
     WALKING = "walking"
     RESULTS = "results"
     REPORT = "report"
+    ACCURACY = "accuracy"
     MESSAGES = "messages"
     KEYS = "keys"
     SENSORS_XIMU3 = "sensors-ximu3"
@@ -43,6 +44,7 @@ def topic_title(topic: Topic) -> str:
         Topic.WALKING: tr("Walking"),
         Topic.RESULTS: tr("Results"),
         Topic.REPORT: tr("Report"),
+        Topic.ACCURACY: tr("Accuracy"),
         Topic.MESSAGES: tr("What messages mean"),
         Topic.KEYS: tr("Keys"),
         Topic.SENSORS_XIMU3: "x-IMU3",

@@ -14,6 +14,7 @@ from app.reports.agreement.printed import (
     figures_of_table_1,
     optical_words,
     rows_of_table_1,
+    verdict_words,
 )
 from app.reports.agreement.study import AgreementStudy, AngleKind
 from app.reports.agreement.tables import events_together, lengths_together
@@ -39,7 +40,7 @@ from core.gait.phases import Phase
 from core.samples import Patient, Session
 
 TEMPLATE = files("resources") / "report" / "agreement.typ"
-NAME_LENGTH = 40
+NAME_LENGTH, SENTENCE_LENGTH = 40, 400
 
 
 def agreement_report(
@@ -85,7 +86,10 @@ def _pages(study: AgreementStudy, patient: Patient, pictures: Mapping[str, Pictu
             first += [_phases(study, patient)]
     if events_together(study) or len(lengths_together(study)):
         first += [heading(tr("Events and strides"), 2), bullets(_of_events(study))]
-    first += [paragraph(optical_words()), note(f"{dagger_words()} {_what_is_not_shown()}")]
+    if withheld := verdict_words(study):
+        first += [bullets([typed(said, SENTENCE_LENGTH) for said in withheld])]
+    if study.with_angles:
+        first += [paragraph(optical_words()), note(f"{dagger_words()} {_what_is_not_shown()}")]
     drawn = [(name, is_knee) for name, is_knee in ((KNEE, True), (ANKLE, False)) if name in pictures]
     more: list[list[Block]] = [
         [
@@ -95,7 +99,7 @@ def _pages(study: AgreementStudy, patient: Patient, pictures: Mapping[str, Pictu
         ]
         for name, is_knee in drawn
     ]
-    clocks = [typed(clock_words(walk), 400) for walk in study.with_angles]
+    clocks = [typed(clock_words(walk), SENTENCE_LENGTH) for walk in study.with_angles]
     if clocks:
         more += [[heading(tr("Clocks and signs")), bullets(clocks)]]
     return [first, *more]

@@ -1,14 +1,15 @@
 """Table 1 of an agreement, as lines and as words: who disagrees by how much, and what optical systems disagree by."""
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 
 from app.reports.agreement.study import AgreementStudy, AngleKind, ComparedWalk
 from app.reports.agreement.tables import events_together, lengths_together
-from app.wording import capitalised, joined, name_of, tr, tr_n
+from app.wording import capitalised, joined, name_of, tr
 from core.agreement.figures import Agreement, AgreementOverWalks
 from core.body import Joint, Side
 from core.samples import Patient
+from core.verdicts.model import Verdict
 from devices.files.refusal import one_line
 
 # their own measurements, ALGORITHMS section 4; the review's 5 degrees are of sessions, its abstract was read
@@ -84,9 +85,11 @@ def printed(study: AgreementStudy, patient: Patient) -> Iterator[str]:
     yield from _events(study)
     for one in study.left_over:
         yield f"- {one_line(one)}: no walk and trial belong together here, so it was not compared."
-    yield ""
-    yield f"{optical_words()}"
-    yield dagger_words()
+    yield from (f"- {said}" for said in verdict_words(study))
+    if walks:
+        yield ""
+        yield optical_words()
+        yield dagger_words()
 
 
 def clock_words(walk: ComparedWalk) -> str:
@@ -104,6 +107,32 @@ def clock_words(walk: ComparedWalk) -> str:
     if not found.is_offset_certain:
         said += "; another offset fits nearly as well, so it may be off by a stride"
     return f"{said}."
+
+
+def verdict_words(study: AgreementStudy) -> list[str]:
+    """What keeps the figures from being taken at their word: sides exchanged, joints that the program withholds."""
+    exchanged = [one_line(walk.recording.name) for walk in study.with_angles if walk.is_exchanged]
+    said = []
+    if exchanged:
+        said.append(
+            tr("Left and right look exchanged in the reference of {walks}: the other way round it fits better.").format(
+                walks=joined(exchanged)
+            )
+        )
+    for joint in study.joints:
+        names = [
+            one_line(walk.recording.name)
+            for walk in study.with_angles
+            if (joint, AngleKind.RESULT) in walk.figures
+            and walk.recording.verdicts.joint(joint).shape.verdict is Verdict.WITHHELD
+        ]
+        if names:
+            said.append(
+                tr("{joint}: withheld in {walks}. Its figures stand here as evidence.").format(
+                    joint=capitalised(name_of(joint)), walks=joined(names)
+                )
+            )
+    return said
 
 
 def _more(joint: Joint, role: str, found: Agreement) -> str:
@@ -139,9 +168,3 @@ def _of(walk: ComparedWalk, joint: Joint, of_walk: Callable[[Agreement], float])
 
 def _short(value: float) -> str:
     return f"{round(value, 2) + 0.0:.2f}" if math.isfinite(value) else "-"
-
-
-def named(walks: Sequence[ComparedWalk]) -> str:
-    """The walks in words."""
-    names = joined([one_line(walk.recording.name) for walk in walks])
-    return tr_n("walk: {names}", "walks: {names}", len(walks)).format(names=names)

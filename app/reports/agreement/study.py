@@ -5,7 +5,7 @@ best fits go first. No instant of a reference is used for two walks: a trial of 
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from pathlib import Path
 
@@ -30,6 +30,8 @@ class AngleKind(StrEnum):
     ORIENTATION = "orientation"
 
 
+CLEARLY = 1.1  # of the score: a leg is like itself with 0.99 and more, like the other with 0.97 and less
+
 JointAndKind = tuple[Joint, AngleKind]
 
 
@@ -49,7 +51,10 @@ class NamedTrial:
 
 @dataclass(frozen=True, slots=True)
 class ComparedWalk:
-    """One walk beside its reference. `reference_rad` (n,) by joint, at the walk's instants and in its sign."""
+    """One walk beside its reference. `reference_rad` (n,) by joint, at the walk's instants and in its sign.
+
+    `is_exchanged`: the reference fits clearly better with left and right exchanged.
+    """
 
     recording: RecordingAnalysis
     reference: NamedTrial | None
@@ -59,6 +64,7 @@ class ComparedWalk:
     events: Mapping[EventKey, EventAgreement] = field(default_factory=dict)
     events_later_s: float = 0.0
     lengths_m: Mapping[Side, FloatArray] = field(default_factory=dict)
+    is_exchanged: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,7 +106,11 @@ def study_of(analysis: Analysis, files: Sequence[tuple[str, ReferenceFile]]) -> 
         zip(order, align([_trial(walks[w], with_angles[t]) for w, t in order], [pairs[p] for p in order]), strict=True)
     )
     compared: dict[int, ComparedWalk] = {
-        w: _angles_compared(analysis, walks[w], with_angles[t], aligned[w, t]) for w, t in order
+        w: replace(
+            _angles_compared(analysis, walks[w], with_angles[t], aligned[w, t]),
+            is_exchanged=_is_exchanged(walks[w], with_angles[t], pairs[w, t]),
+        )
+        for w, t in order
     }
     for one in trials:
         for w, found in _events_compared(walks, compared, one):
@@ -152,6 +162,16 @@ def _trial(walk: RecordingAnalysis, named: NamedTrial) -> ComparedTrial:
     )
 
 
+def _is_exchanged(walk: RecordingAnalysis, named: NamedTrial, fit: FoundOffset) -> bool:
+    """Half a stride away, each leg looks like the other, but not as much as like itself."""
+    trial = _trial(walk, named)
+    if len({joint.side for joint in trial.joints}) < len(Side):
+        return False
+    other = {Joint(joint.replace(joint.side, joint.side.other)): curve for joint, curve in trial.reference.items()}
+    found = find_offset(replace(trial, reference=other))
+    return isinstance(found, FoundOffset) and found.score > CLEARLY * fit.score
+
+
 def _angles_compared(
     analysis: Analysis, walk: RecordingAnalysis, named: NamedTrial, alignment: Alignment
 ) -> ComparedWalk:
@@ -194,45 +214,44 @@ def _rows_of_strides(walk: RecordingAnalysis, side: Side) -> IntArray | None:
 
 def _events_compared(
     walks: Sequence[RecordingAnalysis], compared: Mapping[int, ComparedWalk], one: NamedTrial
-) -> Iterator[tuple[int, ComparedWalk]]:
-    """The walks that a trial's events or strides tell of, with them."""
+) -> list[tuple[int, ComparedWalk]]:
+    """The walk that a trial's events or strides tell of, with them: its own, that of its name, else the likeliest."""
+    if not one.trial.events and not one.trial.strides:
+        return []
+    with_gait = [w for w, walk in enumerate(walks) if walk.gait]
+    own = [w for w in with_gait if w in compared and compared[w].reference is one]
+    if not own and one.trial.angles:
+        return []  # its angles fit no walk
+    named = [w for w in with_gait if {walks[w].name, walks[w].folder} & one.names]
+    found = [(w, _with_events(walks[w], compared.get(w), one)) for w in own or named or with_gait]
+    return sorted(found, key=lambda pair: -_likely(pair[1]))[:1]
+
+
+def _likely(walk: ComparedWalk) -> int:
+    """How many events and strides of a reference this walk has."""
+    return sum(found.found - found.more for found in walk.events.values()) + sum(map(len, walk.lengths_m.values()))
+
+
+def _with_events(walk: RecordingAnalysis, before: ComparedWalk | None, one: NamedTrial) -> ComparedWalk:
+    base = before or ComparedWalk(walk, one, None)
     told = {(side, event): at_s for side, by_event in one.trial.events.items() for event, at_s in by_event.items()}
-    if not told and not one.trial.strides:
-        return
-    for w, walk in enumerate(walks):
-        before = compared.get(w)
-        names = {walk.name, walk.folder}
-        is_own = before is not None and before.reference is one
-        is_meant = bool(names & one.names) or len(walks) == 1 or not one.trial.name
-        if not walk.gait or not (is_own or (is_meant and not one.trial.angles)):
-            continue
-        ours = _events_of(walk)
-        if before is not None and before.alignment is not None and is_own:
-            middle_s = before.alignment.clock.at_s
-            later_s = float(before.alignment.clock.at(np.array([middle_s]))[0]) - middle_s
-        else:
-            later_s = event_offset(ours, told) if told else (before.events_later_s if before is not None else 0.0)
-        within = {key: at_s - later_s for key, at_s in told.items()}
-        events = compare_events(ours, {key: at_s for key, at_s in within.items() if key[0] in walk.gait})
-        lengths = {
-            side: compare_lengths(walk.gait[side].strides, strides - [later_s, later_s, 0.0])
-            for side, strides in one.trial.strides.items()
-            if side in walk.gait
-        }
-        base = before or ComparedWalk(walk, one, None)
-        yield (
-            w,
-            ComparedWalk(
-                walk,
-                base.reference,
-                base.alignment,
-                base.reference_rad,
-                base.figures,
-                {**base.events, **events},
-                later_s,
-                {**base.lengths_m, **lengths},
-            ),
-        )
+    ours = _events_of(walk)
+    if base.alignment is not None and (base.reference is one or not told):
+        later_s = base.alignment.clock.offset_s
+    else:
+        later_s = event_offset(ours, told) if told else base.events_later_s
+    within = {key: at_s - later_s for key, at_s in told.items() if key[0] in walk.gait}
+    lengths = {
+        side: compare_lengths(walk.gait[side].strides, strides - [later_s, later_s, 0.0])
+        for side, strides in one.trial.strides.items()
+        if side in walk.gait
+    }
+    return replace(
+        base,
+        events={**base.events, **compare_events(ours, within)},
+        events_later_s=later_s,
+        lengths_m={**base.lengths_m, **lengths},
+    )
 
 
 def _events_of(walk: RecordingAnalysis) -> Events:

@@ -71,6 +71,36 @@ MEANING = {
 }
 
 
+OF_TABLES = {  # the other tables; of curves.csv as the left knee has them
+    CURVES: {
+        "time_s": "on the recording's clock",
+        "left_knee_deg": "the result",
+        "left_knee_reference_deg": "the reference, at this instant and in this sign",
+        "left_knee_error_deg": "the first less the second",
+        "left_knee_sd_deg": "stated standard deviation of the result",
+        "left_knee_published_deg": "the published fusion (eq 15)",
+        "left_phase": "loading, foot_flat, pre_swing or swing; empty when unknown",
+    },
+    EVENT_TABLE: {
+        "recording": MEANING["recording"],
+        "side": "left, right or both",
+        "event": "initial_contact, full_contact, heel_rise or toe_off",
+        "in_reference": "events of the reference",
+        "found": "of these",
+        "more": "found between the reference's first and last event, and not in it",
+        "bias_ms": "mean lateness",
+        "sd_ms": "standard deviation (n - 1) of the lateness",
+    },
+    LENGTHS: {
+        "recording": "the walk",
+        "side": "left or right",
+        "stride_length_m": "of a stride that counts for averages",
+        "reference_m": "of the stride of the reference that holds its swing",
+        "error_m": "the first less the second",
+    },
+}
+
+
 def write_study(study: AgreementStudy, folder: Path) -> None:
     """Write every table of an agreement into `folder`, which is there.
 
@@ -260,6 +290,9 @@ def _meanings() -> Iterator[tuple[str, str, str]]:
         what = "root mean square" if name.endswith("rmse_deg") else "mean"
         said = MEANING.get(name, f"{what} of the errors in {_phase_words(phase)}, the walk's mean removed")
         yield TABLE, name, said
+    for file, columns in OF_TABLES.items():
+        for name, said in columns.items():
+            yield file, name, said
 
 
 def _phase_words(phase: Phase | str | None) -> str:

@@ -1,21 +1,25 @@
 """Is each walk compared with its own trial, and are the figures those of the truth?"""
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from app.exports.c3d_angles import write_c3d
+from app.exports.opensim_motion import write_motion
 from app.reports.agreement.pictures import ANKLE, KNEE, pictures_of
 from app.reports.agreement.printed import printed
 from app.reports.agreement.study import AgreementStudy, AngleKind, study_of
 from app.reports.agreement.tables import agreement_table, curve_table, summary_of
 from core.analysis import analyse
 from core.body import Joint, Side
-from core.results import Analysis, ZeroKind
+from core.results import Analysis, RecordingAnalysis, ZeroKind
 from core.samples import Patient, Session
+from core.verdicts.model import Assessment, JointVerdicts, Verdict
 from devices.files.references.reading import read_reference
-from devices.files.references.trial import ReferenceFile, ReferenceTrial
+from devices.files.references.trial import EVENTS, ReferenceFile, ReferenceTrial
 from devices.files.refusal import FileRefusedError
 from devices.walker import SessionTruth
 from tests.app.reports.agreement.agreement_material import PPM, made, rows_of, write_reference
@@ -150,6 +154,42 @@ def test_without_a_zero_there_is_no_z(simulated: tuple[Session, SessionTruth, An
     assert found.m_rad == pytest.approx(walk.figures[Joint.LEFT_KNEE, AngleKind.RESULT].m_rad, rel=0.05)
 
 
+def test_left_and_right_exchanged_is_said_and_where_they_are_not_it_is_not(
+    simulated: tuple[Session, SessionTruth, Analysis], study: AgreementStudy
+) -> None:
+    _, _, analysis = simulated
+    assert not any(walk.is_exchanged for walk in study.walks)
+    assert study.walks[0].reference is not None
+    trial = study.walks[0].reference.trial
+    other = {Joint(joint.replace(joint.side, joint.side.other)): curve for joint, curve in trial.angles.items()}
+    found = study_of(analysis, [("ref.csv", ReferenceFile("csv", "angles", (replace(trial, angles=other),)))])
+    assert [walk.is_exchanged for walk in found.walks] == [True]
+    assert "- Left and right look exchanged in the reference of walk 1: the other way round it fits better." in list(
+        printed(found, Patient())
+    )
+
+
+@pytest.mark.parametrize("write", [write_c3d, write_motion])
+def test_our_own_exports_agree_with_us(
+    simulated: tuple[Session, SessionTruth, Analysis],
+    write: Callable[[RecordingAnalysis, bool, Path], None],
+    tmp_path: Path,
+) -> None:
+    _, _, analysis = simulated
+    (walk,) = [one for one in analysis.recordings if one.name == "walk 2"]
+    path = tmp_path / "export.c3d"  # the name that its library insists on; it says nothing to the reader
+    write(walk, True, path)
+    (found,) = study_of(analysis, [("export", read_reference(path))]).walks
+    assert found.recording is walk
+    for joint in Joint:
+        assert np.rad2deg(found.figures[joint, AngleKind.RESULT].z_rad) < 0.02
+    if write is write_c3d:
+        assert {event for _, event in found.events} == set(EVENTS)
+        for events in found.events.values():
+            assert (events.found, events.more) == (events.count, 0)
+            assert np.abs(events.late_s).max() < 0.001
+
+
 def test_events_of_the_reference_are_found_and_strides_are_as_long(
     simulated: tuple[Session, SessionTruth, Analysis],
 ) -> None:
@@ -163,8 +203,9 @@ def test_events_of_the_reference_are_found_and_strides_are_as_long(
     for side, foot in feet.items():
         contact_s = foot.events.initial_contact_s + 20.0
         strides[side] = np.stack([contact_s[:-1], contact_s[1:], foot.stride_lengths_m[1 : len(contact_s)]], axis=1)
-    reference = ReferenceFile("csv", "events", (ReferenceTrial("walk 1", {}, events, strides),))
+    reference = ReferenceFile("csv", "events", (ReferenceTrial("", {}, events, strides),))
     (walk,) = study_of(analysis, [("events.csv", reference)]).walks
+    assert walk.recording.name == "walk 1"  # of two, though nothing names it
     assert walk.events_later_s == pytest.approx(20.0, abs=0.05)
     for (side, event), found in walk.events.items():
         assert found.found == found.count == len(events[side][event])
@@ -216,6 +257,26 @@ def test_table_1_is_printed_with_the_prosthesis_first(study: AgreementStudy) -> 
     assert any("Optical models of one walk disagree among themselves by 2 to 4° at the knee" in line for line in lines)
     plain = list(printed(study, Patient()))
     assert not any("prosthesis" in line for line in plain)
+
+
+def test_a_joint_that_is_withheld_is_named_and_another_is_not(study: AgreementStudy) -> None:
+    assert not any("withheld" in line for line in printed(study, Patient()))
+    withheld = JointVerdicts(Assessment(Verdict.WITHHELD), Assessment(Verdict.WITHHELD), Assessment(Verdict.READ))
+    walks = [
+        replace(
+            walk,
+            recording=replace(
+                walk.recording,
+                verdicts=replace(walk.recording.verdicts, joints={**walk.recording.verdicts.joints, joint: withheld}),
+            ),
+        )
+        for walk, joint in zip(study.walks, (Joint.LEFT_KNEE, Joint.LEFT_ANKLE), strict=True)
+    ]
+    lines = [line for line in printed(replace(study, walks=tuple(walks)), Patient()) if "withheld" in line]
+    assert lines == [
+        "- Left knee: withheld in walk 1. Its figures stand here as evidence.",
+        "- Left ankle: withheld in walk 2. Its figures stand here as evidence.",
+    ]
 
 
 def test_both_figures_are_drawn_with_the_phases_and_say_what_they_are(study: AgreementStudy) -> None:
