@@ -11,7 +11,7 @@ from app.logs import version_of
 from devices.files.refusal import FileRefusedError, one_line
 
 Report = Callable[[float, str], None]
-REPORT = "agreement.pdf"
+REPORT = "agreement.pdf"  # as app.reports.agreement.folder has it, whose imports take long
 MOST_SUMMARY_BYTES = 10_000_000
 
 
@@ -54,10 +54,9 @@ def agree(wanted: argparse.Namespace, report: Report) -> list[str]:
         The agreement cannot be written.
     """
     from app.foreign_files import read_foreign_reference
-    from app.reports.agreement.pictures import pictures_of
+    from app.reports.agreement.folder import write_agreement
     from app.reports.agreement.printed import printed
     from app.reports.agreement.study import study_of
-    from app.reports.agreement.tables import write_study
     from app.reports.result_folder import written_beside
     from core.analysis import analyse
 
@@ -73,15 +72,8 @@ def agree(wanted: argparse.Namespace, report: Report) -> list[str]:
     study = study_of(analyse(session, progress=report), files)
     report(1.0, "writing")
     with written_beside(wanted.out) as folder:
-        write_study(study, folder)
-        pictures = pictures_of(study, session.patient)
-        for name, drawn in pictures.items():
-            (folder / f"{name}.svg").write_text(drawn.svg, encoding="utf-8")
-        if not wanted.no_report:
-            from app.reports.agreement.document import agreement_report
-
-            made = agreement_report(study, session, pictures, datetime.now().astimezone(), version_of("gaitwright"))
-            (folder / REPORT).write_bytes(made)
+        made_at = None if wanted.no_report else datetime.now().astimezone()
+        write_agreement(study, session, folder, made_at, version_of("gaitwright"))
         report(1.0, "writing")
     walks = len(study.walks)
     count = f"{walks} {'recording' if walks == 1 else 'recordings'} compared"

@@ -2,6 +2,7 @@
 
 import logging
 from collections.abc import Callable
+from functools import partial
 from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -35,8 +36,10 @@ from core.body import Side
 from devices.files.refusal import FileRefusedError
 
 if TYPE_CHECKING:  # their imports take a second; the window must not wait for them
+    from app.pages.agreement_page import AgreementPage
     from app.pages.found_page import FoundPage
     from app.pages.result_page import ResultPage
+    from app.workers.agreement_controller import AgreementController
     from app.workers.diagnostics_controller import DiagnosticsController
     from app.workers.opening import Opened
     from core.samples import Patient
@@ -67,12 +70,15 @@ class SessionScreen(Themed):
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look = look
-        self._background, self._looking, self._saving = (Background(self) for _ in range(3))
+        self._background, self._looking, self._comparing, self._saving = (Background(self) for _ in range(4))
         self._has_way_back = False
         self._results: ResultPage | None = None
         self._opened: Opened | None = None
         self._found: FoundPage | None = None
         self._how_found: DiagnosticsController | None = None
+        self._agreement: AgreementPage | None = None
+        self._compared: AgreementController | None = None
+        self._saved_for: FoundPage | AgreementPage | None = None
         self._saved_in = Path()
         self._dialog: QFileDialog | None = None
         self.header = Header(look)
@@ -112,8 +118,10 @@ class SessionScreen(Themed):
 
     def leave(self) -> None:
         """Go back, first to the results where these are looked behind, and end what is running."""
-        if self._found is not None and self.pages.currentWidget() is self._found:
+        shown = self.pages.currentWidget()
+        if shown is not None and (shown is self._found or shown is self._agreement):
             self._looking.stop()
+            self._comparing.stop()
             self._show_page(self._results or self.empty)
         elif self._results is not None and self._results.isVisible() and self._results.leave_behind():
             return
@@ -125,6 +133,7 @@ class SessionScreen(Themed):
         """Wait for the thread of an analysis that was running when the window was closed."""
         self._background.finish()
         self._looking.finish()
+        self._comparing.finish()
         self._saving.finish()
 
     def set_way_back(self, has_way_back: bool) -> None:
@@ -196,8 +205,12 @@ class SessionScreen(Themed):
             self.working.stop.setFocus()
         elif page is self.empty:
             self.empty.open_folder.setFocus()
+        elif self._found is not None and page is self._found:
+            self._found.focus()
+        elif self._agreement is not None and page is self._agreement:
+            self._agreement.focus()
         elif self._results is not None:
-            (self._found if page is self._found and self._found is not None else self._results).focus()
+            self._results.focus()
         self._fit()
 
     def _fit(self) -> None:
@@ -228,6 +241,7 @@ class SessionScreen(Themed):
             self._results = ResultPage(self._look)
             self.pages.addWidget(self._results)
             self._results.quality.how_found.clicked.connect(self._on_how_found)
+            self._results.quality.agreement.clicked.connect(self._on_agreement)
             self._results.told.connect(self._tell_band)
             verbs = (self.bar.back, self.bar.open_folder, self.bar.open_demonstration, self.bar.how_found)
             order = [*self._results.tab_order, *verbs]
@@ -256,18 +270,34 @@ class SessionScreen(Themed):
             self.pages.addWidget(self._found)
             self._how_found = DiagnosticsController(self._found, self._looking, self)
             self._how_found.refused.connect(self.banner.tell)
-            self._how_found.writing.connect(self._on_figures_wished)
+            self._how_found.writing.connect(partial(self._on_figures_wished, self._found))
             self._found.closed.connect(self.leave)
         self._how_found.show(self._opened.session, self._opened.analysis, recording)
         self._show_page(self._found)
 
-    def _on_figures_wished(self, folder: Path, write: Callable[[], None]) -> None:
-        self._saved_in = folder
+    def _on_agreement(self) -> None:
+        """Put the session beside an optical system; the page is made at the first time."""
+        if self._opened is None:
+            return
+        if self._agreement is None or self._compared is None:
+            from app.pages.agreement_page import AgreementPage
+            from app.workers.agreement_controller import AgreementController
+
+            self._agreement = AgreementPage(self._look)
+            self.pages.addWidget(self._agreement)
+            self._compared = AgreementController(self._agreement, self._comparing, self)
+            self._compared.writing.connect(partial(self._on_figures_wished, self._agreement))
+            self._agreement.closed.connect(self.leave)
+        self._compared.show(self._opened.session, self._opened.analysis)
+        self._show_page(self._agreement)
+
+    def _on_figures_wished(self, page: "FoundPage | AgreementPage", folder: Path, write: Callable[[], None]) -> None:
+        self._saved_in, self._saved_for = folder, page
         self._saving.start(lambda _report: write())
 
     def _on_figures_saved(self) -> None:
-        if self._found is not None:
-            self._found.show_saved(self._saved_in.name)
+        if self._saved_for is not None:
+            self._saved_for.show_saved(self._saved_in.name)
 
     def _on_figures_not_saved(self, error: Exception) -> None:
         from app.workers.diagnostics_controller import cannot_write

@@ -49,6 +49,7 @@ class QualityPage(Themed):
         self.in_order = Text(look, wraps=True)
         self.engineering = Toggle(look, tr("Engineering figures"), tr("E"), is_on=False)
         self.how_found = Button(look, tr("How was this found?"), ButtonKind.SECONDARY, Icon.SEARCH, height=52)
+        self.agreement = Button(look, tr("Beside an optical system"), ButtonKind.SECONDARY, Icon.SEARCH, height=52)
         self.facts = CellTable(look, tr("How each joint was found"), head=36)
         self.findings = FindingsList(look)
         self.figure = JointsFigure(look)
@@ -60,7 +61,7 @@ class QualityPage(Themed):
 
     @property
     def tab_order(self) -> list[QWidget]:
-        return [*self._repeats(), self.engineering, self.how_found, self.facts, self.findings]
+        return [*self._repeats(), self.engineering, self.how_found, self.agreement, self.facts, self.findings]
 
     def focus(self) -> None:
         (next(iter(self._repeats()), None) or self.engineering).setFocus()
@@ -130,6 +131,7 @@ class QualityPage(Themed):
         self._doors = QHBoxLayout()
         self._doors.addWidget(self.engineering, 1)
         self._doors.addWidget(self.how_found, 1)
+        self._doors.addWidget(self.agreement, 1)
         self._left = QVBoxLayout()
         self._left.addWidget(self._scroll, 1)
         self._left.addWidget(self._figures_card, 1)

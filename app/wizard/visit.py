@@ -83,6 +83,8 @@ class Visit(QObject):
         """Sets the report's pages; of the visit, for its threads outlive a step."""
         self.looking = Background(self)
         """Finds out how a joint was found."""
+        self.comparing = Background(self)
+        """Compares the session with an optical system."""
         self.rests: dict[str, Rest] = {}
         """What each sensor, by name, reads while the patient stands; empty until then."""
         self.limits = Limits()
@@ -336,7 +338,7 @@ class Visit(QObject):
     def is_idle(self) -> bool:
         """Whether nothing of it goes on any more: no recording, no thread, no window of Rerun's."""
         idle = self.sensors.is_idle and self.evaluation.is_idle and self.reviewing.is_idle and self.preview.is_idle
-        return idle and self.looking.is_idle and self.recordings.is_idle
+        return idle and self.looking.is_idle and self.comparing.is_idle and self.recordings.is_idle
 
     def finish(self) -> None:
         """Wait for all threads: for the end of the program."""
@@ -345,6 +347,7 @@ class Visit(QObject):
         self.reviewing.finish()
         self.preview.finish()
         self.looking.finish()
+        self.comparing.finish()
 
     def _change(self, told: Session) -> None:
         self._wanted = told

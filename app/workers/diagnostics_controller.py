@@ -142,15 +142,17 @@ class DiagnosticsController(QObject):
             self.writing.emit(out, _writing(self._found, self._session.is_simulated, out))
 
 
-def saved_from_library(opened: "OpenedLibrary", session_id: UUID, folder: Path, write: Callable[[], None]) -> Path:
-    """Note an export of a session's figures and make it, on the library's thread.
+def saved_from_library(
+    opened: "OpenedLibrary", session_id: UUID, what: str, folder: Path, write: Callable[[], None]
+) -> Path:
+    """Note an export of figures of a session and make it, on the library's thread; `what` is one of the WHATs.
 
     Raises
     ------
     LibraryError
         It cannot be noted, or the folder cannot be written.
     """
-    opened.library.audit.note(Action.EXPORT, about("session", session_id), format="how-found")
+    opened.library.audit.note(Action.EXPORT, about("session", session_id), format=what)
     try:
         write()
     except OSError as problem:

@@ -31,7 +31,7 @@ from app.reports.patient_report.blocks import (
     table,
 )
 from app.reports.patient_report.dates import day
-from app.reports.patient_report.document import CODE_LENGTH, PAGES, set_pages
+from app.reports.patient_report.document import CODE_LENGTH, PAGES, draw_pages, set_pages
 from app.reports.patient_report.numbers_in_words import fixed, signed
 from app.reports.patient_report.plain_text import isolated, plain, shortened, typed
 from app.wording import capitalised, spoken_language, tr
@@ -48,6 +48,19 @@ def agreement_report(
 ) -> bytes:
     """Make the agreement's PDF. The same study gives the same bytes."""
     return set_pages(PAGES.read_bytes() + TEMPLATE.read_bytes(), _data(study, session, pictures, version), made_at)
+
+
+def agreement_pages(
+    study: AgreementStudy,
+    session: Session,
+    pictures: Mapping[str, Picture],
+    made_at: datetime,
+    version: str,
+    ppi: float,
+) -> list[bytes]:
+    """The same pages as PNG, of so many px an inch."""
+    template = PAGES.read_bytes() + TEMPLATE.read_bytes()
+    return draw_pages(template, _data(study, session, pictures, version), made_at, ppi)
 
 
 def _data(study: AgreementStudy, session: Session, pictures: Mapping[str, Picture], version: str) -> dict[str, Any]:

@@ -53,6 +53,20 @@ def set_pages(template: bytes, data: dict[str, Any], made_at: datetime) -> bytes
     return pdf
 
 
+def draw_pages(template: bytes, data: dict[str, Any], made_at: datetime, ppi: float) -> list[bytes]:
+    """The same pages as PNG, of so many px an inch."""
+    pages: Any = typst.compile(  # said to be bytes; of PNG, it is a list with one for each page
+        template,
+        format="png",
+        ppi=ppi,
+        font_paths=_fonts(),
+        ignore_system_fonts=True,
+        sys_inputs={"data": json.dumps(data, ensure_ascii=False)},
+        timestamp=_whole_seconds(made_at),
+    )
+    return list(pages) if isinstance(pages, list) else [pages]
+
+
 class ReportPreview:
     """The pages for a look before, again and again while somebody types: what the words do not change is kept."""
 

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import replace
 from enum import Enum, auto
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -31,11 +32,13 @@ from core.samples import RecordingKind
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from app.pages.agreement_page import AgreementPage
     from app.pages.found_page import FoundPage
     from app.pages.result_page import ResultPage
     from app.pages.result_parts import ResultParts
     from app.wizard.recordings import SessionRecording
     from app.wizard.visit import Visit
+    from app.workers.agreement_controller import AgreementController
     from app.workers.diagnostics_controller import DiagnosticsController
     from core.results import Analysis
     from core.samples import Recording, Session
@@ -50,6 +53,10 @@ class Shown(Enum):
     RESULTS = auto()  # the curves and figures, or why there are none yet
     CORRECTIONS = auto()  # what can be put right about the walks
     DIAGNOSTICS = auto()  # how a joint was found, of the analysis that is shown
+    AGREEMENT = auto()  # what it and an optical system differ by
+
+
+BEHIND = (Shown.DIAGNOSTICS, Shown.AGREEMENT)
 
 
 class ResultsStep(Step):
@@ -60,6 +67,7 @@ class ResultsStep(Step):
         self._held: tuple[object, Analysis] | None = None  # by the page of results, which may be out of sight
         self._part = Shown.RESULTS
         self._how_found: DiagnosticsController | None = None
+        self._compared: AgreementController | None = None
         self._undos: list[Callable[[], object]] = []  # the latest last
         self._strides = StrideChoice(visit.recordings, self)
         self._strides.offered.connect(self._offer)
@@ -109,7 +117,7 @@ class ResultsStep(Step):
     def bar(self) -> BarState:
         if self._shown is None or not self._kept_walks:
             return BarState()
-        if self._part is Shown.DIAGNOSTICS:
+        if self._part in BEHIND:
             return BarState(primary=BarAction(tr("Go to the report"), tr("Enter"), Icon.CHEVRON), has_back=False)
         quiet: tuple[BarAction, ...] = ()
         if self._part is not Shown.CORRECTIONS:
@@ -134,7 +142,7 @@ class ResultsStep(Step):
     def on_intent(self, intent: Intent) -> bool:
         if intent.action not in (KeyAction.BACK, KeyAction.LEAVE):
             return False
-        if self._part is Shown.DIAGNOSTICS:
+        if self._part in BEHIND:
             self._on_answered()
             return True
         return self._part is Shown.RESULTS and self.page.has_results and self.page.results().leave_behind()
@@ -147,6 +155,7 @@ class ResultsStep(Step):
     def leave(self) -> None:
         self._part = Shown.RESULTS
         self._visit.looking.stop()
+        self._visit.comparing.stop()
 
     def _evaluate_if_stale(self) -> None:
         evaluation = self._visit.evaluation
@@ -158,12 +167,14 @@ class ResultsStep(Step):
     def _show(self) -> None:
         page, evaluation = self.page, self._visit.evaluation
         is_of_shown = evaluation.analysis is self._shown and not evaluation.is_busy
-        if self._part is Shown.DIAGNOSTICS and not is_of_shown:
+        if self._part in BEHIND and not is_of_shown:
             self._part = Shown.RESULTS
         if self._part is Shown.CORRECTIONS:
             self._show_corrections()
         elif self._part is Shown.DIAGNOSTICS:
             page.setCurrentWidget(page.found())
+        elif self._part is Shown.AGREEMENT:
+            page.setCurrentWidget(page.agreement())
         elif evaluation.is_busy:
             page.working.begin(tr("Analysing the walks"))
             page.setCurrentWidget(page.working)
@@ -179,6 +190,7 @@ class ResultsStep(Step):
                 results.set_has_visits(True)
                 results.told.connect(self.changed)
                 results.quality.how_found.clicked.connect(self._ask)
+                results.quality.agreement.clicked.connect(self._compare)
                 results.quality.repeat_wished.connect(lambda _side: self.jumped.emit(FREE_MOTION))
                 results.compare.visits_wished.connect(self._visit.read_earlier)
                 results.strides.turned.connect(self._strides.turn)
@@ -217,30 +229,50 @@ class ResultsStep(Step):
 
             self._how_found = DiagnosticsController(self.page.found(), self._visit.looking, self)
             self._how_found.refused.connect(self.told)
-            self._how_found.writing.connect(self._on_figures_wished)
+            self._how_found.writing.connect(partial(self._on_figures_wished, self.page.found(), "how-found"))
             self.page.found().closed.connect(self._on_answered)
         return self._how_found
+
+    def _compare(self) -> None:
+        """Put the session beside an optical system; the page is made at the first time."""
+        evaluation = self._visit.evaluation
+        if evaluation.session is None or evaluation.analysis is None:
+            return
+        self._part = Shown.AGREEMENT
+        page = self.page.agreement()
+        if self._compared is None:
+            from app.workers.agreement_controller import AgreementController
+
+            self._compared = AgreementController(page, self._visit.comparing, self)
+            self._compared.writing.connect(partial(self._on_figures_wished, page, "agreement"))
+            page.closed.connect(self._on_answered)
+        self._compared.show(evaluation.session, evaluation.analysis)
+        self._show()
+        page.focus()
 
     def _on_answered(self) -> None:
         self._part = Shown.RESULTS
         self._visit.looking.stop()
+        self._visit.comparing.stop()
         self._show()
 
-    def _on_figures_wished(self, folder: Path, write: Callable[[], None]) -> None:
+    def _on_figures_wished(
+        self, page: "FoundPage | AgreementPage", what: str, folder: Path, write: Callable[[], None]
+    ) -> None:
         from app.workers.diagnostics_controller import saved_from_library
 
         if (session := self._visit.session) is not None:
             session_id = session.id
             self._visit.controller.run(
-                lambda opened: saved_from_library(opened, session_id, folder, write),
-                self._on_figures_saved,
+                lambda opened: saved_from_library(opened, session_id, what, folder, write),
+                partial(self._on_figures_saved, page),
                 self._on_figures_not_saved,
                 self,
             )
 
-    def _on_figures_saved(self, folder: Path) -> None:
+    def _on_figures_saved(self, page: "FoundPage | AgreementPage", folder: Path) -> None:
         self.told.emit("", "")
-        self.page.found().show_saved(folder.name)
+        page.show_saved(folder.name)
 
     def _on_figures_not_saved(self, what: str, remedy: str) -> None:
         self.told.emit(what, remedy)
@@ -417,6 +449,7 @@ class _ResultsFrame(PageStack):
         self._results: ResultPage | None = None
         self._correct: CorrectPage | None = None
         self._found: FoundPage | None = None
+        self._agreement: AgreementPage | None = None
         self.has_correct = False
         self._room = (0.0, 0.0)
         for page in (self.sentence, self.working):
@@ -462,6 +495,14 @@ class _ResultsFrame(PageStack):
             self.addWidget(self._found)
         return self._found
 
+    def agreement(self) -> "AgreementPage":
+        if self._agreement is None:
+            from app.pages.agreement_page import AgreementPage
+
+            self._agreement = AgreementPage(self._look)
+            self.addWidget(self._agreement)
+        return self._agreement
+
     def set_room(self, width: float, height: float) -> None:
         self._room = width, height
         if self._found is not None:
@@ -477,5 +518,7 @@ class _ResultsFrame(PageStack):
             self._results.focus()
         elif self._found is not None and shown is self._found:
             self._found.focus()
+        elif self._agreement is not None and shown is self._agreement:
+            self._agreement.focus()
         elif shown is self.sentence:
             self.sentence.button.setFocus()
