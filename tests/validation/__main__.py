@@ -49,7 +49,8 @@ Summary = Mapping[str, Any]
 
 def agreed(session: Path, references: Sequence[Path], out: Path) -> Summary:
     """What `gaitwright agree` writes as JSON; what it says goes nowhere."""
-    arguments = ["agree", str(session), "--reference", *map(str, references), "--out", str(out), "--no-report"]
+    arguments = ["agree", str(session), "--out", str(out), "--no-report"]
+    arguments += [argument for file in references for argument in ("--reference", str(file))]
     said, progress = io.StringIO(), io.StringIO()
     with contextlib.redirect_stdout(said), contextlib.redirect_stderr(progress):
         code = gaitwright(arguments)

@@ -89,6 +89,8 @@ def _pages(study: AgreementStudy, patient: Patient, pictures: Mapping[str, Pictu
     if withheld := verdict_words(study):
         first += [bullets([typed(said, SENTENCE_LENGTH) for said in withheld])]
     if study.with_angles:
+        clocks = [typed(clock_words(walk), SENTENCE_LENGTH) for walk in study.with_angles]
+        first += [heading(tr("Clocks and signs"), 2), bullets(clocks)]
         first += [paragraph(optical_words()), note(f"{dagger_words()} {_what_is_not_shown()}")]
     drawn = [(name, is_knee) for name, is_knee in ((KNEE, True), (ANKLE, False)) if name in pictures]
     more: list[list[Block]] = [
@@ -99,9 +101,6 @@ def _pages(study: AgreementStudy, patient: Patient, pictures: Mapping[str, Pictu
         ]
         for name, is_knee in drawn
     ]
-    clocks = [typed(clock_words(walk), SENTENCE_LENGTH) for walk in study.with_angles]
-    if clocks:
-        more += [[heading(tr("Clocks and signs")), bullets(clocks)]]
     return [first, *more]
 
 
