@@ -30,10 +30,10 @@ def add_agree_arguments(parser: argparse.ArgumentParser) -> None:
         "--reference",
         metavar="FILE",
         type=Path,
-        nargs="+",
+        action="append",
         required=True,
-        help="CSV with time_s and left_knee ... in degrees, OpenSim .mot, C3D, or Visual3D's text; one for each walk "
-        "or one for all",
+        help="CSV with time_s and left_knee ... in degrees, OpenSim .mot, C3D, or Visual3D's text; to be given again "
+        "for each further file",
     )
     parser.add_argument(
         "--library", metavar="LIBRARY", type=Path, default=default_folder(), help="the folder of the library (your own)"

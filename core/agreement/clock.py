@@ -25,6 +25,7 @@ MIN_LIKENESS = 0.7  # of the joint that fits best; the same joint in two marker 
 NOISE_SHARE = 0.02  # of the rates' power that is never explained, so that no likeness is infinitely good
 APART_S = 0.3  # offsets nearer than this are one and the same
 MIN_MARGIN = 1.05  # strides resemble each other: of a regular walk the next stride's fit is 0.8 of the best
+MIN_LEAD = 10.0  # of the score, the logarithm of a likelihood times seconds: a long walk tells by little differences
 ROUNDS = 12
 CORRELATED_S = 0.1  # errors nearer than this are not independent
 RATE_PRIOR = 300e-6  # clocks of sensors and cameras: 80 to 170 parts in a million are usual
@@ -65,11 +66,11 @@ class ReferenceClock:
 
 @dataclass(frozen=True, slots=True)
 class FoundOffset:
-    """The whole sample that fits best. `score` grows with overlap and likeness; `margin`: to the best rival."""
+    """The whole sample that fits best. `score` grows with overlap and likeness; `rival_score`: of the next best."""
 
     offset_s: float
     score: float
-    margin: float
+    rival_score: float
     likeness: Mapping[Joint, float]
 
 
@@ -88,11 +89,7 @@ class Alignment:
     sign: Mapping[Joint, int]
     gain: Mapping[Joint, float]
     likeness: Mapping[Joint, float]
-    margin: float
-
-    @property
-    def is_offset_certain(self) -> bool:
-        return self.margin >= MIN_MARGIN
+    is_offset_certain: bool
 
 
 def find_offset(trial: ComparedTrial) -> FoundOffset | Misfit:
@@ -132,7 +129,7 @@ def find_offset(trial: ComparedTrial) -> FoundOffset | Misfit:
     rival = float(score[np.abs(lags - lags[best]) > APART_S * GRID_HZ].max(initial=0.0))
     # a reference that begins `lag` samples after the measurement, and both on clocks of their own
     offset_s = _first_s(pairs, 1) - _first_s(pairs, 0) - lags[best] / GRID_HZ
-    return FoundOffset(float(offset_s), float(score[best]), float(score[best]) / max(rival, 1e-9), found)
+    return FoundOffset(float(offset_s), float(score[best]), rival, found)
 
 
 def align(trials: Sequence[ComparedTrial], found: Sequence[FoundOffset]) -> tuple[Alignment, ...]:
@@ -232,6 +229,7 @@ class _PolishedTrial:
     def alignment(self, rate: float, rate_sd: float) -> Alignment:
         offset_sd_s = self._settle() if self._of_joint else float("nan")
         sign = {joint: 1 if gain >= 0 else -1 for joint, gain in self.gain.items()}
+        start = self._start
         return Alignment(
             ReferenceClock(self.at_s, float(self.offset_s), float(rate)),
             offset_sd_s,
@@ -239,7 +237,7 @@ class _PolishedTrial:
             sign,
             {joint: abs(gain) for joint, gain in self.gain.items()},
             {joint: abs(value) for joint, value in self.likeness.items()},
-            self._start.margin,
+            start.score >= min(MIN_MARGIN * start.rival_score, start.rival_score + MIN_LEAD),
         )
 
 

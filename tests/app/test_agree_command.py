@@ -26,7 +26,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_it_writes_tables_curves_figures_and_a_report(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = folder / "out"
-    arguments = ["agree", str(folder / "session"), "--reference", str(folder / "ref.csv"), "--out", str(out)]
+    arguments = ["agree", "--reference", str(folder / "ref.csv"), str(folder / "session"), "--out", str(out)]
     assert main(arguments) == 0
     said = capsys.readouterr().out
     assert "M: RMSE with its mean removed, degrees" in said

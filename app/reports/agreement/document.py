@@ -13,6 +13,7 @@ from app.reports.agreement.printed import (
     dagger_words,
     figures_of_table_1,
     optical_words,
+    other_angles_words,
     rows_of_table_1,
     verdict_words,
 )
@@ -94,6 +95,7 @@ def _pages(study: AgreementStudy, patient: Patient, pictures: Mapping[str, Pictu
         for mark, title, of_walk, of_all in figures_of_table_1():
             first += [heading(f"{mark}: {title}", 2), _table_1(study, patient, of_walk, of_all)]
         first += [heading(tr("Over all walks"), 2), _over_walks(study, patient)]
+        first += [note(" ".join(other_angles_words(study)))]
         if any(walk.recording.gait for walk in study.with_angles):
             first += [heading(tr("Errors by phase, degrees RMSE with the walk's mean removed"), 2)]
             first += [_phases(study, patient)]
@@ -102,6 +104,8 @@ def _pages(study: AgreementStudy, patient: Patient, pictures: Mapping[str, Pictu
     if withheld := verdict_words(study):
         first += [bullets([typed(said, SENTENCE_LENGTH) for said in withheld])]
     if study.with_angles:
+        clocks = [typed(clock_words(walk), SENTENCE_LENGTH) for walk in study.with_angles]
+        first += [heading(tr("Clocks and signs"), 2), bullets(clocks)]
         first += [paragraph(optical_words()), note(f"{dagger_words()} {_what_is_not_shown()}")]
     drawn = [(name, is_knee) for name, is_knee in ((KNEE, True), (ANKLE, False)) if name in pictures]
     more: list[list[Block]] = [
@@ -112,9 +116,6 @@ def _pages(study: AgreementStudy, patient: Patient, pictures: Mapping[str, Pictu
         ]
         for name, is_knee in drawn
     ]
-    clocks = [typed(clock_words(walk), SENTENCE_LENGTH) for walk in study.with_angles]
-    if clocks:
-        more += [[heading(tr("Clocks and signs")), bullets(clocks)]]
     return [first, *more]
 
 

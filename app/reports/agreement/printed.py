@@ -80,6 +80,7 @@ def printed(study: AgreementStudy, patient: Patient) -> Iterator[str]:
             assert over is not None  # as above
             yield _more(joint, role, over.whole)
         yield ""
+        yield from (f"  {said}" for said in other_angles_words(study))
         for number, walk in enumerate(walks, 1):
             yield f"  {number}: {clock_words(walk)}"
     yield from _events(study)
@@ -132,6 +133,21 @@ def verdict_words(study: AgreementStudy) -> list[str]:
                     joint=capitalised(name_of(joint)), walks=joined(names)
                 )
             )
+    return said
+
+
+def other_angles_words(study: AgreementStudy) -> list[str]:
+    """M of the angles that are not the result, on the same axes: the paper found its two to differ little."""
+    names = {
+        AngleKind.PUBLISHED: tr("The published fusion (eq 15) on the same axes, M: {figures}."),
+        AngleKind.ORIENTATION: tr("Orientations of the sensors (eq 10) on the same axes, M: {figures}."),
+    }
+    said = []
+    for kind, sentence in names.items():
+        found = [(joint, over) for joint in study.joints if (over := study.over_walks(joint, kind)) is not None]
+        figures = ", ".join(f"{name_of(joint)} {math.degrees(over.whole.m_rad):.2f}°" for joint, over in found)
+        if figures:
+            said.append(sentence.format(figures=figures))
     return said
 
 

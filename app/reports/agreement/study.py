@@ -276,7 +276,7 @@ def _refusal(
         return FileRefusedError(where, what, "Give the reference of this session, and see that left is left in it")
     if Misfit.TOO_LITTLE_MOTION in misfits:
         what = "the joints hardly move in it, so its clock cannot be found"
-        return FileRefusedError(where, what, "Give the reference of a walk, not of standing")
+        return FileRefusedError(where, what, "Give the reference of a walk, not of standing, in degrees")
     if Misfit.TOO_SHORT in misfits:
         what = "there are not two seconds of motion without gaps that both systems saw"
         return FileRefusedError(where, what, "Give the reference of a whole walk, at 20 or more samples a second")

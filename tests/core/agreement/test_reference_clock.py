@@ -64,6 +64,7 @@ def test_an_offset_of_any_size_is_found_to_a_tenth_of_a_sample(offset_s: float) 
 @pytest.mark.parametrize("ppm", [150.0, -150.0, 400.0])
 def test_a_clock_that_runs_fast_is_found_over_a_minute(ppm: float) -> None:
     (found,) = aligned(trial(2.0, ppm, seconds=60.0))
+    assert found.is_offset_certain
     assert 1e6 * found.clock.rate == pytest.approx(ppm, abs=15)
     for time_s in (1.0, 30.0, 59.0):
         assert shown_at(found, time_s) == pytest.approx(2.0 + time_s * (1 + 1e-6 * ppm), abs=0.001)
@@ -184,6 +185,12 @@ def test_a_second_of_motion_is_too_short_and_other_joints_have_nothing_in_common
         joint: replace(curve, angle_rad=np.full_like(curve.angle_rad, np.nan)) for joint, curve in one.reference.items()
     }
     assert find_offset(replace(one, reference=nothing)) is Misfit.TOO_SHORT
+
+
+def test_ten_minutes_are_certain_though_each_stride_is_like_the_next() -> None:
+    (found,) = aligned(trial(2.0, 170.0, seconds=600.0, hz=60.0))
+    assert found.is_offset_certain
+    assert 1e6 * found.clock.rate == pytest.approx(170.0, abs=2)
 
 
 def test_a_machine_that_repeats_itself_exactly_leaves_the_offset_in_doubt() -> None:
