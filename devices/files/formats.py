@@ -6,6 +6,8 @@ from pathlib import Path
 
 from devices.files.apdm import apdm_trial, is_apdm
 from devices.files.csv_tables import csv_trial, is_csv
+from devices.files.matlab_tables import matlab_trial
+from devices.files.matlab_variables import is_matlab
 from devices.files.parquet_tables import is_parquet, parquet_trial
 from devices.files.refusal import FileRefusedError
 from devices.files.trial import ImportedTrial
@@ -30,6 +32,7 @@ class FileFormat:
 FORMATS: Mapping[str, FileFormat] = {
     "xsens-mtmanager": FileFormat(is_mtmanager, mtmanager_trial, is_one_sensor=True),
     "apdm": FileFormat(is_apdm, apdm_trial),
+    "matlab": FileFormat(is_matlab, matlab_trial, is_one_sensor=True),
     "parquet": FileFormat(is_parquet, parquet_trial, is_one_sensor=True),
     "csv": FileFormat(is_csv, csv_trial, is_one_sensor=True),  # the last that is asked
 }
