@@ -11,6 +11,7 @@ from devices.files.matlab_variables import is_matlab
 from devices.files.parquet_tables import is_parquet, parquet_trial
 from devices.files.refusal import FileRefusedError
 from devices.files.trial import ImportedTrial
+from devices.files.xdf import is_xdf, xdf_trial
 from devices.files.xsens_mtmanager import is_mtmanager, mtmanager_trial
 
 HEAD_BYTES = 65_536  # heads of many sensors are long
@@ -32,6 +33,7 @@ class FileFormat:
 FORMATS: Mapping[str, FileFormat] = {
     "xsens-mtmanager": FileFormat(is_mtmanager, mtmanager_trial, is_one_sensor=True),
     "apdm": FileFormat(is_apdm, apdm_trial),
+    "xdf": FileFormat(is_xdf, xdf_trial),
     "matlab": FileFormat(is_matlab, matlab_trial, is_one_sensor=True),
     "parquet": FileFormat(is_parquet, parquet_trial, is_one_sensor=True),
     "csv": FileFormat(is_csv, csv_trial, is_one_sensor=True),  # the last that is asked

@@ -11,6 +11,7 @@ SESSION = "session"  # in place of a format: a session folder
 PROGRAMS: Mapping[str, str] = {  # what writes each of `formats.FORMATS`, whose import takes longer than most files
     "xsens-mtmanager": "Xsens MT Manager",
     "apdm": "APDM Moveo, Mobility Lab or Motion Studio",
+    "xdf": "LabRecorder, as XDF",
     "matlab": "any program, as a MATLAB file with named variables",
     "parquet": "any program, as Parquet with named columns",
     "csv": "any program, as CSV with named columns",
