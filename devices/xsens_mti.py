@@ -100,7 +100,7 @@ class MtiFramer:
         self.heard.rows.append((device_s, *rate, *force))
         if q := _values(items, here.orientation):
             is_down = here.orientation & AXES_MASK == NORTH_EAST_DOWN
-            self.heard.orientations.append((device_s, *(_upward(q) if is_down else q)))
+            self.heard.orientations.append((device_s, *(upward(q) if is_down else q)))
 
     def _where(self, items: Items) -> "_Where":
         """Under which identifiers a message carries what is wanted; most messages carry the same."""
@@ -138,7 +138,7 @@ def _is_meant(values: tuple[float, ...], most: float) -> bool:
     return -most < x < most and -most < y < most and -most < z < most
 
 
-def _upward(q: Row) -> Row:
+def upward(q: Row) -> Row:
     """An orientation (4) to an earth with z down, as one to an earth with z up: x and y change places."""
     w, x, y, z = q
     return -HALF_TURN * (x + y), HALF_TURN * (w + z), HALF_TURN * (w - z), HALF_TURN * (y - x)

@@ -7,12 +7,16 @@ from pathlib import Path
 from devices.files.apdm import apdm_trial, is_apdm
 from devices.files.bids_motion import bids_motion_trial, bids_recording, is_bids_motion
 from devices.files.csv_tables import csv_trial, is_csv
+from devices.files.matlab_tables import matlab_trial
+from devices.files.matlab_variables import is_matlab
 from devices.files.movella_dot import dot_recording, is_movella_dot, movella_dot_trial
+from devices.files.mti_streams import is_mti_stream, mti_trial
 from devices.files.mvnx import is_mvnx, mvnx_trial
 from devices.files.opensim_orientations import is_opensim_orientations, opensim_trial
 from devices.files.parquet_tables import is_parquet, parquet_trial
 from devices.files.refusal import FileRefusedError
 from devices.files.trial import ImportedTrial
+from devices.files.xdf import is_xdf, xdf_trial
 from devices.files.xsens_mtmanager import is_mtmanager, mtmanager_trial
 
 HEAD_BYTES = 65_536  # heads of many sensors are long
@@ -36,10 +40,13 @@ class FileFormat:
 FORMATS: Mapping[str, FileFormat] = {
     "xsens-mtmanager": FileFormat(is_mtmanager, mtmanager_trial, is_one_sensor=True),
     "movella-dot": FileFormat(is_movella_dot, movella_dot_trial, is_one_sensor=True, trial_name=dot_recording),
+    "xsens-mti": FileFormat(is_mti_stream, mti_trial, is_one_sensor=True),
     "mvnx": FileFormat(is_mvnx, mvnx_trial),
     "apdm": FileFormat(is_apdm, apdm_trial),
     "opensim": FileFormat(is_opensim_orientations, opensim_trial),
     "bids-motion": FileFormat(is_bids_motion, bids_motion_trial, trial_name=bids_recording),
+    "xdf": FileFormat(is_xdf, xdf_trial),
+    "matlab": FileFormat(is_matlab, matlab_trial, is_one_sensor=True),
     "parquet": FileFormat(is_parquet, parquet_trial, is_one_sensor=True),
     "csv": FileFormat(is_csv, csv_trial, is_one_sensor=True),  # the last that is asked
 }

@@ -11,10 +11,13 @@ SESSION = "session"  # in place of a format: a session folder
 PROGRAMS: Mapping[str, str] = {  # what writes each of `formats.FORMATS`, whose import takes longer than most files
     "xsens-mtmanager": "Xsens MT Manager",
     "movella-dot": "the Movella DOT app",
+    "xsens-mti": "an Xsens MTi, as the bytes it sent",
     "mvnx": "Xsens MVN (MVNX)",
     "apdm": "APDM Moveo, Mobility Lab or Motion Studio",
     "opensim": "OpenSim (orientations)",
     "bids-motion": "BIDS-Motion",
+    "xdf": "LabRecorder, as XDF",
+    "matlab": "any program, as a MATLAB file with named variables",
     "parquet": "any program, as Parquet with named columns",
     "csv": "any program, as CSV with named columns",
 }
@@ -23,11 +26,14 @@ PROOFS: Mapping[str, str] = {  # what the reader of each was held against
     "xsens-mtmanager": "Real exports of wired and wireless sensors, with every delimiter.",
     "movella-dot": "Excerpts of public files of the app, its export and the SDK. No Excel file and no delta quantities "
     "were at hand.",
+    "xsens-mti": "Recorded streams in four number formats, to the last digit of another program's reading.",
     "mvnx": "The MVN manual. No real file was at hand.",
     "apdm": "Real CSV exports of both dialects; for HDF5 the published layout. No real HDF5 file was at hand.",
     "opensim": "OpenSim's documentation. No real file was at hand.",
     "bids-motion": "Its specification, a public table of channels, and our own exports, in which its validator finds "
     "no error. No samples of another program's set were at hand.",
+    "xdf": "Its specification. No file of LabRecorder was at hand.",
+    "matlab": "Small files that MATLAB wrote, without sensors, and files of many names and units, made for it.",
     "parquet": "Files with columns of many names and units, made for it.",
     "csv": "Files with columns of many names and units, made for it.",
 }

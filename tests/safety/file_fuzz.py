@@ -11,6 +11,7 @@ import argparse
 import io
 import os
 import random
+import struct
 import sys
 import tempfile
 import time
@@ -23,6 +24,7 @@ import numpy as np
 import openpyxl
 import pyarrow as pa
 import pyarrow.parquet as pq
+from scipy.io import savemat
 
 from core.body import Site
 from devices.files.imports import place_trial
@@ -30,6 +32,7 @@ from devices.files.limited_reader import LimitedReader, LimitedReading, ReadingE
 from devices.files.refusal import FileRefusedError
 from devices.files.session_folder import read_session
 from devices.files.site_files import MAG, QUAT, REQUIRED
+from devices.xbus import Item, Mid, item, message
 
 ROWS = 30
 GOOD_EVERY = 50
@@ -74,6 +77,7 @@ class Spoilable:
     read: Callable[[LimitedReader, Path], object]
     may_be_a_link: bool
     beside: Mapping[str, bytes] = field(default_factory=dict)
+    is_stream: bool = False  # whose damage is passed over, so that most of it is still read
 
 
 @dataclass(slots=True)
@@ -243,6 +247,76 @@ def foreign_parquet() -> bytes:
     return bytes(sink.getvalue().to_pybytes())
 
 
+def xdf() -> bytes:
+    """As LabRecorder: a stream of numbers and one of texts, offsets of the clock, footers."""
+
+    def chunk(tag: int, content: bytes) -> bytes:
+        return struct.pack("<BIH", 4, len(content) + 2, tag) + content
+
+    labels = "".join(
+        f"<channel><label>{name}_{axis}</label><unit>{unit}</unit></channel>"
+        for name, unit in (("acc", "m/s^2"), ("gyr", "deg/s"))
+        for axis in "xyz"
+    )
+    head = "<info><name>{}</name><channel_count>{}</channel_count><nominal_srate>{}</nominal_srate>{}</info>"
+    numbers = head.format(
+        "A", 6, 100, f"<channel_format>float32</channel_format><desc><channels>{labels}</channels></desc>"
+    )
+    texts = head.format("marks", 1, 0, "<channel_format>string</channel_format><desc/>")
+    chunks = [chunk(1, b"<info><version>1.0</version></info>")]
+    chunks += [chunk(2, struct.pack("<I", number) + one.encode()) for number, one in ((1, numbers), (2, texts))]
+    for first in range(0, ROWS, 10):
+        samples = [struct.pack("<Bd6f", 8, 5.0 + k / 100, 0.1, 0.2, 9.8, 1, 2, 90) for k in range(first, first + 10)]
+        chunks.append(chunk(3, struct.pack("<IBB", 1, 1, 10) + b"".join(samples)))
+        chunks.append(chunk(4, struct.pack("<Idd", 1, 5.0 + first / 100, -0.5)))
+        chunks.append(chunk(3, struct.pack("<IBBBdBB", 2, 1, 1, 8, 5.0 + first / 100, 1, 2) + b"go"))
+    chunks.append(chunk(5, bytes.fromhex("43A546DCCBF5410FB30ED5467383CBE4")))
+    footer = f"<info><sample_count>{ROWS}</sample_count></info>".encode()
+    return b"XDF:" + b"".join([*chunks, *(chunk(6, struct.pack("<I", number) + footer) for number in (1, 2))])
+
+
+def matlab(version: int) -> bytes:
+    """Two sensors as structures: as SciPy writes version 5, or laid out by hand as HDF5 of version 7.3."""
+    axes = {"acc": np.tile((0.1, 0.2, 9.8), (ROWS, 1)), "gyr": np.tile((0.01, 0.02, 0.03), (ROWS, 1))}
+    sensors = {name: {"time_s": np.arange(ROWS) / 100.0, **axes} for name in "AB"}
+    units = {"acc": "m/s^2", "gyr": "rad/s"}
+    content = io.BytesIO()
+    if version == 5:
+        savemat(content, {"units": units, **sensors})  # type: ignore[arg-type]  # its stubs know paths only
+        return b"MATLAB 5.0 MAT-file".ljust(116) + content.getvalue()[116:]  # else with the time of now
+    import h5py  # an extra
+
+    with h5py.File(content, "w", userblock_size=512) as file:
+        for name, columns_of in sensors.items():
+            file.create_group(name).attrs["MATLAB_class"] = np.bytes_("struct")
+            for column, values in columns_of.items():
+                file[f"{name}/{column}"] = np.atleast_2d(values.T)
+                file[f"{name}/{column}"].attrs["MATLAB_class"] = np.bytes_("double")
+        for name, unit in units.items():
+            file[f"units/{name}"] = np.array([[ord(letter)] for letter in unit], dtype=np.uint16)
+            file[f"units/{name}"].attrs["MATLAB_class"] = np.bytes_("char")
+    head = b"MATLAB 7.3 MAT-file".ljust(124) + b"\x00\x02IM"
+    return head.ljust(512, b"\0") + content.getvalue()[512:]
+
+
+def mti() -> bytes:
+    """As an MTi sends it: a header, then messages with counter, time, rate and acceleration."""
+    data = message(Mid.DEVICE_ID + 1, bytes.fromhex("0123ABCD"))
+    for k in range(ROWS):
+        items = [(Item.COUNTER, struct.pack(">H", k)), (Item.FINE_TIME, struct.pack(">I", 100 * k))]
+        items += [
+            (Item.RATE, struct.pack(">3f", 0.1, 0.2, 0.3)),
+            (Item.ACCELERATION, struct.pack(">3f", 0.1, 0.2, 9.8)),
+        ]
+        data += message(Mid.MT_DATA2, b"".join(item(identifier, content) for identifier, content in items))
+    return data
+
+
+def read_mti(reader: LimitedReader, folder: Path) -> object:
+    trial = LimitedReading(reader, nobody).read_trial("xsens-mti", [folder / "export.bin"], None)
+    return place_trial(trial, {Site.LEFT_THIGH: "export.bin"}, "walk 1")
+
+
 def nobody() -> None: ...
 
 
@@ -255,9 +329,13 @@ def importers() -> dict[str, Spoilable]:
         "movella-dot": Spoilable(movella_dot(), "export.csv", read_unnamed, may_be_a_link=False),
         "movella-dot-xlsx": Spoilable(movella_dot_xlsx(), "export.csv", read_unnamed, may_be_a_link=False),
         "mvnx": Spoilable(mvnx(), "export.csv", read_unnamed, may_be_a_link=False),
+        "xsens-mti": Spoilable(mti(), "export.bin", read_mti, may_be_a_link=False, is_stream=True),
         "apdm": Spoilable(apdm(), "export.csv", read_unnamed, may_be_a_link=False),
         "csv-named": Spoilable(foreign_csv(), "export.csv", read_unnamed, may_be_a_link=False),
         "parquet-named": Spoilable(foreign_parquet(), "export.csv", read_unnamed, may_be_a_link=False),
+        "xdf": Spoilable(xdf(), "export.csv", read_unnamed, may_be_a_link=False),
+        "matlab": Spoilable(matlab(5), "export.csv", read_unnamed, may_be_a_link=False),
+        "matlab-7.3": Spoilable(matlab(7), "export.csv", read_unnamed, may_be_a_link=False),
         "apdm-hdf5": Spoilable(apdm_hdf5(), "export.csv", read_unnamed, may_be_a_link=False),
         "opensim": Spoilable(opensim(), "export.csv", read_unnamed, may_be_a_link=False),
         "bids-motion": Spoilable(

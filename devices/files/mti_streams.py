@@ -1,0 +1,279 @@
+"""Streams of an Xsens MTi kept as they came: bytes of the Xbus protocol, one file for each sensor.
+
+What a message holds is read as by the live driver (`devices.xbus`), which was held against recorded streams and another
+program's reading of them. Times are those of the sensor's fine clock, else of its packet counter. Rates are means over
+the interval before their stamps. Where rates or acceleration were not sent, they are made of what was: the turns and
+velocities of each interval, or the orientation, with gravity added to free acceleration; the latter two are said.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from core.findings import Finding, Severity
+from core.samples import BoolArray, FloatArray, ImuBlock, RateKind, SensorInfo
+from devices.files.orientation_rates import Numbers, derive_rates
+from devices.files.refusal import FileRefusedError
+from devices.files.trial import ImportedSensor, ImportedTrial, UnreadFile
+from devices.xbus import AXES_MASK, ITEM_MASK, NORTH_EAST_DOWN, PREAMBLE, Item, Items, Message, Mid, XbusFramer, values
+from devices.xsens_mti import (
+    COUNTER_BITS,
+    DRIVER,
+    FINE_BITS,
+    FINE_HZ,
+    MOST_M_S2,
+    MOST_RAD_S,
+    upward,
+)
+
+OLD_DATA = 0x32  # MTData, which MTi sensors sent before MTData2
+MOST_BEFORE = 4096  # bytes of noise before the first message
+PIECE = 1 << 20  # bytes
+LEAST_MESSAGES = 3
+MATRIX, FREE_ACCELERATION = 0x2020, 0x4030
+GRAVITY_M_S2 = 9.81
+SET_OUTPUT = "Let the sensor send rate of turn, acceleration and sample time fine (MT Manager, Output Configuration)"
+
+
+@dataclass(frozen=True, slots=True)
+class MtiStream:
+    """What was read of one stream: one row for each message with motion, NaN where it did not tell."""
+
+    ticks: FloatArray
+    counter: FloatArray
+    rate: FloatArray
+    force: FloatArray
+    turn: FloatArray
+    velocity: FloatArray
+    free: FloatArray
+    q: FloatArray
+    mag: FloatArray
+    serial: str
+    damaged: int
+
+
+def is_mti_stream(path: Path, head: bytes) -> bool:
+    """Whether a file is a stream of Xbus messages of one sensor, old ones included."""
+    if PREAMBLE not in head[:MOST_BEFORE]:
+        return False
+    messages = XbusFramer(_ANSWERS).feed(head)
+    of_motion = [one for one in messages if one.mid in (Mid.MT_DATA2, OLD_DATA)]
+    read = sum(len(one.data) + 5 for one in messages)
+    return len(of_motion) >= min(LEAST_MESSAGES, len(messages)) > 0 and 2 * read > len(head)
+
+
+def mti_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedTrial:
+    """The sensors of one trial, each in a file of its own.
+
+    Parameters
+    ----------
+    rate_hz
+        Samples per second, for streams that tell a counter and no time.
+
+    Raises
+    ------
+    FileRefusedError
+        No motion was sent, or nothing that tells its time, in the only file.
+    OSError
+        A file cannot be read.
+    """
+    sensors: list[ImportedSensor] = []
+    unread = []
+    for path in files:
+        try:
+            sensors.append(_sensor(path, rate_hz, is_alone=len(files) == 1))
+        except FileRefusedError as refusal:
+            unread.append(UnreadFile(str(path), (), refusal))
+    if not sensors and unread:
+        raise unread[0].refusal
+    return ImportedTrial(DRIVER, tuple(sensors), tuple(unread))
+
+
+def read_mti_stream(path: Path) -> MtiStream:
+    """Read all messages of a stream; damaged stretches are passed over.
+
+    Raises
+    ------
+    FileRefusedError
+        It holds messages of the older kind alone, or none of motion.
+    OSError
+        The file cannot be read.
+    """
+    framer, rows = XbusFramer(_ANSWERS), _Rows()
+    with path.open("rb") as file:
+        while piece := file.read(PIECE):
+            rows.take(framer.feed(piece))
+    rows.take(framer.flush())
+    if not rows.rows:
+        what = "no message in it holds rate of turn, acceleration or orientation"
+        if rows.is_old:
+            what = "its messages are of the older kind MTData, whose content they do not tell"
+        raise FileRefusedError(path.name, what, SET_OUTPUT)
+    columns = np.array(rows.rows).T
+    parts = np.split(columns, np.cumsum([1, 1, 3, 3, 4, 3, 3, 4]))
+    ticks, counter, rate, force, turn, velocity, free, q, mag = (part.T for part in parts)
+    return MtiStream(ticks[:, 0], counter[:, 0], rate, force, turn, velocity, free, q, mag, rows.serial, framer.damaged)
+
+
+class _Rows:
+    """A row for each message with motion, in the order in which they came."""
+
+    def __init__(self) -> None:
+        self.rows: list[tuple[float, ...]] = []
+        self.serial = ""
+        self.is_old = False
+
+    def take(self, messages: Sequence[Message]) -> None:
+        for one in messages:
+            if one.mid == Mid.MT_DATA2:
+                self._sample(one.items)
+            elif one.mid == Mid.DEVICE_ID + 1 and one.data:
+                self.serial = one.data.hex().upper()
+            self.is_old |= one.mid == OLD_DATA
+
+    def _sample(self, items: Items) -> None:
+        told = {identifier & ITEM_MASK: identifier for identifier in items}
+
+        def of(kind: int, count: int, most: float = np.inf) -> tuple[float, ...]:
+            found = values(told[kind], items[told[kind]]) if kind in told else ()
+            is_meant = len(found) == count and all(-most < value < most for value in found)
+            return found if is_meant else (np.nan,) * count
+
+        rate, force = of(Item.RATE, 3, MOST_RAD_S), of(Item.ACCELERATION, 3, MOST_M_S2)
+        turn, velocity = of(Item.ROTATION_CHANGE, 4, 2.0), of(Item.VELOCITY_CHANGE, 3, MOST_M_S2)
+        free, q = of(FREE_ACCELERATION, 3, MOST_M_S2), of(Item.QUATERNION, 4, 2.0)
+        if np.isnan(q[0]):
+            q = _of_matrix(of(MATRIX, 9, 2.0))
+        if told.get(Item.QUATERNION, told.get(MATRIX, 0)) & AXES_MASK == NORTH_EAST_DOWN:
+            q = upward(q)
+        if told.get(FREE_ACCELERATION, 0) & AXES_MASK == NORTH_EAST_DOWN:
+            free = free[1], free[0], -free[2]
+        if not np.isfinite([rate[0], turn[0], q[0]]).any() or not np.isfinite([force[0], velocity[0], free[0]]).any():
+            return  # what the satellites told
+        ticks, counter = of(Item.FINE_TIME, 1), of(Item.COUNTER, 1)
+        mag = of(Item.MAGNETIC_FIELD, 3)
+        self.rows.append((*ticks, *counter, *rate, *force, *turn, *velocity, *free, *q, *mag))
+
+
+def _of_matrix(matrix: Sequence[float]) -> tuple[float, ...]:
+    """A quaternion (4) of a rotation matrix, which is sent column after column; NaN of what is none."""
+    columns = np.array(matrix).reshape(3, 3).T
+    if not np.isfinite(columns).all() or np.abs(columns @ columns.T - np.eye(3)).max() > 0.05:
+        return (np.nan,) * 4
+    return tuple(Rotation.from_matrix(columns).as_quat(scalar_first=True).tolist())
+
+
+def _sensor(path: Path, asked_hz: float | None, *, is_alone: bool) -> ImportedSensor:
+    stream = read_mti_stream(path)
+    time_s, is_new, doubled = _times(stream, asked_hz, path.name)
+    step_s = np.diff(time_s)
+    usual_s = float(np.median(step_s)) if len(step_s) else 0.01
+    rate_hz = asked_hz or round(1.0 / usual_s, 3)
+    counter: Numbers = np.rint((time_s - time_s[:1]) / usual_s).astype(np.int64)
+    q = stream.q[is_new] if np.isfinite(stream.q).any() else None
+    gyr, is_derived = _rates(stream, is_new, q, counter, rate_hz)
+    acc, is_added = _forces(stream, is_new, q, usual_s)
+    findings = _findings(stream, doubled, is_derived=is_derived, is_added=is_added, is_alone=is_alone)
+    name = stream.serial or path.stem
+    block = ImuBlock(
+        sensor=name,
+        time_s=time_s - time_s[:1],
+        gyr_rad_s=gyr,
+        acc_m_s2=acc,
+        q_earth_from_sensor=q,
+        mag=stream.mag[is_new] if np.isfinite(stream.mag).any() else None,
+        is_rate_derived=is_derived,
+    )
+    kind = RateKind.INSTANTANEOUS if is_derived else RateKind.AVERAGED
+    info = SensorInfo(
+        serial=stream.serial, model="MTi", rate_hz=rate_hz, rate_kind=kind, clock="" if is_alone else name
+    )
+    return ImportedSensor(path.name, tuple({path.stem, name}), str(path), block, info, tuple(findings))
+
+
+def _times(stream: MtiStream, asked_hz: float | None, where: str) -> tuple[FloatArray, BoolArray, int]:
+    """(m,) ascending seconds; of all rows (n,) which they are of, and how many repeat one before or step back.
+
+    Raises
+    ------
+    FileRefusedError
+        Some message tells neither.
+    """
+    if np.isfinite(stream.ticks).all():
+        time_s = np.unwrap(stream.ticks, period=2.0**FINE_BITS) / FINE_HZ
+    elif asked_hz is None:
+        raise FileRefusedError(
+            where,
+            "not every message tells its time (sample time fine)",
+            "Give the samples per second in Hz (--rate), so that the packet counter tells it",
+        )
+    elif np.isfinite(stream.counter).all():
+        time_s = np.unwrap(stream.counter, period=2.0**COUNTER_BITS) / asked_hz
+    else:
+        raise FileRefusedError(where, "its messages tell neither time nor packet counter", SET_OUTPUT)
+    latest_s = np.maximum.accumulate(time_s)
+    is_new = np.concatenate([np.ones(len(time_s[:1]), dtype=bool), time_s[1:] > latest_s[:-1]])
+    return time_s[is_new], is_new, int(np.sum(~is_new))
+
+
+def _rates(
+    stream: MtiStream, is_new: BoolArray, q: FloatArray | None, counter: Numbers, rate_hz: float
+) -> tuple[FloatArray, bool]:
+    """(m, 3) rad/s, and whether they had to be derived from the orientation."""
+    if np.isfinite(stream.rate).any():
+        return stream.rate[is_new], False
+    turn = stream.turn[is_new]
+    is_there = np.isfinite(turn).all(axis=1) & (np.abs(np.linalg.norm(turn, axis=1) - 1.0) < 0.05)
+    if is_there.any():
+        rate = np.full((len(turn), 3), np.nan)
+        rate[is_there] = Rotation.from_quat(turn[is_there], scalar_first=True).as_rotvec() * rate_hz
+        return rate, False
+    assert q is not None  # of rows without rate and turn
+    return derive_rates(q, counter, rate_hz), True
+
+
+def _forces(stream: MtiStream, is_new: BoolArray, q: FloatArray | None, usual_s: float) -> tuple[FloatArray, bool]:
+    """(m, 3) m/s2 with gravity, and whether that had to be added.
+
+    Raises
+    ------
+    FileRefusedError
+        Gravity is taken out, and nothing tells where down is.
+    """
+    if np.isfinite(stream.force).any():
+        return stream.force[is_new], False
+    if np.isfinite(stream.velocity).any():
+        return stream.velocity[is_new] / usual_s, False
+    force = np.full((int(is_new.sum()), 3), np.nan)
+    felt = stream.free[is_new] + np.array([0.0, 0.0, GRAVITY_M_S2])
+    if q is None:
+        raise FileRefusedError(
+            stream.serial,
+            "gravity is taken out of its acceleration, and no orientation is there to add it again",
+            SET_OUTPUT,
+        )
+    is_there = np.isfinite(felt).all(axis=1) & np.isfinite(q).all(axis=1)
+    if is_there.any():
+        force[is_there] = Rotation.from_quat(q[is_there], scalar_first=True).inv().apply(felt[is_there])
+    return force, True
+
+
+def _findings(
+    stream: MtiStream, doubled: int, *, is_derived: bool, is_added: bool, is_alone: bool
+) -> Iterator[Finding]:
+    if is_derived:
+        yield Finding("rate_from_orientation", Severity.INFO, "")
+    if is_added:
+        yield Finding("gravity_from_orientation", Severity.INFO, "")
+    if doubled:
+        yield Finding("doubled_stamps", Severity.WARNING, "", {"count": doubled})
+    if stream.damaged:
+        yield Finding("damaged_stretches", Severity.WARNING, "", {"count": stream.damaged})
+    if not is_alone:
+        yield Finding("not_synchronised", Severity.WARNING, "")
+
+
+_ANSWERS = frozenset({OLD_DATA, Mid.DEVICE_ID + 1, Mid.PRODUCT + 1, Mid.FIRMWARE + 1, Mid.OUTPUT + 1})
