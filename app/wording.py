@@ -47,8 +47,8 @@ SENTENCES = {
         "show; export times or a counter with them."
     ),
     "times_straightened": (
-        "the times are those of packets, up to {away_ms:.0f} ms early or late, and were put on a straight line, so losses "
-        "shorter than {loss_ms:.0f} ms do not show. Send samples with the sensor's own times."
+        "the times are those of packets, up to {away_ms:.0f} ms early or late, and were put on a straight line, so "
+        "losses shorter than {loss_ms:.0f} ms do not show. Send samples with the sensor's own times."
     ),
     "stream_not_ended": (
         "the recording of this stream was not ended or lacks samples that were counted. What follows was lost."
