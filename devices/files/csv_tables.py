@@ -47,7 +47,7 @@ def csv_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedTr
     FileRefusedError
         What `tables` and `named_columns` refuse of the only file.
     """
-    return trial_of_tables("csv", files, _table, rate_hz)
+    return trial_of_tables("csv", files, lambda path: [_table(path)], rate_hz)
 
 
 def _table(path: Path) -> NamedTable:

@@ -7,6 +7,8 @@ from pathlib import Path
 from devices.files.apdm import apdm_trial, is_apdm
 from devices.files.bids_motion import bids_motion_trial, bids_recording, is_bids_motion
 from devices.files.csv_tables import csv_trial, is_csv
+from devices.files.matlab_tables import matlab_trial
+from devices.files.matlab_variables import is_matlab
 from devices.files.movella_dot import dot_recording, is_movella_dot, movella_dot_trial
 from devices.files.mvnx import is_mvnx, mvnx_trial
 from devices.files.opensim_orientations import is_opensim_orientations, opensim_trial
@@ -40,6 +42,7 @@ FORMATS: Mapping[str, FileFormat] = {
     "apdm": FileFormat(is_apdm, apdm_trial),
     "opensim": FileFormat(is_opensim_orientations, opensim_trial),
     "bids-motion": FileFormat(is_bids_motion, bids_motion_trial, trial_name=bids_recording),
+    "matlab": FileFormat(is_matlab, matlab_trial, is_one_sensor=True),
     "parquet": FileFormat(is_parquet, parquet_trial, is_one_sensor=True),
     "csv": FileFormat(is_csv, csv_trial, is_one_sensor=True),  # the last that is asked
 }

@@ -70,9 +70,9 @@ def sensors_of_table(table: NamedTable, rate_hz: float | None) -> list[ImportedS
 
 
 def trial_of_tables(
-    format_name: str, files: Sequence[Path], read: Callable[[Path], NamedTable], rate_hz: float | None
+    format_name: str, files: Sequence[Path], read: Callable[[Path], Sequence[NamedTable]], rate_hz: float | None
 ) -> ImportedTrial:
-    """The sensors of several files of one trial, each read by `read`.
+    """The sensors of several files of one trial; `read` gives the tables of each.
 
     Raises
     ------
@@ -83,14 +83,15 @@ def trial_of_tables(
     unread = []
     for path in files:
         try:
-            found = sensors_of_table(read(path), rate_hz)
+            tables = [(table.called, sensors_of_table(table, rate_hz)) for table in read(path)]
         except FileRefusedError as refusal:
             unread.append(UnreadFile(str(path), (), refusal))
             continue
-        names = {sensor.name.casefold() for sensor in sensors}
-        if any(sensor.name.casefold() in names for sensor in found):  # each file may call its sensor "imu"
-            found = [replace(sensor, name=f"{path.stem} {sensor.name}") for sensor in found]
-        sensors += found
+        for called, found in tables:
+            names = {sensor.name.casefold() for sensor in sensors}
+            if any(sensor.name.casefold() in names for sensor in found):  # each table may call its sensor "imu"
+                found = [replace(sensor, name=f"{called} {sensor.name}") for sensor in found]
+            sensors += found
     if not sensors and unread:
         raise unread[0].refusal
     return ImportedTrial(format_name, tuple(sensors), tuple(unread))

@@ -41,7 +41,7 @@ def parquet_trial(files: Sequence[Path], rate_hz: float | None = None) -> Import
     FileRefusedError
         What `tables` and `named_columns` refuse of the only file.
     """
-    return trial_of_tables("parquet", files, _table, rate_hz)
+    return trial_of_tables("parquet", files, lambda path: [_table(path)], rate_hz)
 
 
 def _table(path: Path) -> NamedTable:

@@ -23,6 +23,7 @@ import numpy as np
 import openpyxl
 import pyarrow as pa
 import pyarrow.parquet as pq
+from scipy.io import savemat
 
 from core.body import Site
 from devices.files.imports import place_trial
@@ -243,6 +244,30 @@ def foreign_parquet() -> bytes:
     return bytes(sink.getvalue().to_pybytes())
 
 
+def matlab(version: int) -> bytes:
+    """Two sensors as structures: as SciPy writes version 5, or laid out by hand as HDF5 of version 7.3."""
+    axes = {"acc": np.tile((0.1, 0.2, 9.8), (ROWS, 1)), "gyr": np.tile((0.01, 0.02, 0.03), (ROWS, 1))}
+    sensors = {name: {"time_s": np.arange(ROWS) / 100.0, **axes} for name in "AB"}
+    units = {"acc": "m/s^2", "gyr": "rad/s"}
+    content = io.BytesIO()
+    if version == 5:
+        savemat(content, {"units": units, **sensors})  # type: ignore[arg-type]  # its stubs know paths only
+        return b"MATLAB 5.0 MAT-file".ljust(116) + content.getvalue()[116:]  # else with the time of now
+    import h5py  # an extra
+
+    with h5py.File(content, "w", userblock_size=512) as file:
+        for name, columns_of in sensors.items():
+            file.create_group(name).attrs["MATLAB_class"] = np.bytes_("struct")
+            for column, values in columns_of.items():
+                file[f"{name}/{column}"] = np.atleast_2d(values.T)
+                file[f"{name}/{column}"].attrs["MATLAB_class"] = np.bytes_("double")
+        for name, unit in units.items():
+            file[f"units/{name}"] = np.array([[ord(letter)] for letter in unit], dtype=np.uint16)
+            file[f"units/{name}"].attrs["MATLAB_class"] = np.bytes_("char")
+    head = b"MATLAB 7.3 MAT-file".ljust(124) + b"\x00\x02IM"
+    return head.ljust(512, b"\0") + content.getvalue()[512:]
+
+
 def nobody() -> None: ...
 
 
@@ -258,6 +283,8 @@ def importers() -> dict[str, Spoilable]:
         "apdm": Spoilable(apdm(), "export.csv", read_unnamed, may_be_a_link=False),
         "csv-named": Spoilable(foreign_csv(), "export.csv", read_unnamed, may_be_a_link=False),
         "parquet-named": Spoilable(foreign_parquet(), "export.csv", read_unnamed, may_be_a_link=False),
+        "matlab": Spoilable(matlab(5), "export.csv", read_unnamed, may_be_a_link=False),
+        "matlab-7.3": Spoilable(matlab(7), "export.csv", read_unnamed, may_be_a_link=False),
         "apdm-hdf5": Spoilable(apdm_hdf5(), "export.csv", read_unnamed, may_be_a_link=False),
         "opensim": Spoilable(opensim(), "export.csv", read_unnamed, may_be_a_link=False),
         "bids-motion": Spoilable(
