@@ -8,7 +8,18 @@ from app.terminal import finding_lines, one_of, positive
 
 # as core.samples.RecordingKind and devices.files.formats have them, whose imports would cost half a second here
 KINDS = ("standing", "free_motion", "walking")
-FORMATS = ("xsens-mtmanager", "movella-dot", "mvnx", "apdm", "opensim", "bids-motion", "matlab", "parquet", "csv")
+FORMATS = (
+    "xsens-mtmanager",
+    "movella-dot",
+    "mvnx",
+    "apdm",
+    "opensim",
+    "bids-motion",
+    "xdf",
+    "matlab",
+    "parquet",
+    "csv",
+)
 
 Report = Callable[[float, str], None]
 

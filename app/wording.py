@@ -45,6 +45,17 @@ SENTENCES = {
         "the file tells no times, so its samples are taken to follow each other at {rate_hz:g} Hz. Lost samples do not "
         "show; export times or a counter with them."
     ),
+    "times_straightened": (
+        "the times are those of packets, up to {away_ms:.0f} ms early or late, and were put on a straight line. Losses "
+        "shorter than {loss_ms:.0f} ms do not show. Send samples with the sensor's own times."
+    ),
+    "stream_not_ended": (
+        "the recording of this stream was not ended or lacks samples that were counted. What follows was lost."
+    ),
+    "clock_not_measured": (
+        "the clock of “{host}”, which sent this sensor, was not measured against the others', so its samples may be "
+        "off in time. Record again with all computers in one network."
+    ),
     "orientation_left_out": (
         "the orientation ({names}) does not turn gravity upwards, so it is not earth from sensor. It was left out."
     ),

@@ -74,6 +74,7 @@ SCALES: Mapping[Quantity, Mapping[str, float]] = {
 SPELLINGS: Mapping[Quantity, Mapping[str, str]] = {  # as `_plain_unit` leaves them
     Quantity.ACC: {
         **dict.fromkeys(("m/s2", "ms2", "m/s/s", "ms-2", "mps2", "m/sec2", "mpers2", "m/ss"), "m/s2"),
+        **dict.fromkeys(("meter/s2", "meters/s2", "metres/s2", "meters/second2", "metres/second2"), "m/s2"),
         "g": "g",
         "mg": "mg",
     },

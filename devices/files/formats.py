@@ -15,6 +15,7 @@ from devices.files.opensim_orientations import is_opensim_orientations, opensim_
 from devices.files.parquet_tables import is_parquet, parquet_trial
 from devices.files.refusal import FileRefusedError
 from devices.files.trial import ImportedTrial
+from devices.files.xdf import is_xdf, xdf_trial
 from devices.files.xsens_mtmanager import is_mtmanager, mtmanager_trial
 
 HEAD_BYTES = 65_536  # heads of many sensors are long
@@ -42,6 +43,7 @@ FORMATS: Mapping[str, FileFormat] = {
     "apdm": FileFormat(is_apdm, apdm_trial),
     "opensim": FileFormat(is_opensim_orientations, opensim_trial),
     "bids-motion": FileFormat(is_bids_motion, bids_motion_trial, trial_name=bids_recording),
+    "xdf": FileFormat(is_xdf, xdf_trial),
     "matlab": FileFormat(is_matlab, matlab_trial, is_one_sensor=True),
     "parquet": FileFormat(is_parquet, parquet_trial, is_one_sensor=True),
     "csv": FileFormat(is_csv, csv_trial, is_one_sensor=True),  # the last that is asked

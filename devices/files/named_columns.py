@@ -107,7 +107,7 @@ def _sensor(table: NamedTable, named: SensorColumns, asked_hz: float | None, oth
             "Save them with a row for every sample",
             sensor=quoted(name),
         )
-    findings: list[Finding] = []
+    findings = list(table.findings)
     acc, gyr = _matrix(table, named.acc), _matrix(table, named.gyr)
     is_there: BoolArray = np.isfinite(np.hstack([acc, gyr])).any(axis=1)  # a row of another sensor's is none of its
     stamps = stamps_of(table, named, asked_hz, is_there, findings)

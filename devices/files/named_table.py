@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
+from core.findings import Finding
 from core.samples import FloatArray
 
 
@@ -28,6 +29,8 @@ class NamedTable:
         Stamps in seconds that the file keeps beside its columns.
     left_out
         Columns that were not even read as numbers.
+    findings
+        What its reader noticed, without a place.
     """
 
     columns: Mapping[str, FloatArray]
@@ -39,3 +42,4 @@ class NamedTable:
     rate_hz: float | None = None
     time_s: FloatArray | None = None
     left_out: Sequence[str] = ()
+    findings: Sequence[Finding] = ()

@@ -15,6 +15,7 @@ PROGRAMS: Mapping[str, str] = {  # what writes each of `formats.FORMATS`, whose 
     "apdm": "APDM Moveo, Mobility Lab or Motion Studio",
     "opensim": "OpenSim (orientations)",
     "bids-motion": "BIDS-Motion",
+    "xdf": "LabRecorder, as XDF",
     "matlab": "any program, as a MATLAB file with named variables",
     "parquet": "any program, as Parquet with named columns",
     "csv": "any program, as CSV with named columns",

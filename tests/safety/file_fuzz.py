@@ -11,6 +11,7 @@ import argparse
 import io
 import os
 import random
+import struct
 import sys
 import tempfile
 import time
@@ -244,6 +245,34 @@ def foreign_parquet() -> bytes:
     return bytes(sink.getvalue().to_pybytes())
 
 
+def xdf() -> bytes:
+    """As LabRecorder: a stream of numbers and one of texts, offsets of the clock, footers."""
+
+    def chunk(tag: int, content: bytes) -> bytes:
+        return struct.pack("<BIH", 4, len(content) + 2, tag) + content
+
+    labels = "".join(
+        f"<channel><label>{name}_{axis}</label><unit>{unit}</unit></channel>"
+        for name, unit in (("acc", "m/s^2"), ("gyr", "deg/s"))
+        for axis in "xyz"
+    )
+    head = "<info><name>{}</name><channel_count>{}</channel_count><nominal_srate>{}</nominal_srate>{}</info>"
+    numbers = head.format(
+        "A", 6, 100, f"<channel_format>float32</channel_format><desc><channels>{labels}</channels></desc>"
+    )
+    texts = head.format("marks", 1, 0, "<channel_format>string</channel_format><desc/>")
+    chunks = [chunk(1, b"<info><version>1.0</version></info>")]
+    chunks += [chunk(2, struct.pack("<I", number) + one.encode()) for number, one in ((1, numbers), (2, texts))]
+    for first in range(0, ROWS, 10):
+        samples = [struct.pack("<Bd6f", 8, 5.0 + k / 100, 0.1, 0.2, 9.8, 1, 2, 90) for k in range(first, first + 10)]
+        chunks.append(chunk(3, struct.pack("<IBB", 1, 1, 10) + b"".join(samples)))
+        chunks.append(chunk(4, struct.pack("<Idd", 1, 5.0 + first / 100, -0.5)))
+        chunks.append(chunk(3, struct.pack("<IBBBdBB", 2, 1, 1, 8, 5.0 + first / 100, 1, 2) + b"go"))
+    chunks.append(chunk(5, bytes.fromhex("43A546DCCBF5410FB30ED5467383CBE4")))
+    footer = f"<info><sample_count>{ROWS}</sample_count></info>".encode()
+    return b"XDF:" + b"".join([*chunks, *(chunk(6, struct.pack("<I", number) + footer) for number in (1, 2))])
+
+
 def matlab(version: int) -> bytes:
     """Two sensors as structures: as SciPy writes version 5, or laid out by hand as HDF5 of version 7.3."""
     axes = {"acc": np.tile((0.1, 0.2, 9.8), (ROWS, 1)), "gyr": np.tile((0.01, 0.02, 0.03), (ROWS, 1))}
@@ -283,6 +312,7 @@ def importers() -> dict[str, Spoilable]:
         "apdm": Spoilable(apdm(), "export.csv", read_unnamed, may_be_a_link=False),
         "csv-named": Spoilable(foreign_csv(), "export.csv", read_unnamed, may_be_a_link=False),
         "parquet-named": Spoilable(foreign_parquet(), "export.csv", read_unnamed, may_be_a_link=False),
+        "xdf": Spoilable(xdf(), "export.csv", read_unnamed, may_be_a_link=False),
         "matlab": Spoilable(matlab(5), "export.csv", read_unnamed, may_be_a_link=False),
         "matlab-7.3": Spoilable(matlab(7), "export.csv", read_unnamed, may_be_a_link=False),
         "apdm-hdf5": Spoilable(apdm_hdf5(), "export.csv", read_unnamed, may_be_a_link=False),

@@ -1,0 +1,245 @@
+"""Do XDF files become samples on the recording computer's clock, with every loss told?
+
+No recording of LabRecorder is at hand: files are written here by the format's description, chunk by chunk.
+"""
+
+import struct
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from core.body import Site
+from core.findings import Finding
+from devices.files import xdf_streams
+from devices.files.formats import recognised
+from devices.files.refusal import FileRefusedError
+from devices.files.trial import ImportedSensor
+from devices.files.xdf import straight_times, xdf_trial
+from tests.trials_of_files import import_with
+
+Numbers = NDArray[np.float64]
+ROWS, RATE_HZ, START_S = 2000, 100.0, 4321.0
+TIME_S = np.arange(ROWS) / RATE_HZ
+LABELS = [*(f"acc_{axis}" for axis in "xyz"), *(f"gyr_{axis}" for axis in "xyz")]
+UNITS = ["m/s^2"] * 3 + ["degrees/second"] * 3
+BOUNDARY = bytes.fromhex("43A546DCCBF5410FB30ED5467383CBE4")
+
+
+def motion(seed: int = 1) -> Numbers:
+    """(n, 6): specific force in m/s2, rates in deg/s; of 32 bits as they are sent."""
+    chance = np.random.default_rng(seed)
+    samples = np.hstack([chance.normal([0.0, 0.0, 9.81], size=(ROWS, 3)), 50.0 * chance.normal(size=(ROWS, 3))])
+    return samples.astype(np.float32).astype(np.float64)
+
+
+@dataclass
+class SentStream:
+    """What one sender put on the network."""
+
+    name: str
+    samples: Numbers = field(default_factory=motion)
+    stamp_s: Numbers = field(default_factory=lambda: START_S + TIME_S)
+    labels: Sequence[str] = tuple(LABELS)
+    units: Sequence[str] = tuple(UNITS)
+    rate_hz: float = RATE_HZ
+    host: str = "lab"
+    offset_s: float | None = 0.0  # from the sender's clock to the recorder's
+    is_deduced: bool = False  # stamps are told of the first of ten samples only
+    footer: bool = True
+
+    def header(self, kind: str = "float32") -> str:
+        channels = "".join(
+            f"<channel><label>{label}</label><unit>{unit}</unit><type>IMU</type></channel>"
+            for label, unit in zip(self.labels, self.units, strict=True)
+        )
+        return (
+            f"<?xml version='1.0'?><info><name>{self.name}</name><type>IMU</type>"
+            f"<channel_count>{len(self.labels)}</channel_count><nominal_srate>{self.rate_hz}</nominal_srate>"
+            f"<channel_format>{kind}</channel_format><source_id>id-{self.name}</source_id>"
+            f"<hostname>{self.host}</hostname><desc><channels>{channels}</channels></desc></info>"
+        )
+
+
+def chunk(tag: int, content: bytes) -> bytes:
+    length = len(content) + 2
+    head = struct.pack("<BB", 1, length) if length < 256 else struct.pack("<BI", 4, length)
+    return head + struct.pack("<H", tag) + content
+
+
+def recorded(path: Path, *streams: SentStream, has_markers: bool = True) -> Path:
+    content = [b"XDF:"]
+    content.append(chunk(1, b"<info><version>1.0</version><datetime>2026-03-04T10:11:12+0100</datetime></info>"))
+    for number, one in enumerate(streams, start=1):
+        content.append(chunk(2, struct.pack("<I", number) + one.header().encode()))
+    if has_markers:
+        content.append(
+            chunk(2, struct.pack("<I", 99) + SentStream("buttons", labels=["go"], units=[""]).header("string").encode())
+        )
+        content.append(chunk(3, struct.pack("<IBBBd", 99, 1, 1, 8, START_S) + b"\x01\x03now"))
+    for first in range(0, ROWS, 10):
+        for number, one in enumerate(streams, start=1):
+            rows = range(first, min(first + 10, len(one.stamp_s)))
+            if one.offset_s is not None and first % 500 == 0:
+                content.append(
+                    chunk(4, struct.pack("<Idd", number, START_S - one.offset_s + first / 100, one.offset_s))
+                )
+            if not rows:
+                continue
+            told = [
+                struct.pack("<B", 0) if one.is_deduced and k != first else struct.pack("<Bd", 8, one.stamp_s[k])
+                for k in rows
+            ]
+            values = [one.samples[k].astype("<f4").tobytes() for k in rows]
+            samples = b"".join(stamp + value for stamp, value in zip(told, values, strict=True))
+            content.append(chunk(3, struct.pack("<IBB", number, 1, len(rows)) + samples))
+        if first % 1000 == 0:
+            content.append(chunk(5, BOUNDARY))
+    for number, one in enumerate(streams, start=1):
+        if one.footer:
+            footer = f"<info><sample_count>{len(one.stamp_s)}</sample_count></info>"
+            content.append(chunk(6, struct.pack("<I", number) + footer.encode()))
+    path.write_bytes(b"".join(content))
+    return path
+
+
+def only(path: Path, rate_hz: float | None = None) -> ImportedSensor:
+    (sensor,) = xdf_trial([path], rate_hz).sensors
+    return sensor
+
+
+def finding(sensor: ImportedSensor, key: str) -> Finding | None:
+    return next((one for one in sensor.findings if one.key == key), None)
+
+
+def test_streams_are_sensors_in_si_units_on_the_recorders_clock(tmp_path: Path) -> None:
+    far = SentStream("right shank", motion(2), START_S + 7000.0 + TIME_S + 0.25, host="phone", offset_s=-7000.0)
+    path = recorded(tmp_path / "a.txt", SentStream("left shank"), far)
+    assert recognised([path]) == "xdf"
+    trial = xdf_trial([path])
+    assert trial.started[:10] == "2026-03-04"
+    assert [len(one.block) for one in trial.sensors] == [ROWS, ROWS]
+    placement = {Site.LEFT_SHANK: "left shank", Site.RIGHT_SHANK: "right_shank"}
+    imported = import_with(xdf_trial, [path], placement, "walk 1")
+    for site, seed, late_s in ((Site.LEFT_SHANK, 1, 0.0), (Site.RIGHT_SHANK, 2, 0.25)):
+        block = imported.imu[site]
+        np.testing.assert_allclose(block.acc_m_s2, motion(seed)[:, :3])
+        np.testing.assert_allclose(block.gyr_rad_s, np.deg2rad(motion(seed)[:, 3:]))
+        np.testing.assert_allclose(block.time_s, TIME_S + late_s, atol=1e-6)
+        assert imported.sensors[site].rate_hz == RATE_HZ
+    assert {one.key for one in imported.findings} == {"columns_understood", "columns_left_out"}
+    assert [one.numbers for one in imported.findings if one.key == "columns_left_out"] == [{"names": "buttons"}] * 2
+
+
+def test_two_sensors_in_one_stream_and_stamps_that_are_deduced(tmp_path: Path) -> None:
+    labels = [f"{side}_{label}" for side in ("L", "R") for label in LABELS]
+    both = SentStream("feet", np.hstack([motion(1), motion(2)]), labels=labels, units=UNITS * 2, is_deduced=True)
+    trial = xdf_trial([recorded(tmp_path / "a.xdf", both)])
+    assert [one.name for one in trial.sensors] == ["L", "R"]
+    np.testing.assert_allclose(trial.sensors[1].block.acc_m_s2, motion(2)[:, :3])
+    np.testing.assert_allclose(trial.sensors[1].block.time_s, TIME_S, atol=1e-9)
+
+
+def test_samples_that_a_sensor_did_not_send_are_a_gap(tmp_path: Path) -> None:
+    kept = np.r_[0:500, 530:ROWS]
+    sensor = only(recorded(tmp_path / "a.xdf", SentStream("a", motion()[kept], START_S + TIME_S[kept])))
+    np.testing.assert_allclose(sensor.block.time_s, TIME_S[kept], atol=1e-9)
+    assert finding(sensor, "times_straightened") is None
+
+
+def test_stamps_of_packets_are_put_on_a_line_and_losses_stay_gaps(tmp_path: Path) -> None:
+    chance = np.random.default_rng(3)
+    kept = np.r_[0:700, 712:1500, 1501:ROWS]  # 120 ms are lost, and 10 ms that do not show
+    late_s = np.repeat(chance.exponential(0.008, size=ROWS // 10), 10)
+    late_s[1000:1050] += 0.4  # five packets wait and come at once
+    stamps = np.repeat((TIME_S[9::10]), 10) + np.tile(np.arange(-9, 1), ROWS // 10) / RATE_HZ + late_s
+    sensor = only(recorded(tmp_path / "a.xdf", SentStream("a", motion()[kept], START_S + stamps[kept])))
+    said = finding(sensor, "times_straightened")
+    assert said is not None
+    assert 5.0 < float(said.numbers["away_ms"]) < 40.0
+    off_s = sensor.block.time_s - TIME_S[kept]
+    assert np.ptp(off_s) < 0.012  # the one sample that does not show, and nothing of 400 ms
+    assert np.diff(sensor.block.time_s)[699] == pytest.approx(0.13, abs=0.001)
+    assert np.sum(np.diff(sensor.block.time_s) > 0.015) == 1
+
+
+def test_even_stamps_stay_as_they_are() -> None:
+    assert straight_times(START_S + TIME_S, RATE_HZ) is None
+    assert straight_times(START_S + TIME_S[::3], RATE_HZ) is None  # every third was received
+    assert straight_times(np.full(ROWS, np.nan), RATE_HZ) is None
+    straight = straight_times(START_S + np.floor(TIME_S * 20) / 20, RATE_HZ)
+    assert straight is not None
+    assert np.ptp(straight.time_s - TIME_S) < 0.002
+
+
+def test_a_recording_that_was_not_ended_says_so(tmp_path: Path) -> None:
+    whole = recorded(tmp_path / "a.xdf", SentStream("a"))
+    assert finding(only(whole), "stream_not_ended") is None
+    assert finding(only(recorded(tmp_path / "b.xdf", SentStream("a", footer=False))), "stream_not_ended") is not None
+    content = whole.read_bytes()
+    whole.write_bytes(content[: len(content) // 2])
+    cut = only(whole)
+    assert finding(cut, "stream_not_ended") is not None
+    assert 0.4 * ROWS < len(cut.block) < 0.6 * ROWS
+    np.testing.assert_allclose(cut.block.acc_m_s2, motion()[: len(cut.block), :3])
+    place = content.index(struct.pack("<IBB", 1, 1, 10), len(content) // 3)  # ten samples are called eleven
+    whole.write_bytes(content[: place + 5] + b"\x0b" + content[place + 6 :])
+    damaged = only(whole)
+    assert finding(damaged, "stream_not_ended") is not None
+    row = round(damaged.block.time_s[-1] * RATE_HZ)
+    np.testing.assert_allclose(damaged.block.acc_m_s2[-1], motion()[row, :3])  # behind the next boundary it goes on
+    assert set(map(tuple, damaged.block.acc_m_s2)) <= set(map(tuple, motion()[:, :3]))  # and nothing was made up
+
+
+def test_a_clock_that_nobody_measured_is_told(tmp_path: Path) -> None:
+    both = xdf_trial(
+        [recorded(tmp_path / "a.xdf", SentStream("a"), SentStream("b", host="phone", offset_s=None))]
+    ).sensors
+    assert [finding(one, "clock_not_measured") is not None for one in both] == [False, True]
+    alone = only(recorded(tmp_path / "a.xdf", SentStream("b", host="phone", offset_s=None)))
+    assert finding(alone, "clock_not_measured") is None
+
+
+def test_what_senders_do_not_tell_is_asked_for(tmp_path: Path) -> None:
+    def refusal(*streams: SentStream) -> str:
+        with pytest.raises(FileRefusedError) as caught:
+            xdf_trial([recorded(tmp_path / "a.xdf", *streams)])
+        return str(caught.value)
+
+    parts = [
+        SentStream("force", motion()[:, :3], labels=LABELS[:3], units=UNITS[:3]),
+        SentStream("rate", motion()[:, 3:], labels=LABELS[3:], units=UNITS[3:]),
+    ]
+    assert (
+        "no stream in it has acceleration and angular rates about three axes each. Streams there are: force, rate, "
+        "buttons. Label the channels acc_x to acc_z and gyr_x to gyr_z" in refusal(*parts)
+    )
+    assert "is said to be in g" not in refusal(SentStream("a", units=["V"] * 3 + UNITS[3:]))
+    assert '"acc_x" is in "V", expected one of m/s2, g, mg' in refusal(SentStream("a", units=["V"] * 3 + UNITS[3:]))
+    assert "is said to be in g, but is" in refusal(SentStream("a", units=["g"] * 3 + UNITS[3:]))
+    twice = SentStream("a", np.hstack([motion(), motion()]), labels=LABELS * 2, units=UNITS * 2)
+    assert "no stream in it has acceleration" in refusal(twice)
+    back = START_S + TIME_S
+    back[1000:] -= 3.0
+    assert 'a, sample 1001: "time" steps back' in refusal(SentStream("a", stamp_s=back, rate_hz=0.0))
+    with pytest.raises(FileRefusedError, match="its times make 100 samples per second, 60 are expected"):
+        only(recorded(tmp_path / "a.xdf", SentStream("a")), 60.0)
+
+
+def test_other_files_and_damaged_ones_are_refused(tmp_path: Path) -> None:
+    path = tmp_path / "a.xdf"
+    for content in (b"XDF:", b"XDF:\x09", b"XDF:\x01\x02\x02\x00", b"XDF:\x08" + b"\xff" * 8):
+        path.write_bytes(content)
+        assert recognised([path]) == "xdf"
+        with pytest.raises(FileRefusedError, match=r"not readable as XDF|no stream in it has acceleration"):
+            xdf_trial([path])
+
+
+def test_without_its_library_it_says_what_to_install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = recorded(tmp_path / "a.xdf", SentStream("a"))
+    monkeypatch.setattr(xdf_streams, "find_spec", lambda _: None)
+    with pytest.raises(FileRefusedError, match=r"pyxdf, which is not installed. Install gaitwright\[imports\]"):
+        xdf_trial([path])
