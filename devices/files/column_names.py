@@ -286,7 +286,7 @@ def unit_of(quantity: Quantity, text: str) -> str:
 
 
 def _plain_unit(text: str) -> str:
-    return re.sub(r"[\s_^*·.]|\\", "", text.strip().strip("[](){}").lower()).translate(SUPERSCRIPTS)
+    return re.sub(r"[\s_^*·.()]|\\", "", text.strip().strip("[](){}").lower()).translate(SUPERSCRIPTS)
 
 
 def listed(names: Sequence[str]) -> str:

@@ -8,6 +8,7 @@ Not held against a recording of LabRecorder: against files that are laid out her
 """
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -15,12 +16,14 @@ import numpy as np
 
 from core.findings import Finding, Severity
 from core.samples import FloatArray
-from devices.files.column_names import listed, sensor_columns
+from devices.files.column_names import XYZ, listed, sensor_columns
 from devices.files.named_columns import trial_of_tables
 from devices.files.named_table import NamedTable
 from devices.files.refusal import FileRefusedError
 from devices.files.trial import ImportedTrial
 from devices.files.xdf_streams import SIGNATURE, XdfStream, read_xdf
+from devices.live import SourceRefusedError
+from devices.lsl import sensors_of
 
 LABEL_THEM = (
     "Label the channels acc_x to acc_z and gyr_x to gyr_z with their units where they are sent, both in one stream"
@@ -94,7 +97,7 @@ def _tables(path: Path, started: list[str]) -> Sequence[NamedTable]:
 def _table(
     path: Path, stream: XdfStream, called: str, others: Sequence[str], start_s: float, is_clock_missing: bool
 ) -> NamedTable:
-    columns, left_out = _columns(stream)
+    columns, units, left_out = _columns(stream)
     time_s = stream.stamp_s - start_s
     findings = []
     if not stream.is_whole:
@@ -112,20 +115,34 @@ def _table(
         file=str(path),
         called=called,
         place=lambda row: f"{called}, sample {row + 1}",
-        units={name: unit for name, unit in zip(stream.labels, stream.units, strict=True) if unit and name in columns},
+        units=units,
         time_s=time_s,
         left_out=[*left_out, *others],
         findings=findings,
     )
 
 
-def _columns(stream: XdfStream) -> tuple[dict[str, FloatArray], list[str]]:
-    """Channels by their labels, and the labels that several channels have."""
+def _columns(stream: XdfStream) -> tuple[dict[str, FloatArray], dict[str, str], list[str]]:
+    """Channels by their labels, their units, and the labels that are left out because several channels have them.
+
+    Where labels alone name no sensor it is one by the rules by which a stream is heard live: of a Shimmer's two
+    accelerometers the wide one. Its channels are called by their quantities then.
+    """
     labels = list(stream.labels)[: stream.samples.shape[1]]
-    columns = {
-        label: stream.samples[:, number] for number, label in enumerate(labels) if label and labels.count(label) == 1
-    }
-    return columns, [label for label in dict.fromkeys(labels) if label and label not in columns]
+    numbers = {label: number for number, label in enumerate(labels) if label and labels.count(label) == 1}
+    if not sensor_columns(list(numbers)) and len(numbers) == len(labels):
+        with suppress(SourceRefusedError):
+            numbers = {
+                f"{sensor.name}_{quantity}_{axis}": number
+                for sensor in sensors_of(stream.name, labels, stream.units)
+                for quantity, three in (("acc", sensor.force), ("gyr", sensor.rate))
+                for axis, number in zip(XYZ, three, strict=True)
+            }
+    columns = {name: stream.samples[:, number] for name, number in numbers.items()}
+    units = {name: stream.units[number] for name, number in numbers.items() if stream.units[number]}
+    taken = set(numbers.values())
+    left_out = [label for number, label in enumerate(labels) if label and number not in taken]
+    return columns, units, list(dict.fromkeys(left_out))
 
 
 def straight_times(stamp_s: FloatArray, rate_hz: float) -> StraightTimes | None:

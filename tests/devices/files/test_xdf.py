@@ -19,6 +19,8 @@ from devices.files.formats import recognised
 from devices.files.refusal import FileRefusedError
 from devices.files.trial import ImportedSensor
 from devices.files.xdf import straight_times, xdf_trial
+from devices.walker import simulate
+from devices.walker_body import Walk, WalkerSettings
 from tests.trials_of_files import import_with
 
 Numbers = NDArray[np.float64]
@@ -143,6 +145,21 @@ def test_two_sensors_in_one_stream_and_stamps_that_are_deduced(tmp_path: Path) -
     np.testing.assert_allclose(trial.sensors[1].block.time_s, TIME_S, atol=1e-9)
 
 
+def test_a_shimmers_labels_are_understood_as_when_it_is_heard(tmp_path: Path) -> None:
+    """Labels and units as Consensys sends them: two accelerometers, of which the wide one is taken."""
+    parts = {"Accel_LN": "m/(s^2)", "Accel_WR": "m/(s^2)", "Gyro": "deg/s"}
+    labels = [f"Shimmer_5E3A_{part}_{axis}_CAL" for part in parts for axis in "XYZ"]
+    units = [unit for unit in parts.values() for _ in "XYZ"]
+    samples = np.hstack([motion(2)[:, :3], motion()])
+    sensor = only(recorded(tmp_path / "a.xdf", SentStream("Shimmer", samples, labels=labels, units=units)))
+    assert sensor.name == "Shimmer_5E3A"
+    np.testing.assert_allclose(sensor.block.acc_m_s2, motion()[:, :3])
+    np.testing.assert_allclose(sensor.block.gyr_rad_s, np.deg2rad(motion()[:, 3:]))
+    left_out = finding(sensor, "columns_left_out")
+    assert left_out is not None
+    assert str(left_out.numbers["names"]).startswith("Shimmer_5E3A_Accel_LN_X_CAL, ")
+
+
 def test_samples_that_a_sensor_did_not_send_are_a_gap(tmp_path: Path) -> None:
     kept = np.r_[0:500, 530:ROWS]
     sensor = only(recorded(tmp_path / "a.xdf", SentStream("a", motion()[kept], START_S + TIME_S[kept])))
@@ -227,6 +244,30 @@ def test_what_senders_do_not_tell_is_asked_for(tmp_path: Path) -> None:
     assert 'a, sample 1001: "time" steps back' in refusal(SentStream("a", stamp_s=back, rate_hz=0.0))
     with pytest.raises(FileRefusedError, match="its times make 100 samples per second, 60 are expected"):
         only(recorded(tmp_path / "a.xdf", SentStream("a")), 60.0)
+
+
+def test_a_simulated_walk_comes_back_as_it_was_sent(tmp_path: Path) -> None:
+    """Three sensors of one leg that lose samples, each on the clock of its own sender."""
+    sites = (Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT)
+    settings = WalkerSettings(seed=3, recordings=(Walk(strides=8),), sites=sites, loss_fraction=0.02)
+    walk = simulate(settings).session.recordings[0].imu
+    assert max(map(len, walk.values())) <= ROWS
+    streams = []
+    for number, site in enumerate(sites):
+        samples = np.hstack([walk[site].acc_m_s2, np.rad2deg(walk[site].gyr_rad_s)])
+        stamps = (START_S + walk[site].time_s - 1000.0 * number).astype(np.float64)
+        streams.append(SentStream(site, samples, stamps, host=site, offset_s=1000.0 * number))
+    path = recorded(tmp_path / "a.xdf", *streams)
+    imported = import_with(xdf_trial, [path], {site: site for site in sites}, "walk 1")
+    start_s = min(walk[site].time_s[0] for site in sites)
+    for site in sites:
+        block = imported.imu[site]
+        assert np.max(np.diff(block.time_s)) > 0.015
+        np.testing.assert_allclose(block.time_s, walk[site].time_s - start_s, atol=1e-6)
+        np.testing.assert_allclose(block.acc_m_s2, walk[site].acc_m_s2, atol=1e-4)
+        np.testing.assert_allclose(block.gyr_rad_s, walk[site].gyr_rad_s, atol=1e-6)
+        assert imported.sensors[site].rate_hz == settings.rate_hz
+    assert {one.key for one in imported.findings} == {"columns_understood", "columns_left_out"}
 
 
 def test_other_files_and_damaged_ones_are_refused(tmp_path: Path) -> None:
