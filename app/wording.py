@@ -51,7 +51,8 @@ SENTENCES = {
         "losses shorter than {loss_ms:.0f} ms do not show. Send samples with the sensor's own times."
     ),
     "stream_not_ended": (
-        "the recording of this stream was not ended or lacks samples that were counted. What follows was lost."
+        "the recording of this stream was not ended, or samples that were counted are missing. Copy the file again; if "
+        "it stays so, they are lost."
     ),
     "clock_not_measured": (
         "the clock of “{host}”, which sent this sensor, was not measured against the others', so its samples may be "

@@ -32,8 +32,10 @@ PROOFS: Mapping[str, str] = {  # what the reader of each was held against
     "opensim": "OpenSim's documentation. No real file was at hand.",
     "bids-motion": "Its specification, a public table of channels, and our own exports, in which its validator finds "
     "no error. No samples of another program's set were at hand.",
-    "xdf": "Its specification. No file of LabRecorder was at hand.",
-    "matlab": "Small files that MATLAB wrote, without sensors, and files of many names and units, made for it.",
+    "xdf": "Files laid out by the format's description, also of the simulated walker. No recording of LabRecorder was "
+    "at hand.",
+    "matlab": "Small files that MATLAB wrote, without sensors, and files laid out as these are. No recording was at "
+    "hand.",
     "parquet": "Files with columns of many names and units, made for it.",
     "csv": "Files with columns of many names and units, made for it.",
 }
