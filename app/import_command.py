@@ -9,7 +9,7 @@ from app.terminal import finding_lines, one_of, positive
 # as core.samples.RecordingKind and devices.files.formats have them, whose imports would cost half a second here
 KINDS = ("standing", "free_motion", "walking")
 FORMATS = (
-    *("xsens-mtmanager", "movella-dot", "xsens-mti", "mvnx", "apdm", "opensim", "bids-motion"),
+    *("xsens-mtmanager", "movella-dot", "xsens-mti", "ximu3", "shimmer", "mvnx", "apdm", "opensim", "bids-motion"),
     *("xdf", "matlab", "parquet", "csv"),
 )
 

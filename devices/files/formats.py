@@ -15,8 +15,10 @@ from devices.files.mvnx import is_mvnx, mvnx_trial
 from devices.files.opensim_orientations import is_opensim_orientations, opensim_trial
 from devices.files.parquet_tables import is_parquet, parquet_trial
 from devices.files.refusal import FileRefusedError
+from devices.files.shimmer_tables import is_shimmer, shimmer_trial
 from devices.files.trial import ImportedTrial
 from devices.files.xdf import is_xdf, xdf_trial
+from devices.files.ximu3_files import is_ximu3, ximu3_recording, ximu3_trial
 from devices.files.xsens_mtmanager import is_mtmanager, mtmanager_trial
 
 HEAD_BYTES = 65_536  # heads of many sensors are long
@@ -41,6 +43,8 @@ FORMATS: Mapping[str, FileFormat] = {
     "xsens-mtmanager": FileFormat(is_mtmanager, mtmanager_trial, is_one_sensor=True),
     "movella-dot": FileFormat(is_movella_dot, movella_dot_trial, is_one_sensor=True, trial_name=dot_recording),
     "xsens-mti": FileFormat(is_mti_stream, mti_trial, is_one_sensor=True),
+    "ximu3": FileFormat(is_ximu3, ximu3_trial, is_one_sensor=True, trial_name=ximu3_recording),
+    "shimmer": FileFormat(is_shimmer, shimmer_trial, is_one_sensor=True),
     "mvnx": FileFormat(is_mvnx, mvnx_trial),
     "apdm": FileFormat(is_apdm, apdm_trial),
     "opensim": FileFormat(is_opensim_orientations, opensim_trial),

@@ -16,6 +16,7 @@ from scipy.spatial.transform import Rotation
 from core.findings import Finding, Severity
 from core.samples import BoolArray, FloatArray, ImuBlock, RateKind, SensorInfo
 from devices.files.orientation_rates import Numbers, derive_rates
+from devices.files.own_clocks import with_own_clocks
 from devices.files.refusal import FileRefusedError
 from devices.files.trial import ImportedSensor, ImportedTrial, UnreadFile
 from devices.xbus import AXES_MASK, ITEM_MASK, NORTH_EAST_DOWN, PREAMBLE, Item, Items, Message, Mid, XbusFramer, values
@@ -84,12 +85,12 @@ def mti_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedTr
     unread = []
     for path in files:
         try:
-            sensors.append(_sensor(path, rate_hz, is_alone=len(files) == 1))
+            sensors.append(_sensor(path, rate_hz))
         except FileRefusedError as refusal:
             unread.append(UnreadFile(str(path), (), refusal))
     if not sensors and unread:
         raise unread[0].refusal
-    return ImportedTrial(DRIVER, tuple(sensors), tuple(unread))
+    return ImportedTrial(DRIVER, tuple(with_own_clocks(sensors)), tuple(unread))
 
 
 def read_mti_stream(path: Path) -> MtiStream:
@@ -166,7 +167,7 @@ def _of_matrix(matrix: Sequence[float]) -> tuple[float, ...]:
     return tuple(Rotation.from_matrix(columns).as_quat(scalar_first=True).tolist())
 
 
-def _sensor(path: Path, asked_hz: float | None, *, is_alone: bool) -> ImportedSensor:
+def _sensor(path: Path, asked_hz: float | None) -> ImportedSensor:
     stream = read_mti_stream(path)
     time_s, is_new, doubled = _times(stream, asked_hz, path.name)
     step_s = np.diff(time_s)
@@ -176,11 +177,11 @@ def _sensor(path: Path, asked_hz: float | None, *, is_alone: bool) -> ImportedSe
     q = stream.q[is_new] if np.isfinite(stream.q).any() else None
     gyr, is_derived = _rates(stream, is_new, q, counter, rate_hz)
     acc, is_added = _forces(stream, is_new, q, usual_s)
-    findings = _findings(stream, doubled, is_derived=is_derived, is_added=is_added, is_alone=is_alone)
+    findings = _findings(stream, doubled, is_derived=is_derived, is_added=is_added)
     name = stream.serial or path.stem
     block = ImuBlock(
         sensor=name,
-        time_s=time_s - time_s[:1],
+        time_s=time_s,
         gyr_rad_s=gyr,
         acc_m_s2=acc,
         q_earth_from_sensor=q,
@@ -188,9 +189,7 @@ def _sensor(path: Path, asked_hz: float | None, *, is_alone: bool) -> ImportedSe
         is_rate_derived=is_derived,
     )
     kind = RateKind.INSTANTANEOUS if is_derived else RateKind.AVERAGED
-    info = SensorInfo(
-        serial=stream.serial, model="MTi", rate_hz=rate_hz, rate_kind=kind, clock="" if is_alone else name
-    )
+    info = SensorInfo(serial=stream.serial, model="MTi", rate_hz=rate_hz, rate_kind=kind)
     return ImportedSensor(path.name, tuple({path.stem, name}), str(path), block, info, tuple(findings))
 
 
@@ -261,9 +260,7 @@ def _forces(stream: MtiStream, is_new: BoolArray, q: FloatArray | None, usual_s:
     return force, True
 
 
-def _findings(
-    stream: MtiStream, doubled: int, *, is_derived: bool, is_added: bool, is_alone: bool
-) -> Iterator[Finding]:
+def _findings(stream: MtiStream, doubled: int, *, is_derived: bool, is_added: bool) -> Iterator[Finding]:
     if is_derived:
         yield Finding("rate_from_orientation", Severity.INFO, "")
     if is_added:
@@ -272,8 +269,6 @@ def _findings(
         yield Finding("doubled_stamps", Severity.WARNING, "", {"count": doubled})
     if stream.damaged:
         yield Finding("damaged_stretches", Severity.WARNING, "", {"count": stream.damaged})
-    if not is_alone:
-        yield Finding("not_synchronised", Severity.WARNING, "")
 
 
 _ANSWERS = frozenset({OLD_DATA, Mid.DEVICE_ID + 1, Mid.PRODUCT + 1, Mid.FIRMWARE + 1, Mid.OUTPUT + 1})

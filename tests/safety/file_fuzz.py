@@ -312,9 +312,36 @@ def mti() -> bytes:
     return data
 
 
-def read_mti(reader: LimitedReader, folder: Path) -> object:
-    trial = LimitedReading(reader, nobody).read_trial("xsens-mti", [folder / "export.bin"], None)
-    return place_trial(trial, {Site.LEFT_THIGH: "export.bin"}, "walk 1")
+def ximu3() -> bytes:
+    """As an x-IMU3 sends it, in text and in binary."""
+    lines = [f"I,{10_000 * k},1.0,2.0,3.0,0.1,0.2,1.0\r\n".encode() for k in range(ROWS)]
+    packed = (struct.pack("<BQ6f", 0xC9, 10_000 * (ROWS + k), 1.0, 2.0, 3.0, 0.1, 0.2, 1.0) for k in range(ROWS))
+    lines += [one.replace(b"\xdb", b"\xdb\xdd").replace(b"\n", b"\xdb\xdc") + b"\n" for one in packed]
+    return b"".join(lines)
+
+
+def ximu3_csv() -> bytes:
+    axes = [*(f"Gyroscope {axis} (deg/s)" for axis in "XYZ"), *(f"Accelerometer {axis} (g)" for axis in "XYZ")]
+    rows = [f"{10_000 * k},1.0,2.0,3.0,0.1,0.2,1.0" for k in range(ROWS)]
+    return "\n".join([",".join(["Timestamp (us)", *axes]), *rows, ""]).encode()
+
+
+def shimmer() -> bytes:
+    names = ["Timestamp_Unix", *(f"Accel_WR_{axis}" for axis in "XYZ"), *(f"Gyro_{axis}" for axis in "XYZ")]
+    units = ["ms", *["m/(s^2)"] * 3, *["deg/s"] * 3]
+    rows = [f"{1_732_790_638_000 + 10 * k},0.1,0.2,9.8,1.0,2.0,3.0," for k in range(ROWS)]
+    head = [",".join([f"Shimmer_40AC_{name}_CAL" for name in names] + [""]), ",".join([*units, ""])]
+    return "\n".join(['"sep=,"', *head, *rows, ""]).encode()
+
+
+def read_of(name: str, file: str = "export.bin") -> Callable[[LimitedReader, Path], object]:
+    """Reads `file` as of this format, and places its first sensor."""
+
+    def read(reader: LimitedReader, folder: Path) -> object:
+        trial = LimitedReading(reader, nobody).read_trial(name, [folder / file], None)
+        return place_trial(trial, {Site.LEFT_THIGH: trial.sensors[0].name}, "walk 1")
+
+    return read
 
 
 def nobody() -> None: ...
@@ -329,7 +356,10 @@ def importers() -> dict[str, Spoilable]:
         "movella-dot": Spoilable(movella_dot(), "export.csv", read_unnamed, may_be_a_link=False),
         "movella-dot-xlsx": Spoilable(movella_dot_xlsx(), "export.csv", read_unnamed, may_be_a_link=False),
         "mvnx": Spoilable(mvnx(), "export.csv", read_unnamed, may_be_a_link=False),
-        "xsens-mti": Spoilable(mti(), "export.bin", read_mti, may_be_a_link=False, is_stream=True),
+        "xsens-mti": Spoilable(mti(), "export.bin", read_of("xsens-mti"), may_be_a_link=False, is_stream=True),
+        "ximu3": Spoilable(ximu3(), "export.bin", read_of("ximu3"), may_be_a_link=False, is_stream=True),
+        "ximu3-csv": Spoilable(ximu3_csv(), "a.csv", read_of("ximu3", "a.csv"), may_be_a_link=False),
+        "shimmer": Spoilable(shimmer(), "a.csv", read_of("shimmer", "a.csv"), may_be_a_link=False),
         "apdm": Spoilable(apdm(), "export.csv", read_unnamed, may_be_a_link=False),
         "csv-named": Spoilable(foreign_csv(), "export.csv", read_unnamed, may_be_a_link=False),
         "parquet-named": Spoilable(foreign_parquet(), "export.csv", read_unnamed, may_be_a_link=False),

@@ -172,12 +172,18 @@ def test_damage_is_passed_over_and_told(tmp_path: Path) -> None:
     assert [(finding.key, finding.numbers) for finding in sensor.findings] == [("damaged_stretches", {"count": 1})]
 
 
-def test_several_sensors_keep_their_own_clocks(tmp_path: Path) -> None:
+@pytest.mark.parametrize(("apart_ticks", "keys", "start_s"), [(1000, [], 0.1), (10_000_000, ["not_synchronised"], 0.0)])
+def test_several_sensors_keep_their_own_clocks(
+    tmp_path: Path, apart_ticks: int, keys: list[str], start_s: float
+) -> None:
+    """As they tell them, where these can be of one trial; else each begins with the others, which is said."""
     kinds = frozenset({Item.RATE, Item.ACCELERATION})
-    paths = [written(tmp_path / f"{name}.bin", kinds=kinds, first=1000 * k) for k, name in enumerate("ab")]
-    trial = mti_trial(paths)
-    assert [[finding.key for finding in sensor.findings] for sensor in trial.sensors] == [["not_synchronised"]] * 2
-    assert all(sensor.info.clock for sensor in trial.sensors)
+    paths = [written(tmp_path / f"{name}.bin", kinds=kinds, first=apart_ticks * k) for k, name in enumerate("ab")]
+    first, second = mti_trial(paths).sensors
+    assert [[finding.key for finding in sensor.findings] for sensor in (first, second)] == [keys] * 2
+    assert (first.block.time_s[0], second.block.time_s[0]) == pytest.approx((0.0, start_s))
+    assert first.info.clock
+    assert second.info.clock
 
 
 @pytest.mark.parametrize("data", [b"", b"\xfa\xff", b"time_s,acc_x\n1,2\n", bytes(5000), b"\xfa\xff6\x05hello" * 40])

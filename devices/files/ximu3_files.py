@@ -1,0 +1,132 @@
+"""What the programs of x-io keep of x-IMU3 sensors: the bytes of one (`.ximu3`), or the folder of CSV made of them.
+
+The bytes are read as by the live driver, which was held against the maker's own decoder. Of the folder `Inertial.csv`
+is read, by its heads as public files show them, and `Quaternion.csv` where it has the same times. Each sensor has a
+clock of its own, of microseconds.
+"""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from core.findings import Finding, Severity
+from core.samples import FloatArray, ImuBlock, SensorInfo
+from devices.files.own_clocks import with_own_clocks
+from devices.files.refusal import FileRefusedError
+from devices.files.tables import read_csv
+from devices.files.trial import ImportedSensor, ImportedTrial, UnreadFile
+from devices.ximu3 import DRIVER, MODEL, G, Ximu3Framer, read_file
+
+INERTIAL, QUATERNION = "Inertial.csv", "Quaternion.csv"
+TIME = "Timestamp (us)"
+GYR = tuple(f"Gyroscope {axis} (deg/s)" for axis in "XYZ")
+ACC = tuple(f"Accelerometer {axis} (g)" for axis in "XYZ")
+QUAT = ("W", "X", "Y", "Z")
+US_PER_S = 1e6
+LEAST_MESSAGES = 3
+CONVERT_AGAIN = "Convert the .ximu3 file again, or import that file itself"
+
+
+def is_ximu3(path: Path, head: bytes) -> bool:
+    """Whether a file is a sensor's bytes or its Inertial.csv, or a folder holds one."""
+    if not head:
+        return path.is_dir() and (path / INERTIAL).is_file()
+    first = head.partition(b"\n")[0].decode("utf-8", "replace").strip().lstrip("\ufeff")
+    if first.startswith(TIME):
+        return set(first.split(",")) >= {*GYR, *ACC}
+    framer = Ximu3Framer()
+    framer.feed(head, 0.0)
+    heard = framer.heard
+    return len(heard.rows) >= LEAST_MESSAGES and 10 * heard.damaged < len(heard.rows) + heard.skipped
+
+
+def ximu3_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedTrial:
+    """The sensors of one trial, a file or a folder for each; the rate is that of their stamps.
+
+    Raises
+    ------
+    FileRefusedError
+        The only one holds no samples, or columns that are missing, no numbers or step back in time.
+    OSError
+        It cannot be read.
+    """
+    sensors: list[ImportedSensor] = []
+    unread = []
+    for path in files:
+        try:
+            sensors.append(_sensor(path))
+        except FileRefusedError as refusal:
+            unread.append(UnreadFile(str(path), (), refusal))
+    if not sensors and unread:
+        raise unread[0].refusal
+    return ImportedTrial(DRIVER, tuple(with_own_clocks(sensors)), tuple(unread))
+
+
+def ximu3_recording(path: Path) -> str:
+    """What files or folders of one recording have in common: the folder that holds them."""
+    return path.parent.parent.name if path.name == INERTIAL else path.parent.name
+
+
+def _sensor(path: Path) -> ImportedSensor:
+    is_table = path.is_dir() or path.name == INERTIAL or _begins(path).startswith(TIME)
+    block, findings = _of_table(path / INERTIAL if path.is_dir() else path) if is_table else _of_bytes(path)
+    if not len(block):
+        raise FileRefusedError(path.name, "it holds no inertial messages", "Let the sensor send them, and record again")
+    step_s = np.diff(block.time_s)
+    hz = round(1.0 / float(np.median(step_s)), 1) if len(step_s) else None
+    info = SensorInfo(serial=block.sensor, model=MODEL, rate_hz=hz)
+    return ImportedSensor(block.sensor, (path.stem,), str(path), block, info, tuple(findings))
+
+
+def _begins(path: Path) -> str:
+    with path.open("rb") as file:
+        return file.read(len(TIME) + 3).decode("utf-8", "replace").lstrip("\ufeff")
+
+
+def _of_bytes(path: Path) -> tuple[ImuBlock, list[Finding]]:
+    found = read_file(path)
+    damaged = found.counts.damaged
+    told = [Finding("damaged_stretches", Severity.WARNING, "", {"count": damaged})] if damaged else []
+    return found.block, told
+
+
+def _of_table(path: Path) -> tuple[ImuBlock, list[Finding]]:
+    where = f"{path.parent.name}/{path.name}"
+    table = read_csv(path, where, {TIME, *GYR, *ACC}, keep_others=False)
+    missing = [name for name in (TIME, *GYR, *ACC) if name not in table.numbers]
+    if missing:
+        raise FileRefusedError(where, "there is no column {name}", CONVERT_AGAIN, name=missing[0])
+    time_s = table.numbers[TIME] / US_PER_S
+    if not np.isfinite(time_s).all():
+        row = int(np.argmin(np.isfinite(time_s)))
+        raise FileRefusedError(f"{where}, {table.place(row)}", "a sample has no time", CONVERT_AGAIN)
+    latest_s = np.maximum.accumulate(time_s)
+    is_new = np.concatenate([np.ones(len(time_s[:1]), dtype=bool), time_s[1:] > latest_s[:-1]])
+    doubled = int(np.sum(~is_new))
+    told = [Finding("doubled_stamps", Severity.WARNING, "", {"count": doubled})] if doubled else []
+    name = path.parent.name if path.name == INERTIAL else path.stem
+    block = ImuBlock(
+        sensor=name,
+        time_s=time_s[is_new],
+        gyr_rad_s=np.radians(table.matrix(GYR)[is_new]),
+        acc_m_s2=table.matrix(ACC)[is_new] * G,
+        q_earth_from_sensor=_orientation(path.with_name(QUATERNION), time_s[is_new]),
+    )
+    return block, told
+
+
+def _orientation(path: Path, time_s: FloatArray) -> FloatArray | None:
+    """(n, 4) at the samples' instants; None where there is none at the same ones."""
+    if not path.is_file():
+        return None
+    table = read_csv(path, f"{path.parent.name}/{path.name}", {TIME, *QUAT}, keep_others=False)
+    if not set(table.numbers) >= {TIME, *QUAT}:
+        return None
+    own_s, q = table.numbers[TIME] / US_PER_S, table.matrix(QUAT)
+    is_rotation = np.abs(np.linalg.norm(q, axis=1) - 1.0) < 0.05
+    found = np.full((len(time_s), 4), np.nan)
+    at = np.minimum(np.searchsorted(time_s, own_s), len(time_s) - 1)
+    is_there = is_rotation & np.isfinite(own_s) & (time_s[at] == own_s)
+    found[at[is_there]] = q[is_there]
+    return found if is_there.any() else None

@@ -1,0 +1,134 @@
+"""Tables of Consensys as public files show them: their heads, their units, their clocks, and what is refused."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from devices.files.formats import format_of
+from devices.files.refusal import FileRefusedError
+from devices.files.shimmer_tables import shimmer_trial
+
+BEGIN_MS = 1_732_790_638_000.0
+COUNT = 120
+QUANTITIES = {
+    "Timestamp_Unix": ("ms", ("",)),
+    "TimestampSync_Unix": ("ms", ("",)),
+    "Accel_LN": ("m/(s^2)", tuple("XYZ")),
+    "Accel_WR": ("m/(s^2)", tuple("XYZ")),
+    "Gyro": ("deg/s", tuple("XYZ")),
+    "Mag": ("local_flux", tuple("XYZ")),
+}
+
+
+def written(
+    path: Path,
+    sensors: Sequence[str] = ("Shimmer_40AC",),
+    wanted: Sequence[str] = ("Timestamp_Unix", "Accel_WR", "Gyro"),
+    *,
+    delimiter: str = ",",
+    has_sep: bool = True,
+    units: dict[str, str] | None = None,
+    later_ms: float = 0.0,
+    lost: int = -1,
+    kind: str = "CAL",
+) -> Path:
+    names, told = [], []
+    for sensor in sensors:
+        for what in wanted:
+            unit, axes = QUANTITIES[what]
+            names += [f"{sensor}_{what}{'_' * bool(axis)}{axis}_{kind}" for axis in axes]
+            told += [(units or {}).get(what, unit)] * len(axes)
+    lines = [f'"sep={delimiter}"'] if has_sep else []
+    lines += [delimiter.join([*names, ""]), delimiter.join([*told, ""])]
+    for k in range(COUNT):
+        if k == lost:
+            continue
+        cells: list[str] = []
+        for s in range(len(sensors)):
+            for what in wanted:
+                if what.startswith("Timestamp"):
+                    cells.append(repr(BEGIN_MS + later_ms + 10.0 * k))
+                elif what == "Gyro":
+                    cells += [repr(float(value)) for value in (10.0 * s, -20.0, 0.5 * k)]
+                elif what == "Accel_LN":
+                    cells += ["1.0", "2.0", "3.0"]
+                else:
+                    cells += ["0.5", "-0.25", repr(9.8 + 0.001 * k)]
+        lines.append(delimiter.join([*cells, ""]))
+    path.write_text("\n".join([*lines, ""]), encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize("delimiter", [",", "\t", ";"])
+@pytest.mark.parametrize("has_sep", [True, False])
+def test_a_table_is_recognised_and_read(tmp_path: Path, delimiter: str, has_sep: bool) -> None:
+    path = written(tmp_path / "walk.csv", delimiter=delimiter, has_sep=has_sep)
+    assert format_of(path) == "shimmer"
+    (sensor,) = shimmer_trial([path]).sensors
+    assert (sensor.name, sensor.ids, sensor.info.rate_hz) == ("Shimmer_40AC", ("40AC",), 100.0)
+    assert sensor.block.time_s == pytest.approx(np.arange(COUNT) / 100, abs=1e-6)
+    assert sensor.block.gyr_rad_s[:, 2] == pytest.approx(np.radians(0.5 * np.arange(COUNT)))
+    assert sensor.block.acc_m_s2[:, 2] == pytest.approx(9.8 + 0.001 * np.arange(COUNT))
+    assert sensor.findings == ()
+
+
+def test_the_wide_accelerometer_is_taken_and_the_narrow_one_where_there_is_no_other(tmp_path: Path) -> None:
+    both = written(tmp_path / "a.csv", wanted=("Timestamp_Unix", "Accel_LN", "Accel_WR", "Gyro", "Mag"))
+    (sensor,) = shimmer_trial([both]).sensors
+    assert sensor.block.acc_m_s2[0].tolist() == [0.5, -0.25, 9.8]
+    assert sensor.block.mag is not None
+    narrow = written(tmp_path / "b.csv", wanted=("Timestamp_Unix", "Accel_LN", "Gyro"))
+    assert shimmer_trial([narrow]).sensors[0].block.acc_m_s2[0].tolist() == [1.0, 2.0, 3.0]
+
+
+def test_units_are_those_that_are_told(tmp_path: Path) -> None:
+    path = written(tmp_path / "a.csv", units={"Gyro": "rad/s", "Accel_WR": "g"})
+    (sensor,) = shimmer_trial([path]).sensors
+    assert sensor.block.gyr_rad_s[0].tolist() == [0.0, -20.0, 0.0]
+    assert sensor.block.acc_m_s2[0] == pytest.approx(np.array([0.5, -0.25, 9.8]) * 9.80665)
+    strange = written(tmp_path / "b.csv", units={"Gyro": "furlongs"})
+    with pytest.raises(FileRefusedError, match="no unit that is known"):
+        shimmer_trial([strange])
+
+
+def test_sensors_that_the_base_synchronised_share_a_clock(tmp_path: Path) -> None:
+    wanted = ("TimestampSync_Unix", "Accel_WR", "Gyro")
+    paths = [written(tmp_path / f"{k}.csv", (f"S_{k}",), wanted, later_ms=250.0 * k) for k in range(2)]
+    first, second = shimmer_trial(paths).sensors
+    assert first.info.clock == second.info.clock == "Consensys"
+    assert (first.block.time_s[0], second.block.time_s[0]) == pytest.approx((0.0, 0.25), abs=1e-6)
+
+
+@pytest.mark.parametrize(("later_ms", "keys", "start_s"), [(250.0, [], 0.25), (3.6e6, ["not_synchronised"], 0.0)])
+def test_sensors_that_it_did_not_keep_their_own(
+    tmp_path: Path, later_ms: float, keys: list[str], start_s: float
+) -> None:
+    paths = [written(tmp_path / f"{k}.csv", (f"S_{k}",), later_ms=later_ms * k) for k in range(2)]
+    first, second = shimmer_trial(paths).sensors
+    assert (first.info.clock, second.info.clock) == ("S_0", "S_1")
+    assert second.block.time_s[0] == pytest.approx(start_s, abs=1e-6)
+    assert [finding.key for finding in second.findings] == keys
+
+
+def test_several_sensors_may_stand_side_by_side_and_losses_are_gaps(tmp_path: Path) -> None:
+    path = written(tmp_path / "a.csv", ("S_Thigh", "S_Shank"), lost=40)
+    thigh, shank = shimmer_trial([path]).sensors
+    assert (thigh.name, shank.name) == ("S_Thigh", "S_Shank")
+    assert shank.block.gyr_rad_s[0, 0] == pytest.approx(np.radians(10.0))
+    assert np.diff(shank.block.time_s).max() == pytest.approx(0.02, abs=1e-6)
+
+
+def test_what_is_not_calibrated_is_refused_with_what_to_set(tmp_path: Path) -> None:
+    raw = written(tmp_path / "raw.csv", kind="RAW")
+    assert format_of(raw) == "shimmer"
+    with pytest.raises(FileRefusedError, match="no sensor in it has calibrated acceleration") as refused:
+        shimmer_trial([raw])
+    assert "calibrated, with Unix time in milliseconds" in refused.value.remedy
+    without = written(tmp_path / "b.csv", wanted=("Timestamp_Unix", "Gyro"))
+    with pytest.raises(FileRefusedError, match="calibrated acceleration"):
+        shimmer_trial([without])
+    seconds = written(tmp_path / "c.csv", units={"Timestamp_Unix": "s"})
+    with pytest.raises(FileRefusedError, match="expected ms"):
+        shimmer_trial([seconds])
