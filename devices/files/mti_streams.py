@@ -108,11 +108,14 @@ def read_mti_stream(path: Path) -> MtiStream:
         while piece := file.read(PIECE):
             rows.take(framer.feed(piece))
     rows.take(framer.flush())
+    if not rows.rows and rows.is_old:
+        raise FileRefusedError(
+            path.name, "its messages are of the older kind MTData, whose content they do not tell", SET_OUTPUT
+        )
     if not rows.rows:
-        what = "no message in it holds rate of turn, acceleration or orientation"
-        if rows.is_old:
-            what = "its messages are of the older kind MTData, whose content they do not tell"
-        raise FileRefusedError(path.name, what, SET_OUTPUT)
+        raise FileRefusedError(
+            path.name, "no message in it holds rate of turn, acceleration or orientation", SET_OUTPUT
+        )
     columns = np.array(rows.rows).T
     parts = np.split(columns, np.cumsum([1, 1, 3, 3, 4, 3, 3, 4]))
     ticks, counter, rate, force, turn, velocity, free, q, mag = (part.T for part in parts)
