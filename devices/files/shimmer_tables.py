@@ -1,4 +1,6 @@
-"""CSV of Shimmer's Consensys: calibrated data of one sensor, or of several side by side.
+"""Recordings of Shimmer sensors: of their cards (`shimmer_card`), or CSV of Consensys.
+
+CSV holds calibrated data of one sensor, or of several side by side.
 
 A line `sep=`, a line of names such as `Shimmer_40AC_Accel_LN_X_CAL`, a line of units, as public files show them; a
 delimiter stands behind the last column. Times are milliseconds since 1970. Sensors that were synchronised by their
@@ -8,7 +10,7 @@ is beyond the 2 g of the other.
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import islice
 from pathlib import Path
 
@@ -20,6 +22,7 @@ from devices.csv_serial import FORCE_UNITS, RATE_UNITS
 from devices.files.column_names import Quantity, unit_of
 from devices.files.own_clocks import from_zero, with_own_clocks
 from devices.files.refusal import FileRefusedError, quoted
+from devices.files.shimmer_card import card_recording, is_card, is_synchronised, read_card
 from devices.files.tables import Table, header_of, read_csv
 from devices.files.trial import ImportedSensor, ImportedTrial, UnreadFile
 
@@ -59,7 +62,9 @@ class ShimmerColumns:
 
 
 def is_shimmer(path: Path, head: bytes) -> bool:
-    """Whether a file is a table of Consensys, uncalibrated ones included."""
+    """Whether a file is of a Shimmer3's card, or a table of Consensys, uncalibrated ones included."""
+    if b"\0" in head:
+        return is_card(head)
     names = _names(head.decode("utf-8", "replace").lstrip("\ufeff").splitlines()[:HEAD_LINES])
     return any(NAME.fullmatch(name) or RAW.fullmatch(name) for name in names)
 
@@ -76,11 +81,24 @@ def shimmer_trial(files: Sequence[Path], rate_hz: float | None = None) -> Import
     """
     sensors: list[ImportedSensor] = []
     unread = []
+    of_cards: dict[tuple[Path, str], list[Path]] = {}
     for path in files:
+        with path.open("rb") as file:
+            head = file.read(MOST_HEAD)
+        if b"\0" in head:
+            of_cards.setdefault((path.parent, card_recording(path)), []).append(path)
+            continue
         try:
             sensors += _sensors(path)
         except FileRefusedError as refusal:
             unread.append(UnreadFile(str(path), (), refusal))
+    for parts in of_cards.values():
+        try:
+            one = read_card(parts)
+        except FileRefusedError as refusal:
+            unread += [UnreadFile(str(path), (), refusal) for path in parts]
+            continue
+        sensors.append(replace(one, info=replace(one.info, clock=CLOCK if is_synchronised(parts[0]) else "")))
     if not sensors and unread:
         raise unread[0].refusal
     is_shared = all(one.info.clock == CLOCK for one in sensors)

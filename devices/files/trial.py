@@ -13,7 +13,7 @@ PROGRAMS: Mapping[str, str] = {  # what writes each of `formats.FORMATS`, whose 
     "movella-dot": "the Movella DOT app",
     "xsens-mti": "an Xsens MTi, as the bytes it sent",
     "ximu3": "x-IMU3, as bytes or converted to CSV",
-    "shimmer": "Shimmer Consensys",
+    "shimmer": "Shimmer, its card or Consensys",
     "mvnx": "Xsens MVN (MVNX)",
     "apdm": "APDM Moveo, Mobility Lab or Motion Studio",
     "opensim": "OpenSim (orientations)",
@@ -31,7 +31,8 @@ PROOFS: Mapping[str, str] = {  # what the reader of each was held against
     "xsens-mti": "Recorded streams in four number formats, to the last digit of another program's reading.",
     "ximu3": "The maker's own decoder, to the last digit; for the folder of CSV its heads in public programs. No real "
     "file was at hand.",
-    "shimmer": "Heads, units and first rows in public programs and tests. No whole file was at hand.",
+    "shimmer": "For CSV heads, units and first rows in public programs; for the card what an open reader says of its "
+    "files. No whole file was at hand.",
     "mvnx": "The MVN manual. No real file was at hand.",
     "apdm": "Real CSV exports of both dialects; for HDF5 the published layout. No real HDF5 file was at hand.",
     "opensim": "OpenSim's documentation. No real file was at hand.",

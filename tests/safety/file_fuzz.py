@@ -334,6 +334,16 @@ def shimmer() -> bytes:
     return "\n".join(['"sep=,"', *head, *rows, ""]).encode()
 
 
+def shimmer_card() -> bytes:
+    """As a Shimmer3 keeps gyroscope and wide-range accelerometer, 102.4 Hz."""
+    head = bytearray(256)
+    head[0:2], head[3:6], head[30:32] = struct.pack("<H", 320), bytes([0x40, 0x10, 0]), struct.pack(">H", 3)
+    for at in (76, 97):
+        head[at : at + 21] = struct.pack(">6h9b", 0, 0, 0, 209, 209, 209, -100, 0, 0, 0, 100, 0, 0, 0, -100)
+    samples = ((320 * k).to_bytes(3, "little") + struct.pack(">3h", 10, 20, 30) for k in range(ROWS))
+    return bytes(head) + b"".join(one + struct.pack("<3h", 0, 0, 2050) for one in samples)
+
+
 def read_of(name: str, file: str = "export.bin") -> Callable[[LimitedReader, Path], object]:
     """Reads `file` as of this format, and places its first sensor."""
 
@@ -360,6 +370,9 @@ def importers() -> dict[str, Spoilable]:
         "ximu3": Spoilable(ximu3(), "export.bin", read_of("ximu3"), may_be_a_link=False, is_stream=True),
         "ximu3-csv": Spoilable(ximu3_csv(), "a.csv", read_of("ximu3", "a.csv"), may_be_a_link=False),
         "shimmer": Spoilable(shimmer(), "a.csv", read_of("shimmer", "a.csv"), may_be_a_link=False),
+        "shimmer-card": Spoilable(
+            shimmer_card(), "a.bin", read_of("shimmer", "a.bin"), may_be_a_link=False, is_stream=True
+        ),
         "apdm": Spoilable(apdm(), "export.csv", read_unnamed, may_be_a_link=False),
         "csv-named": Spoilable(foreign_csv(), "export.csv", read_unnamed, may_be_a_link=False),
         "parquet-named": Spoilable(foreign_parquet(), "export.csv", read_unnamed, may_be_a_link=False),

@@ -1,0 +1,149 @@
+"""Files of a Shimmer3's card, laid out here as their description says: times, numbers, calibration, clocks."""
+
+import struct
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from devices.files.formats import format_of
+from devices.files.refusal import FileRefusedError
+from devices.files.shimmer_tables import shimmer_trial
+
+PERIOD = 320  # 102.4 Hz
+COUNT = 300
+GYRO, WIDE, LOW_NOISE, BATTERY = 1 << 6, 1 << 12, 1 << 7, 1 << 13
+# offsets, sensitivities, alignment in hundredths: x and y change places, as on the boards
+GYR_BLOCK = struct.pack(">6h9b", 10, -20, 30, 1640, 1640, 1640, 0, -100, 0, -100, 0, 0, 0, 0, -100)
+ACC_BLOCK = struct.pack(">6h9b", 5, 6, 7, 209, 209, 209, -100, 0, 0, 0, 100, 0, 0, 0, -100)
+
+
+def rate_raw(k: int) -> tuple[int, int, int]:
+    return 100 + k, -200, 300 - 2 * k
+
+
+def force_raw(k: int) -> tuple[int, int, int]:
+    return 2050, -10 - k, 17
+
+
+def truth(count: int = COUNT) -> tuple[np.ndarray, np.ndarray]:
+    """Rates in rad/s and force in m/s2 (n, 3): C = R^-1 K^-1 (U - B)."""
+    turn = np.array([[0.0, -1, 0], [-1, 0, 0], [0, 0, -1]])
+    flip = np.diag([-1.0, 1, -1])
+    rates = (np.array([rate_raw(k) for k in range(count)], float) - [10, -20, 30]) / 16.40
+    forces = (np.array([force_raw(k) for k in range(count)], float) - [5, 6, 7]) / 209
+    return np.radians(rates @ np.linalg.inv(turn).T), forces @ np.linalg.inv(flip).T
+
+
+def written(
+    path: Path,
+    *,
+    switches: int = GYRO | WIDE,
+    begun: int = 123_456_789,
+    real: int = 0,
+    ahead: tuple[int, float] | None = None,
+    first: int = 0,
+    count: int = COUNT,
+    lost: int = -1,
+    calibration: bytes = GYR_BLOCK,
+) -> Path:
+    """`ahead`: ticks at the first sample, and more for each one, written as the radio tells them in each block."""
+    head = bytearray(256)
+    head[0:2] = struct.pack("<H", PERIOD)
+    head[3:6] = switches.to_bytes(3, "little")
+    head[16] = 0x04 if ahead is not None else 0
+    head[30:32] = struct.pack(">H", 3)
+    head[34:40] = struct.pack(">HHBB", 2, 0, 22, 0)
+    head[44:52] = struct.pack(">Q", real)
+    head[76:97], head[97:118], head[139:160] = ACC_BLOCK, calibration, ACC_BLOCK
+    start = begun + PERIOD * first
+    head[251:256] = start.to_bytes(5, "little")[4:] + start.to_bytes(5, "little")[:4]
+    samples = []
+    for k in range(first, first + count):
+        if k == lost:
+            continue
+        body = ((begun + PERIOD * k) % (1 << 24)).to_bytes(3, "little")
+        body += struct.pack("<3h", *force_raw(k)) if switches & LOW_NOISE else b""
+        body += b"\x11\x22" if switches & BATTERY else b""
+        body += struct.pack(">3h", *rate_raw(k)) if switches & GYRO else b""
+        body += struct.pack("<3h", *force_raw(k)) if switches & WIDE else b""
+        samples.append((k, body))
+    size = len(samples[0][1])
+    in_block = (512 - 9 * (ahead is not None)) // size
+    data = bytes(head)
+    for at in range(0, len(samples), in_block):
+        block = samples[at : at + in_block]
+        if ahead is not None:
+            ticks = round(ahead[0] + ahead[1] * block[0][0])
+            data += struct.pack("<BQ", 1 if ticks < 0 else 0, abs(ticks)) if at else b"\x00" + b"\xff" * 8
+        data += b"".join(body for _, body in block)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(data)
+    return path
+
+
+@pytest.mark.parametrize("switches", [GYRO | WIDE, GYRO | LOW_NOISE, GYRO | WIDE | BATTERY, GYRO | WIDE | LOW_NOISE])
+def test_a_file_is_recognised_and_read(tmp_path: Path, switches: int) -> None:
+    path = written(tmp_path / "ID40AC" / "000", switches=switches)
+    assert format_of(path) == "shimmer"
+    (sensor,) = shimmer_trial([path]).sensors
+    rate, force = truth()
+    assert sensor.name == "ID40AC"
+    assert sensor.block.gyr_rad_s == pytest.approx(rate)
+    assert sensor.block.acc_m_s2 == pytest.approx(force)
+    assert sensor.block.time_s == pytest.approx(np.arange(COUNT) * PERIOD / 32768)
+    assert (sensor.info.rate_hz, sensor.findings) == (102.4, ())
+
+
+def test_losses_are_gaps_and_a_cut_file_keeps_its_whole_samples(tmp_path: Path) -> None:
+    path = written(tmp_path / "a.bin", lost=100)
+    path.write_bytes(path.read_bytes()[:-7])
+    (sensor,) = shimmer_trial([path]).sensors
+    assert len(sensor.block) == COUNT - 2
+    assert np.diff(sensor.block.time_s).max() == pytest.approx(2 * PERIOD / 32768)
+
+
+def test_parts_of_one_folder_are_one_recording(tmp_path: Path) -> None:
+    folder = tmp_path / "ID40AC"
+    parts = [written(folder / f"{k:03d}", first=k * COUNT, count=COUNT) for k in (1, 0, 2)]
+    (sensor,) = shimmer_trial(parts).sensors
+    rate, _ = truth(3 * COUNT)
+    assert sensor.block.gyr_rad_s == pytest.approx(rate)
+    assert np.diff(sensor.block.time_s) == pytest.approx(PERIOD / 32768)
+
+
+def test_clocks_that_the_radio_set_right_agree(tmp_path: Path) -> None:
+    """One board began 5 s before the other and runs 60 ppm fast; real time was set alike."""
+    leading = written(tmp_path / "A" / "000", begun=1_000_000, real=7_000_000, ahead=(0, 0.0))
+    late = written(tmp_path / "B" / "000", begun=1_163_840, real=7_000_000, ahead=(163_840 - 32_768, 0.0192))
+    first, second = shimmer_trial([leading, late]).sensors
+    assert first.info.clock == second.info.clock == "Consensys"
+    assert second.block.time_s[0] - first.block.time_s[0] == pytest.approx(1.0, abs=1e-3)
+    lasts_s = (COUNT - 1) * (PERIOD - 0.0192) / 32768
+    assert second.block.time_s[-1] - second.block.time_s[0] == pytest.approx(lasts_s, abs=1e-4)
+
+
+def test_without_radio_each_keeps_its_own_clock(tmp_path: Path) -> None:
+    paths = [written(tmp_path / name / "000", begun=1_000_000 + 3277 * k) for k, name in enumerate("AB")]
+    first, second = shimmer_trial(paths).sensors
+    assert (first.info.clock, second.info.clock) == ("A", "B")
+    assert second.block.time_s[0] - first.block.time_s[0] == pytest.approx(0.1, abs=1e-3)
+
+
+def test_what_cannot_be_used_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(FileRefusedError, match="no gyroscope, or no accelerometer, was on"):
+        shimmer_trial([written(tmp_path / "a.bin", switches=GYRO)])
+    with pytest.raises(FileRefusedError, match="no calibration is stored"):
+        shimmer_trial([written(tmp_path / "b.bin", calibration=bytes(21))])
+    empty = written(tmp_path / "c.bin")
+    empty.write_bytes(empty.read_bytes()[:256])
+    assert format_of(empty) == "shimmer"
+    with pytest.raises(FileRefusedError, match="it holds no sample"):
+        shimmer_trial([empty])
+
+
+@pytest.mark.parametrize("data", [bytes(5000), b"\x40\x01" + bytes(5000), bytes(range(256)) * 20])
+def test_other_bytes_are_none(tmp_path: Path, data: bytes) -> None:
+    path = tmp_path / "other.bin"
+    path.write_bytes(data)
+    assert format_of(path) != "shimmer"
