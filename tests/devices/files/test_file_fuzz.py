@@ -1,5 +1,7 @@
 """Spoilt files raise nothing but refusals, end nothing, and nothing is written."""
 
+from collections.abc import Iterator
+
 import pytest
 
 from devices.files.limited_reader import LimitedReader
@@ -8,14 +10,19 @@ from tests.safety.file_fuzz import fuzz, importers
 COUNTS = (15, pytest.param(500, marks=pytest.mark.endurance))
 
 
+@pytest.fixture(scope="module")
+def reader() -> Iterator[LimitedReader]:
+    """One process for all of them: its start takes longer than the files."""
+    reader = LimitedReader()
+    yield reader
+    reader.close()
+
+
 @pytest.mark.parametrize("files", COUNTS)
 @pytest.mark.parametrize("name", importers())
-def test_a_spoilt_file_is_read_or_refused(name: str, files: int) -> None:
-    reader, spoilable = LimitedReader(), importers()[name]
-    try:
-        found = fuzz(spoilable, files, 7, reader)
-    finally:
-        reader.close()
+def test_a_spoilt_file_is_read_or_refused(name: str, files: int, reader: LimitedReader) -> None:
+    spoilable = importers()[name]
+    found = fuzz(spoilable, files, 7, reader)
     assert found.faults == []
     assert found.outcomes["read"] > 0
     assert found.outcomes["refused"] > (0 if spoilable.is_stream else files / 2)
