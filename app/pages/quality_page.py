@@ -5,7 +5,7 @@ from functools import partial
 
 from PySide6.QtCore import QRectF, Qt, Signal
 from PySide6.QtGui import QColor, QPainter, QPaintEvent
-from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QScrollArea, QSizePolicy, QVBoxLayout, QWidget
 
 from app.gates_in_words import verdict_word
 from app.icons import VERDICT_ICONS, Icon, paint_icon
@@ -101,9 +101,10 @@ class QualityPage(Themed):
         self.facts.show_rows(fact_columns(calibrated), fact_rows(calibrated))
         self.findings.show_findings(findings)
 
-    def set_room(self, is_compact: bool) -> None:
-        """Leave the figure out where there is no room for it."""
+    def set_room(self, *, is_compact: bool, is_narrow: bool) -> None:
+        """Leave the figure out where there is no room for it, and let the doors stand below each other."""
         self._figure_card.setVisible(not is_compact)
+        self._place_doors(is_narrow=is_narrow)
 
     def _build(self) -> None:
         self._list = QVBoxLayout()
@@ -128,10 +129,8 @@ class QualityPage(Themed):
         self._figures_card.column.addWidget(self.facts)
         self._figures_card.column.addWidget(Text(self._look, tr("Everything noticed"), size=16, weight=SEMIBOLD))
         self._figures_card.column.addWidget(self.findings, 1)
-        self._doors = QHBoxLayout()
-        self._doors.addWidget(self.engineering, 1)
-        self._doors.addWidget(self.how_found, 1)
-        self._doors.addWidget(self.agreement, 1)
+        self._doors = QGridLayout()
+        self._place_doors(is_narrow=False)
         self._left = QVBoxLayout()
         self._left.addWidget(self._scroll, 1)
         self._left.addWidget(self._figures_card, 1)
@@ -151,6 +150,11 @@ class QualityPage(Themed):
         self._page.setContentsMargins(0, 0, 0, 0)
         self._page.addLayout(self._words)
         self._page.addLayout(self._columns, 1)
+
+    def _place_doors(self, *, is_narrow: bool) -> None:
+        for k, door in enumerate((self.engineering, self.how_found, self.agreement)):
+            self._doors.removeWidget(door)
+            self._doors.addWidget(door, *((k, 0) if is_narrow else (0, k)))
 
     def _fill(self) -> None:
         """Make a card of each line anew."""

@@ -366,7 +366,7 @@ class ResultPage(Themed):
         room = self._room
         self.compare.set_room(room.is_compact, room.is_spacious, room.has_two_charts, has_view=not room.is_narrow)
         self.strides.set_charts_beside(self._room.has_strides_beside)
-        self.quality.set_room(self._room.is_compact)
+        self.quality.set_room(is_compact=room.is_compact, is_narrow=room.is_narrow)
         for frame in (self.charts.knee, self.charts.ankle):
             frame.set_room(is_narrow=room.is_narrow, is_wide=room.has_two_tables)
         self.charts.phases.set_narrow(self._room.is_narrow)

@@ -92,7 +92,7 @@ def test_within_a_session_the_error_is_that_of_sensors_that_stay_on(visits: list
     assert min(found.value.n, found.other.n) >= 10
     assert found.difference.difference == found.value.mean - found.other.mean
     assert 2.772 < found.difference.error < 6.0  # 1.96 sqrt(2) x 1 deg from walk to walk, and the strides' own
-    assert found.difference.sources == ("chance", "drift", "speed", "walk_to_walk")
+    assert found.difference.sources == ("chance", "drift", "walk_to_walk")  # their speeds read the same
     assert found.difference.judgement == Judgement.INSIDE_ERROR
     time = row(rows(visits[:1]), Side.LEFT, "stride_time_s").difference
     assert (time.judgement, time.is_unverified) == (Judgement.INSIDE_ERROR, False)

@@ -68,6 +68,7 @@ class ResultsStep(Step):
         self._part = Shown.RESULTS
         self._how_found: DiagnosticsController | None = None
         self._compared: AgreementController | None = None
+        self._saved_for: FoundPage | AgreementPage | None = None
         self._undos: list[Callable[[], object]] = []  # the latest last
         self._strides = StrideChoice(visit.recordings, self)
         self._strides.offered.connect(self._offer)
@@ -261,18 +262,20 @@ class ResultsStep(Step):
     ) -> None:
         from app.workers.diagnostics_controller import saved_from_library
 
+        self._saved_for = page
         if (session := self._visit.session) is not None:
             session_id = session.id
             self._visit.controller.run(
                 lambda opened: saved_from_library(opened, session_id, what, folder, write),
-                partial(self._on_figures_saved, page),
+                self._on_figures_saved,
                 self._on_figures_not_saved,
                 self,
             )
 
-    def _on_figures_saved(self, page: "FoundPage | AgreementPage", folder: Path) -> None:
+    def _on_figures_saved(self, folder: Path) -> None:
         self.told.emit("", "")
-        page.show_saved(folder.name)
+        if self._saved_for is not None:
+            self._saved_for.show_saved(folder.name)
 
     def _on_figures_not_saved(self, what: str, remedy: str) -> None:
         self.told.emit(what, remedy)

@@ -343,3 +343,39 @@ def test_no_word_of_the_corrections_is_cut(step: ResultsStep) -> None:
         page.resize(room[0], max(room[1], page.minimumSizeHint().height()))
         assert page.minimumSizeHint().width() <= room[0]
         assert words_cut(page) == []
+
+
+def test_the_agreement_with_an_optical_system_is_saved_audited_and_left_again(
+    qtbot: QtBot, visit: Visit, step: ResultsStep, controller: LibraryController, tmp_path: Path
+) -> None:
+    analysis = visit.evaluation.analysis
+    assert analysis is not None
+    walk = walk_of(visit)
+    joints = [joint for joint in Joint if joint in walk.joints]
+    columns = [np.rad2deg(walk.joints[joint].angle_rad) for joint in joints]
+    rows = [
+        ",".join(f"{value:.5f}" for value in row)
+        for row in zip(walk.time_s + 5.0, *columns, strict=True)
+        if np.isfinite(row).all()
+    ]
+    reference = tmp_path / "optics.csv"
+    reference.write_text("\n".join([f"time_s,{','.join(joints)}", *rows, ""]), encoding="utf-8")
+    step.page.results().quality.agreement.click()
+    page = step.page.agreement()
+    assert step.page.currentWidget() is page
+    page.choose.click()
+    (chooser,) = page.findChildren(QFileDialog)
+    chooser.filesSelected.emit([str(reference)])
+    chooser.close()
+    qtbot.waitUntil(lambda: page.sheets.count > 0, timeout=60_000)
+    page.save.click()
+    dialog = page.findChildren(QFileDialog)[-1]
+    with qtbot.waitSignal(step.told, timeout=20_000):
+        dialog.fileSelected.emit(str(tmp_path / "agreed"))
+    dialog.close()
+    assert page.note.text() == "Saved in agreed."
+    assert (tmp_path / "agreed" / "agreement.pdf").exists()
+    exports = asked(qtbot, controller, lambda opened: [entry.details for entry in opened.library.audit.entries()])
+    assert any("agreement" in details for details in exports)  # type: ignore[attr-defined] # answers are objects
+    assert step.on_intent(Intent(KeyAction.BACK))
+    assert step.page.currentWidget() is step.page.results()
