@@ -179,7 +179,7 @@ def _sensor(path: Path, asked_hz: float | None) -> ImportedSensor:
     counter: Numbers = np.rint((time_s - time_s[:1]) / usual_s).astype(np.int64)
     q = stream.q[is_new] if np.isfinite(stream.q).any() else None
     gyr, is_derived = _rates(stream, is_new, q, counter, rate_hz)
-    acc, is_added = _forces(stream, is_new, q, usual_s)
+    acc, is_added = _forces(stream, is_new, q, usual_s, path.name)
     findings = _findings(stream, doubled, is_derived=is_derived, is_added=is_added)
     name = stream.serial or path.stem
     block = ImuBlock(
@@ -237,7 +237,9 @@ def _rates(
     return derive_rates(q, counter, rate_hz), True
 
 
-def _forces(stream: MtiStream, is_new: BoolArray, q: FloatArray | None, usual_s: float) -> tuple[FloatArray, bool]:
+def _forces(
+    stream: MtiStream, is_new: BoolArray, q: FloatArray | None, usual_s: float, where: str
+) -> tuple[FloatArray, bool]:
     """(m, 3) m/s2 with gravity, and whether that had to be added.
 
     Raises
@@ -253,7 +255,7 @@ def _forces(stream: MtiStream, is_new: BoolArray, q: FloatArray | None, usual_s:
     felt = stream.free[is_new] + np.array([0.0, 0.0, GRAVITY_M_S2])
     if q is None:
         raise FileRefusedError(
-            stream.serial,
+            where,
             "gravity is taken out of its acceleration, and no orientation is there to add it again",
             SET_OUTPUT,
         )

@@ -47,7 +47,7 @@ def ximu3_trial(files: Sequence[Path], rate_hz: float | None = None) -> Imported
     Raises
     ------
     FileRefusedError
-        The only one holds no samples, or columns that are missing, no numbers or step back in time.
+        The only one holds no samples, or columns that are missing or no numbers.
     OSError
         It cannot be read.
     """
@@ -118,7 +118,7 @@ def _of_table(path: Path) -> tuple[ImuBlock, list[Finding]]:
 
 def _orientation(path: Path, time_s: FloatArray) -> FloatArray | None:
     """(n, 4) at the samples' instants; None where there is none at the same ones."""
-    if not path.is_file():
+    if not len(time_s) or not path.is_file():
         return None
     table = read_csv(path, f"{path.parent.name}/{path.name}", {TIME, *QUAT}, keep_others=False)
     if not set(table.numbers) >= {TIME, *QUAT}:

@@ -94,7 +94,7 @@ def test_a_loss_is_a_gap_and_damage_is_told(tmp_path: Path) -> None:
 
 
 def test_what_holds_no_samples_is_refused(tmp_path: Path) -> None:
-    folder = converted(tmp_path / "a")
+    folder = converted(tmp_path / "a", has_quaternion=True)
     (folder / "Inertial.csv").write_text(HEAD + "\n", encoding="utf-8")
     with pytest.raises(FileRefusedError, match="no inertial messages"):
         ximu3_trial([folder])
