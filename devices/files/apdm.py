@@ -16,10 +16,11 @@ from pathlib import Path
 
 import numpy as np
 
-from core.findings import Finding, Severity
 from core.samples import FloatArray, ImuBlock, RateKind, SensorInfo
 from devices.files.apdm_hdf5 import TICK_S, is_apdm_hdf5, read_apdm_hdf5
+from devices.files.doubled_stamps import doubled
 from devices.files.hdf5 import is_hdf5
+from devices.files.magnitudes import check_magnitudes
 from devices.files.refusal import FileRefusedError, quoted
 from devices.files.trial import ImportedSensor, ImportedTrial
 
@@ -31,8 +32,6 @@ PER_MONITOR = {"Accelerometer": 3, "Gyroscope": 3, "Magnetometer": 3, "Orientati
 NAMED = {"Acceleration": "XYZ", "Angular Velocity": "XYZ", "Magnetic Field": "XYZ", "Orientation": "SXYZ"}
 UNITS = {"Acceleration": ("m/s^2", "m/s²"), "Angular Velocity": ("rad/s",)}
 ACC, GYR, MAG, ORIENTATION = 0, 1, 2, 3  # both dialects name the same four quantities in this order
-LARGEST_RATE_RAD_S = 70.0  # twice the widest range of these sensors, 2000 deg/s: beyond, the unit is another
-GRAVITY_M_S2 = (7.0, 14.0)  # the middle of what a sensor on a walking leg feels
 Columns = tuple[tuple[int, ...], ...]
 
 
@@ -137,7 +136,7 @@ def _of_hdf5(path: Path) -> Iterator[ImportedSensor]:
     opals = read_apdm_hdf5(path)
     start = min((opal.stamps[0] for opal in opals if len(opal.stamps)), default=0.0)
     for opal in opals:
-        _check_magnitudes(path.name, opal.name, opal.acc_m_s2, opal.gyr_rad_s)
+        check_magnitudes(opal.acc_m_s2, opal.gyr_rad_s, opal.name, path.name)
         block = ImuBlock(
             sensor=opal.ids[-1],
             time_s=(opal.stamps - start) * TICK_S,
@@ -148,8 +147,7 @@ def _of_hdf5(path: Path) -> Iterator[ImportedSensor]:
         )
         rate_hz = opal.rate_hz or _rate_of(block.time_s)
         info = SensorInfo(serial=opal.ids[-1], rate_hz=rate_hz, rate_kind=RateKind.INSTANTANEOUS)
-        doubled = [Finding("doubled_stamps", Severity.WARNING, "", {"count": opal.doubled})] if opal.doubled else []
-        yield ImportedSensor(opal.name, opal.ids, str(path), block, info, tuple(doubled))
+        yield ImportedSensor(opal.name, opal.ids, str(path), block, info, tuple(doubled(opal.doubled)))
 
 
 def _monitors(head: list[list[str]], where: str) -> tuple[dict[str, Columns], dict[str, str]]:
@@ -280,26 +278,5 @@ def _rate_of(time_s: FloatArray) -> float | None:
 def _check_units(file: ApdmFile) -> None:
     """By magnitude: one dialect states no units."""
     for name, columns in file.columns.items():
-        if len(file.rows):
-            _check_magnitudes(file.path.name, name, file.rows[:, list(columns[ACC])], file.rows[:, list(columns[GYR])])
-
-
-def _check_magnitudes(where: str, sensor: str, acc: FloatArray, gyr: FloatArray) -> None:
-    felt = np.linalg.norm(acc, axis=1)
-    middle = float(np.nanmedian(felt)) if np.isfinite(felt).any() else np.nan
-    least, most = GRAVITY_M_S2
-    if np.isfinite(middle) and not least < middle < most:
-        raise FileRefusedError(
-            where,
-            "the acceleration of {sensor} is {middle} in the middle, which is not gravity in m/s2",
-            "Export it again in m/s2, gravity not taken out",
-            sensor=quoted(sensor),
-            middle=f"{middle:.2f}",
-        )
-    if np.nanmax(np.abs(gyr), initial=0.0) > LARGEST_RATE_RAD_S:
-        raise FileRefusedError(
-            where,
-            "the angular rates of {sensor} are in deg/s and not in rad/s",
-            "Export it again in rad/s",
-            sensor=quoted(sensor),
-        )
+        acc, gyr = (file.rows[:, list(columns[what])] for what in (ACC, GYR))
+        check_magnitudes(acc, gyr, name, file.path.name)

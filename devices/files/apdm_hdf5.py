@@ -17,6 +17,7 @@ from pathlib import Path
 import numpy as np
 
 from core.samples import FloatArray
+from devices.files.doubled_stamps import is_later
 from devices.files.hdf5 import Hdf5File
 from devices.files.refusal import FileRefusedError, quoted
 
@@ -197,7 +198,7 @@ def _later(stamps: FloatArray, where: str, sensor: str) -> np.ndarray[tuple[int]
         raise FileRefusedError(
             f"{where}, {sensor}, sample {number}", "its time does not come after that of the sample before", SAVE_AGAIN
         )
-    return np.concatenate([np.ones(len(stamps[:1]), dtype=bool), step > 0])
+    return is_later(stamps)
 
 
 def _check_unit(file: Hdf5File, place: str, quantity: str) -> None:

@@ -31,6 +31,8 @@ from devices.files.bids_tables import (
     is_channels,
     read_system,
 )
+from devices.files.doubled_stamps import doubled, is_later
+from devices.files.magnitudes import check_magnitudes
 from devices.files.refusal import FileRefusedError, quoted
 from devices.files.trial import ImportedSensor, ImportedTrial, UnreadFile
 
@@ -40,7 +42,6 @@ DERIVED = "derived"  # in our column of what rates are
 AXES, QUATERNION = ("x", "y", "z"), ("quat_w", "quat_x", "quat_y", "quat_z")
 ACC_UNITS = {"m/s^2": 1.0, "m/s²": 1.0, "m/s2": 1.0, "m.s-2": 1.0, "g": 9.80665}
 RATE_UNITS = {"rad/s": 1.0, "deg/s": np.pi / 180, "°/s": np.pi / 180, "dps": np.pi / 180}
-LARGEST_RATE_RAD_S = 70.0  # twice the widest range of most sensors, 2000 deg/s
 WINDOW_S = 0.25  # over which a sensor turns enough to see whether its acceleration turns with it
 IN_SENSOR_AXES = "Export what the sensors measured, in their own axes"
 
@@ -134,7 +135,7 @@ def _sensor(system: MotionSystem, point: str, asked_hz: float | None) -> Importe
     is_kept = is_new & (np.isfinite(acc).any(axis=1) | np.isfinite(gyr).any(axis=1))  # what is missing is a gap
     acc, gyr, time_s = acc[is_kept], gyr[is_kept], time_s[is_kept]
     first = system.channels[of_point["GYRO", "x"]]
-    _check(acc, gyr, point, where)
+    check_magnitudes(acc, gyr, point, where)
     if first.frame.casefold() == "global" and rate_hz is not None:
         _check_axes(acc, gyr, rate_hz, point, where)
     q, mag = values("ORNT", QUATERNION), values("MAGN", AXES)
@@ -157,8 +158,7 @@ def _sensor(system: MotionSystem, point: str, asked_hz: float | None) -> Importe
         findings.append(Finding("rate_from_orientation", Severity.INFO, ""))
     if q is not None and not is_up:
         findings.append(Finding("orientation_left_out", Severity.INFO, "", {"names": "ORNT"}))
-    if not is_new.all():
-        findings.append(Finding("doubled_stamps", Severity.WARNING, "", {"count": int(np.sum(~is_new))}))
+    findings += doubled(int(np.sum(~is_new)))
     ids = (first.sensor,) if first.sensor else ()
     return ImportedSensor(point, ids, f"{system.base}{MOTION}", block, info, tuple(findings))
 
@@ -208,7 +208,7 @@ def _times(
             "its latency does not come after that of the line before",
             EXPORT_AGAIN,
         )
-    is_new = np.concatenate([np.ones(min(n, 1), dtype=bool), steps_s > 0])
+    is_new = is_later(time_s)
     step_s = float(np.median(steps_s)) if len(steps_s) else np.nan
     if rate_hz is not None and np.isfinite(step_s) and not 0.5 < step_s * rate_hz < 2.0:
         raise FileRefusedError(
@@ -221,27 +221,6 @@ def _times(
     if rate_hz is None and step_s > 0:
         rate_hz = round(1.0 / step_s, 2)
     return time_s, rate_hz, is_new
-
-
-def _check(acc_m_s2: FloatArray, gyr_rad_s: FloatArray, point: str, where: str) -> None:
-    felt = np.linalg.norm(acc_m_s2, axis=1)
-    felt = felt[np.isfinite(felt)]
-    middle = float(np.median(felt)) if len(felt) else np.nan
-    if not (np.isnan(middle) or 7.0 < middle < 14.0):
-        raise FileRefusedError(
-            where,
-            "the acceleration of {sensor} is {middle} m/s2 in the middle, which is not gravity",
-            "Export it in the unit it is said to be in, gravity not taken out",
-            sensor=quoted(point),
-            middle=f"{middle:.2f}",
-        )
-    if np.nanmax(np.abs(gyr_rad_s), initial=0.0) > LARGEST_RATE_RAD_S:
-        raise FileRefusedError(
-            where,
-            "the angular rates of {sensor} are larger than any, as if they were in deg/s and not in rad/s",
-            "Correct their unit in the table of channels",
-            sensor=quoted(point),
-        )
 
 
 def _check_axes(acc_m_s2: FloatArray, gyr_rad_s: FloatArray, rate_hz: float, point: str, where: str) -> None:

@@ -4,14 +4,14 @@ One sensor in each file, or all side by side. The header is the first line that 
 follow. Our own session's columns are among those that are understood. It is asked last of all formats.
 """
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from pathlib import Path
 
 from devices.files.column_names import is_unit, sensor_columns
 from devices.files.named_columns import trial_of_tables
-from devices.files.named_table import NamedTable
+from devices.files.named_table import NamedTable, named_table_of
 from devices.files.refusal import FileRefusedError
-from devices.files.tables import TextShape, read_csv, shape_of
+from devices.files.tables import Table, TextShape, read_csv, shape_of
 from devices.files.trial import ImportedTrial
 
 COMMENT, DELIMITERS = "#", ",;\t"
@@ -51,28 +51,21 @@ def csv_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedTr
 
 
 def _table(path: Path) -> NamedTable:
-    where = path.name
     shape = _shape(path)
-    wanted = {name for one in sensor_columns(shape.names, shape.units) for name in one.names()}
-    table = read_csv(
-        path,
-        where,
-        wanted,
-        comment=COMMENT,
-        delimiters=DELIMITERS,
-        keep_others=False,
-        has_units=bool(shape.units),
-        decimal=shape.decimal,
-    )
-    return NamedTable(
-        columns={name: table.numbers[name] for name in shape.names if name in wanted},
-        where=where,
-        file=str(path),
-        called=path.stem,
-        place=table.place,
-        units=shape.units,
-        left_out=[name for name in shape.names if name not in wanted],
-    )
+
+    def read(wanted: Collection[str]) -> Table:
+        return read_csv(
+            path,
+            path.name,
+            wanted,
+            comment=COMMENT,
+            delimiters=DELIMITERS,
+            keep_others=False,
+            has_units=bool(shape.units),
+            decimal=shape.decimal,
+        )
+
+    return named_table_of(path, shape.names, shape.units, read)
 
 
 def _shape(path: Path) -> TextShape:

@@ -20,12 +20,14 @@ from scipy.spatial.transform import Rotation
 
 from core.findings import Finding, Severity
 from core.samples import BoolArray, FloatArray, ImuBlock, RateKind, SensorInfo
-from devices.files.orientation_rates import Numbers, derive_rates, rate_kind_by
+from devices.files.doubled_stamps import doubled, is_later, unwrapped
+from devices.files.magnitudes import check_magnitudes, times_the_turning
+from devices.files.orientation_rates import Numbers, derive_rates, rate_kind_by, with_gravity
 from devices.files.refusal import FileRefusedError
 from devices.files.site_names import without_site
 from devices.files.spreadsheets import ZIP, read_xlsx, sheet_says
-from devices.files.tables import CORRECT_IT, Table, header_of, read_csv
-from devices.files.trial import ImportedSensor, ImportedTrial, UnreadFile
+from devices.files.tables import Table, header_of, read_csv
+from devices.files.trial import ImportedSensor, ImportedTrial, read_each
 
 TIME = "SampleTimeFine"
 ACC = ("Acc_X", "Acc_Y", "Acc_Z")
@@ -51,6 +53,7 @@ ONE_TRIAL_S = 60.0  # the app starts its sensors one after the other
 CLOCK = "Movella DOT"
 GRAVITY_M_S2 = 9.8127  # by which the sensors make free acceleration
 ROTATION_ERROR = 0.01
+WRONG_UNIT = 0.05  # of the orientation's turning; rates in rad/s that are taken for deg/s are a 57th
 MEASURE_ANEW = (
     'Record again in the mode "Custom mode 5" or, in the sensor, with orientation, acceleration and angular velocity'
 )
@@ -119,7 +122,8 @@ def read_dot(path: Path, asked_hz: float | None = None) -> DotFile:
     """
     where = path.name
     settings, table = _read(path, where)
-    ticks, is_new = _unwrap(table, where)
+    ticks = unwrapped(table, TIME, TICKS_TURN_AT, where)
+    is_new = is_later(ticks)
     told_hz = _told_rate(settings) or asked_hz
     tick_s, rate_hz = _clock(np.diff(ticks[is_new]), told_hz, where)
     counter = _counter(ticks[is_new], tick_s, rate_hz)
@@ -130,7 +134,7 @@ def read_dot(path: Path, asked_hz: float | None = None) -> DotFile:
     is_empty = np.logical_and.accumulate((acc == 0.0).all(axis=1) & (gyr == 0.0).all(axis=1))
     if not is_empty.all():  # the export begins with a row of nothing but zeros
         acc[is_empty] = gyr[is_empty] = np.nan
-    _check_gravity(acc, where)
+    check_magnitudes(acc, None, path.stem, where)  # of rates in deg/s the orientation tells
     is_rate_derived = not (set(GYR) <= set(table.numbers) or set(TURNS) <= set(table.numbers))
     ids = tuple(dict.fromkeys([*_named(path), *filter(None, [settings.get(TAG)])]))
     return DotFile(
@@ -174,14 +178,7 @@ def movella_dot_trial(files: Sequence[Path], rate_hz: float | None = None) -> Im
     FileRefusedError
         What `read_dot` refuses of the only file.
     """
-    read, unread = [], []
-    for path in files:
-        try:
-            read.append(read_dot(path, rate_hz))
-        except FileRefusedError as refusal:
-            unread.append(UnreadFile(str(path), tuple(_named(path)), refusal))
-    if not read and unread:
-        raise unread[0].refusal
+    read, unread = read_each(files, lambda path: read_dot(path, rate_hz), _named)
     starts_s = _starts_s(read)
     is_one_grid = _is_one_grid(read, starts_s)
     is_shared = len(read) < 2 or all(file.is_synced for file in read) or is_one_grid
@@ -226,35 +223,6 @@ def _read(path: Path, where: str) -> tuple[dict[str, str], Table]:
         if len(cells) > 1 and cells[0]
     }
     return settings, table
-
-
-def _unwrap(table: Table, where: str) -> tuple[Numbers, BoolArray]:
-    """(n,) the ticks without their turns, and which rows are no repetition of the time before."""
-    raw = table.numbers[TIME]
-    is_tick = (raw >= 0) & (raw < TICKS_TURN_AT) & (raw == np.floor(raw))
-    if not is_tick.all():
-        raise FileRefusedError(
-            f"{where}, {table.place(int(np.argmin(is_tick)))}",
-            "{name} is not a whole number from 0 to {most}",
-            CORRECT_IT,
-            name=TIME,
-            most=TICKS_TURN_AT - 1,
-        )
-    ticks: Numbers = raw.astype(np.int64)
-    step: Numbers = np.diff(ticks) % np.int64(TICKS_TURN_AT)
-    back = np.flatnonzero(step >= TICKS_TURN_AT // 2)
-    if len(back):
-        row = int(back[0]) + 1
-        raise FileRefusedError(
-            f"{where}, {table.place(row)}",
-            "{name} steps back from {before} to {after}",
-            EXPORT_AGAIN,
-            name=TIME,
-            before=f"{raw[row - 1]:.0f}",
-            after=f"{raw[row]:.0f}",
-        )
-    first = ticks[:1]
-    return np.concatenate([first, first + np.cumsum(step)]), np.concatenate([np.ones(len(first), dtype=bool), step > 0])
 
 
 def _told_rate(settings: Mapping[str, str]) -> float | None:
@@ -329,7 +297,8 @@ def _rates(
         gyr = np.radians(table.matrix(GYR)[is_new])
         if q is None:
             return gyr, None
-        _check_rates(gyr, derive_rates(q, counter, rate_hz), where)
+        if times_the_turning(gyr, q, counter, rate_hz) < WRONG_UNIT:
+            raise FileRefusedError(where, "the angular rates are in rad/s and not in deg/s", EXPORT_AGAIN)
         return gyr, rate_kind_by(q, gyr, counter, rate_hz)
     if names >= set(TURNS):
         turns = table.matrix(TURNS)
@@ -364,39 +333,7 @@ def _specific_force(
             "gravity is taken out of its acceleration (FreeAcc_X), and no orientation is there to add it again",
             MEASURE_ANEW,
         )
-    felt = table.matrix(FREE_ACC)[is_new] + np.array([0.0, 0.0, GRAVITY_M_S2])
-    acc = np.full_like(felt, np.nan)
-    is_there = np.isfinite(felt.sum(axis=1) + q.sum(axis=1))
-    if is_there.any():
-        acc[is_there] = Rotation.from_quat(q[is_there], scalar_first=True).inv().apply(felt[is_there])
-    return acc, True
-
-
-def _check_rates(gyr_rad_s: FloatArray, turned_rad_s: FloatArray, where: str) -> None:
-    speed, turned = (np.linalg.norm(rate, axis=1) for rate in (gyr_rad_s, turned_rad_s))
-    is_turning = np.isfinite(speed) & (turned > 0.2)
-    if is_turning.any() and np.median(speed[is_turning] / turned[is_turning]) < 0.05:
-        raise FileRefusedError(where, "the angular rates are in rad/s and not in deg/s", EXPORT_AGAIN)
-
-
-def _check_gravity(acc_m_s2: FloatArray, where: str) -> None:
-    felt = np.linalg.norm(acc_m_s2, axis=1)
-    felt = felt[np.isfinite(felt)]
-    middle = float(np.median(felt)) if len(felt) else np.nan
-    if 0.7 < middle < 1.4:
-        raise FileRefusedError(
-            where,
-            "the acceleration is {middle} in the middle, as if it were in g and not in m/s2",
-            EXPORT_AGAIN,
-            middle=f"{middle:.2f}",
-        )
-    if not (np.isnan(middle) or 7.0 < middle < 14.0):
-        raise FileRefusedError(
-            where,
-            "the acceleration is {middle} m/s2 in the middle, which is not gravity",
-            MEASURE_ANEW,
-            middle=f"{middle:.2f}",
-        )
+    return with_gravity(table.matrix(FREE_ACC)[is_new], q, GRAVITY_M_S2), True
 
 
 def _starts_s(files: Sequence[DotFile]) -> list[float]:
@@ -434,7 +371,6 @@ def _findings(file: DotFile, is_shared: bool) -> Iterator[Finding]:
         yield Finding("rate_from_orientation", Severity.INFO, "")
     if file.is_gravity_added:
         yield Finding("gravity_from_orientation", Severity.INFO, "")
-    if file.doubled:
-        yield Finding("doubled_stamps", Severity.WARNING, "", {"count": file.doubled})
+    yield from doubled(file.doubled)
     if not is_shared:
         yield Finding("not_synchronised", Severity.WARNING, "")

@@ -15,10 +15,12 @@ from scipy.spatial.transform import Rotation
 
 from core.findings import Finding, Severity
 from core.samples import BoolArray, FloatArray, ImuBlock, RateKind, SensorInfo
-from devices.files.orientation_rates import Numbers, derive_rates
+from devices.files.doubled_stamps import doubled, is_later
+from devices.files.magnitudes import check_magnitudes
+from devices.files.orientation_rates import Numbers, derive_rates, with_gravity
 from devices.files.own_clocks import with_own_clocks
 from devices.files.refusal import FileRefusedError
-from devices.files.trial import ImportedSensor, ImportedTrial, UnreadFile
+from devices.files.trial import ImportedSensor, ImportedTrial, read_each
 from devices.xbus import AXES_MASK, ITEM_MASK, NORTH_EAST_DOWN, PREAMBLE, Item, Items, Message, Mid, XbusFramer, values
 from devices.xsens_mti import (
     COUNTER_BITS,
@@ -34,14 +36,17 @@ OLD_DATA = 0x32  # MTData, which MTi sensors sent before MTData2
 MOST_BEFORE = 4096  # bytes of noise before the first message
 PIECE = 1 << 20  # bytes
 LEAST_MESSAGES = 3
+MOST_LONE = 0.1  # of the samples: more is no damage, but another rate
 MATRIX, FREE_ACCELERATION = 0x2020, 0x4030
-GRAVITY_M_S2 = 9.81
 SET_OUTPUT = "Let the sensor send rate of turn, acceleration and sample time fine (MT Manager, Output Configuration)"
 
 
 @dataclass(frozen=True, slots=True)
 class MtiStream:
-    """What was read of one stream: one row for each message with motion, NaN where it did not tell."""
+    """What was read of one stream: one row for each message with motion, NaN where it did not tell.
+
+    `lone`: how many messages told a rate or an acceleration and not both.
+    """
 
     ticks: FloatArray
     counter: FloatArray
@@ -54,6 +59,7 @@ class MtiStream:
     mag: FloatArray
     serial: str
     damaged: int
+    lone: int
 
 
 def is_mti_stream(path: Path, head: bytes) -> bool:
@@ -81,15 +87,7 @@ def mti_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedTr
     OSError
         A file cannot be read.
     """
-    sensors: list[ImportedSensor] = []
-    unread = []
-    for path in files:
-        try:
-            sensors.append(_sensor(path, rate_hz))
-        except FileRefusedError as refusal:
-            unread.append(UnreadFile(str(path), (), refusal))
-    if not sensors and unread:
-        raise unread[0].refusal
+    sensors, unread = read_each(files, lambda path: _sensor(path, rate_hz))
     return ImportedTrial(DRIVER, tuple(with_own_clocks(sensors)), tuple(unread))
 
 
@@ -116,10 +114,22 @@ def read_mti_stream(path: Path) -> MtiStream:
         raise FileRefusedError(
             path.name, "no message in it holds rate of turn, acceleration or orientation", SET_OUTPUT
         )
-    columns = np.array(rows.rows).T
-    parts = np.split(columns, np.cumsum([1, 1, 3, 3, 4, 3, 3, 4]))
-    ticks, counter, rate, force, turn, velocity, free, q, mag = (part.T for part in parts)
-    return MtiStream(ticks[:, 0], counter[:, 0], rate, force, turn, velocity, free, q, mag, rows.serial, framer.damaged)
+    parts = np.split(np.array(rows.rows), np.cumsum([1, 1, 3, 3, 4, 3, 3, 4]), axis=1)
+    ticks, counter, rate, force, turn, velocity, free, q, mag = parts
+    return MtiStream(
+        ticks[:, 0],
+        counter[:, 0],
+        rate,
+        force,
+        turn,
+        velocity,
+        free,
+        q,
+        mag,
+        rows.serial,
+        damaged=framer.damaged,
+        lone=rows.lone,
+    )
 
 
 class _Rows:
@@ -129,6 +139,7 @@ class _Rows:
         self.rows: list[tuple[float, ...]] = []
         self.serial = ""
         self.is_old = False
+        self.lone = 0
 
     def take(self, messages: Sequence[Message]) -> None:
         for one in messages:
@@ -155,8 +166,11 @@ class _Rows:
             q = upward(q)
         if told.get(FREE_ACCELERATION, 0) & AXES_MASK == NORTH_EAST_DOWN:
             free = free[1], free[0], -free[2]
-        if not np.isfinite([rate[0], turn[0], q[0]]).any() or not np.isfinite([force[0], velocity[0], free[0]]).any():
-            return  # what the satellites told
+        has_rate = np.isfinite([rate[0], turn[0], q[0]]).any()
+        has_force = np.isfinite([force[0], velocity[0], free[0]]).any()
+        if not has_rate or not has_force:
+            self.lone += bool(has_rate or has_force)  # else it is what the satellites told
+            return
         ticks, counter = of(Item.FINE_TIME, 1), of(Item.COUNTER, 1)
         mag = of(Item.MAGNETIC_FIELD, 3)
         self.rows.append((*ticks, *counter, *rate, *force, *turn, *velocity, *free, *q, *mag))
@@ -172,7 +186,7 @@ def _of_matrix(matrix: Sequence[float]) -> tuple[float, ...]:
 
 def _sensor(path: Path, asked_hz: float | None) -> ImportedSensor:
     stream = read_mti_stream(path)
-    time_s, is_new, doubled = _times(stream, asked_hz, path.name)
+    time_s, is_new, repeated = _times(stream, asked_hz, path.name)
     step_s = np.diff(time_s)
     usual_s = float(np.median(step_s)) if len(step_s) else 0.01
     rate_hz = asked_hz or round(1.0 / usual_s, 3)
@@ -180,7 +194,8 @@ def _sensor(path: Path, asked_hz: float | None) -> ImportedSensor:
     q = stream.q[is_new] if np.isfinite(stream.q).any() else None
     gyr, is_derived = _rates(stream, is_new, q, counter, rate_hz)
     acc, is_added = _forces(stream, is_new, q, usual_s, path.name)
-    findings = _findings(stream, doubled, is_derived=is_derived, is_added=is_added)
+    check_magnitudes(acc, None if is_derived else gyr, stream.serial or path.stem, path.name, is_export=False)
+    findings = _findings(stream, repeated, is_derived=is_derived, is_added=is_added)
     name = stream.serial or path.stem
     block = ImuBlock(
         sensor=name,
@@ -216,8 +231,7 @@ def _times(stream: MtiStream, asked_hz: float | None, where: str) -> tuple[Float
         time_s = np.unwrap(stream.counter, period=2.0**COUNTER_BITS) / asked_hz
     else:
         raise FileRefusedError(where, "its messages tell neither time nor packet counter", SET_OUTPUT)
-    latest_s = np.maximum.accumulate(time_s)
-    is_new = np.concatenate([np.ones(len(time_s[:1]), dtype=bool), time_s[1:] > latest_s[:-1]])
+    is_new = is_later(time_s)
     return time_s[is_new], is_new, int(np.sum(~is_new))
 
 
@@ -251,27 +265,23 @@ def _forces(
         return stream.force[is_new], False
     if np.isfinite(stream.velocity).any():
         return stream.velocity[is_new] / usual_s, False
-    force = np.full((int(is_new.sum()), 3), np.nan)
-    felt = stream.free[is_new] + np.array([0.0, 0.0, GRAVITY_M_S2])
     if q is None:
         raise FileRefusedError(
             where,
             "gravity is taken out of its acceleration, and no orientation is there to add it again",
             SET_OUTPUT,
         )
-    is_there = np.isfinite(felt).all(axis=1) & np.isfinite(q).all(axis=1)
-    if is_there.any():
-        force[is_there] = Rotation.from_quat(q[is_there], scalar_first=True).inv().apply(felt[is_there])
-    return force, True
+    return with_gravity(stream.free[is_new], q), True
 
 
-def _findings(stream: MtiStream, doubled: int, *, is_derived: bool, is_added: bool) -> Iterator[Finding]:
+def _findings(stream: MtiStream, repeated: int, *, is_derived: bool, is_added: bool) -> Iterator[Finding]:
     if is_derived:
         yield Finding("rate_from_orientation", Severity.INFO, "")
     if is_added:
         yield Finding("gravity_from_orientation", Severity.INFO, "")
-    if doubled:
-        yield Finding("doubled_stamps", Severity.WARNING, "", {"count": doubled})
+    yield from doubled(repeated)
+    if stream.lone > MOST_LONE * len(stream.ticks):
+        yield Finding("slower_kept", Severity.WARNING, "", {"kept": len(stream.ticks), "count": stream.lone})
     if stream.damaged:
         yield Finding("damaged_stretches", Severity.WARNING, "", {"count": stream.damaged})
 

@@ -15,11 +15,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from core.findings import Finding, Severity
 from core.samples import BoolArray, FloatArray, ImuBlock, RateKind, SensorInfo
-from devices.files.orientation_rates import Numbers, derive_rates, rate_kind_by
+from devices.files.doubled_stamps import doubled, is_later
+from devices.files.magnitudes import check_magnitudes
+from devices.files.orientation_rates import Numbers, derive_rates, rate_kind_by, with_gravity
 from devices.files.refusal import FileRefusedError, quoted
 from devices.files.trial import ImportedSensor, ImportedTrial
 
@@ -29,9 +30,7 @@ WIDTHS = {ORIENTATION: 4, FREE_ACC: 3, ACC: 3, GYR: 3, MAG: 3}
 CLOCK = "Xsens MVN"  # one station stamps all sensors
 LARGEST_FRAME = 2**40  # beyond, a frame's number is damaged
 LEAST_RATE_HZ, MOST_RATE_HZ = 1.0, 2000.0  # beyond, it is damaged
-GRAVITY_M_S2 = 9.81
 ROTATION_ERROR = 0.01
-LARGEST_RATE_RAD_S = 70.0  # twice the widest range of these sensors, 2000 deg/s: beyond, the unit is another
 EXPORT_AGAIN = "Export it again from MVN as MVNX"
 WITH_THEM = "Export it again from MVN as MVNX, with sensor orientation and sensor free acceleration"
 
@@ -116,7 +115,7 @@ def mvnx_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedT
         raise FileRefusedError(file.where, "its frame rate is not told", "Give it in Hz (--rate)")
     index: Numbers = np.array(file.index, dtype=np.int64)
     _check_stamps(file, index, rate_hz)
-    is_new = np.diff(index, prepend=index[:1] - 1) > 0
+    is_new = is_later(index)
     values = {name: _by_sensor(file, name, is_new) for name in WIDTHS}
     index = index[is_new]
     is_gravity_added, is_rate_derived = values[ACC] is None, values[GYR] is None
@@ -250,12 +249,11 @@ def _motion(
             raise FileRefusedError(
                 file.where, "there is no acceleration of the sensors, or no orientation to add gravity by", WITH_THEM
             )
-        acc = _with_gravity(free, q)
-    _check_gravity(acc, file.where)
+        acc = with_gravity(free, q)
     sensors = range(len(file.sensors))
+    for k, name in enumerate(file.sensors):
+        check_magnitudes(acc[:, k], None if gyr is None else gyr[:, k], name, file.where)
     if gyr is not None:
-        if np.nanmax(np.abs(gyr), initial=0.0) > LARGEST_RATE_RAD_S:
-            raise FileRefusedError(file.where, "the angular rates are in deg/s and not in rad/s", EXPORT_AGAIN)
         kinds = [None if q is None else rate_kind_by(q[:, k], gyr[:, k], index, rate_hz) for k in sensors]
         return acc, gyr, kinds
     if q is None:
@@ -264,33 +262,9 @@ def _motion(
     return acc, derived, [RateKind.INSTANTANEOUS for _ in sensors]
 
 
-def _with_gravity(free_m_s2: FloatArray, q: FloatArray) -> FloatArray:
-    """Specific force in sensor axes, of free acceleration in earth axes."""
-    felt = free_m_s2 + np.array([0.0, 0.0, GRAVITY_M_S2])
-    acc = np.full_like(felt, np.nan)
-    is_there = np.isfinite(felt.sum(axis=2) + q.sum(axis=2))
-    if is_there.any():
-        acc[is_there] = Rotation.from_quat(q[is_there], scalar_first=True).inv().apply(felt[is_there])
-    return acc
-
-
-def _check_gravity(acc_m_s2: FloatArray, where: str) -> None:
-    felt = np.linalg.norm(acc_m_s2, axis=2)
-    felt = felt[np.isfinite(felt)]
-    middle = float(np.median(felt)) if len(felt) else np.nan
-    if not (np.isnan(middle) or 7.0 < middle < 14.0):
-        raise FileRefusedError(
-            where,
-            "the acceleration is {middle} m/s2 in the middle, which is not gravity",
-            WITH_THEM,
-            middle=f"{middle:.2f}",
-        )
-
-
-def _findings(is_rate_derived: bool, is_gravity_added: bool, doubled: int) -> Iterator[Finding]:
+def _findings(is_rate_derived: bool, is_gravity_added: bool, repeated: int) -> Iterator[Finding]:
     if is_rate_derived:
         yield Finding("rate_from_orientation", Severity.INFO, "")
     if is_gravity_added:
         yield Finding("gravity_from_orientation", Severity.INFO, "")
-    if doubled:
-        yield Finding("doubled_stamps", Severity.WARNING, "", {"count": doubled})
+    yield from doubled(repeated)

@@ -24,13 +24,14 @@ from devices.files.column_names import (
     unit_of,
     without_brackets,
 )
+from devices.files.doubled_stamps import doubled
+from devices.files.magnitudes import FELT_M_S2, FEW, MOST_RAD_S, middle_size
 from devices.files.named_table import NamedTable
 from devices.files.named_times import stamps_of
 from devices.files.refusal import FileRefusedError, quoted
-from devices.files.trial import ImportedSensor, ImportedTrial, UnreadFile
+from devices.files.trial import ImportedSensor, ImportedTrial, read_each
 
-GRAVITY_M_S2 = (7.0, 14.0)  # the middle of what a sensor on a leg at rest or walking feels
-MOST_RAD_S = 70.0  # twice the widest range of such sensors, 2000 deg/s
+GRAVITY_M_S2 = (7.0, 14.0)  # the middle of what a sensor on a leg at rest or walking feels, by which a unit is found
 UP = 0.95  # cosine of the angle to the vertical at which an orientation turns the mean specific force
 
 NAME_THEM = (
@@ -79,21 +80,15 @@ def trial_of_tables(
     FileRefusedError
         What is refused of the only file that there is.
     """
+    tables, unread = read_each(
+        files, lambda path: [(table.called, sensors_of_table(table, rate_hz)) for table in read(path)]
+    )
     sensors: list[ImportedSensor] = []
-    unread = []
-    for path in files:
-        try:
-            tables = [(table.called, sensors_of_table(table, rate_hz)) for table in read(path)]
-        except FileRefusedError as refusal:
-            unread.append(UnreadFile(str(path), (), refusal))
-            continue
-        for called, found in tables:
-            names = {sensor.name.casefold() for sensor in sensors}
-            if any(sensor.name.casefold() in names for sensor in found):  # each table may call its sensor "imu"
-                found = [replace(sensor, name=f"{called} {sensor.name}") for sensor in found]
-            sensors += found
-    if not sensors and unread:
-        raise unread[0].refusal
+    for called, found in (one for of_file in tables for one in of_file):
+        names = {sensor.name.casefold() for sensor in sensors}
+        if any(sensor.name.casefold() in names for sensor in found):  # each table may call its sensor "imu"
+            found = [replace(sensor, name=f"{called} {sensor.name}") for sensor in found]
+        sensors += found
     return ImportedTrial(format_name, tuple(sensors), tuple(unread))
 
 
@@ -118,8 +113,7 @@ def _sensor(table: NamedTable, named: SensorColumns, asked_hz: float | None, oth
     q = _orientation(_matrix(table, named.quat)[kept], acc[kept]) if named.quat else None
     if named.quat and q is None:
         findings.append(Finding("orientation_left_out", Severity.INFO, "", {"names": listed(named.quat)}))
-    if stamps.doubled:
-        findings.append(Finding("doubled_stamps", Severity.WARNING, "", {"count": stamps.doubled}))
+    findings += doubled(stamps.doubled)
     understood = {
         "acc": listed(named.acc),
         "acc_unit": acc_unit,
@@ -146,15 +140,13 @@ def _sensor(table: NamedTable, named: SensorColumns, asked_hz: float | None, oth
 
 def _acc_unit(table: NamedTable, named: SensorColumns, acc: FloatArray, findings: list[Finding]) -> str:
     told = _told_unit(table, named.acc, Quantity.ACC)
-    felt = np.linalg.norm(acc, axis=1)
-    felt = felt[np.isfinite(felt)]
-    if not len(felt):
+    middle = middle_size(acc)
+    if np.isnan(middle):
         return told or "m/s2"
-    middle = float(np.median(felt))
+    if told and FELT_M_S2[0] < middle * FORCE_UNITS[told] < FELT_M_S2[1]:
+        return told
     least, most = GRAVITY_M_S2
     fits = [unit for unit, scale in FORCE_UNITS.items() if least < middle * scale < most]
-    if told in fits:
-        return told
     if told and fits:
         raise FileRefusedError(
             table.where,
@@ -181,7 +173,7 @@ def _acc_unit(table: NamedTable, named: SensorColumns, acc: FloatArray, findings
 def _gyr_unit(table: NamedTable, named: SensorColumns, gyr: FloatArray, findings: list[Finding]) -> str:
     told = _told_unit(table, named.gyr, Quantity.GYR)
     rates = np.abs(gyr[np.isfinite(gyr)])
-    largest = float(np.quantile(rates, 0.999)) if len(rates) else 0.0
+    largest = float(np.quantile(rates, FEW)) if len(rates) else 0.0
     if told:
         if largest * RATE_UNITS[told] > MOST_RAD_S:
             raise FileRefusedError(

@@ -1,10 +1,13 @@
 """A table of no particular program, as its readers hand it on to `named_columns`."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 
 from core.findings import Finding
 from core.samples import FloatArray
+from devices.files.column_names import sensor_columns
+from devices.files.tables import Table
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,3 +46,33 @@ class NamedTable:
     time_s: FloatArray | None = None
     left_out: Sequence[str] = ()
     findings: Sequence[Finding] = ()
+
+
+def named_table_of(
+    path: Path, names: Sequence[str], units: Mapping[str, str], read: Callable[[Collection[str]], Table]
+) -> NamedTable:
+    """The columns of sensors in a file that is one table.
+
+    Parameters
+    ----------
+    names, units
+        Of all its columns; units of those whose unit stands elsewhere than in their name.
+    read
+        Reads the columns of these names as numbers.
+
+    Raises
+    ------
+    FileRefusedError
+        What `read` refuses, two columns that mean the same.
+    """
+    wanted = {name for one in sensor_columns(list(names), units) for name in one.names()}
+    table = read(wanted)
+    return NamedTable(
+        columns={name: table.numbers[name] for name in names if name in wanted},
+        where=path.name,
+        file=str(path),
+        called=path.stem,
+        place=table.place,
+        units=units,
+        left_out=[name for name in names if name not in wanted],
+    )

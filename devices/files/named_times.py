@@ -10,6 +10,7 @@ import numpy as np
 from core.findings import Finding, Severity
 from core.samples import BoolArray, FloatArray
 from devices.files.column_names import SECONDS, SensorColumns, meaning_of
+from devices.files.doubled_stamps import is_later
 from devices.files.named_table import NamedTable
 from devices.files.refusal import FileRefusedError, quoted
 
@@ -75,7 +76,7 @@ def stamps_of(
     else:
         values, scale, told = rows.astype(float), 1.0 / told_hz, f"{told_hz:g} Hz"
         findings.append(Finding("time_from_rate", Severity.WARNING, "", {"rate_hz": told_hz}))
-    is_new = np.concatenate([np.ones(len(values[:1]), dtype=bool), np.diff(values) > 0])
+    is_new = is_later(values)
     doubled = int(np.sum(~is_new))
     if doubled > MOST_DOUBLED * len(values):
         raise FileRefusedError(

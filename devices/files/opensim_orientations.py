@@ -13,11 +13,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from core.findings import Finding, Severity
 from core.samples import FloatArray, ImuBlock, RateKind, SensorInfo
-from devices.files.orientation_rates import Numbers, derive_rates
+from devices.files.orientation_rates import Numbers, derive_rates, with_gravity
 from devices.files.refusal import FileRefusedError, quoted
 from devices.files.trial import ImportedSensor, ImportedTrial
 
@@ -26,7 +25,6 @@ KIND = re.compile(rb"^\s*DataType\s*=\s*Quaternion\s*$", re.MULTILINE | re.IGNOR
 TIME = "time"
 LONGEST_LINE = 100_000  # bytes
 HEAD_WITHIN = 100  # lines
-GRAVITY_M_S2 = 9.81
 ROTATION_ERROR = 0.01
 UNEVEN = 0.2  # of a step: rates derived over uneven steps would be wrong by as much
 EXPORT_AGAIN = "Export it again from OpenSim"
@@ -127,16 +125,11 @@ def opensim_trial(files: Sequence[Path], rate_hz: float | None = None) -> Import
     sensors = []
     for k, name in enumerate(table.sensors):
         q = table.q_earth_from_sensor[:, k]
-        acc = np.full((len(q), 3), np.nan)
-        is_there = np.isfinite(q).all(axis=1)
-        if is_there.any():
-            turn = Rotation.from_quat(q[is_there], scalar_first=True)
-            acc[is_there] = turn.inv().apply([0.0, 0.0, GRAVITY_M_S2])
         block = ImuBlock(
             sensor=name,
             time_s=table.time_s,
             gyr_rad_s=derive_rates(q, counter, rate_hz or 1.0),
-            acc_m_s2=acc,
+            acc_m_s2=with_gravity(np.zeros((len(q), 3)), q),
             q_earth_from_sensor=q,
             is_rate_derived=True,
         )

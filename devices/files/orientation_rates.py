@@ -1,4 +1,4 @@
-"""Angular rates that a device's own orientation tells, and which of two kinds its gyroscope's rates are."""
+"""What a device's own orientation tells: angular rates, which of two kinds its gyroscope's are, and gravity."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -7,6 +7,7 @@ from scipy.spatial.transform import Rotation
 from core.samples import FloatArray, RateKind
 
 Numbers = NDArray[np.int64]
+GRAVITY_M_S2 = 9.81
 CLEARLY = 0.6  # of the other's error: then the rates are of this kind and not of the other
 
 
@@ -97,3 +98,31 @@ def turn_to(q: FloatArray, counter: Numbers, steps: int) -> FloatArray:
         start, end = (Rotation.from_quat(q[part][is_there], scalar_first=True) for part in (here, there))
         turn[here][is_there] = (start.inv() * end).as_rotvec()
     return turn
+
+
+def with_gravity(
+    free_m_s2: FloatArray, q_earth_from_sensor: FloatArray, gravity_m_s2: float = GRAVITY_M_S2
+) -> FloatArray:
+    """Specific force in sensor axes, of acceleration in earth axes from which gravity was taken out.
+
+    Parameters
+    ----------
+    free_m_s2 : (..., 3)
+        In earth axes, z up.
+    q_earth_from_sensor : (..., 4)
+        Unit quaternions, scalar first.
+    gravity_m_s2
+        That was taken out.
+
+    Returns
+    -------
+    (..., 3)
+        m/s2; NaN where acceleration or orientation is missing.
+    """
+    felt = free_m_s2 + np.array([0.0, 0.0, gravity_m_s2])
+    force = np.full_like(felt, np.nan)
+    is_there = np.isfinite(felt).all(axis=-1) & np.isfinite(q_earth_from_sensor).all(axis=-1)
+    if is_there.any():
+        turn = Rotation.from_quat(q_earth_from_sensor[is_there], scalar_first=True)
+        force[is_there] = turn.inv().apply(felt[is_there])
+    return force

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from devices.files.column_names import sensor_columns
 from devices.files.named_columns import trial_of_tables
-from devices.files.named_table import NamedTable
+from devices.files.named_table import NamedTable, named_table_of
 from devices.files.refusal import FileRefusedError
 from devices.files.tables import COPY_AGAIN, read_parquet
 from devices.files.trial import ImportedTrial
@@ -46,17 +46,8 @@ def parquet_trial(files: Sequence[Path], rate_hz: float | None = None) -> Import
 
 def _table(path: Path) -> NamedTable:
     units = _columns(path)
-    wanted = {name for one in sensor_columns(list(units), units) for name in one.names()}
-    table = read_parquet(path, path.name, wanted)
-    return NamedTable(
-        columns={name: table.numbers[name] for name in units if name in wanted},
-        where=path.name,
-        file=str(path),
-        called=path.stem,
-        place=table.place,
-        units={name: unit for name, unit in units.items() if unit},
-        left_out=[name for name in units if name not in wanted],
-    )
+    told = {name: unit for name, unit in units.items() if unit}
+    return named_table_of(path, list(units), told, lambda wanted: read_parquet(path, path.name, wanted))
 
 
 def _columns(path: Path) -> dict[str, str]:

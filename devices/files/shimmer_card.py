@@ -22,8 +22,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from core.findings import Finding, Severity
-from core.samples import BoolArray, FloatArray, ImuBlock, SensorInfo
+from core.samples import FloatArray, ImuBlock, SensorInfo
+from devices.files.doubled_stamps import doubled, is_later
+from devices.files.magnitudes import check_magnitudes
 from devices.files.refusal import FileRefusedError
 from devices.files.trial import ImportedSensor
 from devices.shimmer3 import CALIBRATION_SIZE, TICK_HZ, TURN, calibrating
@@ -122,17 +123,16 @@ def read_card(files: Sequence[Path]) -> ImportedSensor:
     if any(part.period != first.period or part.is_synced != first.is_synced for part in parts):
         raise FileRefusedError(name, "its parts were not recorded with one setting", "Import each recording by itself")
     ticks = np.concatenate([part.ticks for part in parts])
-    latest = np.maximum.accumulate(ticks)
-    is_new: BoolArray = np.concatenate([np.ones(1, dtype=bool), ticks[1:] > latest[:-1]])
-    doubled = int(np.sum(~is_new))
-    told = (Finding("doubled_stamps", Severity.WARNING, "", {"count": doubled}),) if doubled else ()
+    is_new = is_later(ticks)
     block = ImuBlock(
         sensor=name,
         time_s=ticks[is_new] / TICK_HZ,
         gyr_rad_s=np.concatenate([part.rate for part in parts])[is_new],
         acc_m_s2=np.concatenate([part.force for part in parts])[is_new],
     )
+    check_magnitudes(block.acc_m_s2, block.gyr_rad_s, name, name, is_export=False)
     info = SensorInfo(serial=name, model="Shimmer3", rate_hz=round(TICK_HZ / first.period, 3))
+    told = tuple(doubled(int(np.sum(~is_new))))
     return ImportedSensor(name, tuple(path.name for path in files), str(files[0]), block, info, told)
 
 

@@ -16,15 +16,16 @@ from pathlib import Path
 
 import numpy as np
 
-from core.findings import Finding, Severity
 from core.samples import ImuBlock, SensorInfo
 from devices.csv_serial import FORCE_UNITS, RATE_UNITS
 from devices.files.column_names import Quantity, unit_of
+from devices.files.doubled_stamps import doubled, is_later
+from devices.files.magnitudes import check_magnitudes
 from devices.files.own_clocks import from_zero, with_own_clocks
 from devices.files.refusal import FileRefusedError, quoted
 from devices.files.shimmer_card import card_recording, is_card, is_synchronised, read_card
 from devices.files.tables import Table, header_of, read_csv
-from devices.files.trial import ImportedSensor, ImportedTrial, UnreadFile
+from devices.files.trial import ImportedSensor, ImportedTrial, read_each
 
 FORMAT = "shimmer"
 CLOCK = "Consensys"
@@ -79,31 +80,26 @@ def shimmer_trial(files: Sequence[Path], rate_hz: float | None = None) -> Import
     OSError
         It cannot be read.
     """
-    sensors: list[ImportedSensor] = []
-    unread = []
+    tables: list[Path] = []
     of_cards: dict[tuple[Path, str], list[Path]] = {}
     for path in files:
         with path.open("rb") as file:
-            head = file.read(MOST_HEAD)
-        if b"\0" in head:
-            of_cards.setdefault((path.parent, card_recording(path)), []).append(path)
-            continue
-        try:
-            sensors += _sensors(path)
-        except FileRefusedError as refusal:
-            unread.append(UnreadFile(str(path), (), refusal))
-    for parts in of_cards.values():
-        try:
-            one = read_card(parts)
-        except FileRefusedError as refusal:
-            unread += [UnreadFile(str(path), (), refusal) for path in parts]
-            continue
-        sensors.append(replace(one, info=replace(one.info, clock=CLOCK if is_synchronised(parts[0]) else "")))
-    if not sensors and unread:
-        raise unread[0].refusal
+            is_binary = b"\0" in file.read(MOST_HEAD)
+        (of_cards.setdefault((path.parent, card_recording(path)), []) if is_binary else tables).append(path)
+    parts_of = {path: [path] for path in tables} | {parts[0]: parts for parts in of_cards.values()}
+    read, refused = read_each(
+        list(parts_of), lambda path: _sensors(path) if path in tables else [_of_card(parts_of[path])]
+    )
+    sensors = [one for found in read for one in found]
+    unread = [replace(one, file=str(part)) for one in refused for part in parts_of[Path(one.file)]]
     is_shared = all(one.info.clock == CLOCK for one in sensors)
     found = from_zero(sensors) if is_shared else with_own_clocks(sensors)
     return ImportedTrial(FORMAT, tuple(found), tuple(unread))
+
+
+def _of_card(parts: Sequence[Path]) -> ImportedSensor:
+    one = read_card(parts)
+    return replace(one, info=replace(one.info, clock=CLOCK if is_synchronised(parts[0]) else ""))
 
 
 def _names(lines: Sequence[str]) -> list[str]:
@@ -153,14 +149,10 @@ def _sensor(path: Path, table: Table, units: Mapping[str, str], name: str, colum
         raise FileRefusedError(
             path.name, "{name} is in {unit}, expected ms", EXPORT_AGAIN, name=quoted(time), unit=quoted(units[time])
         )
-    is_there = np.isfinite(time_s)
-    latest_s = np.maximum.accumulate(np.where(is_there, time_s, -np.inf))
-    is_new = is_there & np.concatenate([np.ones(len(time_s[:1]), dtype=bool), time_s[1:] > latest_s[:-1]])
+    is_new = is_later(time_s)
     if not is_new.any():
         raise FileRefusedError(path.name, "no sample in it has a time", EXPORT_AGAIN)
-    told = []
-    if doubled := int(np.sum(is_there & ~is_new)):
-        told.append(Finding("doubled_stamps", Severity.WARNING, "", {"count": doubled}))
+    told = doubled(int(np.sum(np.isfinite(time_s) & ~is_new)))
     mag = columns.axes(MAG)
     block = ImuBlock(
         sensor=name,
@@ -169,6 +161,7 @@ def _sensor(path: Path, table: Table, units: Mapping[str, str], name: str, colum
         acc_m_s2=table.matrix(force)[is_new] * _scale(path, units, force, Quantity.ACC),
         mag=table.matrix(mag)[is_new] if mag else None,
     )
+    check_magnitudes(block.acc_m_s2, block.gyr_rad_s, name, path.name, gyr_unit=units[columns.axes(GYR)[0]])
     step_s = np.diff(block.time_s)
     hz = round(1.0 / float(np.median(step_s)), 1) if len(step_s) else None
     info = SensorInfo(serial=name, model="Shimmer3", rate_hz=hz, clock=CLOCK if is_synced else "")

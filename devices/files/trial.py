@@ -1,11 +1,15 @@
 """What the files of another program hold of one trial, before anybody has said which sensor was worn where."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
+from typing import TypeVar
 
 from core.findings import Finding
 from core.samples import ImuBlock, SensorInfo
 from devices.files.refusal import FileRefusedError
+
+T = TypeVar("T")
 
 SESSION = "session"  # in place of a format: a session folder
 PROGRAMS: Mapping[str, str] = {  # what writes each of `formats.FORMATS`, whose import takes longer than most files
@@ -97,3 +101,35 @@ class Gathered:
 
     trials: tuple[FilesOfTrial, ...]
     refused: tuple[FileRefusedError, ...]
+
+
+def no_ids(_path: Path) -> Sequence[str]:
+    """No id: nothing but what is in a file tells whose it is."""
+    return ()
+
+
+def read_each(
+    files: Sequence[Path], read: Callable[[Path], T], ids: Callable[[Path], Sequence[str]] = no_ids
+) -> tuple[list[T], list[UnreadFile]]:
+    """What was read of each file, and the files that were refused.
+
+    Parameters
+    ----------
+    ids
+        By which the sensor of a file may be called that cannot be read.
+
+    Raises
+    ------
+    FileRefusedError
+        The first refusal, where no file could be read.
+    """
+    found: list[T] = []
+    unread: list[UnreadFile] = []
+    for path in files:
+        try:
+            found.append(read(path))
+        except FileRefusedError as refusal:
+            unread.append(UnreadFile(str(path), tuple(ids(path)), refusal))
+    if unread and not found:
+        raise unread[0].refusal
+    return found, unread

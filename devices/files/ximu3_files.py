@@ -12,10 +12,12 @@ import numpy as np
 
 from core.findings import Finding, Severity
 from core.samples import FloatArray, ImuBlock, SensorInfo
+from devices.files.doubled_stamps import doubled, is_later
+from devices.files.magnitudes import check_magnitudes
 from devices.files.own_clocks import with_own_clocks
 from devices.files.refusal import FileRefusedError
 from devices.files.tables import read_csv
-from devices.files.trial import ImportedSensor, ImportedTrial, UnreadFile
+from devices.files.trial import ImportedSensor, ImportedTrial, read_each
 from devices.ximu3 import DRIVER, MODEL, G, Ximu3Framer, read_file
 
 INERTIAL, QUATERNION = "Inertial.csv", "Quaternion.csv"
@@ -51,15 +53,7 @@ def ximu3_trial(files: Sequence[Path], rate_hz: float | None = None) -> Imported
     OSError
         It cannot be read.
     """
-    sensors: list[ImportedSensor] = []
-    unread = []
-    for path in files:
-        try:
-            sensors.append(_sensor(path))
-        except FileRefusedError as refusal:
-            unread.append(UnreadFile(str(path), (), refusal))
-    if not sensors and unread:
-        raise unread[0].refusal
+    sensors, unread = read_each(files, _sensor)
     return ImportedTrial(DRIVER, tuple(with_own_clocks(sensors)), tuple(unread))
 
 
@@ -73,6 +67,7 @@ def _sensor(path: Path) -> ImportedSensor:
     block, findings = _of_table(path / INERTIAL if path.is_dir() else path) if is_table else _of_bytes(path)
     if not len(block):
         raise FileRefusedError(path.name, "it holds no inertial messages", "Let the sensor send them, and record again")
+    check_magnitudes(block.acc_m_s2, block.gyr_rad_s, block.sensor, path.name, gyr_unit="deg/s", is_export=is_table)
     step_s = np.diff(block.time_s)
     hz = round(1.0 / float(np.median(step_s)), 1) if len(step_s) else None
     info = SensorInfo(serial=block.sensor, model=MODEL, rate_hz=hz)
@@ -101,10 +96,7 @@ def _of_table(path: Path) -> tuple[ImuBlock, list[Finding]]:
     if not np.isfinite(time_s).all():
         row = int(np.argmin(np.isfinite(time_s)))
         raise FileRefusedError(f"{where}, {table.place(row)}", "a sample has no time", CONVERT_AGAIN)
-    latest_s = np.maximum.accumulate(time_s)
-    is_new = np.concatenate([np.ones(len(time_s[:1]), dtype=bool), time_s[1:] > latest_s[:-1]])
-    doubled = int(np.sum(~is_new))
-    told = [Finding("doubled_stamps", Severity.WARNING, "", {"count": doubled})] if doubled else []
+    is_new = is_later(time_s)
     name = path.parent.name if path.name == INERTIAL else path.stem
     block = ImuBlock(
         sensor=name,
@@ -113,7 +105,7 @@ def _of_table(path: Path) -> tuple[ImuBlock, list[Finding]]:
         acc_m_s2=table.matrix(ACC)[is_new] * G,
         q_earth_from_sensor=_orientation(path.with_name(QUATERNION), time_s[is_new]),
     )
-    return block, told
+    return block, doubled(int(np.sum(~is_new)))
 
 
 def _orientation(path: Path, time_s: FloatArray) -> FloatArray | None:

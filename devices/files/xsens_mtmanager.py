@@ -15,10 +15,12 @@ from scipy.spatial.transform import Rotation
 
 from core.findings import Finding, Severity
 from core.samples import BoolArray, FloatArray, ImuBlock, RateKind, SensorInfo
+from devices.files.doubled_stamps import doubled, is_later, unwrapped
+from devices.files.magnitudes import middle_size, times_the_turning
 from devices.files.orientation_rates import Numbers, derive_rates, rate_kind_by
 from devices.files.refusal import FileRefusedError
-from devices.files.tables import CORRECT_IT, Table, header_of, read_csv
-from devices.files.trial import ImportedSensor, ImportedTrial, UnreadFile
+from devices.files.tables import Table, header_of, read_csv
+from devices.files.trial import ImportedSensor, ImportedTrial, read_each
 
 COUNTER = "PacketCounter"
 FINE_TIME = "SampleTimeFine"
@@ -81,7 +83,8 @@ def read_mtmanager(path: Path) -> MtFile:
     if not set(ACC) <= set(names):
         raise FileRefusedError(where, "there is no acceleration (Acc_X, Acc_Y, Acc_Z)", WITH_IT)
     table = read_csv(path, where, NUMERIC, comment="//", delimiters=DELIMITERS, keep_others=False)
-    counter, is_new = _unwrap(table, where)
+    counter = unwrapped(table, COUNTER, COUNTER_TURNS_AT, where)
+    is_new = is_later(counter)
     q = _orientation(table, where)
     gyr = table.matrix(GYR)[is_new] if set(GYR) <= set(names) else None
     if gyr is None and q is None:
@@ -127,14 +130,7 @@ def mtmanager_trial(files: Sequence[Path], rate_hz: float | None = None) -> Impo
     FileRefusedError
         What `read_mtmanager` refuses of the only file, an update rate that is unknown or not the same everywhere.
     """
-    read, unread = [], []
-    for path in files:
-        try:
-            read.append(read_mtmanager(path))
-        except FileRefusedError as refusal:
-            unread.append(UnreadFile(str(path), tuple(sensor_ids(path)), refusal))
-    if not read and unread:
-        raise unread[0].refusal
+    read, unread = read_each(files, read_mtmanager, sensor_ids)
     rate_hz = _common_rate(read, rate_hz)
     sensors = []
     for file, counter in zip(read, _start_together(read), strict=True):
@@ -154,36 +150,6 @@ def sensor_ids(path: Path) -> list[str]:
     ids = [line.split(":", 1)[1].strip() for line in comments if line.startswith("DeviceId:")]
     named = re.search(r"_([0-9A-Fa-f]{8})$", path.stem)
     return list(dict.fromkeys([*ids, *([named[1]] if named else [])]))
-
-
-def _unwrap(table: Table, where: str) -> tuple[Numbers, BoolArray]:
-    """(n,) the counter without its turns, and which packets are no repetition of the one before."""
-    raw = table.numbers[COUNTER]
-    is_count = (raw >= 0) & (raw < COUNTER_TURNS_AT) & (raw == np.floor(raw))
-    if not is_count.all():
-        row = int(np.argmin(is_count))
-        raise FileRefusedError(
-            f"{where}, {table.place(row)}",
-            "{name} is not a whole number from 0 to {most}",
-            CORRECT_IT,
-            name=COUNTER,
-            most=COUNTER_TURNS_AT - 1,
-        )
-    count = raw.astype(np.int64)
-    step: Numbers = np.diff(count) % COUNTER_TURNS_AT
-    back = np.flatnonzero(step >= COUNTER_TURNS_AT // 2)
-    if len(back):
-        row = int(back[0]) + 1
-        raise FileRefusedError(
-            f"{where}, {table.place(row)}",
-            "{name} steps back from {before} to {after}",
-            EXPORT_AGAIN,
-            name=COUNTER,
-            before=f"{raw[row - 1]:.0f}",
-            after=f"{raw[row]:.0f}",
-        )
-    counter = np.concatenate([count[:1], count[:1] + np.cumsum(step)])
-    return counter, np.concatenate([np.ones(len(count[:1]), dtype=bool), step > 0])
 
 
 def _orientation(table: Table, where: str) -> FloatArray | None:
@@ -301,7 +267,7 @@ def _rate_kind(file: MtFile, rate_hz: float) -> RateKind | None:
 
 def _check_units(file: MtFile) -> None:
     where = file.path.name
-    median = _median(np.linalg.norm(file.acc_m_s2, axis=1))
+    median = middle_size(file.acc_m_s2)
     if 0.7 < median < 1.4:
         raise FileRefusedError(
             where,
@@ -321,20 +287,13 @@ def _check_units(file: MtFile) -> None:
     speed = np.linalg.norm(file.gyr_rad_s, axis=1)
     ratio = np.nan
     if file.q_earth_from_sensor is not None:
-        turned = np.linalg.norm(derive_rates(file.q_earth_from_sensor, file.counter, 1.0), axis=1)
         rate_hz = file.rate_hz or 100.0  # a ratio of 57 is seen with a rate that is off by two, too
-        ratio = _median(speed / np.where(turned * rate_hz > 0.2, turned * rate_hz, np.nan))
+        ratio = times_the_turning(file.gyr_rad_s, file.q_earth_from_sensor, file.counter, rate_hz)
     if ratio > 20.0 or (np.isnan(ratio) and np.any(speed > 2.0 * LARGEST_RATE_RAD_S)):
         raise FileRefusedError(where, "the angular rates are in deg/s and not in rad/s", EXPORT_AGAIN)
-
-
-def _median(values: FloatArray) -> float:
-    values = values[np.isfinite(values)]
-    return float(np.median(values)) if len(values) else np.nan
 
 
 def _findings(file: MtFile, block: ImuBlock) -> Iterator[Finding]:
     if block.is_rate_derived:
         yield Finding("rate_from_orientation", Severity.INFO, "")
-    if file.doubled:
-        yield Finding("doubled_stamps", Severity.WARNING, "", {"count": file.doubled})
+    yield from doubled(file.doubled)

@@ -115,7 +115,7 @@ def test_units_that_are_told_wrongly_are_refused(tmp_path: Path) -> None:
     assert 'the acceleration of "leftThigh" is 1.0' in refusal(
         bids(tmp_path, [(row, values / 9.81) for row, values in held])
     )
-    assert "as if they were in deg/s and not in rad/s" in refusal(
+    assert 'the angular rates of "leftThigh" are in deg/s and not in rad/s' in refusal(
         bids(tmp_path, [(row, np.degrees(values) if row["type"] == "GYRO" else values) for row, values in held])
     )
 

@@ -46,8 +46,20 @@ def reals(identifier: int, *numbers: float) -> bytes:
     return item(identifier, struct.pack(f">{len(numbers)}f", *numbers))
 
 
-def written(path: Path, *, kinds: frozenset[int], ticks: bool = True, first: int = 0, lost: int = -1) -> Path:
-    """A swinging sensor's messages with items of these kinds, written without the reader's help."""
+def written(
+    path: Path,
+    *,
+    kinds: frozenset[int],
+    ticks: bool = True,
+    first: int = 0,
+    lost: int = -1,
+    force_every: int = 1,
+    scale: float = 1.0,
+) -> Path:
+    """A swinging sensor's messages with items of these kinds, written without the reader's help.
+
+    `force_every`: only every so-manieth message has the acceleration, multiplied by `scale`.
+    """
     swing = swinging_sensor(COUNT, HZ)
     data = message(Mid.DEVICE_ID + 1, bytes.fromhex("0123ABCD"))
     for k in range(COUNT):
@@ -56,7 +68,7 @@ def written(path: Path, *, kinds: frozenset[int], ticks: bool = True, first: int
         q = swing.q_earth_from_sensor[k]
         turned = Rotation.from_quat(q, scalar_first=True)
         before = Rotation.from_quat(swing.q_earth_from_sensor[max(k - 1, 0)], scalar_first=True)
-        felt = swing.acc_m_s2[k]
+        felt = scale * swing.acc_m_s2[k]
         free = turned.apply(felt) - [0.0, 0.0, 9.81]
         content = item(Item.COUNTER, struct.pack(">H", (first + k) % 65536))
         if ticks:
@@ -70,7 +82,8 @@ def written(path: Path, *, kinds: frozenset[int], ticks: bool = True, first: int
             FREE: reals(FREE, *free),
             MATRIX: reals(MATRIX, *turned.as_matrix().T.ravel()),  # column after column
         }
-        data += message(Mid.MT_DATA2, content + b"".join(part for kind, part in parts.items() if kind in kinds))
+        sent = kinds if k % force_every == 0 else kinds - {Item.ACCELERATION}
+        data += message(Mid.MT_DATA2, content + b"".join(part for kind, part in parts.items() if kind in sent))
     path.write_bytes(data)
     return path
 
@@ -137,6 +150,25 @@ def test_clocks_turn_and_losses_are_gaps(tmp_path: Path) -> None:
     assert np.diff(block.time_s)[[198, 199, 200]] == pytest.approx([0.01, 0.02, 0.01], abs=1e-9)
     counted = one(written(tmp_path / "b.bin", kinds=kinds, ticks=False, first=65_400, lost=200), 100.0).block
     assert counted.time_s == pytest.approx(block.time_s, abs=1e-9)
+
+
+@pytest.mark.parametrize(("force_every", "kept", "keys"), [(1, COUNT, []), (4, COUNT // 4, ["slower_kept"])])
+def test_rate_and_acceleration_at_unequal_rates_keep_the_slower_one_and_say_so(
+    tmp_path: Path, force_every: int, kept: int, keys: list[str]
+) -> None:
+    kinds = frozenset({Item.RATE, Item.ACCELERATION})
+    sensor = one(written(tmp_path / "a.bin", kinds=kinds, force_every=force_every))
+    assert (len(sensor.block), sensor.info.rate_hz) == (kept, HZ / force_every)
+    assert [finding.key for finding in sensor.findings] == keys
+    for finding in sensor.findings:
+        assert finding.numbers == {"kept": kept, "count": COUNT - kept}
+
+
+@pytest.mark.parametrize("scale", [1 / 9.81, 9.81])
+def test_what_weighs_no_gravity_is_refused(tmp_path: Path, scale: float) -> None:
+    path = written(tmp_path / "a.bin", kinds=frozenset({Item.RATE, Item.ACCELERATION}), scale=scale)
+    with pytest.raises(FileRefusedError, match=r'a\.bin: the acceleration of "0123ABCD" is .* Check the sensor'):
+        one(path)
 
 
 def test_without_a_time_the_rate_is_asked_for(tmp_path: Path) -> None:

@@ -46,6 +46,7 @@ def written(
     count: int = COUNT,
     lost: int = -1,
     calibration: bytes = GYR_BLOCK,
+    acc_calibration: bytes = ACC_BLOCK,
 ) -> Path:
     """`ahead`: ticks at the first sample, and more for each one, written as the radio tells them in each block."""
     head = bytearray(256)
@@ -55,7 +56,7 @@ def written(
     head[30:32] = struct.pack(">H", 3)
     head[34:40] = struct.pack(">HHBB", 2, 0, 22, 0)
     head[44:52] = struct.pack(">Q", real)
-    head[76:97], head[97:118], head[139:160] = ACC_BLOCK, calibration, ACC_BLOCK
+    head[76:97], head[97:118], head[139:160] = acc_calibration, calibration, acc_calibration
     start = begun + PERIOD * first
     head[251:256] = start.to_bytes(5, "little")[4:] + start.to_bytes(5, "little")[:4]
     samples = []
@@ -140,6 +141,12 @@ def test_what_cannot_be_used_is_refused(tmp_path: Path) -> None:
     assert format_of(empty) == "shimmer"
     with pytest.raises(FileRefusedError, match="it holds no sample"):
         shimmer_trial([empty])
+
+
+def test_a_calibration_by_which_nothing_weighs_what_it_must_is_refused(tmp_path: Path) -> None:
+    in_g = struct.pack(">6h9b", 5, 6, 7, 2050, 2050, 2050, -100, 0, 0, 0, 100, 0, 0, 0, -100)
+    with pytest.raises(FileRefusedError, match=r"a: the acceleration of .* is 1.00 .* Check the sensor's range"):
+        shimmer_trial([written(tmp_path / "a.bin", acc_calibration=in_g)])
 
 
 @pytest.mark.parametrize("data", [bytes(5000), b"\x40\x01" + bytes(5000), bytes(range(256)) * 20])

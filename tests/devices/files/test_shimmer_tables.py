@@ -35,6 +35,7 @@ def written(
     kind: str = "CAL",
 ) -> Path:
     names, told = [], []
+    scale = 9.80665 if (units or {}).get("Accel_WR") == "g" else 1.0
     for sensor in sensors:
         for what in wanted:
             unit, axes = QUANTITIES[what]
@@ -53,9 +54,9 @@ def written(
                 elif what == "Gyro":
                     cells += [repr(float(value)) for value in (10.0 * s, -20.0, 0.5 * k)]
                 elif what == "Accel_LN":
-                    cells += ["1.0", "2.0", "3.0"]
+                    cells += ["1.0", "2.0", "9.0"]
                 else:
-                    cells += ["0.5", "-0.25", repr(9.8 + 0.001 * k)]
+                    cells += [repr(value / scale) for value in (0.5, -0.25, 9.8 + 0.001 * k)]
         lines.append(delimiter.join([*cells, ""]))
     path.write_text("\n".join([*lines, ""]), encoding="utf-8")
     return path
@@ -80,14 +81,14 @@ def test_the_wide_accelerometer_is_taken_and_the_narrow_one_where_there_is_no_ot
     assert sensor.block.acc_m_s2[0].tolist() == [0.5, -0.25, 9.8]
     assert sensor.block.mag is not None
     narrow = written(tmp_path / "b.csv", wanted=("Timestamp_Unix", "Accel_LN", "Gyro"))
-    assert shimmer_trial([narrow]).sensors[0].block.acc_m_s2[0].tolist() == [1.0, 2.0, 3.0]
+    assert shimmer_trial([narrow]).sensors[0].block.acc_m_s2[0].tolist() == [1.0, 2.0, 9.0]
 
 
 def test_units_are_those_that_are_told(tmp_path: Path) -> None:
     path = written(tmp_path / "a.csv", units={"Gyro": "rad/s", "Accel_WR": "g"})
     (sensor,) = shimmer_trial([path]).sensors
     assert sensor.block.gyr_rad_s[0].tolist() == [0.0, -20.0, 0.0]
-    assert sensor.block.acc_m_s2[0] == pytest.approx(np.array([0.5, -0.25, 9.8]) * 9.80665)
+    assert sensor.block.acc_m_s2[0] == pytest.approx([0.5, -0.25, 9.8])
     strange = written(tmp_path / "b.csv", units={"Gyro": "furlongs"})
     with pytest.raises(FileRefusedError, match="no unit that is known"):
         shimmer_trial([strange])
@@ -132,3 +133,14 @@ def test_what_is_not_calibrated_is_refused_with_what_to_set(tmp_path: Path) -> N
     seconds = written(tmp_path / "c.csv", units={"Timestamp_Unix": "s"})
     with pytest.raises(FileRefusedError, match="expected ms"):
         shimmer_trial([seconds])
+
+
+def test_units_are_held_to_the_size_of_what_was_measured(tmp_path: Path) -> None:
+    path = written(tmp_path / "a.csv")
+    text = path.read_text(encoding="utf-8")
+    path.write_text(text.replace("m/(s^2)", "g"), encoding="utf-8")
+    with pytest.raises(FileRefusedError, match=r'a.csv: the acceleration of "Shimmer_40AC" is 96.* is not gravity'):
+        shimmer_trial([path])
+    path.write_text(text.replace("deg/s", "rad/s").replace("-20.0", "-200.0"), encoding="utf-8")
+    with pytest.raises(FileRefusedError, match="in deg/s and not in rad/s"):
+        shimmer_trial([path])

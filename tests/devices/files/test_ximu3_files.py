@@ -103,6 +103,31 @@ def test_what_holds_no_samples_is_refused(tmp_path: Path) -> None:
         ximu3_trial([folder])
 
 
+def test_other_units_than_the_heads_say_are_refused(tmp_path: Path) -> None:
+    folder = converted(tmp_path / "left_shank")
+    inertial = folder / "Inertial.csv"
+    rows = [line.split(",") for line in inertial.read_text(encoding="utf-8").splitlines()[1:]]
+
+    def refusal(gyr: float, acc: float) -> str:
+        scales = (1.0, *[gyr] * 3, *[acc] * 3)
+        lines = [",".join(repr(float(cell) * scale) for cell, scale in zip(row, scales, strict=True)) for row in rows]
+        inertial.write_text("\n".join([HEAD, *lines, ""]), encoding="utf-8")
+        with pytest.raises(FileRefusedError) as refused:
+            ximu3_trial([folder])
+        return str(refused.value)
+
+    assert 'left_shank: the acceleration of "left_shank" is 11' in refusal(1.0, 9.80665)
+    assert "more than sensors measure. Export it again in deg/s" in refusal(1000.0, 1.0)
+
+
+def test_bytes_of_a_sensor_that_measures_no_gravity_are_refused(tmp_path: Path) -> None:
+    voice = Ximu3Voice("0123ABCD", lambda _: (0.0, 0.0, 0.0, 0.0, 0.0, 0.01), rate_hz=HZ)
+    path = tmp_path / "a.ximu3"
+    path.write_bytes(b"\n" + b"".join(voice.sample(k) for k in range(COUNT)))
+    with pytest.raises(FileRefusedError, match=r"a\.ximu3: the acceleration .* Check the sensor's range"):
+        ximu3_trial([path])
+
+
 @pytest.mark.parametrize("data", [b"I,am,a,text\nof,no,numbers\n" * 9, b"time_s,acc_x\n0,1\n", bytes(4000)])
 def test_other_files_are_none(tmp_path: Path, data: bytes) -> None:
     path = tmp_path / "other"

@@ -1,0 +1,153 @@
+"""Units held to the size of what was measured: every importer refuses what no sensor on a person can have felt.
+
+Gravity is in every accelerometer, so the middle of its sizes tells m/s2 from g, and from acceleration without gravity.
+Angular rates have no such constant; beyond the ranges of sensors their unit is another, and where there is an
+orientation, it tells the rates by itself.
+"""
+
+import numpy as np
+
+from core.samples import FloatArray
+from devices.files.orientation_rates import Numbers, derive_rates
+from devices.files.refusal import FileRefusedError, quoted
+
+# of the middle of the sizes of acceleration. Lying still it is gravity, walking legs feel up to 14, running feet two to
+# three times gravity; a tenth, without gravity or in g, and ten times as much, g taken for m/s2, are clearly beyond
+FELT_M_S2 = (7.0, 40.0)
+LIKE_G = (0.7, 1.4)
+MOST_RAD_S = 70.0  # twice the widest range of these sensors, 2000 deg/s
+FEW = 0.999  # of the rates that have to be possible: one damaged sample is no other unit
+TURNING_RAD_S = 0.2  # below, the noise of rates and orientation is what is compared
+
+
+def check_magnitudes(
+    acc_m_s2: FloatArray,
+    gyr_rad_s: FloatArray | None,
+    sensor: str,
+    where: str,
+    *,
+    gyr_unit: str = "rad/s",
+    is_export: bool = True,
+) -> None:
+    """Refuse samples whose sizes are not those of the units that they are said to be in. Missing ones tell nothing.
+
+    Parameters
+    ----------
+    acc_m_s2 : (n, 3)
+        In SI units as the file says.
+    gyr_rad_s : (n, 3) or None
+        Likewise; None: derived here, or held to an orientation elsewhere.
+    sensor, where
+        By which a person finds the samples.
+    gyr_unit
+        In which the file says that its rates are.
+    is_export
+        A program wrote the file, and can write it again in another unit; else the sensor did.
+
+    Raises
+    ------
+    FileRefusedError
+        Another unit, or gravity was taken out.
+    """
+    middle = middle_size(acc_m_s2)
+    least, most = FELT_M_S2
+    if is_export and LIKE_G[0] < middle < LIKE_G[1]:
+        raise FileRefusedError(
+            where,
+            "the acceleration of {sensor} is {middle} in the middle, which is not gravity in m/s2, as if it were in g",
+            "Export it again in m/s2, or correct the unit",
+            sensor=quoted(sensor),
+            middle=f"{middle:.2f}",
+        )
+    if not (np.isnan(middle) or least < middle < most):
+        if is_export:
+            raise FileRefusedError(
+                where,
+                "the acceleration of {sensor} is {middle} in the middle, which is not gravity in m/s2",
+                "Export it again in m/s2, gravity not taken out",
+                sensor=quoted(sensor),
+                middle=f"{middle:.2f}",
+            )
+        raise FileRefusedError(
+            where,
+            "the acceleration of {sensor} is {middle} in the middle, which is not gravity in m/s2",
+            "Check the sensor's range and calibration with its maker's program, and record again",
+            sensor=quoted(sensor),
+            middle=f"{middle:.2f}",
+        )
+    if gyr_rad_s is not None:
+        _check_rates(gyr_rad_s, sensor, where, gyr_unit, is_export)
+
+
+def _check_rates(gyr_rad_s: FloatArray, sensor: str, where: str, gyr_unit: str, is_export: bool) -> None:
+    sizes = np.abs(gyr_rad_s[np.isfinite(gyr_rad_s)])
+    largest = float(np.quantile(sizes, FEW)) if len(sizes) else 0.0
+    if largest <= MOST_RAD_S:
+        return
+    if is_export and gyr_unit == "rad/s":
+        raise FileRefusedError(
+            where,
+            "the angular rates of {sensor} are in deg/s and not in rad/s",
+            "Export it again in rad/s, or correct the unit",
+            sensor=quoted(sensor),
+        )
+    if is_export:
+        raise FileRefusedError(
+            where,
+            "the angular rates of {sensor} reach {largest} deg/s, more than sensors measure",
+            "Export it again in deg/s, or correct the unit",
+            sensor=quoted(sensor),
+            largest=f"{np.degrees(largest):.0f}",
+        )
+    raise FileRefusedError(
+        where,
+        "the angular rates of {sensor} reach {largest} deg/s, more than sensors measure",
+        "Check the sensor's range and calibration with its maker's program, and record again",
+        sensor=quoted(sensor),
+        largest=f"{np.degrees(largest):.0f}",
+    )
+
+
+def middle_size(vectors: FloatArray) -> float:
+    """The median length of vectors that are there.
+
+    Parameters
+    ----------
+    vectors : (n, 3)
+        In any unit.
+
+    Returns
+    -------
+    float
+        In the same; NaN where none is there.
+    """
+    sizes = np.linalg.norm(vectors, axis=1)
+    sizes = sizes[np.isfinite(sizes)]
+    return float(np.median(sizes)) if len(sizes) else float(np.nan)
+
+
+def times_the_turning(
+    gyr_rad_s: FloatArray, q_earth_from_sensor: FloatArray, counter: Numbers, rate_hz: float
+) -> float:
+    """How many times as fast as the orientation turns the rates are: 1 in rad/s, 57 where they are in deg/s.
+
+    Parameters
+    ----------
+    gyr_rad_s : (n, 3)
+        In sensor axes.
+    q_earth_from_sensor : (n, 4)
+        Unit quaternions, scalar first.
+    counter : (n,)
+        Ascending packet numbers.
+    rate_hz
+        Packets per second.
+
+    Returns
+    -------
+    float
+        The median while it turns; NaN where it does not.
+    """
+    speed = np.linalg.norm(gyr_rad_s, axis=1)
+    turned = np.linalg.norm(derive_rates(q_earth_from_sensor, counter, rate_hz), axis=1)
+    is_turning = np.isfinite(speed) & (turned > TURNING_RAD_S)
+    return float(np.median(speed[is_turning] / turned[is_turning])) if is_turning.any() else float(np.nan)
