@@ -80,6 +80,15 @@ class Settings(QObject):
     def latest_library(self, folder: str) -> None:
         self._put("latest_library", folder)
 
+    @property
+    def latest_table(self) -> str:
+        """The table of a batch that was asked last; where it is not there any more, it is missing."""
+        return str(self._kept.value("latest_table", ""))
+
+    @latest_table.setter
+    def latest_table(self, path: str) -> None:
+        self._put("latest_table", path)
+
     def _put(self, name: str, value: str) -> None:
         if self._kept.value(name, None) != value:
             self._kept.setValue(name, value)

@@ -13,12 +13,12 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from uuid import UUID
 
-from sqlalchemy import select
+from sqlalchemy import func, select
 from sqlalchemy.orm import Session as OrmSession
 
 from app.storage.database.models import AuditRow
 from app.storage.stored import BEGINNING, Action, AuditEntry, AuditFault, AuditReport, Checkpoint, LibraryError, Role
-from app.storage.unit_of_work import END, UnitOfWork
+from app.storage.unit_of_work import ADDED, END, UnitOfWork
 
 MANY = 1000  # rows held at a time
 REPORT_FORMAT = "report"  # the format of an export by which a session is reported
@@ -37,6 +37,18 @@ class Audit:
     def end(self) -> Checkpoint:
         """How far it has come, as far as this program was told."""
         return self._unit.end_of_audit
+
+    def entries_of_others(self) -> int:
+        """How many entries this program did not add itself: more than before, and another station did something.
+
+        Raises
+        ------
+        LibraryError
+            The library does not answer.
+        """
+        added = self._unit.entries_added  # first: of its own one more may come meanwhile, which is then looked at twice
+        with self._unit.reading() as session:
+            return (session.scalar(select(func.max(AuditRow.number))) or 0) - added
 
     def holds(self, checkpoint: Checkpoint) -> bool:
         """Whether the entry that a checkpoint tells of is there. The chain is not followed; see `verify`."""
@@ -144,6 +156,7 @@ def append(
     session.add(row)
     session.flush()  # the next one in this transaction has to see it
     session.info[END] = Checkpoint(row.number, row.hash)
+    session.info[ADDED] = session.info.get(ADDED, 0) + 1
     return Checkpoint(row.number, row.hash)
 
 

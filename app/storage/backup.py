@@ -84,6 +84,10 @@ def back_up(
         There is no such folder, there is too little room, the copy is not what the library is, or the library's
         database is damaged.
     """
+    if opened.shared is not None:
+        raise LibraryError(
+            "A clinic's library is on its server, which is backed up there", "Use pg_dump and a copy of the recordings"
+        )
     made_at = now().astimezone(datetime.UTC)
     folder = into.resolve() / f"{NAME}{made_at:%Y-%m-%dT%H-%M-%SZ}"
     if folder.is_relative_to(opened.folder.resolve()):

@@ -1,9 +1,11 @@
 """What was put right after the fact, by whom and when, and how is it taken back?"""
 
+import datetime
 import uuid
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from enum import StrEnum
+from itertools import pairwise
 from typing import Any, TypeVar
 from uuid import UUID
 
@@ -15,7 +17,15 @@ from sqlalchemy.orm.attributes import flag_modified
 from app.storage.audit import about, note
 from app.storage.database.engine import changed_meanwhile
 from app.storage.database.ids import uuid7
-from app.storage.database.models import CorrectionRow, JointRow, PatientRow, RecordingRow, SessionRow, Versioned
+from app.storage.database.models import (
+    CorrectionRow,
+    JointRow,
+    OperatorRow,
+    PatientRow,
+    RecordingRow,
+    SessionRow,
+    Versioned,
+)
 from app.storage.stored import Action, Change, Correction, LibraryError, Role
 from app.storage.unit_of_work import UnitOfWork
 
@@ -23,6 +33,7 @@ CORRECTED: Mapping[str, type[DeclarativeBase]] = {
     row.__tablename__: row for row in (PatientRow, SessionRow, JointRow, RecordingRow)
 }
 Value = str | float | bool | None
+SEARCHED = 500  # of a patient's corrections, the latest
 R = TypeVar("R", bound=Versioned)
 
 
@@ -87,8 +98,8 @@ def apply(
     patient_id: UUID,
     session_id: UUID | None = None,
     undoes: UUID | None = None,
-) -> None:
-    """Make `changes`, and keep who made them; nothing is done where nothing changes.
+) -> UUID | None:
+    """Make `changes`, and keep who made them; gives the correction's id. Nothing is done where nothing changes.
 
     Raises
     ------
@@ -96,7 +107,7 @@ def apply(
         A value is not the old one any more.
     """
     if not changes:
-        return
+        return None
     for change in changes:
         row: Any = session.get(CORRECTED[change.table], change.row)
         if row is None or plain(getattr(row, change.field)) != change.old:
@@ -119,6 +130,38 @@ def apply(
     details: dict[str, object] = {"fields": sorted({change.field for change in changes}), "correction": correction.id}
     subject = about("patient", patient_id) if session_id is None else about("session", session_id)
     note(unit, session, Action.EDIT, subject, **{key: plain(value) for key, value in details.items()})
+    return correction.id
+
+
+def take_back(
+    unit: UnitOfWork, session: OrmSession, changes: Sequence[Change], patient_id: UUID, session_id: UUID | None = None
+) -> None:
+    """Make `changes` and take them back at once: they were wanted, did not come to hold, and stand in the history."""
+    session.flush()
+    made = apply(unit, session, changes, patient_id, session_id)
+    session.flush()
+    back = [Change(c.table, c.row, c.field, old=c.new, new=c.old) for c in reversed(changes)]
+    apply(unit, session, back, patient_id, session_id, undoes=made)
+    session.flush()
+
+
+def author_of(session: OrmSession, patient_id: UUID, change: Change) -> tuple[str, datetime.datetime | None]:
+    """Who made one value of a row what it is, `change.old`, and when; nobody where no correction tells."""
+    latest = select(CorrectionRow).where(CorrectionRow.patient_id == patient_id).order_by(CorrectionRow.number.desc())
+    rows = session.scalars(latest.limit(SEARCHED)).all()
+    taken_back = {
+        one.id
+        for later, before in pairwise(rows)
+        if later.undoes_id == before.id and later.operator == before.operator
+        for one in (later, before)
+    }
+    wanted = (change.table, change.row, change.field, change.old)
+    for row in rows:
+        made = {(one.table, one.row, one.field, one.new) for one in _changes(row)}
+        if row.id not in taken_back and wanted in made:
+            operator = session.get(OperatorRow, row.operator)
+            return (operator.name if operator is not None else "") or row.operator, row.at
+    return "", None
 
 
 def differences(row: Any, wanted: Mapping[str, object]) -> list[Change]:

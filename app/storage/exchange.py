@@ -126,9 +126,9 @@ def recording_with_samples(
 ) -> tuple[Recording, tuple[Finding, ...]]:
     """A recording with its samples, and what is odd about their files; errors as in `session_with_samples`.
 
-    A LibraryError, too, where the library is gone, and with it the files.
+    A LibraryError, too, where the library is gone, and with it the files, or where a clinic's shared place is.
     """
-    paths = [opened.recordings / journal.file for journal in recording.journals]
+    paths = [opened.journal_path(journal) for journal in recording.journals]
     for path in paths:
         if not path.exists():
             opened.refuse_gone()

@@ -99,6 +99,11 @@ def refuse_change(opened: OpenedLibrary) -> None:
     OSError
         The folder of the recordings cannot be read.
     """
+    if opened.shared is not None or opened.away_from is not None:
+        raise LibraryError(
+            "The key of a clinic's library stays while stations share it",
+            "Bring it back into a folder, change its key there, and take it to the server again",
+        )
     shelter = opened.shelter
     if shelter is None:
         raise LibraryError("The demonstration has no key", "Open your own library")

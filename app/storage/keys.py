@@ -62,7 +62,11 @@ class SealedAnew:
 
 
 class KeySlots:
-    """The slots' file of one library. Every change replaces the file as a whole."""
+    """The slots' file of one library. Every change replaces the file as a whole.
+
+    Where the file is, and how one program at a time changes it, is `_load`, `_save` and `_alone`; see
+    `app.storage.clinic.key_slots` for a file that stations share.
+    """
 
     def __init__(self, path: Path, cost: Cost = COST) -> None:
         self._path, self._cost = path, cost
@@ -260,16 +264,30 @@ class KeySlots:
     @contextmanager
     def _changing(self) -> Iterator[dict[str, Slot]]:
         """The slots, held until what was done with them is written: of two changes at once neither is lost."""
+        with self._alone():
+            yield self._read()
+
+    @contextmanager
+    def _alone(self) -> Iterator[None]:
+        """Be the one who changes the file."""
         deadline = time.monotonic() + BUSY_S
         while True:
             try:
                 with held(self._path.with_name(self._path.name + ".lock")):
-                    yield self._read()
+                    yield
                     return
             except BlockingIOError:
                 if time.monotonic() >= deadline:
                     raise KeyRefusedError("Somebody else is changing the keys", "Try again in a moment") from None
                 time.sleep(0.05)
+
+    def _load(self) -> bytes:
+        """The file; FileNotFoundError where there is none."""
+        return self._path.read_bytes()
+
+    def _save(self, content: bytes) -> None:
+        """Replace the file, by whoever is the one who changes it, or where there is none yet."""
+        replace_file(self._path, content)
 
     def _read(self) -> dict[str, Slot]:
         try:
@@ -280,7 +298,7 @@ class KeySlots:
 
     def _content(self) -> dict[str, Any]:
         try:
-            content = json.loads(self._path.read_bytes())
+            content = json.loads(self._load())
             if content["format"] not in (FIRST_FORMAT, FORMAT):
                 raise ValueError(content["format"])
         except FileNotFoundError:
@@ -299,7 +317,7 @@ class KeySlots:
     def _write(self, slots: dict[str, Slot], *, is_confirmed: bool | None = None) -> None:
         if is_confirmed is None:
             is_confirmed = self.is_recovery_key_confirmed
-        replace_file(self._path, json.dumps(_file(slots, is_confirmed), indent=1).encode())
+        self._save(json.dumps(_file(slots, is_confirmed), indent=1).encode())
 
 
 def _file(slots: dict[str, Slot], is_confirmed: bool) -> dict[str, object]:

@@ -7,6 +7,10 @@ library-id                         which library it is, for whoever has no key
 in-use                             locked by the program that records here
 tries.json                         how many wrong passphrases were typed
 keys-next.json, library-next.db    a change of the key that is not finished
+moving-to-server                   it is being moved to a clinic's server, and not opened meanwhile (`clinic.moving`)
+
+A station's folder has `station.json` and `cache/` in place of the database (`clinic.station`). The environment variable
+GAITWRIGHT_DATABASE_URL names the clinic's server, and GAITWRIGHT_JOURNALS the recordings' place.
 
 All of this is in the library's own folder, which `create_library` alone makes. One that is gone is never made anew:
 recordings then go into a shelter on this computer (`app.storage.root`) until it is back (`app.storage.bringing_home`).
@@ -16,3 +20,6 @@ KEYS, NEW_KEYS = "keys.json", "keys-next.json"
 DATABASE, NEW_DATABASE = "library.db", "library-next.db"
 RECORDINGS = "recordings"
 IN_USE = "in-use"
+MOVING = "moving-to-server"
+STATION, CACHE = "station.json", "cache"
+DATABASE_VARIABLE, JOURNALS_VARIABLE = "GAITWRIGHT_DATABASE_URL", "GAITWRIGHT_JOURNALS"

@@ -15,10 +15,11 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Self
 
 from app.storage.data_key import KeyMaterial
-from app.storage.layout import DATABASE
+from app.storage.layout import DATABASE, MOVING
 from app.storage.stored import Action, LibraryError, NotAllowedError, Operator, Role
 
 if TYPE_CHECKING:
+    from app.storage.clinic.station import Station
     from app.storage.database.engine import Database
     from app.storage.root import LibraryRoot
 
@@ -33,7 +34,8 @@ class Library:
     """An open library. Nothing but `log_in` works until somebody is logged in.
 
     No `data_key`: it is a demonstration, which is not encrypted and takes simulated recordings only. `is_end_lost`: it
-    was not closed well and what was saved last is damaged, so the latest session should be looked through.
+    was not closed well and what was saved last is damaged, so the latest session should be looked through. `station`:
+    which one of a clinic's stations opens it; None where the library is in a folder of this computer.
     """
 
     def __init__(
@@ -42,6 +44,7 @@ class Library:
         data_key: KeyMaterial | None,
         now: Callable[[], datetime.datetime] = now_utc,
         is_end_lost: bool = False,
+        station: "Station | None" = None,
     ) -> None:
         from app.storage.audit import Audit
         from app.storage.corrections import Corrections
@@ -53,22 +56,26 @@ class Library:
         from app.storage.recordings import Recordings
         from app.storage.results import Results
         from app.storage.sessions import Sessions
+        from app.storage.shared_edits import SharedEdits
         from app.storage.unit_of_work import UnitOfWork
 
-        self.is_end_lost = is_end_lost
+        self.is_end_lost, self.station = is_end_lost, station
         self.root: LibraryRoot | None = None  # of a library in a folder
+        self.is_to_be_moved = False
         bring_up_to_date(database)
-        self._database = database
+        self.database = database
         with database.reading() as session:
             keys = derived_keys(session, data_key)
         self.pseudonyms_key = keys.pseudonyms
-        self._unit = UnitOfWork(database, keys.audit, now, is_demonstration=data_key is None)
+        own = station.id if station is not None else ""
+        self._unit = UnitOfWork(database, keys.audit, now, is_demonstration=data_key is None, station=own)
         self.patients = Patients(self._unit)
         self.sessions = Sessions(self._unit)
         self.recordings = Recordings(self._unit)
         self.results = Results(self._unit)
         self.courses = Courses(self._unit)
         self.corrections = Corrections(self._unit)
+        self.edits = SharedEdits(self._unit)
         self.operators = Operators(self._unit)
         self.settings = OperatorSettings(self._unit)
         self.audit = Audit(self._unit)
@@ -104,25 +111,46 @@ class Library:
         return library
 
     @classmethod
-    def open(cls, folder: Path, data_key: KeyMaterial | None, now: Callable[[], datetime.datetime] = now_utc) -> Self:
+    def open(
+        cls,
+        folder: Path,
+        data_key: KeyMaterial | None,
+        now: Callable[[], datetime.datetime] = now_utc,
+        *,
+        is_to_be_moved: bool = False,
+    ) -> Self:
         """Open the library in `folder`. No `data_key`: it is a demonstration, and not encrypted.
+
+        `is_to_be_moved`: also one that is on its way to a clinic's server or back, to go on with that.
 
         Raises
         ------
         LibraryError
             There is none, it does not open with this key, it is damaged, or a later version has written it.
         """
+        from app.storage.clinic.server_state import refuse_closed
+        from app.storage.clinic.station import station_of
         from app.storage.database.write_ahead_log import is_end_lost
 
-        if not (folder / DATABASE).exists():
-            raise LibraryError("This folder holds no library", "Choose another folder, or restore it from a backup")
         try:
-            is_lost = is_end_lost(folder / f"{DATABASE}-wal")
+            station = station_of(folder)
+            if station is None and not (folder / DATABASE).exists():
+                raise LibraryError("This folder holds no library", "Choose another folder, or restore it from a backup")
+            if station is None and not is_to_be_moved and (folder / MOVING).exists():
+                raise LibraryError(
+                    "This library is being moved to the clinic's server",
+                    "Go on with that, or give it up: gaitwright clinic move --help",
+                )
+            is_lost = station is None and is_end_lost(folder / f"{DATABASE}-wal")
         except OSError as error:
             raise LibraryError("The library's files cannot be read", "See to the rights of its folder") from error
-        database = _database(folder, data_key, creates=False)
+        database = _database(folder, data_key, creates=False) if station is None else station.database_kept()
         try:
-            library = cls(database, data_key, now, is_lost)
+            if station is not None and not is_to_be_moved:
+                with database.reading() as session:
+                    refuse_closed(session)
+            library = cls(database, data_key, now, is_lost, station)
+            library.is_to_be_moved = is_to_be_moved
             library._take_root(folder)
             return library
         except BaseException:
@@ -161,7 +189,7 @@ class Library:
         from app.storage.operators import add_operator
 
         first = replace(operator, code=folded(operator.code), role=Role.ADMINISTRATOR, is_active=True)
-        with self._database.writing() as session:
+        with self.database.writing() as session:
             if session.scalars(select(OperatorRow.code).limit(1)).first() is not None:
                 raise NotAllowedError("There is a library already", "Log in to it, or choose another folder")
             self._unit.operator = first
@@ -177,10 +205,13 @@ class Library:
             This library does not know the operator, or no longer.
         """
         from app.storage.audit import about, append
+        from app.storage.clinic.server_state import refuse_closed
         from app.storage.database.models import OperatorRow, folded
         from app.storage.database.values import operator_of
 
-        with self._database.writing() as session:
+        with self.database.writing() as session:
+            if self.station is not None and not self.is_to_be_moved:
+                refuse_closed(session)
             row = session.get(OperatorRow, folded(code))
             if row is None or not row.is_active:
                 raise NotAllowedError("This operator does not work here", "Ask an administrator of this library")
@@ -199,7 +230,7 @@ class Library:
 
     def faults(self) -> tuple[str, ...]:
         """Read every page of the database and check it; what is wrong, for a report. Nothing: it is whole."""
-        return self._database.faults()
+        return self.database.faults()
 
     def take_back(self) -> None:
         """Go on with the library in the folder that is there now, which is another than was opened, and its copy.
@@ -211,7 +242,7 @@ class Library:
         """
         if self.root is not None:
             self.root.take()
-            self._database.reconnect()
+            self.database.reconnect()
 
     def _take_root(self, folder: Path) -> None:
         """Know the folder again, and from now on write nowhere else.
@@ -224,14 +255,14 @@ class Library:
         from app.storage.root import root_of
 
         try:
-            self.root = root_of(folder, self._database)
+            self.root = root_of(folder, self.database)
         except OSError as error:
             raise LibraryError("The library's files cannot be read", "See to the rights of its folder") from error
-        self._database.guard = self.root.refuse_gone
+        self.database.guard = self.root.refuse_gone
 
     def suspend(self) -> None:
         """Close the file, and the key with it; the next call opens both again, for the operator who is logged in."""
-        self._database.close()
+        self.database.close()
 
     def write_journal_headers(self, recordings: Path) -> None:
         """Finish what a change of the data key left to be done.
@@ -243,11 +274,11 @@ class Library:
         """
         from app.storage.journal_headers import write_headers
 
-        write_headers(self._database, recordings)
+        write_headers(self.database, recordings)
 
     def close(self) -> None:
         self.log_out()
-        self._database.close()
+        self.database.close()
 
     def __enter__(self) -> Self:
         return self

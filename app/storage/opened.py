@@ -9,6 +9,9 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
+from app.storage.clinic.key_slots import SharedKeySlots
+from app.storage.clinic.shared_journals import SharedJournals
+from app.storage.clinic.station import JOURNALS_SETTING, Station, station_of
 from app.storage.data_key import DataKey
 from app.storage.files import held, sync_folder
 from app.storage.journal.shelter import Shelter
@@ -16,7 +19,7 @@ from app.storage.key_change_rest import settle
 from app.storage.keys import KeyRefusedError, KeySlots
 from app.storage.layout import IN_USE, KEYS, RECORDINGS
 from app.storage.library import Library
-from app.storage.stored import LibraryError, Operator
+from app.storage.stored import LibraryError, Operator, StoredJournal
 from app.wording import tr
 
 Report = Callable[[float, str], None]
@@ -25,16 +28,42 @@ Report = Callable[[float, str], None]
 
 @dataclass(frozen=True, slots=True)
 class OpenedLibrary:
-    """A library with somebody logged in, and its folder. No `data_key`: a demonstration."""
+    """A library with somebody logged in, and its folder. No `data_key`: a demonstration.
+
+    `shared`: of a clinic's station, its way to the journals that are in the place which all stations reach.
+    `away_from`: of what a station works with while the server does not answer, the station.
+    """
 
     library: Library
     folder: Path
     data_key: DataKey | None = field(repr=False)  # whatever prints this must not print the key
+    shared: SharedJournals | None = None
+    away_from: Station | None = None
 
     @property
     def recordings(self) -> Path:
         """The folder of the journals; it is there once something was recorded."""
         return self.folder / RECORDINGS
+
+    @property
+    def keys_folder(self) -> Path:
+        """Where the slots are that open it: what a station works with without its server has the station's."""
+        return self.folder if self.away_from is None else self.folder.parent
+
+    def journal_path(self, journal: StoredJournal) -> Path:
+        """Where a journal can be read; one of another station is fetched first. It need not be there.
+
+        Raises
+        ------
+        JournalRefusedError
+            It is still at the station that made it.
+        LibraryError
+            The clinic's shared place does not answer.
+        OSError
+            This computer's disk does not take it.
+        """
+        path = self.recordings / journal.file
+        return path if self.shared is None or path.exists() else self.shared.path(journal)
 
     @property
     def shelter(self) -> Shelter | None:
@@ -74,15 +103,22 @@ def slots_of(folder: Path) -> KeySlots:
     ------
     KeyRefusedError
         The key is being changed just now.
+    LibraryError
+        It is a clinic's station, and its file is damaged.
     OSError
         A file cannot be written.
     """
+    station = station_of(folder)
+    if station is not None:
+        return SharedKeySlots(folder / KEYS, station.database_once())
     settle(folder)
     return KeySlots(folder / KEYS)
 
 
-def open_library(folder: Path, passphrase: str, code: str = "") -> OpenedLibrary:
+def open_library(folder: Path, passphrase: str, code: str = "", *, is_to_be_moved: bool = False) -> OpenedLibrary:
     """Open the library in `folder` for the operator with this code; without one, for the only operator there is.
+
+    `is_to_be_moved`: see `Library.open`.
 
     Raises
     ------
@@ -98,24 +134,32 @@ def open_library(folder: Path, passphrase: str, code: str = "") -> OpenedLibrary
         if len(slots.codes) > 1:
             raise KeyRefusedError("Several operators work with this library", "Say who you are")
         (code,) = slots.codes
-    return logged_in(folder, slots.open(code, passphrase), code)
+    return logged_in(folder, slots.open(code, passphrase), code, is_to_be_moved=is_to_be_moved)
 
 
-def logged_in(folder: Path, data_key: DataKey, code: str) -> OpenedLibrary:
-    """Open the library in `folder` with its key, for an operator.
+def logged_in(folder: Path, data_key: DataKey, code: str, *, is_to_be_moved: bool = False) -> OpenedLibrary:
+    """Open the library in `folder` with its key, for an operator; `is_to_be_moved`: see `Library.open`.
 
     Raises
     ------
     LibraryError
         It does not open, or nobody with this code works there.
     """
-    library = Library.open(folder, data_key)
+    library = Library.open(folder, data_key, is_to_be_moved=is_to_be_moved)
     try:
         library.log_in(code)
     except BaseException:
         library.close()
         raise
-    return OpenedLibrary(library, folder, data_key)
+    return OpenedLibrary(library, folder, data_key, _shared_journals(library, folder))
+
+
+def _shared_journals(library: Library, folder: Path) -> SharedJournals | None:
+    """A station's way to the journals' shared place; None where the library has none."""
+    if library.station is None:
+        return None
+    place = library.station.journals or str(library.settings.get(JOURNALS_SETTING, ""))
+    return SharedJournals(folder, place)
 
 
 def create_library(folder: Path, operator: Operator, passphrase: str) -> tuple[OpenedLibrary, str]:

@@ -11,14 +11,13 @@ from app.storage.audit import about, entry_of, note
 from app.storage.corrections import apply, corrections_of_patient, differences, unchanged
 from app.storage.database.models import AuditRow, PatientRow, ResultRow, SessionRow, folded
 from app.storage.database.values import PATIENT_FIELDS, stored_patient, stored_patients, stored_result, stored_session
+from app.storage.edited_fields import PATIENT_CORRECTABLE
 from app.storage.sessions import refuse_early
-from app.storage.stored import Action, LibraryError, PatientFile, Role, StoredPatient
+from app.storage.stored import Action, Change, LibraryError, PatientFile, Role, StoredPatient
 from app.storage.unit_of_work import UnitOfWork
 from app.wording import tr
 from core.samples import Patient
 from devices.files.session_toml import PATIENT
-
-CORRECTABLE = tuple(name for name in PATIENT_FIELDS if name != "unknown")
 
 
 class Patients:
@@ -53,7 +52,7 @@ class Patients:
             There is no such patient.
         """
         with self._unit.reading() as session:
-            return stored_patient(session, _existing(session, patient_id))
+            return stored_patient(session, existing_patient(session, patient_id))
 
     def find(self, code: str) -> StoredPatient | None:
         """The patient with this code, however it is typed, or the one whom that patient was merged into."""
@@ -86,12 +85,7 @@ class Patients:
         """
         with self._unit.writing(Role.CLINICIAN) as session:
             row = _current(session, patient)
-            told = _checked(told)
-            if folded(told.code) != row.code_folded:
-                _refuse_taken(session, told.code)
-            apply(
-                self._unit, session, differences(row, {name: getattr(told, name) for name in CORRECTABLE}), patient.id
-            )
+            apply(self._unit, session, patient_changes(session, row, told), patient.id)
             session.flush()
             return stored_patient(session, row)
 
@@ -113,7 +107,7 @@ class Patients:
                 raise LibraryError("These two cannot be merged", "Choose two patients that are not deleted")
             filled = {
                 name: getattr(other, name)
-                for name in CORRECTABLE
+                for name in PATIENT_CORRECTABLE
                 if getattr(row, name) in (None, "") and getattr(other, name) not in (None, "")
             }
             moved = session.scalars(select(SessionRow).where(SessionRow.patient_id == other.id))
@@ -141,7 +135,7 @@ class Patients:
             The patient was not deleted, or less than 30 days ago.
         """
         with self._unit.writing(Role.CLINICIAN) as session:
-            row = _existing(session, patient_id)
+            row = existing_patient(session, patient_id)
             refuse_early(row.deleted_at, self._unit.now())
             gone = [row.id, *session.scalars(select(PatientRow.id).where(PatientRow.merged_into_id == row.id))]
             session.execute(delete(SessionRow).where(SessionRow.patient_id.in_(gone)))
@@ -159,7 +153,7 @@ class Patients:
             There is no such patient, or the export cannot be noted.
         """
         with self._unit.writing(Role.VIEWER) as session:
-            patient = stored_patient(session, _existing(session, patient_id))
+            patient = stored_patient(session, existing_patient(session, patient_id))
             note(self._unit, session, Action.EXPORT, about("patient", patient_id), is_everything=True)
             rows = session.scalars(
                 select(SessionRow).where(SessionRow.patient_id == patient_id).order_by(SessionRow.started)
@@ -187,7 +181,15 @@ class Patients:
             return stored_patient(session, row)
 
 
-def _existing(session: OrmSession, patient_id: UUID) -> PatientRow:
+def patient_changes(session: OrmSession, row: PatientRow, told: Patient) -> list[Change]:
+    """What has to change in `row` so that it says what `told` does; raises as `Patients.change`."""
+    told = _checked(told)
+    if folded(told.code) != row.code_folded:
+        _refuse_taken(session, told.code)
+    return differences(row, {name: getattr(told, name) for name in PATIENT_CORRECTABLE})
+
+
+def existing_patient(session: OrmSession, patient_id: UUID) -> PatientRow:
     row = session.get(PatientRow, patient_id)
     if row is None:
         raise LibraryError("This patient is not in the library any more", "Reload the list")
@@ -195,7 +197,7 @@ def _existing(session: OrmSession, patient_id: UUID) -> PatientRow:
 
 
 def _current(session: OrmSession, patient: StoredPatient) -> PatientRow:
-    return unchanged(_existing(session, patient.id), patient.version)
+    return unchanged(existing_patient(session, patient.id), patient.version)
 
 
 def _refuse_taken(session: OrmSession, code: str) -> None:

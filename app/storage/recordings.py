@@ -1,7 +1,8 @@
 """The recordings of a library's sessions: which journals they are in, and what was told of them."""
 
 import datetime
-from collections.abc import Mapping
+import json
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict
 from uuid import UUID
 
@@ -11,10 +12,12 @@ from sqlalchemy.orm import Session as OrmSession
 from app.storage.audit import about, note
 from app.storage.corrections import apply, differences, unchanged
 from app.storage.database.ids import uuid7
-from app.storage.database.models import JournalRow, PatientRow, RecordingRow, SessionRow
+from app.storage.database.models import AuditRow, JournalRow, PatientRow, RecordingRow, SessionRow
 from app.storage.database.values import RECORDING_FIELDS, left_out_in_row, stored_recording
+from app.storage.edited_fields import RECORDING_CORRECTABLE
 from app.storage.stored import (
     Action,
+    Change,
     LibraryError,
     RecordingState,
     Role,
@@ -24,8 +27,6 @@ from app.storage.stored import (
 )
 from app.storage.unit_of_work import UnitOfWork
 from core.samples import Recording, RecordingKind
-
-CORRECTABLE = ("name", "kind", "condition", "started", "is_kept", "note", "is_restrapped_before")
 
 
 class Recordings:
@@ -77,6 +78,7 @@ class Recordings:
                 is_simulated=is_simulated,
                 is_decided=is_decided,
                 state=RecordingState.OPEN,
+                station=self._unit.station,
                 left_out=left_out_in_row(told.left_out_s),
                 **{name: getattr(told, name) for name in RECORDING_FIELDS},
             )
@@ -95,7 +97,7 @@ class Recordings:
             There is no such recording, or it has this segment.
         """
         with self._unit.writing(Role.CLINICIAN) as session:
-            row = _existing(session, recording_id)
+            row = existing_recording(session, recording_id)
             if any(other.segment == journal.segment for other in row.journals):
                 raise LibraryError("The recording has this segment already", "Recover it first")
             row.journals.append(JournalRow(**asdict(journal)))
@@ -109,7 +111,7 @@ class Recordings:
             There is no such recording, or a segment is missing.
         """
         with self._unit.writing(Role.CLINICIAN) as session:
-            row = _existing(session, recording_id)
+            row = existing_recording(session, recording_id)
             if {journal.segment for journal in row.journals} != set(sha256):
                 raise LibraryError("The recording has other files than the library knows of", "Recover it first")
             for journal in row.journals:
@@ -128,7 +130,7 @@ class Recordings:
             There is no such recording, or it has journals.
         """
         with self._unit.writing(Role.CLINICIAN) as session:
-            row = _existing(session, recording_id)
+            row = existing_recording(session, recording_id)
             if row.journals:
                 raise LibraryError("This recording has begun", "Stop it, and do not keep it")
             session.delete(row)
@@ -143,7 +145,7 @@ class Recordings:
             There is no such recording.
         """
         with self._unit.writing(Role.CLINICIAN) as session:
-            row = _existing(session, recording_id)
+            row = existing_recording(session, recording_id)
             for journal in row.journals:
                 journal.wrapped_key = None
             row.state = RecordingState.DISCARDED
@@ -162,11 +164,7 @@ class Recordings:
         with self._unit.writing(Role.CLINICIAN) as session:
             row = current_recording(session, recording)
             visit = session.get_one(SessionRow, row.session_id)
-            if told.name != row.name:
-                _refuse_taken(visit, told.name)
-            wanted = {name: getattr(told, name) for name in CORRECTABLE}
-            changes = differences(row, wanted | {"left_out": left_out_in_row(told.left_out_s)})
-            apply(self._unit, session, changes, visit.patient_id, visit.id)
+            apply(self._unit, session, recording_changes(visit, row, told), visit.patient_id, visit.id)
             session.flush()
             return stored_recording(row)
 
@@ -180,16 +178,7 @@ class Recordings:
         """
         with self._unit.writing(Role.CLINICIAN) as session:
             row = current_recording(session, recording)
-            visit = session.get_one(SessionRow, row.session_id)
-            is_recovered = row.state is RecordingState.RECOVERED
-            wanted: dict[str, object] = {"is_kept": is_kept}
-            if is_recovered:
-                wanted["judged_by"] = self._unit.code
-            apply(self._unit, session, differences(row, wanted), visit.patient_id, visit.id)
-            row.is_decided = True
-            session.flush()
-            details = {"is_recovered": is_recovered, "is_kept": is_kept}
-            note(self._unit, session, Action.EDIT, about("recording", row.id), **details)
+            decide_row(self._unit, session, session.get_one(SessionRow, row.session_id), row, is_kept)
             return stored_recording(row)
 
     def find(self, recording_id: UUID) -> StoredRecording | None:
@@ -205,6 +194,55 @@ class Recordings:
             for recording_id, segment in session.execute(select(JournalRow.recording_id, JournalRow.segment)):
                 segments[recording_id].add(segment)
         return {recording_id: frozenset(own) for recording_id, own in segments.items()}
+
+    def note_kept(self, recording_id: UUID, segment: int, kept_as: str) -> None:
+        """Say under which name the clinic's shared place has a segment.
+
+        Raises
+        ------
+        LibraryError
+            There is no such recording.
+        """
+        with self._unit.writing(Role.VIEWER) as session:  # whoever is logged in when it is handed over
+            row = next(
+                (one for one in existing_recording(session, recording_id).journals if one.segment == segment), None
+            )
+            if row is not None:
+                row.kept_as = kept_as
+
+    def kept(self, recording_ids: Iterable[UUID]) -> dict[UUID, dict[int, str]]:
+        """What segments of these are called in the clinic's shared place, as far as they are there."""
+        wanted = select(JournalRow.recording_id, JournalRow.segment, JournalRow.kept_as).where(
+            JournalRow.recording_id.in_(list(recording_ids)), JournalRow.kept_as != ""
+        )
+        found: dict[UUID, dict[int, str]] = {}
+        with self._unit.reading() as session:
+            for recording_id, segment, kept_as in session.execute(wanted):
+                found.setdefault(recording_id, {})[segment] = kept_as
+        return found
+
+    def destroyed(self, recording_ids: Iterable[UUID]) -> frozenset[UUID]:
+        """Which of these were ended and then destroyed for good, as the audit tells even where their rows are gone."""
+        ids = {about("recording", one): one for one in recording_ids}
+        wanted = select(AuditRow.subject, AuditRow.action, AuditRow.details).where(AuditRow.subject.in_(ids))
+        ended, gone = set(), set()
+        with self._unit.reading() as session:
+            for subject, action, details in session.execute(wanted):
+                if action == Action.DELETE and "is_final" in json.loads(details):
+                    gone.add(ids[subject])
+                elif action == Action.EDIT and "state" in json.loads(details):
+                    ended.add(ids[subject])  # else it was taken back before it began
+        return frozenset(ended & gone)
+
+    def readable_files(self) -> frozenset[str]:
+        """Every journal that was not destroyed."""
+        wanted = (
+            select(JournalRow.file)
+            .join(RecordingRow)
+            .where(RecordingRow.state != RecordingState.DISCARDED, JournalRow.wrapped_key.is_not(None))
+        )
+        with self._unit.reading() as session:
+            return frozenset(session.scalars(wanted))
 
     def undecided(self) -> tuple[UndecidedWalk, ...]:
         """Walks that were recovered, and of which nobody has said since whether they are kept; of no deleted patient.
@@ -227,12 +265,35 @@ class Recordings:
             )
 
     def still_open(self) -> tuple[StoredRecording, ...]:
-        """Those that nobody stopped: they are to be recovered, unless they are being recorded now."""
+        """Those of this station that nobody stopped: to be recovered, unless they are being recorded now."""
         with self._unit.reading() as session:
             rows = session.scalars(
-                select(RecordingRow).where(RecordingRow.state == RecordingState.OPEN).order_by(RecordingRow.id)
+                select(RecordingRow)
+                .where(RecordingRow.state == RecordingState.OPEN, RecordingRow.station == self._unit.station)
+                .order_by(RecordingRow.id)
             )
             return tuple(stored_recording(row) for row in rows)
+
+
+def recording_changes(visit: SessionRow, row: RecordingRow, told: Recording) -> list[Change]:
+    """What has to change in `row` so that it says what `told` does; raises as `Recordings.change`."""
+    if told.name != row.name:
+        _refuse_taken(visit, told.name)
+    wanted = {name: getattr(told, name) for name in RECORDING_CORRECTABLE}
+    return differences(row, wanted | {"left_out": left_out_in_row(told.left_out_s)})
+
+
+def decide_row(unit: UnitOfWork, session: OrmSession, visit: SessionRow, row: RecordingRow, is_kept: bool) -> None:
+    """Take the answer whether a recording is kept, as `Recordings.decide`."""
+    is_recovered = row.state is RecordingState.RECOVERED
+    wanted: dict[str, object] = {"is_kept": is_kept}
+    if is_recovered:
+        wanted["judged_by"] = unit.code
+    apply(unit, session, differences(row, wanted), visit.patient_id, visit.id)
+    row.is_decided = True
+    session.flush()
+    details = {"is_recovered": is_recovered, "is_kept": is_kept}
+    note(unit, session, Action.EDIT, about("recording", row.id), **details)
 
 
 def current_recording(session: OrmSession, recording: StoredRecording) -> RecordingRow:
@@ -243,7 +304,7 @@ def current_recording(session: OrmSession, recording: StoredRecording) -> Record
     ChangedMeanwhileError
         It was changed since.
     """
-    return unchanged(_existing(session, recording.id), recording.version)
+    return unchanged(existing_recording(session, recording.id), recording.version)
 
 
 def _free_number(session: OrmSession, visit: SessionRow, began_at: datetime.datetime | None) -> int:
@@ -268,7 +329,7 @@ def _instant(started: str) -> datetime.datetime | None:
         return None
 
 
-def _existing(session: OrmSession, recording_id: UUID) -> RecordingRow:
+def existing_recording(session: OrmSession, recording_id: UUID) -> RecordingRow:
     row = session.get(RecordingRow, recording_id)
     if row is None:
         raise LibraryError("This recording is not in the library any more", "Reload the session")

@@ -105,6 +105,9 @@ def find_interrupted(opened: OpenedLibrary) -> tuple[Interrupted, ...]:
             late = recordings.find(recording_id)
             if late is not None and late.state is not RecordingState.DISCARDED:
                 rows[recording_id] = late
+                if opened.shared is not None:  # those before it are in the clinic's shared place
+                    known_to_all = {one.segment: one for one in late.journals if one.kept_as}
+                    files[recording_id] = {n: opened.journal_path(one) for n, one in known_to_all.items()} | segments
     orphans = [recording_id for recording_id in files if recording_id not in known]
     wanted = [*rows, *orphans]
     return tuple(_look(opened, one, rows.get(one), files.get(one, {})) for one in sorted(wanted, key=str))

@@ -29,6 +29,14 @@ class Results:
             row = session.scalars(_wanted(session_id, kind, key_of(inputs))).first()
             return None if row is None else stored_result(row)
 
+    def analysed_by(self, algorithm: str) -> frozenset[UUID]:
+        """The sessions that have an analysis of this code, be it of what was told of them before."""
+        wanted = select(ResultRow.session_id).where(
+            ResultRow.kind == ResultKind.ANALYSIS, ResultRow.algorithm == algorithm
+        )
+        with self._unit.reading() as session:
+            return frozenset(session.scalars(wanted))
+
     def keep(
         self, session_id: UUID, kind: ResultKind, inputs: AnalysisInputs, content_format: str, content: bytes
     ) -> StoredResult:

@@ -9,14 +9,17 @@ days later (`app.storage.backup`). Whoever is asked to delete for good has to be
 import datetime
 import os
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
+from app.storage.clinic.handing_over import one_at_a_time
+from app.storage.clinic.journal_store import name_in_place
 from app.storage.files import sync_folder
 from app.storage.journal.header import HEADER_BYTES, JournalRefusedError, destroy_key
 from app.storage.library import now_utc
 from app.storage.opened import OpenedLibrary
 from app.storage.sessions import KEPT_DELETED
-from app.storage.stored import RecordingState, StoredRecording
+from app.storage.stored import RecordingState, StoredRecording, StoredSession
 
 
 def destroy_overdue(opened: OpenedLibrary, now: Callable[[], datetime.datetime] = now_utc) -> int:
@@ -30,7 +33,7 @@ def destroy_overdue(opened: OpenedLibrary, now: Callable[[], datetime.datetime] 
         A file cannot be overwritten or removed.
     """
     library = opened.library
-    overdue = library.sessions.overdue()
+    overdue = [visit for visit in library.sessions.overdue() if not _is_at_another_station(opened, visit)]
     for visit in overdue:
         for recording in visit.recordings:
             destroy_recording(opened, recording)
@@ -49,10 +52,27 @@ def destroy_recording(opened: OpenedLibrary, recording: StoredRecording) -> None
     LibraryError, OSError
         As in `destroy_overdue`.
     """
-    for journal in recording.journals:
-        _destroy_file(opened.recordings / journal.file)
-    if recording.state is not RecordingState.DISCARDED:
-        opened.library.recordings.discard(recording.id)
+    with one_at_a_time:
+        # what was handed over since it was listed is in the shared place, too
+        now = opened.library.recordings.find(recording.id) if opened.shared is not None else None
+        for journal in (now or recording).journals:
+            path = opened.recordings / journal.file
+            if opened.shared is not None:
+                if not journal.kept_as and path.exists():  # a station killed amid handing over may have put it there
+                    journal = replace(journal, kept_as=name_in_place(path))
+                opened.shared.destroy(journal)
+            _destroy_file(path)
+        if recording.state is not RecordingState.DISCARDED:
+            opened.library.recordings.discard(recording.id)
+
+
+def _is_at_another_station(opened: OpenedLibrary, visit: StoredSession) -> bool:
+    """Whether something of it is still at the station that recorded it, which then destroys it itself."""
+    return opened.shared is not None and any(
+        journal.wrapped_key is not None and not journal.kept_as and not (opened.recordings / journal.file).exists()
+        for recording in visit.recordings
+        for journal in recording.journals
+    )
 
 
 def _destroy_file(path: Path) -> None:

@@ -20,9 +20,11 @@ from app.storage.database.models import (
     SessionRow,
 )
 from app.storage.database.values import SENSOR_FIELDS, SESSION_FIELDS, placement_of, stored_recording, stored_session
+from app.storage.edited_fields import SESSION_CORRECTABLE
 from app.storage.recordings import current_recording
 from app.storage.stored import (
     Action,
+    Change,
     LibraryError,
     Limits,
     PlacedSensor,
@@ -39,7 +41,6 @@ from core.samples import Session
 from devices.files.session_toml import SIGN, ZERO
 
 KEPT_DELETED = datetime.timedelta(days=30)
-CORRECTABLE = ("started", "operator", "surface", "notes", "software")
 NO_LIMITS = Limits()
 SEARCHED = (SessionRow.notes, SessionRow.operator, SessionRow.surface, SessionRow.comment, PatientRow.code)
 
@@ -96,7 +97,7 @@ class Sessions:
             There is no such visit.
         """
         with self._unit.reading() as session:
-            return stored_session(_existing(session, session_id))
+            return stored_session(existing_session(session, session_id))
 
     def view(self, session_id: UUID) -> StoredSession:
         """A visit that somebody opens to look at: it is noted who.
@@ -107,7 +108,7 @@ class Sessions:
             There is no such visit, or it cannot be noted.
         """
         with self._unit.writing(Role.VIEWER) as session:
-            row = _existing(session, session_id)
+            row = existing_session(session, session_id)
             note(self._unit, session, Action.VIEW, about("session", session_id))
             return stored_session(row)
 
@@ -147,24 +148,9 @@ class Sessions:
         LibraryError
             A zero or sign is out of range.
         """
-        _refuse_wrong_joints(told)
         with self._unit.writing(Role.CLINICIAN) as session:
-            row = unchanged(_existing(session, visit.id), visit.version)
-            wanted = {name: getattr(told, name) for name in CORRECTABLE}
-            if comment is not None:
-                wanted["comment"] = comment
-            if limits is not None:
-                wanted["cannot_stand"] = limits.cannot_stand
-            changes = differences(row, wanted)
-            for joint in row.joints:
-                said: dict[str, object] = {
-                    "zero_rad": told.zero_rad.get(joint.joint),
-                    "turned_sign": told.turned_sign.get(joint.joint),
-                }
-                if limits is not None:
-                    said["is_absent"] = _is_absent(joint.joint, limits)
-                changes += differences(joint, said)
-            apply(self._unit, session, changes, row.patient_id, row.id)
+            row = unchanged(existing_session(session, visit.id), visit.version)
+            apply(self._unit, session, session_changes(row, told, comment, limits), row.patient_id, row.id)
             session.flush()
             return stored_session(row)
 
@@ -177,7 +163,7 @@ class Sessions:
             One sensor at two sites, or there is no such visit.
         """
         with self._unit.writing(Role.CLINICIAN) as session:
-            row = self._placed(session, _existing(session, session_id), sensors)
+            row = new_placement(self._unit, session, existing_session(session, session_id), sensors)
             note(self._unit, session, Action.EDIT, about("session", session_id), fields=["placement"])
             return placement_of(row)
 
@@ -195,9 +181,9 @@ class Sessions:
         """
         (session_id,) = {recording.session_id for recording in recordings}
         with self._unit.writing(Role.CLINICIAN) as session:
-            visit = _existing(session, session_id)
+            visit = existing_session(session, session_id)
             rows = [current_recording(session, recording) for recording in recordings]
-            placement = self._placed(session, visit, sensors)
+            placement = new_placement(self._unit, session, visit, sensors)
             changes = [change for row in rows for change in differences(row, {"placement_id": placement.id})]
             apply(self._unit, session, changes, visit.patient_id, session_id)
             session.flush()
@@ -228,34 +214,60 @@ class Sessions:
             Neither it nor its patient was deleted, or less than 30 days ago.
         """
         with self._unit.writing(Role.CLINICIAN) as session:
-            row = _existing(session, session_id)
+            row = existing_session(session, session_id)
             deleted = [at for at in (row.deleted_at, row.patient.deleted_at) if at is not None]
             refuse_early(min(deleted, default=None), self._unit.now())
             session.execute(delete(SessionRow).where(SessionRow.id == session_id))
             note(self._unit, session, Action.DELETE, about("session", session_id), is_final=True)
 
-    def _placed(self, session: OrmSession, visit: SessionRow, sensors: Mapping[Site, PlacedSensor]) -> PlacementRow:
-        if len({sensor.name for sensor in sensors.values()}) < len(sensors):
-            raise LibraryError("One sensor cannot be worn at two sites", "Assign each sensor once")
-        row = PlacementRow(
-            session_id=visit.id,
-            number=len(visit.placements) + 1,
-            made_at=self._unit.now(),
-            made_by=self._unit.code,
-            sensors=[
-                PlacedSensorRow(site=site, name=one.name, **{name: getattr(one.info, name) for name in SENSOR_FIELDS})
-                for site, one in sensors.items()
-            ],
-        )
-        visit.placements.append(row)
-        session.flush()
-        return row
-
     def _set_deleted(self, visit: StoredSession, at: datetime.datetime | None, action: Action) -> None:
         with self._unit.writing(Role.CLINICIAN) as session:
-            row = unchanged(_existing(session, visit.id), visit.version)
+            row = unchanged(existing_session(session, visit.id), visit.version)
             row.deleted_at = at
             note(self._unit, session, action, about("session", visit.id), is_deleted=at is not None)
+
+
+def new_placement(
+    unit: UnitOfWork, session: OrmSession, visit: SessionRow, sensors: Mapping[Site, PlacedSensor]
+) -> PlacementRow:
+    """Add what is said now of who is worn where; raises as `Sessions.place`."""
+    if len({sensor.name for sensor in sensors.values()}) < len(sensors):
+        raise LibraryError("One sensor cannot be worn at two sites", "Assign each sensor once")
+    row = PlacementRow(
+        session_id=visit.id,
+        number=len(visit.placements) + 1,
+        made_at=unit.now(),
+        made_by=unit.code,
+        sensors=[
+            PlacedSensorRow(site=site, name=one.name, **{name: getattr(one.info, name) for name in SENSOR_FIELDS})
+            for site, one in sensors.items()
+        ],
+    )
+    visit.placements.append(row)
+    session.flush()
+    return row
+
+
+def session_changes(
+    row: SessionRow, told: Session, comment: str | None = None, limits: Limits | None = None
+) -> list[Change]:
+    """What has to change in `row` and its joints so that they say what is told; raises as `Sessions.change`."""
+    _refuse_wrong_joints(told)
+    wanted = {name: getattr(told, name) for name in SESSION_CORRECTABLE}
+    if comment is not None:
+        wanted["comment"] = comment
+    if limits is not None:
+        wanted["cannot_stand"] = limits.cannot_stand
+    changes = differences(row, wanted)
+    for joint in row.joints:
+        said: dict[str, object] = {
+            "zero_rad": told.zero_rad.get(joint.joint),
+            "turned_sign": told.turned_sign.get(joint.joint),
+        }
+        if limits is not None:
+            said["is_absent"] = _is_absent(joint.joint, limits)
+        changes += differences(joint, said)
+    return changes
 
 
 def refuse_early(deleted_at: datetime.datetime | None, now: datetime.datetime) -> None:
@@ -287,7 +299,7 @@ def _refuse_wrong_joints(told: Session) -> None:
         raise LibraryError(tr("The value of a joint has to be {wanted}").format(wanted=error), "Correct it") from None
 
 
-def _existing(session: OrmSession, session_id: UUID) -> SessionRow:
+def existing_session(session: OrmSession, session_id: UUID) -> SessionRow:
     row = session.get(SessionRow, session_id)
     if row is None:
         raise LibraryError("This session is not in the library any more", "Reload the list")

@@ -30,6 +30,10 @@ class LibraryFaultError(LibraryError):
     """The database or its disk does not do what it is asked, whatever that is; nothing was written."""
 
 
+class ServerSilentError(LibraryFaultError):
+    """A clinic's server is not reached, or does not answer: it may be the network, and it may come back."""
+
+
 class LibraryBusyError(LibraryFaultError):
     """Another program holds the library for longer than anyone waits."""
 
@@ -123,12 +127,16 @@ class Placement:
 
 @dataclass(frozen=True, slots=True)
 class StoredJournal:
-    """One segment of a recording. `sha256` is empty until it is closed; no `wrapped_key`: not sealed, or destroyed."""
+    """One segment of a recording. `sha256` is empty until it is closed; no `wrapped_key`: not sealed, or destroyed.
+
+    `kept_as`: its name in the place that a clinic's stations share; empty where it is in the library's folder alone.
+    """
 
     segment: int
     file: str
     wrapped_key: bytes | None
     sha256: str = ""
+    kept_as: str = ""
 
 
 @dataclass(frozen=True, slots=True)

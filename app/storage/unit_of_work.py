@@ -7,17 +7,22 @@ from contextlib import contextmanager
 from sqlalchemy import exists, func, or_, select
 from sqlalchemy.orm import Session as OrmSession
 
+from app.storage.clinic.server_state import refuse_closed
 from app.storage.database.engine import Database
 from app.storage.database.models import OperatorRow, PatientRow, RecordingRow, SessionRow
 from app.storage.stored import BEGINNING, Checkpoint, LibraryError, NotAllowedError, Operator, Role
 from app.wording import tr
 
 END = "end_of_audit"  # by this name a session keeps how far its entries go
+ADDED = "entries_added"  # and by this one how many it added
 DEMO = "DEMO"  # how codes of patients begin that simulated recordings may be kept for
 
 
 class UnitOfWork:
-    """One operator at one library. `operator` is None while nobody is logged in, and then nothing can be done."""
+    """One operator at one library. `operator` is None while nobody is logged in, and then nothing can be done.
+
+    `station`: which one of a clinic's stations this is; empty where the library has none.
+    """
 
     def __init__(
         self,
@@ -25,10 +30,13 @@ class UnitOfWork:
         audit_key: bytes,
         now: Callable[[], datetime.datetime],
         is_demonstration: bool,
+        station: str = "",
     ) -> None:
         self.database, self.audit_key, self.now, self.is_demonstration = database, audit_key, now, is_demonstration
+        self.station = station
         self.operator: Operator | None = None
         self.end_of_audit = BEGINNING
+        self.entries_added = 0  # by this program, since it opened the library
 
     @property
     def code(self) -> str:
@@ -64,6 +72,8 @@ class UnitOfWork:
         """
         code = self.code
         with self.database.writing() as session:
+            if self.station:
+                refuse_closed(session)
             # as it is now: an administrator at another station may have changed it
             row = session.get(OperatorRow, code)
             if row is None or not row.is_active or not row.role.includes(needed):
@@ -77,6 +87,7 @@ class UnitOfWork:
 
     def note_end(self, session: OrmSession) -> None:
         """Keep how far the audit goes, now that what `session` wrote is on the disk."""
+        self.entries_added += session.info.pop(ADDED, 0)
         end: Checkpoint = session.info.get(END, BEGINNING)
         if end.number > self.end_of_audit.number:
             self.end_of_audit = end

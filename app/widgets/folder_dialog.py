@@ -1,6 +1,7 @@
 """Which folder or files are meant? The system's own dialog, which holds up nothing meanwhile."""
 
 from collections.abc import Callable
+from pathlib import Path
 
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QFileDialog, QWidget
@@ -23,5 +24,19 @@ def ask_for_files(parent: QWidget, title: str, on_chosen: Callable[[list[str]], 
     dialog.setFileMode(QFileDialog.FileMode.ExistingFiles)
     dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
     dialog.filesSelected.connect(on_chosen)
+    dialog.open()
+    return dialog
+
+
+def ask_for_new_folder(
+    parent: QWidget, title: str, proposed_in: Callable[[Path], str], on_chosen: Callable[[str], None]
+) -> QFileDialog:
+    """Open a dialog for a folder that is to be made; `proposed_in` gives its name in the place that is shown first."""
+    dialog = QFileDialog(parent, title)
+    dialog.setAcceptMode(QFileDialog.AcceptMode.AcceptSave)
+    dialog.setFileMode(QFileDialog.FileMode.AnyFile)
+    dialog.selectFile(proposed_in(Path(dialog.directory().absolutePath())))
+    dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+    dialog.fileSelected.connect(on_chosen)
     dialog.open()
     return dialog

@@ -1,13 +1,20 @@
 """The patient of a visit, kept as it is typed."""
 
-from collections.abc import Callable
-from dataclasses import fields, replace
+import datetime
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from enum import Enum, auto
+from functools import partial
+from uuid import UUID
 
 from PySide6.QtCore import QObject, QTimer, Signal
 
+from app.edit_words import others_message
+from app.storage.edited_fields import patient_fields, with_patient_fields
 from app.storage.opened import OpenedLibrary
 from app.storage.stored import StoredPatient
+from app.storage.three_way import Contest, Edited, Values, rebased
+from app.wizard.edit_question import EditQuestion, chosen_fields
 from app.workers.library_controller import LibraryController
 from core.samples import Patient
 
@@ -36,6 +43,10 @@ class PatientRecord(QObject):
     """What stands on the screen was old."""
     code_taken = Signal(str)
     refused = Signal(str, str)
+    merged = Signal(str, str)
+    """What another station changed of the same patient meanwhile."""
+    asked = Signal(object)
+    """An EditQuestion: what both changed."""
 
     def __init__(
         self, controller: LibraryController, parent: QObject, refuses: Callable[[str], tuple[str, str]]
@@ -47,6 +58,9 @@ class PatientRecord(QObject):
         """So another code is a correction of this patient's."""
         self.details = Patient()
         self.stored: StoredPatient | None = None
+        self._upon = Patient()
+        """What was shown when `details` were typed."""
+        self._sent: Values = {}
         self._phase = RecordPhase.SETTLED
         self._pause = QTimer(self)
         self._pause.setSingleShot(True)
@@ -58,12 +72,16 @@ class PatientRecord(QObject):
         return not self._may_be_old and self.stored is not None and self.stored.details == self.details
 
     @property
+    def is_busy(self) -> bool:
+        """Whether the library is still to answer."""
+        return self._phase not in (RecordPhase.SETTLED, RecordPhase.UNREAD)
+
+    @property
     def _may_be_old(self) -> bool:
         return self._phase in (RecordPhase.READING, RecordPhase.UNREAD)
 
     def choose(self, stored: StoredPatient) -> None:
-        is_under_way = self._phase not in (RecordPhase.SETTLED, RecordPhase.UNREAD)
-        self._phase = RecordPhase.OVERTAKEN if is_under_way else RecordPhase.SETTLED
+        self._phase = RecordPhase.OVERTAKEN if self.is_busy else RecordPhase.SETTLED
         self._choose(stored)
 
     def choose_from_list(self, listed: StoredPatient) -> None:
@@ -81,8 +99,7 @@ class PatientRecord(QObject):
     def commit(self) -> None:
         """Save what is on the screen now, and make the patient if there is none yet."""
         self._pause.stop()
-        is_under_way = self._phase not in (RecordPhase.SETTLED, RecordPhase.UNREAD)
-        if is_under_way or self.is_saved or not self.details.code:
+        if self.is_busy or self.is_saved or not self.details.code:
             return
         if self._may_be_old and self.stored is not None:
             self._read(self.stored)
@@ -96,23 +113,25 @@ class PatientRecord(QObject):
         self._phase = RecordPhase.BUSY
         stored, told = self.stored, self.details
         is_renamed = self.has_this_session_only
+        upon, said = patient_fields(self._upon), patient_fields(told)
+        self._sent = said
 
-        def save(opened: OpenedLibrary) -> StoredPatient | None:
-            patients = opened.library.patients
+        def save(opened: OpenedLibrary) -> Edited[StoredPatient] | None:
+            patients, edits = opened.library.patients, opened.library.edits
             if stored is not None and stored.details.code == told.code:
-                return patients.change(stored, told)
+                return edits.patient(stored.id, upon, said)
             found = patients.find(told.code)
             if found is not None and (stored is None or found.id != stored.id):
                 return None
             if found is None and (stored is None or (stored.sessions > 0 and not is_renamed)):
-                return patients.create(told)
+                return Edited(patients.create(told))
             assert stored is not None
-            return patients.change(stored, told)
+            return edits.patient(stored.id, upon, said)
 
         self._controller.run(save, self._on_saved, self._on_refused, self)
 
     def _choose(self, stored: StoredPatient) -> None:
-        self.stored, self.details = stored, stored.details
+        self.stored, self.details, self._upon = stored, stored.details, stored.details
         self.changed.emit()
 
     def _read(self, listed: StoredPatient) -> None:
@@ -124,28 +143,66 @@ class PatientRecord(QObject):
     def _on_read(self, stored: StoredPatient) -> None:
         is_awaited, self._phase = self._may_be_old, RecordPhase.SETTLED
         if is_awaited and self.stored is not None:  # else another was chosen meanwhile
-            listed, self.stored = self.stored.details, stored
-            every = ((field.name, getattr(self.details, field.name)) for field in fields(Patient))
-            typed = {name: told for name, told in every if told != getattr(listed, name)}
-            self.details = replace(stored.details, **typed)
-            if stored.details != listed:
-                self.read_anew.emit()
-        self.changed.emit()
+            self._take(stored, patient_fields(self._upon))
+        else:
+            self.changed.emit()
         if not self.is_saved:
             self._pause.start()  # typed meanwhile
 
-    def _on_saved(self, stored: StoredPatient | None) -> None:
+    def _on_saved(self, edited: Edited[StoredPatient] | None) -> None:
         is_overtaken = self._phase is not RecordPhase.BUSY
         self._end_work()
+        if edited is not None:
+            self._ask(edited)  # before anybody goes on
         if is_overtaken:  # it is saved, and another stands here now
-            stored = self.stored
-        if stored is None:
+            self.changed.emit()
+        elif edited is None:
             self.code_taken.emit(self.details.code)
             return
-        self.stored = stored
-        self.changed.emit()
+        else:
+            self._take(edited.stored, self._sent)
+        if edited is not None:
+            self._tell(edited)
         if not self.is_saved:
             self._pause.start()  # typed on meanwhile
+
+    def _take(self, stored: StoredPatient, upon: Values) -> None:
+        """Go on from what the library holds; what was typed since `upon` stays typed."""
+        before, held = self.details, stored.details
+        shown, said = rebased(upon, patient_fields(before), patient_fields(held))
+        self.stored = stored
+        self._upon, self.details = with_patient_fields(held, shown), with_patient_fields(held, said)
+        if patient_fields(self.details) != patient_fields(before):
+            self.read_anew.emit()
+        self.changed.emit()
+
+    def _ask(self, edited: Edited[StoredPatient]) -> None:
+        if edited.contests:
+            settle = partial(self._settle, edited.stored.id, edited.contests)
+            self.asked.emit(EditQuestion(edited.stored.details.code, edited.contests, settle))
+
+    def _tell(self, edited: Edited[StoredPatient]) -> None:
+        if edited.others:
+            code, now = edited.stored.details.code, datetime.datetime.now().astimezone()
+            self.merged.emit(*others_message(code, edited.others, now))
+
+    def _settle(self, patient_id: UUID, contests: Sequence[Contest], fields: frozenset[str]) -> None:
+        """Save what was chosen of both sides."""
+        upon, said = chosen_fields(contests, fields)
+        if not said:
+            self.changed.emit()
+            return
+
+        def save(opened: OpenedLibrary) -> Edited[StoredPatient]:
+            return opened.library.edits.patient(patient_id, upon, said)
+
+        self._controller.run(save, self._on_settled, self._on_refused, self)
+
+    def _on_settled(self, edited: Edited[StoredPatient]) -> None:
+        self._ask(edited)
+        if self.stored is not None and self.stored.id == edited.stored.id:
+            self._take(edited.stored, patient_fields(self._upon))
+        self._tell(edited)
 
     def _end_work(self) -> None:
         """Nothing is saved or read any more: what was to be read still is."""

@@ -1,19 +1,25 @@
 """The recordings of a visit: begun, stopped, kept or not. What is shown live is a preview of what comes back here."""
 
+import datetime
+from collections import deque
 from collections.abc import Callable, Collection, Mapping, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass, replace
-from datetime import datetime
 from enum import Enum, auto
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 from uuid import UUID
 
 from PySide6.QtCore import QObject, QTimer, Signal, Slot
 
 from app.acquisition.recorder import Recorder
+from app.edit_words import others_message
 from app.recording_names import OWN_NAMES, ShownName, shown_names
+from app.storage.edited_fields import KEPT, recording_fields, with_recording_fields
 from app.storage.journal.disk import TOLD, Trouble
-from app.storage.stored import RecordingState, StoredRecording, StoredSession
+from app.storage.stored import StoredRecording, StoredSession
+from app.storage.three_way import Contest, Edited, Values
+from app.wizard.edit_question import EditQuestion, chosen_fields
 from app.wizard.journal_words import (
     ENDS,
     is_written,
@@ -23,7 +29,7 @@ from app.wizard.journal_words import (
     unread_message,
 )
 from app.wizard.losses import NOTHING, Message
-from app.wording import tr
+from app.wording import capitalised, tr
 from app.workers.library_controller import LibraryController
 from core.body import Side
 from core.samples import Recording, RecordingKind
@@ -96,6 +102,8 @@ class SessionRecordings(QObject):
     begun = Signal()
     ended = Signal(object)  # SessionRecording
     refused = Signal(str, str)
+    merged = Signal(str, str)  # what another station changed of the same recording meanwhile
+    asked = Signal(object)  # EditQuestion: what both changed
     troubled = Signal(str, str)  # of the disk, or of the library's folder: what happened, and what to do
     _met = Signal(str)  # Trouble; emitted by whichever thread meets it
 
@@ -105,6 +113,7 @@ class SessionRecordings(QObject):
         self.session: StoredSession | None = None
         self.ongoing: Ongoing | None = None
         self.every: tuple[SessionRecording, ...] = ()
+        self._saying: deque[tuple[UUID, Recording | None]] = deque()  # said and not answered yet, oldest first
         self._phase = RecordingPhase.IDLE
         self._latest: Recorder | None = None  # also once it has been stopped; none before the library has answered
         self._trouble: Trouble | None = None  # of the latest
@@ -234,7 +243,7 @@ class SessionRecordings(QObject):
             folder=name.replace(" ", "_"),
             imu={},
             condition=condition,
-            started=datetime.now().astimezone().isoformat(timespec="seconds"),
+            started=datetime.datetime.now().astimezone().isoformat(timespec="seconds"),
             is_restrapped_before=self._is_restrapped,
         )
         self.ongoing = Ongoing(told, acquisition.now_s)
@@ -301,6 +310,8 @@ class SessionRecordings(QObject):
             return self._moved()
         if self._trouble is not None:
             return trouble_message(self._trouble, self._latest.status, self._lost())
+        if self.is_recording and self._controller.gone_words is not None:
+            return self._controller.gone_words
         if self._is_without_row and not self._latest.has_row:
             return no_row_message(self._latest.status)
         return NOTHING
@@ -347,32 +358,55 @@ class SessionRecordings(QObject):
         """Say whether a recording counts; nothing is deleted, and it can be said anew at any time."""
         if recording.details.is_restrapped_before and not is_kept and recording.id == self.every[-1].id:
             self._is_restrapped = True  # what comes next is the first that counts
+        is_asked = recording.stored.is_unjudged or not recording.stored.is_decided
+        is_answered = any(recording.id == said for said, _ in self._saying)
         self._put(replace(recording, is_decided=True))
-        if recording.stored.state is RecordingState.RECOVERED or not recording.stored.is_decided:
+        if is_asked and not is_answered:
             self._decide(recording, is_kept)
         else:  # also where it seems to be so already: what was said a moment before may still be on its way
             self.change(recording, lambda told: replace(told, is_kept=is_kept))
 
+    def said(self, recording: SessionRecording) -> Recording:
+        """What is told of a recording, the last word of it on the screen."""
+        known = next((one.details for one in self.every if one.id == recording.id), recording.details)
+        return next((told for said, told in reversed(self._saying) if told and said == recording.id), known)
+
     def change(self, recording: SessionRecording, corrected: Callable[[Recording], Recording]) -> None:
         """Correct what was told of a recording; `changed` follows.
 
-        `corrected` is given what the library holds by then: what was put right a moment before stays so.
+        `corrected` is given the last word of it on the screen. What another station changed of the same meanwhile is
+        merged and told, or `asked` about.
         """
+        shown = self.said(recording)
+        self._edit(recording.id, recording_fields(shown), recording_fields(corrected(shown)))
 
-        def save(opened: "OpenedLibrary") -> StoredRecording:
-            current = opened.library.recordings.find(recording.id) or recording.stored
-            return opened.library.recordings.change(current, corrected(current.details))
+    def _edit(self, recording_id: UUID, upon: Values, said: Values) -> None:
+        def save(opened: "OpenedLibrary") -> Edited[StoredRecording]:
+            return opened.library.edits.recording(recording_id, upon, said)
 
+        self._say(recording_id, said)
         self._controller.run(save, self._on_changed, self._on_not_changed, self)
 
     def _decide(self, recording: SessionRecording, is_kept: bool) -> None:
         """Give the answer that was asked for: nobody is asked again, at the next start either."""
 
-        def decide(opened: "OpenedLibrary") -> StoredRecording:
-            current = opened.library.recordings.find(recording.id)
-            return opened.library.recordings.decide(current or recording.stored, is_kept)
+        def decide(opened: "OpenedLibrary") -> Edited[StoredRecording]:
+            return opened.library.edits.decision(recording.id, is_kept)
 
+        self._say(recording.id, {KEPT: is_kept})
         self._controller.run(decide, self._on_changed, self._on_not_changed, self)
+
+    def _say(self, recording_id: UUID, said: Values) -> None:
+        recording = next((one for one in self.every if one.id == recording_id), None)
+        told = with_recording_fields(self.said(recording), said) if recording is not None else None
+        self._saying.append((recording_id, told))
+
+    def _settle(self, recording_id: UUID, contests: Sequence[Contest], fields: frozenset[str]) -> None:
+        """Save what was chosen of both sides."""
+        upon, said = chosen_fields(contests, fields)
+        if said:
+            self._edit(recording_id, upon, said)
+        self.changed.emit()
 
     def counted(self) -> tuple[Recording, ...]:
         """Those that count and have been read, in order of time, as an analysis takes them.
@@ -465,11 +499,21 @@ class SessionRecordings(QObject):
     def _on_not_halted(self, _what: str, _remedy: str) -> None:
         """Whoever reads it back meets the same, and tells."""
 
-    def _on_changed(self, stored: StoredRecording) -> None:
-        before = next(recording for recording in self.every if recording.id == stored.id)
-        self._put(replace(before, stored=stored))
+    def _on_changed(self, edited: Edited[StoredRecording]) -> None:
+        self._saying.popleft()
+        stored = edited.stored
+        before = next((recording for recording in self.every if recording.id == stored.id), None)
+        if before is not None:
+            self._put(replace(before, stored=stored))
+        called = capitalised(str(self.shown_names.get(stored.details.name, stored.details.name)))
+        if edited.others:
+            self.merged.emit(*others_message(called, edited.others, datetime.datetime.now().astimezone()))
+        if edited.contests:
+            settle = partial(self._settle, stored.id, edited.contests)
+            self.asked.emit(EditQuestion(called, edited.contests, settle))
 
     def _on_not_changed(self, what: str, remedy: str) -> None:
+        self._saying.popleft()
         self.changed.emit()
         self.refused.emit(what, remedy)
 

@@ -1,15 +1,16 @@
 """What the library holds of a session, read back for the screen: recordings, rests, and what came of them before."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 from uuid import UUID
 
 from app.reports.course import Course, course_of
+from app.storage.analysis_content import FORMAT, unpacked
 from app.storage.exchange import recording_with_samples
-from app.storage.kept_analyses import bare, find_analysis, keep_analysis
+from app.storage.kept_analyses import bare, find_analysis, inputs_of, keep_analysis
 from app.storage.kept_courses import course_key, keep_course
-from app.storage.stored import Limits, RecordingState, StoredPatient, StoredSession
+from app.storage.stored import Limits, RecordingState, ResultKind, StoredPatient, StoredSession
 from app.wizard.recordings import SessionRecording, counted
 from app.workers.background import Report
 from core.analysis import analyse
@@ -57,10 +58,41 @@ def read_analysed(opened: "OpenedLibrary", session_id: UUID, report: Report) -> 
     if known is None:
         known = analyse(bare(told), progress=report)
         keep_analysis(results, session_id, told, known)
-    without_samples = replace(told, recordings=tuple(replace(recording, imu={}) for recording in told.recordings))
+    return _keep_course(opened, stored, told, known)
+
+
+def session_to_analyse(opened: "OpenedLibrary", session_id: UUID) -> "tuple[Session, Callable[[bytes], None]] | None":
+    """A session with its samples and what keeps the analysis of it, as `packed` writes it; None: it is kept already.
+
+    What the patient's course needs is kept with it. Raises as `exchange.session_with_samples`.
+    """
+    stored = opened.library.sessions.get(session_id)
+    told = evaluated(stored, read_recordings(opened, stored))
+    known = find_analysis(opened.library.results, session_id, told)
+    if known is not None:
+        _keep_course(opened, stored, told, known)
+        return None
+    without_samples, inputs = without_imu(told), inputs_of(told)
+
+    def keep(content: bytes) -> None:
+        opened.library.results.keep(session_id, ResultKind.ANALYSIS, inputs, FORMAT, content)
+        _keep_course(opened, stored, without_samples, unpacked(content))
+
+    return told, keep
+
+
+def without_imu(told: Session) -> Session:
+    return replace(told, recordings=tuple(replace(recording, imu={}) for recording in told.recordings))
+
+
+def _keep_course(
+    opened: "OpenedLibrary", stored: StoredSession, told: Session, known: "Analysis"
+) -> "tuple[Session, Analysis]":
+    """Keep what stands of a session in the course; the session without its samples, and what may be shown of it."""
+    without_samples = without_imu(told)
     analysis = leave_out(known, told.recordings)
     key = course_key(without_samples, stored.recordings)
-    keep_course(opened.library.courses, session_id, key, course_of(analysis, told.recordings))
+    keep_course(opened.library.courses, stored.id, key, course_of(analysis, told.recordings))
     return without_samples, analysis
 
 

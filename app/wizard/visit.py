@@ -4,25 +4,39 @@ It lives on the screen's thread. Steps read it and ask it; it knows no page. Wha
 controller or beside the screen, and comes back as a signal.
 """
 
+import datetime
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from datetime import datetime
+from functools import partial
 from typing import TYPE_CHECKING
 from uuid import UUID
 
 from PySide6.QtCore import QObject, Signal
 
 from app.acquisition.live_sensors import live_sensors
+from app.edit_words import others_message
 from app.logs import version_of
 from app.reports.course import course_of
+from app.storage.edited_fields import SESSION_CORRECTABLE, session_fields, with_session_fields
 from app.storage.kept_analyses import keep_analysis
 from app.storage.kept_courses import course_key, keep_course
-from app.storage.stored import Limits, StoredRecording, StoredSession
+from app.storage.stored import Limits, PlacedSensor, StoredSession
+from app.storage.three_way import Contest, Edited, Value, Values, rebased
+from app.wizard.edit_question import EditQuestion, chosen_fields
 from app.wizard.evaluation import Evaluation
 from app.wizard.patient_record import PatientRecord
 from app.wizard.recordings import SessionRecording, SessionRecordings
-from app.wizard.resuming import Resumed, evaluated, read_analysed, read_recordings, read_session, rests_of, with_limits
+from app.wizard.resuming import (
+    USABLE,
+    Resumed,
+    evaluated,
+    read_analysed,
+    read_recordings,
+    read_session,
+    rests_of,
+    with_limits,
+)
 from app.wizard.reviewing import Reviewing
 from app.wizard.worn_sensors import SourceChoice, WornSensors
 from app.wording import tr
@@ -39,6 +53,9 @@ if TYPE_CHECKING:
     from core.live.sensors import LiveSensor
     from core.results import Analysis
 
+Worn = tuple[Sequence[UUID], Mapping[Site, PlacedSensor]]
+"""Recordings, and who wore what in them."""
+_Corrected = tuple[Edited[StoredSession], tuple[SessionRecording, ...], Sequence[Worn]]
 MOST_EARLIER = 4  # visits; more are too many lines on one axis
 DEMO = "DEMO"  # how the codes of patients begin that simulated recordings are kept for, as the library has it
 
@@ -56,12 +73,19 @@ class Visit(QObject):
         The patient's visits before this one, each as the session without samples and its analysis, in order of time.
     refused
         What the library or a source refused, and what to do.
+    merged
+        What another station changed of the same meanwhile, in two sentences.
+    asked
+        An EditQuestion: what both changed; it is answered by `settle`.
     """
 
     changed = Signal()
+    changed_elsewhere = Signal()  # by another station of the clinic: what stands here is as it was before
     resumed = Signal()
     earlier_read = Signal(object)
     refused = Signal(str, str)
+    merged = Signal(str, str)
+    asked = Signal(object)
 
     def __init__(
         self,
@@ -93,9 +117,18 @@ class Visit(QObject):
         """Site by the sensor's name as at the last visit, where the same set-up was asked for."""
         self._began_s: float | None = None
         self._ended_s: float | None = None
-        self._is_changing = self._is_of_another_day = self._is_partial = False
+        self._is_changing = self._is_of_another_day = self._is_partial = self._must_look = False
         self._wanted: Session | None = None
+        self.comment = ""
+        """The clinician's words, the last of them on the screen."""
+        self._sent: dict[str, Value] = {}
+        """What was said of the session when the library was asked last."""
+        self._questions = 0
+        self._is_placing = self._must_swap = self._must_place = False
         self.patient.refused.connect(self.refused)
+        for part in (self.patient, self.recordings):
+            part.merged.connect(self.merged)
+            part.asked.connect(self._ask)
         self.sensors.refused.connect(self.refused)
         self.sensors.opened.connect(self._on_sensors_opened)
         self.recordings.refused.connect(self.refused)
@@ -199,11 +232,12 @@ class Visit(QObject):
             software=f"gaitwright {version_of('gaitwright')}",
         )
         limits = self.limits
+        self._sent = _said_fields(told, "", limits)
 
         def create(opened: "OpenedLibrary") -> StoredSession:
             return opened.library.sessions.create(patient.id, told, limits)
 
-        self._controller.run(create, self._on_session_changed, self._on_refused, self)
+        self._controller.run(create, self._on_created, self._on_refused, self)
 
     def set_zero(self, joint: Joint, zero_rad: float | None) -> None:
         """Take the goniometer's value while standing, radians in the clinical sign; None: the standing itself is 0."""
@@ -220,6 +254,11 @@ class Visit(QObject):
             self.limits = limits
             self._change(self.details)
 
+    def set_comment(self, comment: str, shown: str) -> None:
+        """Take the clinician's words, which were typed where `shown` stood."""
+        self.comment = comment
+        self._change(self.details, {"comment": shown})
+
     def set_turned(self, joint: Joint, sign: int | None) -> None:
         """Turn (-1) or confirm (1) the sign that was found of a joint; None: as found. `evaluation.done` follows."""
         turned = {**self.details.turned_sign}
@@ -234,26 +273,20 @@ class Visit(QObject):
 
         Done again, it is undone.
         """
-        if self.session is None:
+        if self._is_placing:
+            self._must_swap = not self._must_swap
             return
-        session_id, stored = self.session.id, [recording.stored for recording in self.recordings.every]
-
-        def swap(opened: "OpenedLibrary") -> tuple[StoredSession, tuple[SessionRecording, ...]]:
-            library = opened.library
-            worn: dict[UUID, list[StoredRecording]] = {}
-            for one in stored:
-                current = library.recordings.find(one.id)
-                if current is not None and current.placement is not None:
-                    worn.setdefault(current.placement.id, []).append(current)
-            for recordings in worn.values():
-                placement = recordings[0].placement
-                assert placement is not None  # only such were gathered
-                other = {opposite(site): sensor for site, sensor in placement.sensors.items()}
-                library.sessions.correct_placement(recordings, other)
-            session = library.sessions.get(session_id)
-            return session, read_recordings(opened, session)
-
-        self._controller.run(swap, self._on_read, self._on_refused, self)
+        placed: dict[UUID, list[SessionRecording]] = {}
+        for recording in self.recordings.every:
+            if recording.stored.placement is not None:
+                placed.setdefault(recording.stored.placement.id, []).append(recording)
+        worn: list[Worn] = []
+        for recordings in placed.values():
+            placement = recordings[0].stored.placement
+            assert placement is not None  # only such were gathered
+            other = {opposite(site): sensor for site, sensor in placement.sensors.items()}
+            worn.append(([recording.id for recording in recordings], other))
+        self._correct(worn, self._seen())
 
     def place_sensors(self, only: Side | None = None) -> None:
         """Tell the library who wears what: what is recorded next takes it, all of it or that of one leg."""
@@ -266,24 +299,37 @@ class Visit(QObject):
             opened.library.sessions.place(session_id, placed)
             return opened.library.sessions.get(session_id)
 
-        self._controller.run(place, self._on_session_changed, self._on_refused, self)
+        self._controller.run(place, self._on_placed, self._on_refused, self)
 
     def correct_placement(self) -> None:
         """Tell the library that all since the sensors were strapped on was worn as it is said now; it is read anew."""
+        if self._is_placing:
+            self._must_place = True
+            return
+        placed = self.sensors.placed()
+        strapped = [recording.id for recording in self.recordings.since_strapped]
+        self._correct([(strapped, placed)] if strapped else [], self._seen(), placed)
+
+    def _seen(self) -> dict[UUID, UUID | None]:
+        """By recording the placement as the screen has it."""
+        stored = [recording.stored for recording in self.recordings.every]
+        return {one.id: one.placement.id if one.placement is not None else None for one in stored}
+
+    def _correct(
+        self, worn: Sequence[Worn], seen: Mapping[UUID, UUID | None], placed: Mapping[Site, PlacedSensor] | None = None
+    ) -> None:
+        """Say who wore what in recordings, seen as they were; `placed`: also for what is recorded next."""
         if self.session is None:
             return
-        session_id, placed = self.session.id, self.sensors.placed()
-        stored = [recording.stored for recording in self.recordings.since_strapped]
+        session_id, self._is_placing = self.session.id, True
 
-        def correct(opened: "OpenedLibrary") -> tuple[StoredSession, tuple[SessionRecording, ...]]:
-            sessions = opened.library.sessions
-            sessions.place(session_id, placed)
-            if stored:
-                current = [opened.library.recordings.find(recording.id) for recording in stored]
-                sessions.correct_placement([recording for recording in current if recording], placed)
-            return sessions.get(session_id), read_recordings(opened, sessions.get(session_id))
+        def correct(opened: "OpenedLibrary") -> _Corrected:
+            if placed is not None:
+                opened.library.sessions.place(session_id, placed)
+            edited = opened.library.edits.placement(session_id, seen, worn)
+            return edited, read_recordings(opened, edited.stored), worn
 
-        self._controller.run(correct, self._on_read, self._on_refused, self)
+        self._controller.run(correct, self._on_corrected, self._on_not_corrected, self)
 
     def resume(self, session_id: UUID) -> None:
         """Take up a session of the library where it was left; `resumed` follows."""
@@ -292,6 +338,32 @@ class Visit(QObject):
             return read_session(opened, session_id)
 
         self._controller.run(read, self._on_resumed, self._on_refused, self)
+
+    def look_for_changes(self) -> None:
+        """Find out whether another station changed the session; `changed_elsewhere` follows where it did."""
+        if self.session is None:
+            return
+        self._must_look = not self.recordings.is_idle  # then once what is recorded has been read back
+        if self._must_look:
+            return
+        session_id = self.session.id
+
+        def read(opened: "OpenedLibrary") -> StoredSession:
+            return opened.library.sessions.get(session_id)
+
+        self._controller.run(read, self._on_looked, self._on_not_kept, self)
+
+    def read_anew(self) -> None:
+        """Show the session as the library has it now; sensors stay."""
+        if self.session is None or not self.recordings.is_idle:
+            return
+        session_id = self.session.id
+
+        def read(opened: "OpenedLibrary") -> tuple[StoredSession, tuple[SessionRecording, ...]]:
+            session = opened.library.sessions.get(session_id)
+            return session, read_recordings(opened, session)
+
+        self._controller.run(read, self._on_read, self._on_refused, self)
 
     def live_sensors(self) -> "Mapping[str, LiveSensor]":
         """What the live estimator has to know of each sensor that is worn, by its name."""
@@ -338,7 +410,8 @@ class Visit(QObject):
     def is_idle(self) -> bool:
         """Whether nothing of it goes on any more: no recording, no thread, no window of Rerun's."""
         idle = self.sensors.is_idle and self.evaluation.is_idle and self.reviewing.is_idle and self.preview.is_idle
-        return idle and self.looking.is_idle and self.comparing.is_idle and self.recordings.is_idle
+        idle = idle and self.looking.is_idle and self.comparing.is_idle and self.recordings.is_idle
+        return idle and not (self.is_asking or self._is_changing or self._is_placing or self.patient.is_busy)
 
     def finish(self) -> None:
         """Wait for all threads: for the end of the program."""
@@ -349,38 +422,115 @@ class Visit(QObject):
         self.looking.finish()
         self.comparing.finish()
 
-    def _change(self, told: Session) -> None:
+    @property
+    def is_asking(self) -> bool:
+        """Whether what two stations changed is still to be chosen from."""
+        return self._questions > 0
+
+    def settle(self, question: EditQuestion, fields: frozenset[str]) -> None:
+        """Answer what was `asked`: of `fields` our own value is to hold."""
+        self._questions -= 1
+        question.settle(fields)
+
+    def _ask(self, question: EditQuestion) -> None:
+        self._questions += 1
+        self.asked.emit(question)
+
+    def _change(self, told: Session, upon: Values | None = None) -> None:
+        """Save what is said of the session; `upon`: where it was said upon something else than the library has."""
         self._wanted = told
-        if self.session is None or self._is_changing:
-            return
+        if self.session is not None and not self._is_changing:
+            self._save({**_fields_of(self.session), **(upon or {})})
+
+    def _save(self, upon: Values) -> None:
+        assert self.session is not None  # whoever asks has seen to it
         self._is_changing = True
-        session, limits = self.session, self.limits
+        session_id, held = self.session.id, _every_field_of(self.session)
+        self._sent = _said_fields(self.details, self.comment, self.limits)
+        shown, said = {**held, **upon}, {**held, **self._sent}
 
-        def save(opened: "OpenedLibrary") -> StoredSession:
-            current = opened.library.sessions.get(session.id)
-            wanted = replace(current.details, zero_rad=told.zero_rad, turned_sign=told.turned_sign)
-            return opened.library.sessions.change(current, wanted, limits=limits)
+        def save(opened: "OpenedLibrary") -> Edited[StoredSession]:
+            return opened.library.edits.session(session_id, shown, said)
 
-        self._controller.run(save, self._on_session_changed, self._on_refused, self)
+        self._controller.run(save, self._on_saved, self._on_refused, self)
 
-    def _on_session_changed(self, session: StoredSession) -> None:
+    def _on_created(self, session: StoredSession) -> None:
         self._is_changing = False
+        self._take(session, self._sent)
+
+    def _on_placed(self, session: StoredSession) -> None:
+        self._take(session, _fields_of(self.session or session))
+
+    def _on_saved(self, edited: Edited[StoredSession]) -> None:
+        self._is_changing = False
+        self._take(edited.stored, self._sent)
+        self._tell(edited)
+
+    def _tell(self, edited: Edited[StoredSession]) -> None:
+        if edited.others:
+            self.merged.emit(*others_message(tr("The session"), edited.others, _moment()))
+        if edited.contests:
+            settle = partial(self._settle, edited.stored.id, edited.contests)
+            self._ask(EditQuestion(tr("The session"), edited.contests, settle))
+
+    def _settle(self, session_id: UUID, contests: Sequence[Contest], fields: frozenset[str]) -> None:
+        """Save what was chosen of both sides."""
+        upon, said = chosen_fields(contests, fields)
+        if not said:
+            self.changed.emit()
+            return
+
+        def save(opened: "OpenedLibrary") -> Edited[StoredSession]:
+            return opened.library.edits.session(session_id, upon, said)
+
+        self._controller.run(save, self._on_settled, self._on_refused, self)
+
+    def _on_settled(self, edited: Edited[StoredSession]) -> None:
+        self._take(edited.stored, _fields_of(self.session or edited.stored))
+        self._tell(edited)
+
+    def _take(self, session: StoredSession, upon: Values) -> None:
+        """Go on from what the library holds; what was said since `upon` stays said, and is saved."""
+        held = _fields_of(session)
+        shown, said = rebased(upon, _said_fields(self.details, self.comment, self.limits), held)
         self.session = self.recordings.session = session
-        wanted = self._wanted
-        if self.limits != session.limits or (wanted is not None and _by_hand(wanted) != _by_hand(session.details)):
-            self._change(wanted or session.details)  # typed on meanwhile
+        told, self.comment, self.limits = with_session_fields(session.details, session.comment, session.limits, said)
+        self._wanted = None
+        if said != held:
+            self._wanted = told
+            if not self._is_changing:
+                self._save(shown)
         else:
-            self._wanted = None
             evaluated = self.evaluation.session
             told = with_limits(session.details, session.limits)
             if evaluated is not None and (*_by_hand(evaluated), evaluated.findings) != (*_by_hand(told), told.findings):
                 self.evaluate()
         self.changed.emit()
 
+    def _on_corrected(self, corrected: _Corrected) -> None:
+        """Show what came of saying who wore what; swapped again meanwhile, it is swapped again."""
+        edited, recordings, worn = corrected
+        self._is_placing = False
+        self._take(edited.stored, _fields_of(self.session or edited.stored))
+        self._put_recordings(edited.stored, recordings)
+        if edited.contests:
+            seen = self._seen()
+            self._ask(EditQuestion(tr("The session"), edited.contests, partial(self._settle_placement, worn, seen)))
+        must_swap, must_place = self._must_swap, self._must_place
+        self._must_swap = self._must_place = False
+        if must_place:
+            self.correct_placement()
+        if must_swap:
+            self.swap_sides()
+
     def _on_read(self, read: tuple[StoredSession, tuple[SessionRecording, ...]]) -> None:
+        """Go on from what the library holds now; nothing that is said here still waits to be saved."""
         session, recordings = read
+        self._take(session, _said_fields(self.details, self.comment, self.limits))
+        self._put_recordings(session, recordings)
+
+    def _put_recordings(self, session: StoredSession, recordings: Sequence[SessionRecording]) -> None:
         before = {recording.id: recording for recording in self.recordings.every}
-        self.session = session
         kept = (
             replace(before.get(recording.id, recording), stored=recording.stored, read_back=recording.read_back)
             for recording in recordings
@@ -388,6 +538,25 @@ class Visit(QObject):
         self.recordings.take_over(session, tuple(kept))
         self.changed.emit()
         self.evaluate()
+
+    def _settle_placement(self, worn: Sequence[Worn], seen: Mapping[UUID, UUID | None], fields: frozenset[str]) -> None:
+        if fields:
+            self._correct(worn, seen)
+
+    def _on_not_corrected(self, what: str, remedy: str) -> None:
+        self._is_placing = self._must_swap = self._must_place = False
+        self.refused.emit(what, remedy)
+        self.changed.emit()
+
+    def _on_looked(self, found: StoredSession) -> None:
+        is_settled = not self._is_changing and self._wanted is None and self.recordings.is_idle
+        if self.session is None or not is_settled:
+            return
+        here = [(one.id, one.stored.details, one.stored.placement) for one in self.recordings.every]
+        there = [(one.id, one.details, one.placement) for one in found.recordings if one.state in USABLE]
+        before = (*_by_hand(self.session.details), self.session.limits)
+        if here != there or before != (*_by_hand(found.details), found.limits):
+            self.changed_elsewhere.emit()
 
     def _on_earlier_read(self, found: "list[tuple[Session, Analysis]]") -> None:
         self.earlier_read.emit(found)
@@ -422,7 +591,7 @@ class Visit(QObject):
 
     def _on_resumed(self, read: Resumed) -> None:
         patient, self.session, recordings, known = read
-        self.limits = self.session.limits
+        self.limits, self.comment = self.session.limits, self.session.comment
         self.patient.choose(patient)
         self.patient.has_this_session_only = patient.sessions == 1
         self._is_of_another_day = bool(recordings) and _day(recordings[-1].details.started) not in ("", _day(_now()))
@@ -462,12 +631,14 @@ class Visit(QObject):
         self.evaluate()
 
     def _on_recordings_changed(self) -> None:
+        if self._must_look:
+            self.look_for_changes()
         self.changed.emit()
 
     def _on_refused(self, what: str, remedy: str) -> None:
         self._is_changing = False
         self._wanted = None
-        if self.session is not None:
+        if self.session is not None:  # the words stay as they were typed, and are saved with the next
             self.limits = self.session.limits
         self.refused.emit(what, remedy)
         self.changed.emit()
@@ -483,8 +654,26 @@ def opposite(site: Site) -> Site:
     return Site(f"{site.side.other}_{site.segment}")
 
 
+def _every_field_of(session: StoredSession) -> dict[str, Value]:
+    return session_fields(session.details, session.comment, session.limits)
+
+
+def _fields_of(session: StoredSession) -> dict[str, Value]:
+    return _said_fields(session.details, session.comment, session.limits)
+
+
+def _said_fields(told: Session, comment: str, limits: Limits) -> dict[str, Value]:
+    """What is said of a session while it goes on; the rest is said once, by whatever made it."""
+    every = session_fields(told, comment, limits)
+    return {name: value for name, value in every.items() if name not in SESSION_CORRECTABLE}
+
+
+def _moment() -> datetime.datetime:
+    return datetime.datetime.now().astimezone()
+
+
 def _now() -> str:
-    return datetime.now().astimezone().isoformat(timespec="seconds")
+    return _moment().isoformat(timespec="seconds")
 
 
 def _day(moment: str) -> str:

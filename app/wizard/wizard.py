@@ -16,6 +16,8 @@ from app.theme import ThemeNotifier
 from app.widgets.action_bar import BarState
 from app.widgets.rail_row import RailRow, StepState
 from app.widgets.sensor_tile import SensorTile
+from app.wizard.asked_edits import AskedEdits
+from app.wizard.edit_question import EditQuestion
 from app.wizard.free_motion.step import FreeMotionStep
 from app.wizard.keys import Intent, KeyAction, Keys
 from app.wizard.losses import NOTHING, Message
@@ -77,6 +79,7 @@ class Wizard(QWidget):
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.addWidget(self.shell)
+        self.asked = AskedEdits(look, self, self._may_ask)
         self._keys = Keys(self)
         self._timer = QTimer(self)
         self._timer.setInterval(TICK_MS)
@@ -124,6 +127,11 @@ class Wizard(QWidget):
         """Look at what came of a session, or go on with it where nothing has come of it yet."""
         self._begin_visit().resume(session_id)
 
+    def look_for_changes(self) -> None:
+        """Find out whether another station changed the session that is in sight, and say so."""
+        if self._visit is not None:
+            self._visit.look_for_changes()
+
     def close_visit(self) -> None:
         """Let go of sensors and visit; what was recorded is in the library."""
         self._timer.stop()
@@ -150,6 +158,7 @@ class Wizard(QWidget):
 
     def finish(self) -> None:
         """Close the visit and wait for its threads: for the end of the program."""
+        self.asked.forget()
         self.close_visit()
         for visit in self._closing:
             visit.finish()
@@ -164,6 +173,7 @@ class Wizard(QWidget):
         shell.bar.quiet_pressed.connect(self._on_quiet)
         shell.bar.sound_pressed.connect(self._on_sound_pressed)
         shell.toast.undone.connect(self._on_undo)
+        shell.banner.acted.connect(self._on_new_state_wished)
         shell.room_changed.connect(self._on_room_changed)
         self._keys.pressed.connect(self.act_on)
         self._timer.timeout.connect(self._on_tick)
@@ -195,7 +205,10 @@ class Wizard(QWidget):
         for signal in (visit.changed, visit.sensors.changed, visit.patient.changed, visit.evaluation.done):
             signal.connect(self._on_visit_changed)
         visit.resumed.connect(self._on_resumed)
+        visit.changed_elsewhere.connect(self._on_changed_elsewhere)
         visit.refused.connect(self._on_refused)
+        visit.merged.connect(self._tell)
+        visit.asked.connect(self._on_asked)
         visit.recordings.troubled.connect(self._on_troubled)
         visit.recordings.begun.connect(self.shell.banner.hide)
         self._current = PATIENT
@@ -209,8 +222,11 @@ class Wizard(QWidget):
         for signal in (visit.changed, visit.sensors.changed, visit.patient.changed, visit.evaluation.done):
             signal.disconnect(self._on_visit_changed)
         visit.resumed.disconnect(self._on_resumed)
+        visit.changed_elsewhere.disconnect(self._on_changed_elsewhere)
         visit.refused.disconnect(self._on_refused)
         visit.refused.connect(self._controller.refused)
+        visit.merged.disconnect(self._tell)
+        visit.merged.connect(self._controller.refused)
         visit.recordings.troubled.disconnect(self._on_troubled)
         visit.recordings.begun.disconnect(self.shell.banner.hide)
 
@@ -435,6 +451,15 @@ class Wizard(QWidget):
 
     def _on_visit_changed(self) -> None:
         self._show()
+        self.asked.go_on()
+
+    def _on_asked(self, question: EditQuestion) -> None:
+        visit = self.sender()
+        if isinstance(visit, Visit):  # also one that was left meanwhile
+            self.asked.ask(visit, question)
+
+    def _may_ask(self) -> bool:
+        return not self.is_recording
 
     def _on_refused(self, what: str, then: str) -> None:
         if self._visit is not None and self._visit.session is None and self.shell.page is None:
@@ -443,8 +468,23 @@ class Wizard(QWidget):
         else:
             self._tell(what, then)
 
+    def _on_changed_elsewhere(self) -> None:
+        self.shell.banner.tell(
+            tr("Another station changed this session."),
+            tr("What stands here is as it was before."),
+            tr("Show the new state"),
+        )
+
+    def _on_new_state_wished(self) -> None:
+        self.shell.banner.hide()
+        if self._visit is not None:
+            self._visit.read_anew()
+
     def _on_troubled(self, what: str, then: str) -> None:
-        if self._current != WALKING:  # whose page says it itself
+        gone_words = self._controller.gone_words
+        is_gone_at_rest = not self.is_recording and gone_words == (what, then)
+        is_told_otherwise = gone_words is None and not self.shell.banner.isHidden()
+        if self._current != WALKING or is_gone_at_rest or is_told_otherwise:  # else a walk's page says it itself
             self._tell(what, then)
 
     def _on_resumed(self) -> None:

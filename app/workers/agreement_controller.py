@@ -7,7 +7,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QObject, Qt, Signal
+from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QFileDialog
 
 from app.foreign_files import read_foreign_reference
@@ -16,8 +16,9 @@ from app.pages.agreement_page import AgreementPage
 from app.reports.agreement.document import agreement_pages
 from app.reports.agreement.folder import write_agreement
 from app.reports.agreement.pictures import pictures_of
-from app.reports.agreement.study import AgreementStudy, study_of
+from app.reports.agreement.study import AgreementStudy, as_shown, study_of
 from app.reports.proposed_names import free_name, session_name
+from app.widgets.folder_dialog import ask_for_files, ask_for_new_folder
 from app.wording import filled, tr
 from app.workers.background import Background, Report, Work
 from core.results import Analysis
@@ -33,7 +34,15 @@ WHAT = "agreement"  # in the name of the folder that is proposed
 
 @dataclass(frozen=True, slots=True)
 class _ComparedSession:
+    """`shown`: the study in the names of the screen."""
+
     study: AgreementStudy
+    shown: AgreementStudy
+    pages: list[bytes]
+
+
+@dataclass(frozen=True, slots=True)
+class _SharperAgreement:
     pages: list[bytes]
 
 
@@ -60,6 +69,7 @@ class AgreementController(QObject):
         self._background.failed.connect(self._on_failed)
         page.reference_wished.connect(self._on_reference_wished)
         page.save_wished.connect(self._on_save_wished)
+        page.sheets.sharper_wanted.connect(self._on_sharper_wanted)
 
     def show(self, session: "Session", analysis: Analysis) -> None:
         """Compare this session; what was found of the same analysis stays."""
@@ -81,16 +91,22 @@ class AgreementController(QObject):
         self._background.stop()
 
     def _on_reference_wished(self) -> None:
-        self._dialog = QFileDialog(self._page, tr("What the optical system measured"))
-        self._dialog.setFileMode(QFileDialog.FileMode.ExistingFiles)
-        self._dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        self._dialog.filesSelected.connect(lambda names: self.compare([Path(name) for name in names]))
-        self._dialog.open()
+        title = tr("What the optical system measured")
+        self._dialog = ask_for_files(self._page, title, self._on_files_selected)
+
+    def _on_files_selected(self, names: Sequence[str]) -> None:
+        self.compare([Path(name) for name in names])
 
     def _on_done(self, found: object) -> None:
         if isinstance(found, _ComparedSession):
             self._study = found.study
-            self._page.show_pages(found.pages, found.study.left_over)
+            self._page.show_pages(found.pages, found.shown.left_over)
+        elif isinstance(found, _SharperAgreement):
+            self._page.show_sharper(found.pages)
+
+    def _on_sharper_wanted(self) -> None:
+        if self._study is not None and self._session is not None and self._background.is_idle:
+            self._background.start(_drawing(self._study, self._session, self._page.sheets.ppi))
 
     def _on_failed(self, error: Exception) -> None:
         if isinstance(error, FileRefusedError):
@@ -103,15 +119,13 @@ class AgreementController(QObject):
     def _on_save_wished(self) -> None:
         if self._study is None or self._session is None:
             return
-        self._dialog = QFileDialog(self._page, tr("Save the agreement into a new folder"))
-        self._dialog.setAcceptMode(QFileDialog.AcceptMode.AcceptSave)
-        self._dialog.setFileMode(QFileDialog.FileMode.AnyFile)
-        place = Path(self._dialog.directory().absolutePath())
         name = session_name(self._session.patient.code, self._session.started, WHAT)
-        self._dialog.selectFile(free_name(place, name))
-        self._dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        self._dialog.fileSelected.connect(self._on_folder_selected)
-        self._dialog.open()
+        self._dialog = ask_for_new_folder(
+            self._page,
+            tr("Save the agreement into a new folder"),
+            lambda place: free_name(place, name),
+            self._on_folder_selected,
+        )
 
     def _on_folder_selected(self, folder: str) -> None:
         if self._study is not None and self._session is not None:
@@ -129,11 +143,22 @@ def _comparing(session: "Session", analysis: Analysis, paths: Sequence[Path], pp
             files.append((path.name, read_foreign_reference(path, waiting)))
         study = study_of(analysis, files)
         report(0.5, "")
-        drawn = pictures_of(study, session.patient)
-        made_at, version = datetime.now().astimezone(), version_of("gaitwright")
-        return _ComparedSession(study, agreement_pages(study, session, drawn, made_at, version, ppi))
+        shown = as_shown(study, session.recordings)
+        return _ComparedSession(study, shown, _pages(shown, session, ppi))
 
     return work
+
+
+def _drawing(study: AgreementStudy, session: "Session", ppi: float) -> Work:
+    def work(_report: Report) -> object:
+        return _SharperAgreement(_pages(as_shown(study, session.recordings), session, ppi))
+
+    return work
+
+
+def _pages(shown: AgreementStudy, session: "Session", ppi: float) -> list[bytes]:
+    made_at, version = datetime.now().astimezone(), version_of("gaitwright")
+    return agreement_pages(shown, session, pictures_of(shown, session.patient), made_at, version, ppi)
 
 
 def _writing(study: AgreementStudy, session: "Session", folder: Path) -> Callable[[], None]:

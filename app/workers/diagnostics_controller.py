@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 from uuid import UUID
 
-from PySide6.QtCore import QObject, Qt, Signal
+from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QFileDialog
 
 from app.pages.found_page import FoundPage
@@ -16,6 +16,7 @@ from app.reports.diagnostics import write_diagnostics
 from app.reports.proposed_names import free_name, session_name
 from app.storage.audit import about
 from app.storage.stored import Action, LibraryError
+from app.widgets.folder_dialog import ask_for_new_folder
 from app.wording import tr
 from app.workers.background import Background, Report, Work
 from core.body import Joint
@@ -126,15 +127,13 @@ class DiagnosticsController(QObject):
     def _on_save_wished(self) -> None:
         if self._found is None or self._session is None:
             return
-        self._dialog = QFileDialog(self._page, tr("Save these figures into a new folder"))
-        self._dialog.setAcceptMode(QFileDialog.AcceptMode.AcceptSave)
-        self._dialog.setFileMode(QFileDialog.FileMode.AnyFile)
-        place = Path(self._dialog.directory().absolutePath())
         name = session_name(self._session.patient.code, self._session.started, WHAT)
-        self._dialog.selectFile(free_name(place, name))
-        self._dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        self._dialog.fileSelected.connect(self._on_folder_selected)
-        self._dialog.open()
+        self._dialog = ask_for_new_folder(
+            self._page,
+            tr("Save these figures into a new folder"),
+            lambda place: free_name(place, name),
+            self._on_folder_selected,
+        )
 
     def _on_folder_selected(self, folder: str) -> None:
         if self._found is not None and self._session is not None:

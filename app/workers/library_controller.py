@@ -19,10 +19,11 @@ from PySide6.QtCore import QObject, Signal
 from app.wording import tr, tr_n
 from app.workers.background import Background, Report
 from app.workers.jobs import Failed, Job, JobThread, nothing, weak
-from app.workers.library_state import Closed, KeyChanged, LibraryPlace, NotOpened, OpenedState, Unlocked
+from app.workers.library_state import Closed, Joined, LibraryPlace, NotOpened, OpenedState, Reopened, Unlocked
 from app.workers.refusals import Refusal, nothing_open, refusal_of
 
 if TYPE_CHECKING:
+    from app.storage.clinic.moving import Moved
     from app.storage.key_change import ChangedKey
     from app.storage.login_delay import LoginDelay
     from app.storage.opened import OpenedLibrary
@@ -42,10 +43,13 @@ class LibraryController(QObject):
 
     opened = Signal(object)  # OpenedState
     not_opened = Signal(str, str, bool)  # what, remedy, whether it was the key that did not open
+    can_work_away = Signal()  # after `not_opened`: the clinic's server does not answer, and this is a station
+    server_back = Signal()  # the clinic's server, whose station works without it
     closed = Signal()
     refused = Signal(str, str)  # of a call whose asker does not listen to refusals
     gone = Signal(str, str)  # the library's folder, while it is open: what happened, and what to do
     back = Signal(str, str)  # it is there again: and what was recorded meanwhile
+    changed_elsewhere = Signal()  # another station of the clinic did something
 
     def __init__(self, parent: QObject | None = None, seen: Path | None = None) -> None:
         super().__init__(parent)
@@ -59,7 +63,7 @@ class LibraryController(QObject):
         self.gone_words: Refusal | None = None  # for whoever comes later; None: the library is where it was opened
         self._is_locked = self._is_to_be_locked = False
         self._held: list[Callable[[], object]] = []  # what was asked under the lock
-        self._key_change: Job | None = None  # that goes on
+        self._reopening: Job | None = None  # that goes on
         self._opening: Job | None = None  # asked for last
         self._long = Background(self)
         self._long.progressed.connect(self._on_long_progressed)
@@ -181,7 +185,66 @@ class LibraryController(QObject):
 
         Nor is the folder watched: its database is replaced, and nothing must come home that has the old key.
         """
-        job = Job(lambda: self._holder.change_key(leaving, report), weak(done), weak(failed), ref(owner))
+        self._reopen(
+            lambda report: self._holder.change_key(leaving, report), weak(done), weak(failed), weak(progressed), owner
+        )
+
+    def move_to_server(
+        self,
+        address: str,
+        password: str,
+        place: str,
+        done: Callable[["Moved"], object],
+        failed: Failed,
+        progressed: Callable[[float, str], object],
+        owner: QObject,
+    ) -> None:
+        """Take the library from its folder to a clinic's server, and go on with it there; as `change_key`."""
+        self._reopen(
+            lambda report: self._holder.move_to_server(address, password, place, report),
+            weak(done),
+            weak(failed),
+            weak(progressed),
+            owner,
+        )
+
+    def bring_back(
+        self,
+        done: Callable[["Moved"], object],
+        failed: Failed,
+        progressed: Callable[[float, str], object],
+        owner: QObject,
+    ) -> None:
+        """Take the library from the clinic's server into this station's folder, and go on there; as `change_key`."""
+        self._reopen(lambda report: self._holder.bring_back(report), weak(done), weak(failed), weak(progressed), owner)
+
+    def join(
+        self,
+        folder: Path,
+        address: str,
+        password: str,
+        place: str,
+        done: Callable[[Joined], object],
+        failed: Failed,
+        owner: QObject,
+    ) -> None:
+        """Make a new folder that of a station of the library at a clinic's server; nothing is opened.
+
+        `password` goes into the address; `place` names the shared place of recordings, where it has another name here.
+        """
+        job = Job(lambda: self._holder.join(folder, address, password, place), weak(done), weak(failed), ref(owner))
+        self._calls.ask(job)
+
+    def _reopen(
+        self,
+        work: Callable[[Report], Reopened],
+        done: "WeakMethod[Callable[..., object]] | None",
+        failed: "WeakMethod[Failed] | None",
+        progressed: "WeakMethod[Callable[[float, str], object]] | None",
+        owner: QObject,
+    ) -> None:
+        """Let the thread do what closes the library, and opens it again."""
+        job = Job(lambda: work(report), done, failed, ref(owner))
         if self._state is None:
             self._tell_refusal(job, *nothing_open())
             return
@@ -191,14 +254,13 @@ class LibraryController(QObject):
         if self.gone_words is not None:
             self._tell_refusal(job, *self.gone_words)
             return
-        heard = weak(progressed)
 
         def report(share: float, _what: str) -> None:
-            self._calls.told.emit(job, _Progress(share, heard))
+            self._calls.told.emit(job, _Progress(share, progressed))
 
         self._end_watch()
         self._calls.ask(Job(self._recordings.passed().wait, None, None, ref(self)))
-        self._state, self._key_change = None, job
+        self._state, self._reopening = None, job
         self._calls.ask(job)
 
     def accept_rollback(
@@ -230,6 +292,10 @@ class LibraryController(QObject):
         """
 
         self._open(lambda: self._holder.open(folder, passphrase, code, must_remember, delay))
+
+    def open_away(self, folder: Path, passphrase: str, code: str, delay: "LoginDelay | None" = None) -> None:
+        """Open what a clinic's station works with while the server does not answer."""
+        self._open(lambda: self._holder.open_away(folder, passphrase, code, delay))
 
     def open_remembered(self, folder: Path, code: str) -> None:
         """Open a library as this machine's keyring allows."""
@@ -312,7 +378,7 @@ class LibraryController(QObject):
         self._end_watch()
         if self._state is not None:
             self._calls.ask(Job(self._recordings.passed().wait, None, None, ref(self)))
-        self._state = self._key_change = self._opening = None
+        self._state = self._reopening = self._opening = None
 
     def _on_told(self, job: Job, outcome: object) -> None:
         if isinstance(outcome, Refusal):
@@ -330,10 +396,12 @@ class LibraryController(QObject):
             self._ask_held()
             if done := job.listening(job.done):
                 done(None)
-        elif isinstance(outcome, KeyChanged):
-            self._on_key_changed(job, outcome)
+        elif isinstance(outcome, Reopened):
+            self._on_reopened(job, outcome)
         elif isinstance(outcome, NotOpened):
             self.not_opened.emit(outcome.what, outcome.remedy, outcome.is_key)
+            if outcome.can_work_away:
+                self.can_work_away.emit()
         elif isinstance(outcome, Closed):
             self.closed.emit()
         elif done := job.listening(job.done):
@@ -347,13 +415,20 @@ class LibraryController(QObject):
         self._watch.went.connect(self._on_gone)
         self._watch.came_back.connect(self._on_back)
         self._watch.left_away.connect(self._on_left_away)
+        self._watch.left_here.connect(self._on_left_here)
+        self._watch.changed_elsewhere.connect(self._on_changed_elsewhere)
+        self._watch.server_back.connect(self.server_back)
         self._watch.start()
 
     def _end_watch(self) -> None:
+        """It may still wait for a server: what is asked next waits for it, the screen does not."""
         watch, self._watch, self.gone_words = self._watch, None, None
         if watch is not None:
-            watch.finish()
-            watch.deleteLater()
+            watch.end()
+            self._calls.ask(Job(watch.ended, weak(self._on_watch_ended), None, ref(self)))
+
+    def _on_watch_ended(self, watch: "LibraryWatch") -> None:
+        watch.deleteLater()
 
     def _on_gone(self) -> None:
         if self._state is None or self.sender() is not self._watch:
@@ -365,6 +440,11 @@ class LibraryController(QObject):
         if self._state is None or self.sender() is not self._watch:
             return
         self.gone_words = None
+        if self._state.library.shared is not None and not brought:
+            self.back.emit(
+                tr("The clinic's server answers again."), tr("What was recorded meanwhile is added to the library now.")
+            )
+            return
         then = tr("Nothing had to be added to it.")
         if brought:
             then = tr_n(
@@ -382,18 +462,28 @@ class LibraryController(QObject):
         then = tr("It is kept in {shelter}, and is tried again by itself. See to the library's disk.")
         self.refused.emit(what.format(why=why), then.format(shelter=shelter.folder))
 
-    def _on_key_changed(self, job: Job, outcome: KeyChanged) -> None:
-        if job is not self._key_change:
+    def _on_left_here(self, why: str, remedy: str) -> None:
+        if self._state is None or self.sender() is not self._watch:
+            return
+        kept = tr("What was recorded here is kept on this computer, and handed over by itself once that can be done.")
+        self.refused.emit(why, f"{remedy} {kept}")
+
+    def _on_changed_elsewhere(self) -> None:
+        if self._state is not None and self.sender() is self._watch:
+            self.changed_elsewhere.emit()
+
+    def _on_reopened(self, job: Job, outcome: Reopened) -> None:
+        if job is not self._reopening:
             return  # the library was closed meanwhile
-        self._state, self._key_change = outcome.state, None
+        self._state, self._reopening = outcome.state, None
         if outcome.state is None:  # it does not open again: from the log in, what was interrupted is finished
             self.not_opened.emit(*outcome.refusal, False)
             return
         self._begin_watch(outcome.state)
-        if outcome.changed is None:
+        if outcome.result is None:
             self._tell_refusal(job, *outcome.refusal)
         elif done := job.listening(job.done):
-            done(outcome.changed)
+            done(outcome.result)
 
     def _tell_refusal(self, job: Job, what: str, remedy: str) -> None:
         if job.failed is None:

@@ -11,20 +11,27 @@ from threading import Lock
 from uuid import UUID
 
 from app.storage.bringing_home import bring_home
+from app.storage.clinic.away import bring_away_home, open_away, remember_operators
+from app.storage.clinic.handing_over import begin_station
+from app.storage.clinic.joining import is_station, join, new_station
+from app.storage.clinic.journal_store import PlaceMissingError
+from app.storage.clinic.moving import Moved, bring_back_here, give_up_early, move_to_server
+from app.storage.clinic.station import server_name, station_of, with_password
 from app.storage.data_key import DataKey
-from app.storage.key_change import change_data_key, refuse_change
+from app.storage.key_change import ChangedKey, change_data_key, refuse_change
 from app.storage.keyring_slot import is_there_a_keyring, open_remembered
 from app.storage.keys import KeyRefusedError
+from app.storage.layout import MOVING
 from app.storage.login_delay import LoginDelay
 from app.storage.opened import OpenedLibrary, create_library, held_alone, logged_in, open_library, slots_of
 from app.storage.recovery import find_interrupted
 from app.storage.rollback import Rollback, SeenLibraries
 from app.storage.root import GONE
-from app.storage.stored import Operator, Role
+from app.storage.stored import LibraryError, LibraryFaultError, Operator, Role
 from app.wording import tr
 from app.workers.background import Report
 from app.workers.library_opening import demonstration, let_keyring_remember, tidy
-from app.workers.library_state import Closed, KeyChanged, LibraryPlace, NotOpened, OpenedState, Unlocked
+from app.workers.library_state import Closed, Joined, LibraryPlace, NotOpened, OpenedState, Reopened, Unlocked
 from app.workers.refusals import NothingOpenError, Refusal, nothing_open, refusal_of
 
 Opening = tuple[OpenedLibrary, str]  # and its recovery key, where it was just made
@@ -48,7 +55,8 @@ class LibraryHolder:
             raise NothingOpenError
         return self._library
 
-    def _open(self, opening: Callable[[], Opening]) -> OpenedState | NotOpened:
+    def _open(self, opening: Callable[[], Opening], station: Path | None = None) -> OpenedState | NotOpened:
+        """Open a library; `station`: the folder in which one may be, to work in without its server."""
         self.close()
         try:
             with ExitStack() as ends:
@@ -57,7 +65,8 @@ class LibraryHolder:
                 state = replace(_look_through(library, ends), rollback=self._look_back(library))
                 self._library, self._ends = library, ends.pop_all()
         except Exception as error:  # told where the library was to be opened
-            return NotOpened(*refusal_of(error), isinstance(error, KeyRefusedError))
+            is_away = station is not None and isinstance(error, LibraryFaultError) and is_station(station)
+            return NotOpened(*refusal_of(error), isinstance(error, KeyRefusedError), is_away)
         self._is_to_be_tidied = True
         return replace(state, recovery_key=recovery_key)
 
@@ -70,6 +79,16 @@ class LibraryHolder:
             if must_remember:
                 let_keyring_remember(library)
             return library, ""
+
+        return self._open(opening, folder)
+
+    def open_away(self, folder: Path, passphrase: str, code: str, delay: LoginDelay | None) -> OpenedState | NotOpened:
+        """Open what the station in `folder` works with while the clinic's server does not answer."""
+
+        def opening() -> Opening:
+            with delay.trying(code) if delay is not None else nullcontext():
+                data_key = slots_of(folder).open(code, passphrase)
+            return open_away(folder, data_key, code), ""
 
         return self._open(opening)
 
@@ -109,32 +128,67 @@ class LibraryHolder:
         library = self.library
         library.refuse_gone()  # else the slots only miss their file, which would count as a wrong passphrase
         with delay.trying(code) if delay is not None else nullcontext():
-            data_key = slots_of(library.folder).open(code, passphrase)
+            data_key = slots_of(library.keys_folder).open(code, passphrase)
         if library.data_key is not None:
             library.data_key.refill(data_key)
         return Unlocked()
 
-    def change_key(self, leaving: str, report: Report) -> KeyChanged:
-        library, changed, refusal = self.library, None, nothing_open()
-        operator = library.library.operator
-        assert operator is not None  # whoever opens a library is logged in
-        key = library.data_key
+    def change_key(self, leaving: str, report: Report) -> Reopened:
+        library = self.library
+        if leaving and library.shared is not None:
+            with self.long_work:
+                return _end_access(library, _operator_of(library), leaving)
+
+        def change() -> ChangedKey:
+            refuse_change(library)  # before anybody is said to work here no longer
+            return change_data_key(library, _staying(library, leaving), report)
+
+        return self._reopened_after(change)
+
+    def move_to_server(self, address: str, password: str, place: str, report: Report) -> Reopened:
+        library = self.library
+
+        def move() -> Moved:
+            station = new_station(with_password(address, password), place)
+            try:
+                return move_to_server(library, station, report)
+            except Exception:
+                give_up_early(library.folder)
+                raise
+
+        return self._reopened_after(move)
+
+    def bring_back(self, report: Report) -> Reopened:
+        library = self.library
+        return self._reopened_after(lambda: bring_back_here(library, report))
+
+    def join(self, folder: Path, address: str, password: str, place: str) -> Joined:
+        try:
+            join(folder, with_password(address, password), place)
+        except Exception as error:  # told where the server was named
+            return Joined(refusal_of(error), isinstance(error, PlaceMissingError))
+        return Joined(None)
+
+    def _reopened_after(self, work: Callable[[], object]) -> Reopened:
+        """Do what closes the library, and open it again for whoever worked with it."""
+        library, result, refusal = self.library, None, nothing_open()
+        operator, key = _operator_of(library), library.data_key
         with self.long_work:
             try:
-                refuse_change(library)  # before anybody is said to work here no longer
-            except Exception as error:  # told where the key was to be changed
-                return KeyChanged(OpenedState(library, operator), None, refusal_of(error))
-            try:
-                changed = change_data_key(library, _staying(library, leaving), report)
-                key = changed.data_key
-            except Exception as error:
+                result = work()
+            except Exception as error:  # told where it was asked for
                 refusal = refusal_of(error)
+            is_open = library.library.operator is not None
+            if result is None and is_open and not (library.folder / MOVING).exists():
+                return Reopened(OpenedState(library, operator), None, refusal)
+            if isinstance(result, ChangedKey):
+                key = result.data_key
             try:
                 assert key is not None  # hidden in the demonstration
                 again = self._open_again(library, key, operator.code)
             except Exception as error:  # what was interrupted is finished when somebody logs in
-                return KeyChanged(None, None, refusal if changed is None else refusal_of(error))
-        return KeyChanged(OpenedState(again, operator), changed, refusal)
+                return Reopened(None, None, refusal if result is None else refusal_of(error))
+        return Reopened(OpenedState(again, operator), result, refusal)
 
     def _open_again(self, before: OpenedLibrary, key: DataKey, code: str) -> OpenedLibrary:
         """The library under `key`; the one before is closed, and its key wiped where it is another."""
@@ -144,6 +198,7 @@ class LibraryHolder:
             library = ends.enter_context(logged_in(before.folder, key, code))
             # held anew: where the disk was mounted anew meanwhile, the watch held it, which has ended
             ends.enter_context(held_alone(library.folder))
+            begin_station(library)
             self._library, self._ends = library, ends.pop_all()
         if before.data_key is not None and before.data_key is not key:
             before.data_key.wipe()
@@ -189,6 +244,14 @@ class LibraryHolder:
     @staticmethod
     def gone_words(library: OpenedLibrary) -> Refusal:
         """What is said of a library whose folder is gone, whether something is being recorded or not."""
+        if library.shared is not None and library.is_there:
+            return Refusal(
+                tr("The clinic's server does not answer."),
+                tr(
+                    "What is recorded now is kept on this computer, encrypted as always, and added to the library by "
+                    "itself once the server answers. Nothing else can be saved until then."
+                ),
+            )
         what = tr(GONE).format(folder=library.folder) + "."
         if library.shelter is None:
             return Refusal(what, tr("The demonstration ends here. Open it again."))
@@ -206,13 +269,15 @@ class LibraryHolder:
         delay = LoginDelay(folder, time.monotonic)
         if slots.exists:
             delay.read()
-        return LibraryPlace(folder, slots.exists, codes, remembered, is_there_a_keyring(), delay)
+        station = station_of(folder)
+        server = server_name(station.database) if station is not None else None
+        return LibraryPlace(folder, slots.exists, codes, remembered, is_there_a_keyring(), delay, server)
 
 
 def _look_through(library: OpenedLibrary, ends: ExitStack) -> OpenedState:
     ends.enter_context(held_alone(library.folder))
-    operator = library.library.operator
-    assert operator is not None  # whoever opens a library is logged in
+    from_away = _begin_station(library)
+    operator = _operator_of(library)
     brought: frozenset[UUID] = frozenset()
     try:
         brought = bring_home(library)
@@ -224,8 +289,52 @@ def _look_through(library: OpenedLibrary, ends: ExitStack) -> OpenedState:
         find_interrupted(library),
         library.library.is_end_lost,
         brought,
-        is_recovery_key_confirmed=library.data_key is None or slots_of(library.folder).is_recovery_key_confirmed,
+        is_recovery_key_confirmed=_is_recovery_key_confirmed(library),
+        is_away=library.away_from is not None,
+        brought_from_away=from_away,
     )
+
+
+def _is_recovery_key_confirmed(library: OpenedLibrary) -> bool:
+    if library.data_key is None or library.away_from is not None:
+        return True
+    return slots_of(library.folder).is_recovery_key_confirmed
+
+
+def _begin_station(library: OpenedLibrary) -> int:
+    """What a clinic's station does first; how many sessions that were made without the server are on it now."""
+    if library.shared is None:
+        return 0
+    brought = 0
+    try:
+        remember_operators(library)
+        brought = bring_away_home(library)
+    except (LibraryError, OSError) as error:  # it stays here, for the next time
+        _log.warning("what was recorded without the server is still here", exc_info=error)
+    begin_station(library)
+    return brought
+
+
+def _operator_of(library: OpenedLibrary) -> Operator:
+    operator = library.library.operator
+    assert operator is not None  # whoever opens a library is logged in
+    return operator
+
+
+def _end_access(library: OpenedLibrary, operator: Operator, leaving: str) -> Reopened:
+    """Take the operator `leaving` the way into a clinic's library, whose stations go on with its key."""
+    state = OpenedState(library, operator)
+    try:
+        _staying(library, leaving)
+        slots_of(library.folder).remove(leaving)
+    except Exception as error:  # told where it was asked for
+        return Reopened(state, None, refusal_of(error))
+    what = tr("{code} works here no longer.").format(code=leaving)
+    then = tr(
+        "The library keeps its key, which all stations share: give the server's logins new passwords, so that nobody "
+        "who knew it reaches the server."
+    )
+    return Reopened(state, None, Refusal(what, then))
 
 
 def _staying(library: OpenedLibrary, leaving: str) -> list[str]:

@@ -8,7 +8,6 @@ from uuid import UUID
 from app.workers.refusals import Refusal
 
 if TYPE_CHECKING:
-    from app.storage.key_change import ChangedKey
     from app.storage.login_delay import LoginDelay
     from app.storage.opened import OpenedLibrary
     from app.storage.recovery import Interrupted
@@ -34,6 +33,10 @@ class OpenedState:
         What this computer has seen of the library and it does not hold any more.
     is_recovery_key_confirmed
         Whether somebody typed the recovery key back from its sheet since it was made.
+    is_away
+        It is what a clinic's station works with while the server does not answer.
+    brought_from_away
+        How many sessions that were made without the clinic's server are on it now.
     """
 
     library: "OpenedLibrary"
@@ -44,6 +47,8 @@ class OpenedState:
     recovery_key: str = field(default="", repr=False)
     rollback: "Rollback | None" = None
     is_recovery_key_confirmed: bool = True
+    is_away: bool = False
+    brought_from_away: int = 0
 
     @property
     def is_demonstration(self) -> bool:
@@ -52,7 +57,11 @@ class OpenedState:
 
 @dataclass(frozen=True, slots=True)
 class LibraryPlace:
-    """What a folder says before its library is opened. `remembered`: operators whom the keyring may let in."""
+    """What a folder says before its library is opened. `remembered`: operators whom the keyring may let in.
+
+    `server`: the name of the clinic's server that it is a station of; empty where the server is this computer, None
+    where the library is in the folder itself.
+    """
 
     folder: Path
     exists: bool
@@ -60,12 +69,16 @@ class LibraryPlace:
     remembered: tuple[str, ...]
     has_keyring: bool
     delay: "LoginDelay"
+    server: str | None = None
 
 
 class NotOpened(NamedTuple):
+    """`is_key`: it was the key that did not open; `can_work_away`: the clinic's server does not answer."""
+
     what: str
     remedy: str
     is_key: bool
+    can_work_away: bool = False
 
 
 class Closed(NamedTuple):
@@ -76,9 +89,19 @@ class Unlocked(NamedTuple):
     pass
 
 
-class KeyChanged(NamedTuple):
-    """What came of a change of the key; `changed` None: nothing but `refusal`. `state` None: nothing is open now."""
+class Reopened(NamedTuple):
+    """What came of work for which the library was closed; `result` None: nothing but `refusal`.
+
+    `state` None: nothing is open now.
+    """
 
     state: OpenedState | None
-    changed: "ChangedKey | None"
+    result: object | None
     refusal: Refusal
+
+
+class Joined(NamedTuple):
+    """What came of joining; None: the folder is a station's now. `is_place`: the recordings' place is missing."""
+
+    refusal: Refusal | None
+    is_place: bool = False

@@ -7,13 +7,14 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import sqlcipher3.dbapi2 as sqlite
-from sqlalchemy import Connection, Engine, QueuePool, create_engine, event, make_url, text
+from sqlalchemy import Connection, Engine, NullPool, QueuePool, create_engine, event, make_url, text
 from sqlalchemy.exc import DBAPIError, IntegrityError
 from sqlalchemy.exc import TimeoutError as PoolTimeoutError
 from sqlalchemy.orm import Session as OrmSession
 from sqlalchemy.orm.exc import StaleDataError
 
 from app.storage.data_key import KeyMaterial, checked
+from app.storage.database.finite_json import finite_json, from_finite_json
 from app.storage.stored import ChangedMeanwhileError, LibraryBusyError, LibraryError, LibraryFaultError
 from app.wording import tr
 
@@ -21,9 +22,38 @@ OLDEST_SQLITE = (3, 51, 3)  # before it a reset of the write-ahead log could los
 BUSY_S = 30.0  # a scanner or backup may hold the file for so long; a clinician waits no longer
 TRY_S = 5.0  # how long one attempt waits
 WAL_AGAIN_S = 0.02
+PG_IDLE_S = (
+    20.0  # a station that is silent for so long while it holds the write lock loses it: the others wait for less
+)
 PG_WRITE_LOCK = 0x6761_6974  # any number, the same at all stations
+# a server that was unplugged says nothing more: after ten seconds it counts as gone
+PG_SILENT = {
+    "keepalives_idle": 5,
+    "keepalives_interval": 2,
+    "keepalives_count": 3,
+    "tcp_user_timeout": 10_000,
+}
 HEX = b"0123456789abcdef"
 PG_LOCKED = "55P03"  # lock_not_available
+PG_NOT_ALLOWED = "42501"  # insufficient_privilege
+PG_SENTENCES = (
+    (
+        ("authentication failed", "no pg_hba.conf entry", "no password supplied", "is not permitted to log in"),
+        ("The clinic's server does not let this station in", "Compare its user and password with those of the server"),
+    ),
+    (
+        ("certificate", "does not support SSL", "SSL error: wrong", "SSL error: sslv3", "SSL error: tlsv1"),
+        ("The clinic's server could not prove who it is", "Name its root certificate: sslrootcert=FILE in its address"),
+    ),
+    (
+        ('database "',),
+        ("The clinic's server has no such database", "Compare its name with the server's"),
+    ),
+    (
+        ("translate host name", "resolve host"),
+        ("There is no server of this name in the network", "Compare the address with the server's"),
+    ),
+)
 AS_WRITER = {"takes_write_lock": True}
 AS_BUILDER = {"takes_write_lock": True, "leaves_references": True}
 
@@ -79,7 +109,7 @@ class Database:
         self.guard()
         with _told(), self._locked_session(self._write_engine) as session:
             yield session
-            session.commit()
+            _commit(session)
 
     @contextmanager
     def rebuilding(self) -> Iterator[Connection]:
@@ -157,20 +187,39 @@ def sqlite_engine(path: Path, data_key: KeyMaterial | None, try_s: float = TRY_S
     return engine
 
 
-def postgres_engine(url: str, try_s: float = TRY_S) -> Engine:
+def postgres_engine(url: str, try_s: float = TRY_S, *, is_kept: bool = True) -> Engine:
     """An engine on a clinic's own server; `url` as SQLAlchemy writes it, `postgresql+psycopg://...`.
 
-    A server reached over the network has to prove who it is, unless the URL says otherwise.
+    A server reached over the network has to prove who it is, unless the URL says otherwise. Not `is_kept`: a connection
+    ends with its use.
+
+    Raises
+    ------
+    LibraryError
+        What speaks to a server is not installed.
     """
-    arguments: dict[str, object] = {"connect_timeout": max(2, round(try_s))}
+    arguments: dict[str, object] = {"connect_timeout": max(2, round(try_s)), "client_encoding": "utf8", **PG_SILENT}
     asked = make_url(url)
     if asked.host and "sslmode" not in asked.query:
         arguments["sslmode"] = "verify-full"
-    engine = create_engine(asked, hide_parameters=True, pool_pre_ping=True, connect_args=arguments)
+    pool = QueuePool if is_kept else NullPool
+    try:
+        engine = create_engine(
+            asked,
+            hide_parameters=True,
+            pool_pre_ping=is_kept,
+            connect_args=arguments,
+            poolclass=pool,
+            json_serializer=finite_json,
+            json_deserializer=from_finite_json,
+        )
+    except ImportError:
+        raise LibraryError("What speaks to a clinic's server is not installed", "Run: pip install .[clinic]") from None
 
     def begin(connection: Connection) -> None:
         if connection.get_execution_options().get("takes_write_lock"):
             connection.exec_driver_sql(f"SET LOCAL lock_timeout = {round(try_s * 1000)}")
+            connection.exec_driver_sql(f"SET LOCAL idle_in_transaction_session_timeout = {round(PG_IDLE_S * 1000)}")
             connection.exec_driver_sql(f"SELECT pg_advisory_xact_lock({PG_WRITE_LOCK})")
         else:
             connection.exec_driver_sql("SET TRANSACTION ISOLATION LEVEL REPEATABLE READ READ ONLY")
@@ -260,6 +309,19 @@ def _told() -> Iterator[None]:
         raise _sentence(error) from None
 
 
+def _commit(session: OrmSession) -> None:
+    session.flush()  # what is refused here was not written
+    try:
+        session.commit()
+    except DBAPIError as error:
+        if error.connection_invalidated:
+            raise LibraryFaultError(
+                "The clinic's server went away while this was being saved",
+                "Look whether it was saved before you do it again",
+            ) from None
+        raise
+
+
 def changed_meanwhile() -> ChangedMeanwhileError:
     return ChangedMeanwhileError("Somebody else changed this meanwhile", "Look at the new values, then change it again")
 
@@ -272,11 +334,16 @@ def _is_locked(error: Exception) -> bool:
 
 
 def _sentence(error: DBAPIError | PoolTimeoutError | sqlite.Error) -> LibraryError:
-    words = str(error.orig if isinstance(error, DBAPIError) else error)
+    cause = error.orig if isinstance(error, DBAPIError) else error
+    words = str(cause)
+    if getattr(cause, "sqlstate", "") == PG_NOT_ALLOWED:
+        return LibraryError("The clinic's server does not allow this to this station", "Ask whoever keeps the server")
     if isinstance(error, IntegrityError):
         return LibraryError("This contradicts what the library holds already", "Reload what is shown, then try again")
     if _is_locked(error):
         return LibraryBusyError("Another program keeps the library busy", "Wait a moment, then try again")
+    if "NUL (0x00)" in words:
+        return LibraryError("The clinic's server takes no text with the character NUL", "Remove it from the text")
     if "not a database" in words:
         return LibraryFaultError(
             "The library does not open with this key, or its first page is damaged", "Restore it from a backup"
@@ -287,6 +354,10 @@ def _sentence(error: DBAPIError | PoolTimeoutError | sqlite.Error) -> LibraryErr
         return LibraryFaultError("The disk is full, so the library could not take this", "Make room, then try again")
     if "readonly" in words or "unable to open" in words:
         return LibraryFaultError("The library's file cannot be opened for writing", "See to the rights of its folder")
+    if type(cause).__module__.startswith("psycopg"):  # while a connection is made the server says why, if it answers
+        for said, (what, remedy) in PG_SENTENCES:
+            if any(one in words for one in said):
+                return LibraryFaultError(what, remedy)
     if (isinstance(error, DBAPIError) and error.connection_invalidated) or "connection" in words:
         return LibraryFaultError("The clinic's server does not answer", "Try again when it is back")
     if "disk I/O" in words:

@@ -220,6 +220,8 @@ class RecordingRow(Versioned, Base):
     `judged_by`: the operator who said after a crash whether what was recovered is kept; empty until then.
 
     `left_out`: the strides that were left out by hand, as `values` writes them.
+
+    `station`: which station of a clinic recorded it; empty where a library has no stations.
     """
 
     __tablename__ = "recordings"
@@ -242,6 +244,7 @@ class RecordingRow(Versioned, Base):
     state: Mapped[RecordingState] = mapped_column(_words(RecordingState, "state"), index=True)
     judged_by: Mapped[str] = mapped_column(default="", server_default="")
     is_decided: Mapped[bool] = mapped_column(default=True, server_default=true())
+    station: Mapped[str] = mapped_column(default="", server_default="")
     unknown: Mapped[Mapping[str, object]]
 
     placement: Mapped[PlacementRow | None] = relationship()
@@ -249,7 +252,10 @@ class RecordingRow(Versioned, Base):
 
 
 class JournalRow(Base):
-    """`wrapped_key` is a copy of the file's own, in case that is damaged."""
+    """`wrapped_key` is a copy of the file's own, in case that is damaged.
+
+    `kept_as`: its name in the place that a clinic's stations share; empty until it was handed over.
+    """
 
     __tablename__ = "journals"
 
@@ -258,6 +264,7 @@ class JournalRow(Base):
     file: Mapped[str] = mapped_column(unique=True)
     wrapped_key: Mapped[bytes | None] = mapped_column(LargeBinary)
     sha256: Mapped[str]
+    kept_as: Mapped[str] = mapped_column(default="", server_default="")
 
 
 class ResultRow(Base):

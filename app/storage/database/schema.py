@@ -11,7 +11,7 @@ from app.storage.stored import LibraryError
 if TYPE_CHECKING:  # it takes long to load, and is needed after an update only
     from alembic.config import Config
 
-NEWEST = "0007"
+NEWEST = "0008"
 
 
 def bring_up_to_date(database: Database) -> None:
@@ -20,16 +20,28 @@ def bring_up_to_date(database: Database) -> None:
     Raises
     ------
     LibraryError
-        A later version of Gaitwright has written the library.
+        A later version of Gaitwright has written the library, or the server's database does not hold all letters.
     """
-    with database.reading() as session:
-        if _step_of(session.connection()) == NEWEST:
-            return
+    if is_up_to_date(database):
+        return
+    _refuse_other_encodings(database)
     with database.rebuilding() as connection:
         if (found := _step_of(connection)) == NEWEST:
             return  # somebody else was quicker
         _refuse_unknown(found)
         move(connection, "head")
+
+
+def is_up_to_date(database: Database) -> bool:
+    """Whether the tables are those of this version.
+
+    Raises
+    ------
+    LibraryError
+        The database cannot be read.
+    """
+    with database.reading() as session:
+        return _step_of(session.connection()) == NEWEST
 
 
 def move(connection: Connection, step: str) -> None:
@@ -52,6 +64,20 @@ def alembic_config() -> "Config":
     config.set_main_option("script_location", str(Path(__file__).with_name("migrations")).replace("%", "%%"))
     config.set_main_option("path_separator", "os")
     return config
+
+
+def _refuse_other_encodings(database: Database) -> None:
+    if database.engine.dialect.name != "postgresql":
+        return
+    with database.reading() as session:
+        encoding = session.scalar(
+            text("SELECT pg_encoding_to_char(encoding) FROM pg_database WHERE datname = current_database()")
+        )
+    if encoding not in ("UTF8", b"UTF8"):
+        raise LibraryError(
+            "The server's database does not hold all letters: it is not in UTF-8",
+            "Make it anew: CREATE DATABASE ... ENCODING 'UTF8' TEMPLATE template0",
+        )
 
 
 def _step_of(connection: Connection) -> str | None:

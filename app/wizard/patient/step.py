@@ -15,7 +15,7 @@ from app.wizard.patient.cards import LastVisit
 from app.wizard.patient.page import PatientDraft, PatientPage
 from app.wizard.step import Step
 from app.wording import name_of, tr
-from core.body import Joint
+from core.body import Joint, Side
 from core.samples import Patient, RecordingKind, Session
 
 if TYPE_CHECKING:
@@ -37,7 +37,10 @@ class PatientStep(Step):
         self._last_of: UUID | None = None
         self._is_going_on = False
         self._taken_code = ""
+        self._is_entered = False
+        self._shown_without: frozenset[Side] = frozenset()  # feet without an ankle joint, as the page has it
         visit.patient.read_anew.connect(self._fill)
+        visit.changed.connect(self._on_visit_changed)
         visit.patient.changed.connect(self._on_patient_changed)
         visit.patient.code_taken.connect(self._on_code_taken)
         visit.patient.refused.connect(self._on_refused)
@@ -70,10 +73,12 @@ class PatientStep(Step):
         return "patient"
 
     def enter(self) -> None:
+        self._is_entered = True
         self._fill()
         self._ask_last()
 
     def leave(self) -> None:
+        self._is_entered = False
         self._visit.patient.commit()
 
     def bar(self) -> BarState:
@@ -96,7 +101,7 @@ class PatientStep(Step):
         self._go_on_if_saved()
 
     def _go_on_if_saved(self) -> None:
-        if self._is_going_on and self._visit.patient.is_saved:
+        if self._is_going_on and self._visit.patient.is_saved and not self._visit.is_asking:
             self._is_going_on = False
             self._visit.begin_session()
             self.done.emit()
@@ -105,7 +110,8 @@ class PatientStep(Step):
         """Fill the page with what is known of the patient; nothing that is being typed is overwritten."""
         patient = self._visit.patient
         self._shown_id = patient.stored.id if patient.stored is not None else None
-        self.page.show_draft(PatientDraft(patient.details, self._visit.without_ankle))
+        self._shown_without = self._visit.without_ankle
+        self.page.show_draft(PatientDraft(patient.details, self._shown_without))
         self._show_saved()
 
     def _show_saved(self) -> None:
@@ -136,12 +142,18 @@ class PatientStep(Step):
             self._page.show_last_visit(None if session is None else _last_visit(session))
 
     def _on_edited(self, draft: PatientDraft) -> None:
+        self._shown_without = draft.without_ankle
         self._visit.set_limits(replace(self._visit.limits, without_ankle=draft.without_ankle))
         self._visit.patient.edit(draft.patient)
         if self._visit.patient.details.code != self._taken_code:
             self._taken_code = ""
         self._show_saved()
         self.changed.emit()
+
+    def _on_visit_changed(self) -> None:
+        """Show what another station said of the feet, so that nobody answers over what was not seen."""
+        if self._is_entered and self._visit.without_ankle != self._shown_without:
+            self._fill()
 
     def _on_code_committed(self) -> None:
         self._visit.patient.commit()

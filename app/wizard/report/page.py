@@ -202,6 +202,11 @@ class ReportPage(Themed):
                 return True
         return super().eventFilter(watched, event)
 
+    @property
+    def is_typing(self) -> bool:
+        """Whether words stand here that were not told of yet."""
+        return self._pause.isActive()
+
     def flush(self) -> None:
         """Tell of words that are still being typed."""
         if self._pause.isActive():

@@ -64,7 +64,7 @@ class ReportStep(Step):
         self.saved: Path | None = None
         self.is_saving = False
         self._kept: frozenset[str] = frozenset()  # of what was typed freely: leaves with the files without a name
-        self._comment: str | None = None  # typed here, not yet known to the session's row
+        self._shown_comment = ""  # as it stood on the page, or was told from there, last
         self._clinic = ""
         self._earlier: tuple[UUID, AnalysedVisit] | None = None  # as was read last
         self._before: tuple[CourseVisit, ...] = ()  # earlier visits of the course, in order of time
@@ -73,6 +73,7 @@ class ReportStep(Step):
         visit.preview.done.connect(self._on_previewed)
         visit.preview.failed.connect(self._on_preview_failed)
         visit.evaluation.done.connect(self._show)
+        visit.changed.connect(self._on_visit_changed)
 
     @property
     def page(self) -> "_ReportFrame":
@@ -103,12 +104,10 @@ class ReportStep(Step):
 
     @property
     def comment(self) -> str:
-        if self._comment is not None:
-            return self._comment
-        return self._visit.session.comment if self._visit.session is not None else ""
+        return self._visit.comment
 
     def enter(self) -> None:
-        self.page.report.show_comment(self.comment)
+        self._show_comment()
         self._read_choices()
         self._show()
 
@@ -273,19 +272,21 @@ class ReportStep(Step):
         self.told.emit(tr("The report cannot be shown."), tr("The log holds the details."))
 
     def _on_comment_edited(self, comment: str) -> None:
-        self._comment = comment
+        shown, self._shown_comment = self._shown_comment, comment
+        self._visit.set_comment(comment, shown)
         self._draw()
-        session = self._visit.session
-        if session is None:
-            return
-        session_id = session.id
 
-        def save(opened: "OpenedLibrary") -> None:
-            current = opened.library.sessions.get(session_id)
-            if current.comment != comment:
-                opened.library.sessions.change(current, current.details, comment)
+    def _show_comment(self) -> None:
+        self._shown_comment = self.comment
+        self.page.report.show_comment(self.comment)
 
-        self._controller.run(save, None, self._on_refused, self)
+    def _on_visit_changed(self) -> None:
+        """Show the words of another station, unless somebody types."""
+        frame = self._frame
+        if frame is not None and self.comment != self._shown_comment and not frame.report.is_typing:
+            self._show_comment()
+            if frame.isVisible():
+                self._draw()
 
     def _on_options_changed(self) -> None:
         chosen = self.page.report.chosen_visit

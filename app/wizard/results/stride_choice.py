@@ -18,23 +18,20 @@ LeftOut = Mapping[Side, tuple[float, ...]]
 
 
 class StrideChoice(QObject):
-    """Says at once what is wanted; the library follows, and `SessionRecordings.changed` tells when it has."""
+    """Says what is wanted; the library follows, and `SessionRecordings.changed` tells when it has."""
 
     offered = Signal(str, object)  # what was done, and what undoes it
 
     def __init__(self, recordings: "SessionRecordings", parent: QObject) -> None:
         super().__init__(parent)
         self._recordings = recordings
-        self._wanted: dict[UUID, LeftOut] = {}  # until the library has it
-        recordings.changed.connect(self._on_recordings_changed)
-        recordings.refused.connect(self._on_refused)
 
     def turn(self, walk: str, line: "StrideLine", is_left_out: bool) -> None:
         """Leave one stride out, or take it in again."""
         recording = self._recording(walk)
         if recording is None:
             return
-        before = self._left_out(recording)
+        before = self._recordings.said(recording).left_out_s
         others = tuple(time_s for time_s in before.get(line.side, ()) if not line.start_s <= time_s < line.end_s)
         middle_s = (line.start_s + line.end_s) / 2
         times_s = tuple(sorted((*others, middle_s))) if is_left_out else others
@@ -49,33 +46,28 @@ class StrideChoice(QObject):
             self._change(recording, {}, said)
 
     def _change(self, recording: "SessionRecording", left_out_s: LeftOut, told: str) -> None:
-        before = self._left_out(recording)
-        self._set(recording.id, left_out_s)
-        self.offered.emit(told[:1].upper() + told[1:], self._undoing(recording.id, before))
+        before = self._recordings.said(recording).left_out_s
+        self._move(recording.id, before, left_out_s)
+        self.offered.emit(told[:1].upper() + told[1:], self._undoing(recording.id, left_out_s, before))
 
-    def _undoing(self, recording_id: UUID, before: LeftOut) -> Callable[[], None]:
-        return lambda: self._set(recording_id, before)
+    def _undoing(self, recording_id: UUID, after: LeftOut, before: LeftOut) -> Callable[[], None]:
+        return lambda: self._move(recording_id, after, before)
 
-    def _set(self, recording_id: UUID, left_out_s: LeftOut) -> None:
+    def _move(self, recording_id: UUID, one: LeftOut, other: LeftOut) -> None:
+        """Change what is left out as from `one` to `other`; no other stride becomes anything else."""
         recording = next((recording for recording in self._recordings.walks if recording.id == recording_id), None)
-        if recording is not None:
-            wanted = {side: left_out_s[side] for side in Side if left_out_s.get(side)}
-            self._wanted[recording_id] = wanted
-            self._recordings.change(recording, lambda told: replace(told, left_out_s=wanted))
+        if recording is None:
+            return
+        now = self._recordings.said(recording).left_out_s
+        wanted = {}
+        for side in Side:
+            held, before, after = (set(times_s.get(side, ())) for times_s in (now, one, other))
+            wanted[side] = tuple(sorted((held | (after - before)) - (before - after)))
+        left_out_s = {side: times_s for side, times_s in wanted.items() if times_s}
+        self._recordings.change(recording, lambda told: replace(told, left_out_s=left_out_s))
 
     def _recording(self, walk: str) -> "SessionRecording | None":
         return next((recording for recording in self._recordings.walks if recording.details.name == walk), None)
 
     def _called(self, walk: str) -> str:
         return str(self._recordings.shown_names[walk])
-
-    def _left_out(self, recording: "SessionRecording") -> LeftOut:
-        return self._wanted.get(recording.id, recording.details.left_out_s)
-
-    def _on_recordings_changed(self) -> None:
-        for recording in self._recordings.walks:
-            if self._wanted.get(recording.id) == recording.details.left_out_s:
-                del self._wanted[recording.id]
-
-    def _on_refused(self) -> None:
-        self._wanted.clear()

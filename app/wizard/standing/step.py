@@ -41,6 +41,8 @@ class StandStillStep(Step):
         self._moved: tuple[str, ...] = ()
         self._heard = 0  # the second that was sounded last
         self._ticks = 0
+        self._is_entered = False
+        self._shown_zero: dict[Joint, float] = {}  # as the page has it
         self._shown = QTimer(self)
         self._shown.setSingleShot(True)
         self._shown.setInterval(SHOWN_MS)
@@ -48,6 +50,7 @@ class StandStillStep(Step):
         visit.recordings.begun.connect(self._on_begun)
         visit.recordings.ended.connect(self._on_ended)
         visit.recordings.refused.connect(self._on_refused)
+        visit.changed.connect(self._on_visit_changed)
 
     @property
     def page(self) -> StandStillPage:
@@ -87,14 +90,19 @@ class StandStillStep(Step):
         return "stand-still"
 
     def enter(self) -> None:
+        self._is_entered = True
         self._phase = self._settled_phase()
         self._watch()
-        zero = self._visit.details.zero_rad
-        joints = list(Joint) if self._visit.sensors.is_left_to_motion else self._visit.sensors.joints
-        self.page.show_zero({joint: math.degrees(zero.get(joint, 0.0)) for joint in joints})
+        self._show_zero()
         self._show()
 
+    def _show_zero(self) -> None:
+        zero = self._shown_zero = dict(self._visit.details.zero_rad)
+        joints = list(Joint) if self._visit.sensors.is_left_to_motion else self._visit.sensors.joints
+        self.page.show_zero({joint: math.degrees(zero.get(joint, 0.0)) for joint in joints})
+
     def leave(self) -> None:
+        self._is_entered = False
         self._shown.stop()
         if self._is_recording:  # not to its end
             self._visit.recordings.stop(is_kept=False)
@@ -257,6 +265,12 @@ class StandStillStep(Step):
 
     def _on_zero_edited(self, joint: Joint, degrees: float | None) -> None:
         self._visit.set_zero(joint, math.radians(degrees) if degrees else None)
+        self._shown_zero = dict(self._visit.details.zero_rad)
+
+    def _on_visit_changed(self) -> None:
+        """Show what another station read off the goniometer, so that nobody types over what was not seen."""
+        if self._is_entered and self._visit.details.zero_rad != self._shown_zero:
+            self._show_zero()
 
     def _on_cannot_stand(self) -> None:
         """No zero: a standing that was kept does not count either."""

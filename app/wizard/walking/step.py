@@ -262,7 +262,7 @@ class WalkingStep(Step):
         acquisition, recordings = self._visit.sensors.acquisition, self._visit.recordings
         assert acquisition is not None
         self._is_ankle_asked = False
-        self._is_troubled = False
+        self._is_troubled = self._visit.controller.is_gone
         self._shown = self._at_stop = None
         self._counted_before = {}
         acquisition.ask(RecordingKind.WALKING)

@@ -164,7 +164,7 @@ def test_roles_allow_what_they_say(clinician: Library) -> None:
 
 
 def test_a_role_that_was_taken_away_counts_at_once(clinician: Library) -> None:
-    other = Library(clinician._database, DATA_KEY)
+    other = Library(clinician.database, DATA_KEY)
     other.log_in("hk")
     (mine,) = (operator for operator in other.operators.list() if operator.code == "ab")
     other.operators.change(replace(mine, is_active=False))
@@ -227,7 +227,7 @@ def test_the_demonstration_has_a_library_of_its_own_without_real_recordings() ->
     walk = Recording("walk 1", RecordingKind.WALKING, "walk_1", {})
     with Library.demonstration() as library:
         assert library.is_demonstration
-        folder = Path(library._database.engine.raw_connection().execute("PRAGMA database_list").fetchone()[2]).parent
+        folder = Path(library.database.engine.raw_connection().execute("PRAGMA database_list").fetchone()[2]).parent
         visit = library.sessions.create(library.patients.create(Patient(code="anyone")).id, Session(()))
         library.recordings.start(visit.id, walk, is_simulated=True)
         with pytest.raises(LibraryError, match="simulated recordings only"):

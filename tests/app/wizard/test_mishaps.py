@@ -13,7 +13,7 @@ from app.acquisition.heartbeat import Standstill
 from app.acquisition.recorder import Recorder
 from app.storage.journal.disk import Trouble
 from app.storage.opened import OpenedLibrary
-from app.storage.recordings import Recordings
+from app.storage.shared_edits import SharedEdits
 from app.storage.stored import LibraryBusyError, LibraryError, RecordingState
 from app.theme import ThemeNotifier
 from app.wizard import recordings as recordings_module
@@ -76,7 +76,7 @@ def test_a_correction_that_is_refused_does_not_hide_the_walk_that_has_just_begun
     assert acquisition is not None
     walk = record(qtbot, looked_at, RecordingKind.WALKING, 2.0)
     monkeypatch.setattr(
-        Recordings, "decide", failing(1, LibraryError("Changed meanwhile", "ThemeNotifier"), Recordings.decide)
+        SharedEdits, "decision", failing(1, LibraryError("Changed meanwhile", "ThemeNotifier"), SharedEdits.decision)
     )
     with qtbot.waitSignals([recordings.refused, recordings.begun], timeout=WAIT_MS):
         recordings.keep(walk, is_kept=False)
@@ -281,7 +281,9 @@ def test_walks_are_judged_without_sensors(qtbot: QtBot, controller: LibraryContr
     assert not step.bar().others[0].is_enabled
     assert step.bar().note == "Choose the source of the sensors first."
     (walk,) = again.recordings.walks
-    recovered = replace(walk.stored, state=RecordingState.RECOVERED)
+    assert controller.state is not None
+    sha256 = {journal.segment: journal.sha256 for journal in walk.stored.journals}
+    recovered = controller.state.library.library.recordings.close(walk.id, RecordingState.RECOVERED, sha256)
     again.recordings.every = (replace(walk, stored=recovered, is_decided=False),)
     step.tick()
     assert "was recovered, up to the last record on the disk" in step.page.notice.text

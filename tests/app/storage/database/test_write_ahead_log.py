@@ -23,7 +23,7 @@ def crashed(folder: Path, times: int) -> Path:
     with Library.create(folder / "made", DATA_KEY, Operator("hk", "", Role.ADMINISTRATOR)) as library:
         library.close()  # what came before is in the database now, not in the log
         for k in range(times):
-            put(library._database, f"setting {k}")
+            put(library.database, f"setting {k}")
         shutil.copytree(folder / "made", folder / "crashed", ignore=shutil.ignore_patterns("*-shm"))
     return folder / "crashed"
 

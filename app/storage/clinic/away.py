@@ -1,0 +1,223 @@
+"""How does a station work while the clinic's server does not answer, and how does that get to the others, once?
+
+It works in a library of its own, in its folder's `away`, under the clinic's data key: patients and sessions that are
+begun there are begun as always. Once the server answers, the folder is renamed, so that a next outage begins another;
+all its rows go to the server in one transaction, which leaves a mark; then its journals become the station's own, which
+are handed over as any. Killed anywhere in between, the next start goes on, and nothing goes there twice.
+
+A patient is known again by the code. What the clinic says of a patient holds; what was said of one here fills no gaps.
+"""
+
+import json
+import logging
+import shutil
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+from uuid import UUID
+
+from sqlalchemy import Table, func, insert, inspect, select
+from sqlalchemy.orm import Session as OrmSession
+
+from app.storage.audit import append
+from app.storage.clinic.server_state import refuse_closed
+from app.storage.clinic.station import station_of
+from app.storage.data_key import DataKey
+from app.storage.database.engine import Database, sqlite_engine
+from app.storage.database.models import (
+    AuditRow,
+    Base,
+    CorrectionRow,
+    OperatorRow,
+    PatientRow,
+    RecordingRow,
+    SettingRow,
+    folded,
+)
+from app.storage.derived_keys import derived_keys
+from app.storage.files import replace_file, sync_folder
+from app.storage.journal.header import SUFFIX
+from app.storage.layout import DATABASE, RECORDINGS
+from app.storage.library import Library, now_utc
+from app.storage.opened import OpenedLibrary, held_alone
+from app.storage.root import read_id
+from app.storage.stored import Action, NotAllowedError, Operator, Role
+
+AWAY, COMING_HOME = "away", "away-coming-home"
+OPERATORS = "operators.json"  # who works at the clinic, as the station saw it last
+MARK = "away {library}"  # the setting that says that an away library's rows are on the server
+OWN_TO_EACH = {"settings", "operators", "audit", "patients", "corrections"}  # tables that are not copied row by row
+
+_log = logging.getLogger(__name__)
+
+
+def remember_operators(opened: OpenedLibrary) -> None:
+    """Keep who works at the clinic, for when its server does not answer.
+
+    Raises
+    ------
+    LibraryError
+        The server does not answer.
+    OSError
+        The station's folder cannot be written.
+    """
+    told = [asdict(operator) for operator in opened.library.operators.list()]
+    replace_file(opened.folder / OPERATORS, json.dumps(told, indent=1).encode())
+
+
+def open_away(folder: Path, data_key: DataKey, code: str) -> OpenedLibrary:
+    """Open the library that the station in `folder` works with while the server does not answer, for an operator.
+
+    Raises
+    ------
+    LibraryError
+        Nobody of this code has worked at this station, or the folder cannot be written.
+    """
+    station, operator = station_of(folder), _remembered(folder, code)
+    away = folder / AWAY
+    if (away / DATABASE).exists():
+        library = Library.open(away, data_key)
+    else:
+        library = Library.create(away, data_key, operator)
+        library.log_out()
+    try:
+        _let_in(library, operator)
+        library.log_in(operator.code)
+    except BaseException:
+        library.close()
+        raise
+    return OpenedLibrary(library, away, data_key, away_from=station)
+
+
+def bring_away_home(opened: OpenedLibrary) -> int:
+    """Take to the server what was recorded while it did not answer; how many sessions that were.
+
+    Journals are then the station's own: recordings that were not stopped are found as any other, and all are handed
+    over. To be done before either is looked for.
+
+    Raises
+    ------
+    LibraryError
+        The server does not answer or does not take it, or somebody works without it still: it stays here.
+    OSError
+        A file cannot be read or moved.
+    """
+    if opened.shared is None:
+        return 0
+    sessions = 0
+    away, coming = opened.folder / AWAY, opened.folder / COMING_HOME
+    for is_from_before in (True, False):
+        if not is_from_before and (away / DATABASE).exists():
+            with held_alone(away):  # nobody works with it now
+                away.rename(coming)
+            sync_folder(opened.folder)
+        if (coming / DATABASE).exists():
+            sessions += _bring_rows(opened, coming)
+            _bring_journals(opened, coming)
+        shutil.rmtree(coming, ignore_errors=True)
+    return sessions
+
+
+def _remembered(folder: Path, code: str) -> Operator:
+    try:
+        told = json.loads((folder / OPERATORS).read_bytes())
+        found = next(one for one in told if one["code"] == folded(code) and one["is_active"])
+        return Operator(found["code"], found["name"], Role(found["role"]))
+    except (OSError, ValueError, KeyError, TypeError, StopIteration):
+        raise NotAllowedError(
+            "This station does not know the operator yet", "Log in once while the clinic's server answers"
+        ) from None
+
+
+def _let_in(library: Library, operator: Operator) -> None:
+    with library.database.writing() as session:
+        row = session.get(OperatorRow, operator.code)
+        if row is None:
+            session.add(
+                OperatorRow(
+                    code=operator.code, name=operator.name, role=operator.role, is_active=True, created_at=now_utc()
+                )
+            )
+        else:
+            row.name, row.role, row.is_active = operator.name, operator.role, True
+
+
+def _bring_rows(opened: OpenedLibrary, folder: Path) -> int:
+    station = opened.library.station
+    assert station is not None  # the caller has asked
+    mark = MARK.format(library=read_id(folder))
+    source = Database(sqlite_engine(folder / DATABASE, opened.data_key, creates=False))
+    try:
+        with source.reading() as here, opened.library.database.writing() as there:
+            if there.get(SettingRow, mark) is not None:
+                return 0
+            refuse_closed(there)
+            patients = _bring_patients(here, there)
+            count = 0
+            for table in Base.metadata.sorted_tables:
+                if table.name not in OWN_TO_EACH:
+                    added = _bring_table(here, there, table, patients, station.id)
+                    count += added if table.name == "sessions" else 0
+            _bring_corrections(here, there, patients)
+            _bring_audit(here, there, opened)
+            there.add(SettingRow(name=mark, value=now_utc().isoformat()))
+            return count
+    finally:
+        source.close()
+
+
+def _bring_patients(here: OrmSession, there: OrmSession) -> dict[UUID, UUID]:
+    """Whom each patient is at the clinic."""
+    known: dict[UUID, UUID] = {}
+    rows = {row.id: row for row in here.scalars(select(PatientRow))}
+    for row in sorted(rows.values(), key=lambda row: row.merged_into_id is not None):  # doubles last
+        if row.merged_into_id is not None:
+            known[row.id] = known[row.merged_into_id]
+            continue
+        found = there.scalars(select(PatientRow).where(PatientRow.code_folded == row.code_folded)).first()
+        if found is not None and found.merged_into_id is not None:
+            found = there.get_one(PatientRow, found.merged_into_id)
+        if found is None:
+            found = PatientRow(**{column.key: getattr(row, column.key) for column in inspect(PatientRow).column_attrs})
+            there.add(found)
+        elif row.deleted_at is None:
+            found.deleted_at = None  # who is measured is a patient
+        known[row.id] = found.id
+    there.flush()
+    return known
+
+
+def _bring_table(here: OrmSession, there: OrmSession, table: Table, patients: dict[UUID, UUID], station: str) -> int:
+    rows = [dict(row) for row in here.execute(select(table)).mappings()]
+    for row in rows:
+        if "patient_id" in row:
+            row["patient_id"] = patients[row["patient_id"]]
+        if table.name == RecordingRow.__tablename__:
+            row["station"] = station
+    if rows:
+        there.execute(insert(table), rows)
+    return len(rows)
+
+
+def _bring_corrections(here: OrmSession, there: OrmSession, patients: dict[UUID, UUID]) -> None:
+    """Their numbers go on from those at the clinic, in the order in which they were made."""
+    table = Base.metadata.tables[CorrectionRow.__tablename__]
+    number = there.scalar(select(func.max(CorrectionRow.number))) or 0
+    for row in here.execute(select(table).order_by(CorrectionRow.number)).mappings():
+        number += 1
+        there.execute(insert(table).values(dict(row) | {"number": number, "patient_id": patients[row["patient_id"]]}))
+
+
+def _bring_audit(here: OrmSession, there: OrmSession, opened: OpenedLibrary) -> None:
+    """Who did what meanwhile goes on the clinic's chain, each entry with its own time among its details."""
+    key = derived_keys(there, opened.data_key).audit
+    for entry in here.scalars(select(AuditRow).order_by(AuditRow.number)):
+        details: dict[str, Any] = json.loads(entry.details) | {"was_away_at": entry.at}
+        append(there, key, now_utc(), entry.operator, Action(entry.action), entry.subject, details)
+
+
+def _bring_journals(opened: OpenedLibrary, folder: Path) -> None:
+    opened.recordings.mkdir(mode=0o700, exist_ok=True)
+    for path in sorted((folder / RECORDINGS).glob(f"*{SUFFIX}")):
+        path.replace(opened.recordings / path.name)
+    sync_folder(opened.recordings)

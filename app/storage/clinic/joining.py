@@ -1,0 +1,93 @@
+"""How does a computer become a station of the clinic, and how is the server made ready for its library?"""
+
+import os
+from pathlib import Path
+from uuid import uuid4
+
+from app.storage.clinic.journal_store import JournalStore
+from app.storage.clinic.key_slots import SharedKeySlots
+from app.storage.clinic.server_state import refuse_closed
+from app.storage.clinic.station import JOURNALS_SETTING, Station, driver_url
+from app.storage.database.engine import Database, postgres_engine
+from app.storage.database.models import SettingRow
+from app.storage.database.schema import bring_up_to_date, is_up_to_date
+from app.storage.files import replace_file
+from app.storage.layout import JOURNALS_VARIABLE, KEYS, STATION
+from app.storage.opened import made_beside
+from app.storage.root import ID_FILE, ID_SETTING
+from app.storage.stored import LibraryError
+
+
+def new_station(address: str, journals: str = "") -> Station:
+    """A station that is not in any folder yet.
+
+    Raises
+    ------
+    LibraryError
+        The address is none of a PostgreSQL server.
+    """
+    driver_url(address)
+    return Station(str(uuid4()), address.strip(), journals)
+
+
+def join(folder: Path, address: str, journals: str = "") -> Station:
+    """Make `folder`, which is empty or not there, that of a new station of the library at `address`.
+
+    Who works there logs in with the passphrase as always. `journals`: where the shared place has another name here.
+
+    Raises
+    ------
+    LibraryError
+        The address is none, the server does not answer or has no library, or something is in the folder.
+    PlaceMissingError
+        The shared place is not there under this name.
+    """
+    station = new_station(address, journals)
+    database = station.database_once()
+    if not is_up_to_date(database):
+        raise LibraryError(
+            "There is no library on the clinic's server",
+            "Move one there first: at the station that has it, in its settings",
+        )
+    with database.reading() as session:
+        refuse_closed(session)
+        library_id = str(session.get_one(SettingRow, ID_SETTING).value)
+        place = session.get(SettingRow, JOURNALS_SETTING)
+    named = str(place.value) if place is not None else ""
+    JournalStore(journals or os.environ.get(JOURNALS_VARIABLE) or named).refuse_missing()
+    with made_beside(folder) as beside:
+        _ = SharedKeySlots(beside / KEYS, database).codes  # which copies them
+        replace_file(beside / ID_FILE, library_id.encode())
+        station.write(beside)
+    return station
+
+
+def refuse_silent(station: Station) -> None:
+    """See that the clinic's server answers, and has the library.
+
+    Raises
+    ------
+    LibraryError
+        It does not, or has none.
+    """
+    with station.database_once().reading() as session:
+        refuse_closed(session)
+
+
+def prepare_server(address: str) -> None:
+    """Make the tables and roles on a server, or bring them up to date; stations' logins cannot.
+
+    Raises
+    ------
+    LibraryError
+        The address is none, the server does not answer, or this login may not make tables.
+    """
+    database = Database(postgres_engine(driver_url(address)))
+    try:
+        bring_up_to_date(database)
+    finally:
+        database.close()
+
+
+def is_station(folder: Path) -> bool:
+    return (folder / STATION).exists()

@@ -1,0 +1,246 @@
+"""Where a clinic's journals are for all stations: a shared folder, or an S3 bucket, by fsspec.
+
+A journal's name there is the SHA-256 of its bytes, so one that is there under its name is there for good: putting it
+again changes nothing, two stations cannot put different ones, and what was fetched proves itself. It is encrypted under
+its own key, as on a station's disk.
+"""
+
+import contextlib
+import errno
+import hashlib
+import os
+import re
+import secrets
+import shutil
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any, BinaryIO
+
+from app.storage.files import sync_folder
+from app.storage.journal.header import SUFFIX
+from app.storage.stored import LibraryError, LibraryFaultError
+
+PIECE_BYTES = 1 << 20
+NAME = re.compile(rf"[0-9a-f]{{64}}{re.escape(SUFFIX)}")
+UNFINISHED = ".putting-"
+UNFINISHED_S = 86_400.0  # after which nobody is still putting it, whatever the stations' clocks say
+FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+TRIED_S = 10  # per attempt; a place that does not answer must not hold a station up for minutes
+
+
+class PlaceMissingError(LibraryFaultError):
+    """The shared place is not there under its name."""
+
+
+class JournalStore:
+    """The journals' shared place; any thread may use it. `place` is a folder or an address such as s3://bucket/folder.
+
+    Raises
+    ------
+    LibraryError
+        The address cannot be used here.
+    """
+
+    def __init__(self, place: str) -> None:
+        self.place = place
+        try:
+            import fsspec
+        except ImportError:
+            raise LibraryError(
+                "What reads a clinic's shared journals is not installed", "Run: pip install .[clinic]"
+            ) from None
+        options: dict[str, Any] = {}
+        if place.startswith("s3:"):
+            # a fresh look each time, since other stations write too; few tries, since the watch tries again
+            options = {
+                "use_listings_cache": False,
+                "config_kwargs": {"connect_timeout": TRIED_S, "read_timeout": TRIED_S, "retries": {"max_attempts": 1}},
+            }
+            if address := os.environ.get("AWS_ENDPOINT_URL"):
+                options["endpoint_url"] = address
+        try:
+            self._files, self._root = fsspec.core.url_to_fs(place, **options)
+        except (ImportError, ValueError) as error:
+            raise LibraryError(
+                "Journals cannot be kept at this address", "Name a folder, or s3://bucket/folder"
+            ) from error
+
+    def refuse_missing(self) -> None:
+        """See that the place is there: a folder whose disk is not mounted is not made up for by another.
+
+        Raises
+        ------
+        PlaceMissingError
+            It is not.
+        LibraryFaultError
+            It does not answer.
+        """
+        try:
+            with _told():
+                # of a bucket only that it is there: a folder in it comes with its first journal
+                self._files.info(self._root if self._is_local else self._root.partition("/")[0])
+        except LibraryFaultError as fault:
+            if not isinstance(fault.__cause__, FileNotFoundError):
+                raise
+            raise PlaceMissingError(
+                "The place of the clinic's recordings is not there", "Connect its disk or network, or make the folder"
+            ) from None
+
+    def put(self, path: Path) -> str:
+        """Bring a journal there and read it back; returns its name there, as its bytes are now.
+
+        Raises
+        ------
+        LibraryFaultError
+            The place does not answer, is full, or gives back something else.
+        OSError
+            The file here cannot be read.
+        """
+        self.refuse_missing()
+        name = name_in_place(path)
+        at, sha256 = self._at(name), name.removesuffix(SUFFIX)
+        with path.open("rb") as here, _told():
+            if self._files.exists(at) and self._sha256_there(at) == sha256:
+                return name
+            if self._is_local:
+                self._put_beside(here, at)
+            else:
+                with self._files.open(at, "wb") as there:  # an object appears whole, or not at all
+                    shutil.copyfileobj(here, there, PIECE_BYTES)
+            if self._sha256_there(at) == sha256:
+                return name
+            self._files.rm_file(at)
+        raise LibraryFaultError("A recording was not taken as it is by the clinic's shared place", "See to its disk")
+
+    def fetch(self, name: str, target: Path) -> None:
+        """Bring a journal here, beside its place first; it is what its name says, or it is not there.
+
+        Raises
+        ------
+        LibraryFaultError
+            The place does not answer, or does not have it as it was.
+        OSError
+            The file here cannot be written.
+        """
+        digest = hashlib.sha256()
+        target.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+        descriptor, beside = tempfile.mkstemp(dir=target.parent, prefix=".fetching-")
+        try:
+            with os.fdopen(descriptor, "wb") as here:
+                for piece in self._pieces(name):
+                    digest.update(piece)
+                    here.write(piece)
+                here.flush()
+                os.fsync(here.fileno())
+            if digest.hexdigest() + SUFFIX != name:
+                raise LibraryFaultError(
+                    "A recording in the clinic's shared place is damaged", "Restore it there from a backup"
+                )
+            Path(beside).replace(target)
+            sync_folder(target.parent)
+        finally:
+            Path(beside).unlink(missing_ok=True)
+
+    def destroy(self, name: str) -> None:
+        """Remove a journal for good; versions and snapshots that the place keeps are whose it is.
+
+        Raises
+        ------
+        LibraryFaultError
+            The place does not answer, or refuses.
+        """
+        with _told(), contextlib.suppress(FileNotFoundError):
+            self._files.rm_file(self._at(name))
+
+    def tidy(self, now_s: Callable[[], float] = time.time) -> None:
+        """Remove what was left when a station was killed while it put a journal there.
+
+        Raises
+        ------
+        LibraryFaultError
+            The place does not answer, or refuses.
+        """
+        if not self._is_local:
+            return  # an object that was not finished has no name
+        with _told():
+            for path in Path(self._root).glob(f"{UNFINISHED}*"):
+                with contextlib.suppress(FileNotFoundError):
+                    if now_s() - path.stat().st_mtime > UNFINISHED_S:
+                        path.unlink()
+
+    def _pieces(self, name: str) -> Iterator[bytes]:
+        with _told(), self._files.open(self._at(name), "rb") as there:
+            while piece := there.read(PIECE_BYTES):
+                yield piece
+
+    @property
+    def _is_local(self) -> bool:
+        return "file" in self._files.protocol
+
+    def _at(self, name: str) -> str:
+        if not NAME.fullmatch(name):  # a row may say anything
+            raise LibraryFaultError("The library names no journal here", "Restore it from a backup")
+        return f"{self._root}/{name}"
+
+    def _put_beside(self, here: BinaryIO, target: str) -> None:
+        beside = f"{self._root}/{UNFINISHED}{secrets.token_hex(8)}"
+        descriptor = os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o660)  # for the stations' group
+        try:
+            with os.fdopen(descriptor, "wb") as there:
+                shutil.copyfileobj(here, there, PIECE_BYTES)
+                there.flush()
+                os.fsync(there.fileno())
+            Path(beside).replace(target)
+            sync_folder(Path(target).parent)
+        finally:
+            Path(beside).unlink(missing_ok=True)
+
+    def _sha256_there(self, at: str) -> str:
+        digest = hashlib.sha256()
+        with self._files.open(at, "rb") as there:
+            while piece := there.read(PIECE_BYTES):
+                digest.update(piece)
+        return digest.hexdigest()
+
+
+def name_in_place(path: Path) -> str:
+    """What a journal is called in the shared place, as its bytes are now.
+
+    Raises
+    ------
+    OSError
+        It cannot be read.
+    """
+    with path.open("rb") as here:
+        return hashlib.file_digest(here, "sha256").hexdigest() + SUFFIX
+
+
+@contextlib.contextmanager
+def _told() -> Iterator[None]:
+    """Turn what a shared place raises into sentences: each kind of place has errors of its own."""
+    try:
+        yield
+    except (LibraryError, FileNotFoundError) as error:
+        if isinstance(error, FileNotFoundError):
+            raise LibraryFaultError(
+                "A recording is missing in the clinic's shared place", "Restore it there from a backup"
+            ) from error
+        raise
+    except PermissionError as error:
+        raise LibraryFaultError(
+            "The clinic's shared place does not let this station in", "See to the rights of its folder or its keys"
+        ) from error
+    except Exception as error:
+        if isinstance(error, OSError) and error.errno in FULL:
+            raise LibraryFaultError(
+                "The clinic's shared place of recordings is full", "Make room there: it is tried again by itself"
+            ) from error
+        if isinstance(error, OSError) and error.errno == errno.EROFS:
+            raise LibraryFaultError(
+                "The clinic's shared place of recordings can only be read", "See to its disk"
+            ) from error
+        raise LibraryFaultError(
+            "The clinic's shared place of recordings does not answer", "It is tried again by itself"
+        ) from error

@@ -1,0 +1,377 @@
+"""A library goes from a folder to the clinic's server, or back from it, whole: rows and journals as they are.
+
+Nothing is changed on the way: rows keep their ids, journals their bytes, the audit its chain, the data key is the same
+one. Journals go first, each put under its hash and read back, so an interrupted move goes on where it was. Rows follow
+in one transaction: all of them are there, or none. Then all tables are read at both ends and compared. Only when they
+are the same is the folder made a station's; what was its database stays beside it under another name.
+
+A folder that is being moved is not opened meanwhile, nor is a server whose library is being brought back.
+"""
+
+import json
+import shutil
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from sqlalchemy import func, insert, select, update
+from sqlalchemy.orm import Session as OrmSession
+
+from app.storage.clinic.handing_over import count_waiting
+from app.storage.clinic.journal_store import JournalStore
+from app.storage.clinic.key_slots import SLOTS_SETTING, put_slots
+from app.storage.clinic.rows import copy_rows, differing_tables, refuse_nul
+from app.storage.clinic.server_state import ServerState, close_for, set_state, state_of
+from app.storage.clinic.station import JOURNALS_SETTING, Station
+from app.storage.database.engine import Database, sqlite_engine
+from app.storage.database.models import AuditRow, JournalRow, PatientRow, RecordingRow, SessionRow, SettingRow
+from app.storage.database.schema import bring_up_to_date
+from app.storage.files import replace_file, sync_folder
+from app.storage.journal.header import SUFFIX
+from app.storage.layout import CACHE, DATABASE, KEYS, MOVING, RECORDINGS, STATION
+from app.storage.opened import OpenedLibrary, Report, made_beside
+from app.storage.recovery import find_interrupted
+from app.storage.root import ID_SETTING
+from app.storage.stored import Action, LibraryError, RecordingState
+from app.wording import tr
+
+BEFORE = "library-before-the-server.db"  # what was the folder's database
+LAST_STEP = b"last step"  # the mark of a move that nobody may give up without looking at the server
+BACK_FROM = "-back-from-the-server"  # a folder beside the station's, until all of it is there
+JOURNALS_SHARE = 0.8  # of the progress; the rows take the rest
+
+
+@dataclass(frozen=True, slots=True)
+class Moved:
+    """What was moved and compared. `missing`: journals that were missing before already."""
+
+    patients: int
+    sessions: int
+    recordings: int
+    journals: int
+    bytes: int
+    missing: int
+
+
+def move_to_server(opened: OpenedLibrary, station: Station, report: Report) -> Moved:
+    """Take a library that is in a folder to the clinic's server, and make its folder a station's; `opened` is closed.
+
+    The caller holds the folder alone. Interrupted, it is called again, with the folder opened for being moved.
+
+    Parameters
+    ----------
+    station
+        Names the server and, in `journals`, the shared place.
+
+    Raises
+    ------
+    LibraryError
+        A recording goes on, the server has another library, does not answer or does not allow it, or what is there is
+        not what was here. The folder's rows and files are as they were.
+    OSError
+        A file cannot be read or written.
+    """
+    folder, library = opened.folder, opened.library
+    if opened.shared is not None or opened.data_key is None or opened.away_from is not None:
+        raise LibraryError("Only a library in a folder can be moved to a server", "Open your own library")
+    if any(not one.problem for one in find_interrupted(opened)):
+        raise LibraryError("A recording goes on or was left over", "End it or look at it, then move the library")
+    store, server = JournalStore(station.journals), station.database_kept()
+    try:
+        refuse_nul(library.database)
+        store.refuse_missing()
+        bring_up_to_date(server)
+        state = _state_for(server, library.database)
+        if state is not ServerState.OPEN:  # else all that is left is to make the folder a station's
+            if not (folder / MOVING).exists():
+                library.audit.note(Action.EDIT, "library", is_moved_to_server=True)
+                replace_file(folder / MOVING, b"")
+            kept, size = _put_journals(opened, store, report)
+            if state is None:
+                _put_rows(library.database, server, kept, station.journals, (folder / KEYS).read_bytes())
+            else:
+                _put_later_entries(library.database, server)
+            _refuse_difference(library.database, server, "Empty the server's database, then move the library again")
+            moved = _counted(server, len(kept), size)
+            replace_file(folder / MOVING, LAST_STEP)  # from here on it may be open there, whatever is heard of that
+            with server.writing() as session:
+                set_state(session, ServerState.OPEN)
+        else:
+            moved = _counted(server, 0, 0)
+    finally:
+        server.close()
+    library.close()
+    become_station(folder, station)
+    report(1.0, "")
+    return moved
+
+
+def give_up_moving(folder: Path) -> None:
+    """Let a folder be worked with again whose move was broken off; what is on the server already is never opened.
+
+    Raises
+    ------
+    LibraryError
+        The move came to its end, or so near to it that the server may be open already.
+    OSError
+        The mark cannot be removed.
+    """
+    if (folder / STATION).exists():
+        raise LibraryError("This library is on the clinic's server already", "Bring it back from there")
+    if (folder / MOVING).exists() and (folder / MOVING).read_bytes() == LAST_STEP:
+        raise LibraryError(
+            "Stations may be working with this library on the clinic's server already", "Go on with moving it"
+        )
+    (folder / MOVING).unlink(missing_ok=True)
+
+
+def give_up_early(folder: Path) -> None:
+    """As `give_up_moving`, for a move that failed before its last step; later the mark stays, and the move goes on.
+
+    Raises
+    ------
+    OSError
+        The mark cannot be read or removed.
+    """
+    mark = folder / MOVING
+    if mark.exists() and mark.read_bytes() != LAST_STEP:
+        give_up_moving(folder)
+
+
+def bring_back(opened: OpenedLibrary, folder: Path, report: Report, *, is_copy: bool = False) -> Moved:
+    """Make a library in a folder of the clinic's, with all its journals; the one on the server is then closed to all.
+
+    Interrupted, nothing is in `folder`, and it is called again, with the station opened for being moved. `is_copy`: the
+    clinic goes on with the server, and the folder is a copy that opens by itself.
+
+    Raises
+    ------
+    LibraryError
+        This is no station, a recording goes on or was not handed over yet, the server or the shared place does not
+        answer, something is in `folder`, or what is there is not what is on the server.
+    OSError
+        A file cannot be written.
+    """
+    shared, library = opened.shared, opened.library
+    if shared is None:
+        raise LibraryError("This library is in a folder already", "Use a backup to copy it")
+    server, own_id = library.database, library.station.id if library.station is not None else ""
+    with server.reading() as session:
+        is_open = state_of(session) is ServerState.OPEN
+        _refuse_waiting(session)
+    if is_open:  # else it was noted before this was interrupted
+        action = Action.BACKUP if is_copy else Action.EDIT
+        library.audit.note(action, "library", is_copied_to_folder=is_copy, is_brought_back=not is_copy)
+    with made_beside(folder) as beside:
+        if not is_copy:
+            with server.writing() as session:
+                _refuse_waiting(session)  # somebody may have begun to record
+                close_for(session, f"{own_id} {folder.resolve()}")
+        try:
+            moved = _make_folder(opened, shared.store, beside, report, is_copy=is_copy)
+        except BaseException:
+            if not is_copy:
+                give_up_bringing_back(server)
+            raise
+    report(1.0, "")
+    return moved
+
+
+def bring_back_here(opened: OpenedLibrary, report: Report) -> Moved:
+    """Make the station's own folder the clinic's library, and close the one on the server; `opened` is closed.
+
+    The caller holds the folder alone. The folder is a station's until all is in it, and then no longer.
+
+    Raises
+    ------
+    LibraryError
+        As `bring_back`, or something was recorded here that is in no session yet.
+    OSError
+        A file cannot be written: the server is open to its stations again.
+    """
+    folder, server = opened.folder, opened.library.database
+    if count_waiting(opened):
+        raise LibraryError("A recording waits here to be handed over", "Try again once it is")
+    beside = folder.with_name(f"{folder.name}{BACK_FROM}")
+    shutil.rmtree(beside, ignore_errors=True)  # of one that was broken off
+    moved = bring_back(opened, beside, report)
+    try:
+        (folder / RECORDINGS).mkdir(mode=0o700, exist_ok=True)
+        for journal in (beside / RECORDINGS).iterdir():
+            journal.replace(folder / RECORDINGS / journal.name)
+        for name in (KEYS, DATABASE):
+            (beside / name).replace(folder / name)
+        sync_folder(folder / RECORDINGS)
+        opened.library.close()
+        (folder / STATION).unlink()
+    except BaseException:
+        give_up_bringing_back(server)
+        raise
+    sync_folder(folder)
+    for rest in (beside, folder / CACHE):
+        shutil.rmtree(rest, ignore_errors=True)
+    return moved
+
+
+def give_up_bringing_back(server: Database) -> None:
+    """Open the library on the server to its stations again: nothing was brought back, or nobody works with that."""
+    with server.writing() as session:
+        if state_of(session) is ServerState.CLOSED:
+            set_state(session, ServerState.OPEN)
+
+
+def become_station(folder: Path, station: Station) -> None:
+    """Make the folder of a library that is on the server now a station's; killed in between, opening it goes on."""
+    station.write(folder)
+    if (folder / DATABASE).exists():
+        (folder / DATABASE).replace(folder / BEFORE)
+    (folder / MOVING).unlink(missing_ok=True)
+
+
+def _state_for(server: Database, source: Database) -> ServerState | None:
+    """How far this library is on the server; None: nothing of it is there.
+
+    Raises
+    ------
+    LibraryError
+        Another library is there, or this one was brought back from there.
+    """
+    with source.reading() as session:
+        own = session.get_one(SettingRow, ID_SETTING).value
+    with server.reading() as session:
+        row, state = session.get(SettingRow, ID_SETTING), state_of(session)
+    if row is None:
+        return None
+    if row.value != own:
+        raise LibraryError("There is another library on the clinic's server", "Give this one a database of its own")
+    if state is ServerState.CLOSED:
+        raise LibraryError(
+            "This library was on the clinic's server before, and what was left there is older",
+            "Empty the server's database, or give the library another one",
+        )
+    return state
+
+
+def _put_journals(opened: OpenedLibrary, store: JournalStore, report: Report) -> tuple[dict[str, str], int]:
+    """What each file is kept as, and how many bytes these are; a file that is missing is not among them."""
+    with opened.library.database.reading() as session:
+        wanted = (
+            select(JournalRow.file)
+            .join(RecordingRow)
+            .where(RecordingRow.state != RecordingState.DISCARDED)
+            .order_by(JournalRow.file)
+        )
+        files = [opened.recordings / file for file in session.scalars(wanted)]
+    here = [path for path in files if path.exists()]
+    sizes = [path.stat().st_size for path in here]
+    kept, done = {}, 0
+    for path, size in zip(here, sizes, strict=True):
+        kept[path.name] = store.put(path)
+        done += size
+        report(JOURNALS_SHARE * done / max(sum(sizes), 1), "")
+    return kept, done
+
+
+def _put_rows(source: Database, server: Database, kept: Mapping[str, str], place: str, slots: bytes) -> None:
+    with source.reading() as session, server.writing() as there:
+        copy_rows(session.connection(), there.connection())
+        for row in there.scalars(select(JournalRow).where(JournalRow.file.in_(kept))):
+            row.kept_as = kept[row.file]
+        there.add(SettingRow(name=JOURNALS_SETTING, value=place))
+        put_slots(there, slots)
+        set_state(there, ServerState.MOVING)
+
+
+def _put_later_entries(source: Database, server: Database) -> None:
+    """Add to the audit on the server who logged in since, to go on with the move."""
+    with source.reading() as session, server.writing() as there:
+        last = there.scalar(select(func.max(AuditRow.number))) or 0
+        later = session.execute(select(AuditRow.__table__).where(AuditRow.number > last)).mappings()
+        there.execute(insert(AuditRow), [dict(row) for row in later])
+
+
+def _make_folder(opened: OpenedLibrary, store: JournalStore, folder: Path, report: Report, *, is_copy: bool) -> Moved:
+    server = opened.library.database
+    (folder / RECORDINGS).mkdir(mode=0o700)
+    target = Database(sqlite_engine(folder / DATABASE, opened.data_key))
+    try:
+        bring_up_to_date(target)
+        kept = _take_rows(server, target)
+        size = _fetch_journals(kept, store, folder, report)
+        if not is_copy:  # else the server goes on changing
+            _refuse_difference(server, target, "Try again")
+        moved = _counted(target, len(kept), size)
+    finally:
+        target.close()
+    with server.reading() as session:
+        slots = session.get_one(SettingRow, SLOTS_SETTING).value
+    replace_file(folder / KEYS, json.dumps(slots, indent=1).encode())
+    return moved
+
+
+def _take_rows(server: Database, target: Database) -> dict[str, str]:
+    """Copy all rows here; what each file is kept as."""
+    with server.reading() as session, target.writing() as here:
+        copy_rows(session.connection(), here.connection())
+        kept = {row.file: row.kept_as for row in session.scalars(select(JournalRow)) if row.kept_as}
+        here.execute(update(RecordingRow).values(station=""))
+    return kept
+
+
+def _refuse_waiting(session: OrmSession) -> None:
+    """See that nothing is being recorded, or waits at a station to be handed over.
+
+    Raises
+    ------
+    LibraryError
+        Something is or does.
+    """
+    waiting = session.scalar(
+        select(func.count())
+        .select_from(RecordingRow)
+        .outerjoin(JournalRow)
+        .where(RecordingRow.state != RecordingState.DISCARDED)
+        .where(
+            (RecordingRow.state == RecordingState.OPEN)
+            | ((JournalRow.kept_as == "") & JournalRow.wrapped_key.is_not(None))
+        )
+    )
+    if waiting:
+        raise LibraryError(
+            tr("{count} recordings are being made, or wait at a station to be handed over").format(count=waiting),
+            "Start Gaitwright at each station, and try again once they are handed over",
+        )
+
+
+def _fetch_journals(kept: Mapping[str, str], store: JournalStore, folder: Path, report: Report) -> int:
+    size = 0
+    for number, (file, kept_as) in enumerate(sorted(kept.items())):
+        path = folder / RECORDINGS / file
+        if path.parent != folder / RECORDINGS or not file.endswith(SUFFIX):  # a row may say anything
+            raise LibraryError("The library names a file that no recording has", "Restore it from a backup")
+        store.fetch(kept_as, path)
+        size += path.stat().st_size
+        report(JOURNALS_SHARE * (number + 1) / len(kept), "")
+    return size
+
+
+def _refuse_difference(one: Database, other: Database, remedy: str) -> None:
+    """See that both hold the same.
+
+    Raises
+    ------
+    LibraryError
+        They do not.
+    """
+    if tables := differing_tables(one, other):
+        what = tr("What was copied is not what was there: {tables}").format(tables=", ".join(tables))
+        raise LibraryError(what, remedy)
+
+
+def _counted(database: Database, journals: int, size: int) -> Moved:
+    with database.reading() as session:
+        patients, sessions, recordings, all_journals = (
+            session.scalar(select(func.count()).select_from(table)) or 0
+            for table in (PatientRow, SessionRow, RecordingRow, JournalRow)
+        )
+    return Moved(patients, sessions, recordings, journals, size, all_journals - journals)

@@ -1,0 +1,80 @@
+"""Is the library on the clinic's server open to stations? It is not while it is being moved there, nor once it left."""
+
+from enum import StrEnum
+
+from sqlalchemy.orm import Session as OrmSession
+
+from app.storage.database.models import SettingRow
+from app.storage.stored import LibraryError, LibraryFaultError
+from app.wording import tr
+
+STATE_SETTING = "server state"
+TARGET_SETTING = "brought back to"  # by which station, into which folder: two folders would be two libraries
+
+
+class ServerState(StrEnum):
+    """Moving: rows are there, and are still being compared. Closed: the library was, or is being, brought back."""
+
+    MOVING = "moving"
+    OPEN = "open"
+    CLOSED = "closed"
+
+
+def state_of(session: OrmSession) -> ServerState | None:
+    """None: there is no library on the server."""
+    row = session.get(SettingRow, STATE_SETTING)
+    return None if row is None else ServerState(row.value)
+
+
+def set_state(session: OrmSession, state: ServerState) -> None:
+    row = session.get(SettingRow, STATE_SETTING)
+    if row is None:
+        session.add(SettingRow(name=STATE_SETTING, value=state.value))
+    else:
+        row.value = state.value
+
+
+def close_for(session: OrmSession, target: str) -> None:
+    """Close the library on the server, which goes to `target`.
+
+    Raises
+    ------
+    LibraryError
+        It went, or is going, to another place already.
+    """
+    row = session.get(SettingRow, TARGET_SETTING)
+    if row is None:
+        session.add(SettingRow(name=TARGET_SETTING, value=target))
+    elif state_of(session) is ServerState.CLOSED and row.value != target:
+        raise LibraryError(
+            tr("The library was, or is being, brought back into another folder: {folder}").format(
+                folder=str(row.value).partition(" ")[2]
+            ),
+            "Work with that one; if nobody does, open the server again first: gaitwright clinic back --give-up",
+        )
+    else:
+        row.value = target
+    set_state(session, ServerState.CLOSED)
+
+
+def refuse_closed(session: OrmSession) -> None:
+    """See that the library on the server is the one to be worked with.
+
+    Raises
+    ------
+    LibraryFaultError
+        It is not; what is being recorded goes on without its row, and waits here.
+    """
+    found = state_of(session)
+    if found is ServerState.OPEN:
+        return
+    if found is None:
+        raise LibraryFaultError(
+            "There is no library on the clinic's server",
+            "Move one there first: at the station that has it, in its settings",
+        )
+    if found is ServerState.MOVING:
+        raise LibraryFaultError("The library is still being moved to the clinic's server", "Wait until that is done")
+    raise LibraryFaultError(
+        "The library is no longer on the clinic's server", "Ask who brought it back where it is worked with now"
+    )

@@ -1,0 +1,108 @@
+"""A station's copies of the journals in the clinic's shared place: fetched to be read, gone when they may go."""
+
+import os
+from collections.abc import Collection, Mapping
+from contextlib import suppress
+from functools import cached_property
+from pathlib import Path
+
+from app.storage.clinic.journal_store import JournalStore, name_in_place
+from app.storage.journal.header import SUFFIX, JournalRefusedError, destroy_key
+from app.storage.layout import CACHE
+from app.storage.stored import StoredJournal
+from app.wording import later
+
+CACHED_BYTES = 20_000_000_000  # of copies on a station's disk: some hundred sessions
+NOT_YET_HERE = later("this recording is still on the station that made it")
+START_THERE = later("Start Gaitwright there and let it reach the clinic's server")
+
+
+class SharedJournals:
+    """`folder` is the station's, `place` the shared one."""
+
+    def __init__(self, folder: Path, place: str) -> None:
+        self.cache, self.place = folder / CACHE, place
+
+    @cached_property
+    def store(self) -> JournalStore:
+        """Made when it is first needed: what reads an S3 bucket takes a second to load."""
+        return JournalStore(self.place)
+
+    def path(self, journal: StoredJournal) -> Path:
+        """A journal that is not in the station's own folder, fetched if need be.
+
+        Raises
+        ------
+        JournalRefusedError
+            It is not in the shared place yet, nor here.
+        LibraryError
+            The shared place does not answer, or does not have it.
+        OSError
+            The station's disk does not take it.
+        """
+        path = self.cache / journal.file
+        if path.exists() and journal.kept_as in ("", name_in_place(path)):
+            os.utime(path)  # it was used now
+        elif not journal.kept_as:
+            raise JournalRefusedError(journal.file, NOT_YET_HERE, START_THERE)
+        else:
+            self.store.fetch(journal.kept_as, path)
+        return path
+
+    def destroy(self, journal: StoredJournal) -> None:
+        """Remove a journal from the shared place, and the copy of it here; other stations' go when they start.
+
+        Raises
+        ------
+        LibraryError
+            The shared place does not answer.
+        OSError
+            The copy cannot be removed.
+        """
+        if journal.kept_as:
+            self.store.destroy(journal.kept_as)
+        destroy_copy(self.cache / journal.file)
+
+    def take(self, path: Path) -> None:
+        """Make a station's own file, which was handed over, a copy that may go.
+
+        Raises
+        ------
+        OSError
+            It cannot be moved.
+        """
+        self.cache.mkdir(mode=0o700, exist_ok=True)
+        path.replace(self.cache / path.name)
+
+    def tidy(self, known: Collection[str], most_bytes: int = CACHED_BYTES) -> None:
+        """Remove copies of journals that were destroyed, and of the rest those that were not used for longest.
+
+        Parameters
+        ----------
+        known
+            Files whose recordings are still there to be read.
+
+        Raises
+        ------
+        OSError
+            A copy cannot be removed.
+        """
+        used: Mapping[Path, os.stat_result] = {path: path.stat() for path in self.cache.glob(f"*{SUFFIX}")}
+        room = most_bytes
+        for path in sorted(used, key=lambda path: used[path].st_mtime, reverse=True):
+            room -= used[path].st_size
+            if path.name not in known:
+                destroy_copy(path)
+            elif room < 0:
+                path.unlink()
+        for unfinished in self.cache.glob(".fetching-*"):
+            unfinished.unlink()
+
+
+def destroy_copy(path: Path) -> None:
+    """Make a journal unreadable and remove it; one that is not there is left at that."""
+    if not path.exists():
+        return
+    with suppress(JournalRefusedError):  # its beginning is damaged
+        destroy_key(path)
+    path.unlink()

@@ -1,0 +1,68 @@
+"""What can be edited of a patient, a session and a recording: plain values by the field's name, and back.
+
+What is said of a joint or a side is a field of its own, "zero_rad.left_knee": two people may say two joints' zeros.
+"""
+
+from collections.abc import Mapping
+from dataclasses import fields, replace
+from typing import Any
+
+from app.storage.stored import Limits
+from app.storage.three_way import Value, Values
+from core.body import Joint, Side
+from core.samples import Patient, Recording, RecordingKind, Session
+
+PATIENT_CORRECTABLE = tuple(field.name for field in fields(Patient) if field.name != "unknown")
+KEPT = "is_kept"
+PLACEMENT = "placement"
+"""What a contest about who wears what is called; it is no field of a row that is edited."""
+SIDES = ("affected_side", "prosthetic_side")
+SESSION_CORRECTABLE = ("started", "operator", "surface", "notes", "software")
+RECORDING_CORRECTABLE = ("name", "kind", "condition", "started", "is_kept", "note", "is_restrapped_before")
+
+
+def patient_fields(told: Patient) -> dict[str, Value]:
+    """Both sides are one field: which is affected and which prosthetic is said in one go."""
+    values: dict[str, Value] = {name: getattr(told, name) for name in PATIENT_CORRECTABLE if name not in SIDES}
+    return values | {"sides": ",".join(getattr(told, name) for name in SIDES)}
+
+
+def with_patient_fields(told: Patient, values: Values) -> Patient:
+    """The same patient with `values`, which may be of some fields only."""
+    every: dict[str, Any] = patient_fields(told) | dict(values)
+    affected, prosthetic = every.pop("sides").split(",")
+    return replace(told, affected_side=affected, prosthetic_side=prosthetic, **every)
+
+
+def session_fields(told: Session, comment: str, limits: Limits) -> dict[str, Value]:
+    values: dict[str, Value] = {name: getattr(told, name) for name in SESSION_CORRECTABLE}
+    values |= {"comment": comment, "cannot_stand": limits.cannot_stand}
+    values |= {f"without_ankle.{side}": side in limits.without_ankle for side in Side}
+    values |= {f"zero_rad.{joint}": told.zero_rad.get(joint) for joint in Joint}
+    return values | {f"turned_sign.{joint}": told.turned_sign.get(joint) for joint in Joint}
+
+
+def with_session_fields(told: Session, comment: str, limits: Limits, values: Values) -> tuple[Session, str, Limits]:
+    """The same session, comment and limits with `values`, which may be of some fields only."""
+    every: Mapping[str, Any] = session_fields(told, comment, limits) | dict(values)
+    said = replace(
+        told,
+        zero_rad={joint: every[f"zero_rad.{joint}"] for joint in Joint if every[f"zero_rad.{joint}"] is not None},
+        turned_sign={joint: every[f"turned_sign.{joint}"] for joint in Joint if every[f"turned_sign.{joint}"]},
+        **{name: every[name] for name in SESSION_CORRECTABLE},
+    )
+    without = frozenset(side for side in Side if every[f"without_ankle.{side}"])
+    return said, every["comment"], Limits(without, every["cannot_stand"])
+
+
+def recording_fields(told: Recording) -> dict[str, Value]:
+    values: dict[str, Value] = {name: getattr(told, name) for name in RECORDING_CORRECTABLE}
+    return values | {f"left_out_s.{side}": tuple(sorted(told.left_out_s.get(side, ()))) for side in Side}
+
+
+def with_recording_fields(told: Recording, values: Values) -> Recording:
+    """The same recording with `values`, which may be of some fields only."""
+    every: Mapping[str, Any] = recording_fields(told) | dict(values)
+    left_out_s = {side: every[f"left_out_s.{side}"] for side in Side if every[f"left_out_s.{side}"]}
+    own = {name: every[name] for name in RECORDING_CORRECTABLE if name != "kind"}
+    return replace(told, kind=RecordingKind(every["kind"]), left_out_s=left_out_s, **own)

@@ -1,0 +1,26 @@
+"""What two stations changed to different values, to be asked about: whose is to hold?"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from app.storage.three_way import Contest, Values
+
+Settle = Callable[[frozenset[str]], None]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class EditQuestion:
+    """`subject` names what was edited. `settle` takes the fields of which our own value is to hold; none: theirs stay.
+
+    The library holds theirs meanwhile, and ours stands in its history.
+    """
+
+    subject: str
+    contests: Sequence[Contest]
+    settle: Settle
+
+
+def chosen_fields(contests: Sequence[Contest], fields: frozenset[str]) -> tuple[Values, Values]:
+    """Give what was shown in the question, and what is said now; a further change since then is asked anew."""
+    wanted = [contest for contest in contests if contest.field in fields]
+    return {one.field: one.theirs for one in wanted}, {one.field: one.mine for one in wanted}

@@ -1,0 +1,99 @@
+"""Nothing of either side is lost when what both changed is brought together."""
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from app.storage.edited_fields import (
+    patient_fields,
+    recording_fields,
+    session_fields,
+    with_patient_fields,
+    with_recording_fields,
+    with_session_fields,
+)
+from app.storage.stored import Limits
+from app.storage.three_way import Values, rebased, three_way
+from core.body import Joint, Side
+from core.samples import Patient, Recording, RecordingKind, Session
+
+WORDS = st.sampled_from(["", "stick", "frame", "none"])
+NUMBERS = st.one_of(st.none(), st.sampled_from([1.5, 1.6, 1.7]))
+TIMES = st.lists(st.sampled_from([1.0, 2.0, 3.0, 4.0]), unique=True).map(lambda times_s: tuple(sorted(times_s)))
+FIELDS = st.fixed_dictionaries({"aids": WORDS, "height_m": NUMBERS, "is_kept": st.booleans(), "left_out_s.left": TIMES})
+ASKED = ("aids", "height_m", "is_kept")
+
+
+@given(FIELDS, FIELDS, FIELDS)
+def test_what_one_side_alone_changed_stands_and_what_both_changed_otherwise_is_contested(
+    upon: Values, mine: Values, theirs: Values
+) -> None:
+    merge = three_way(upon, mine, theirs)
+    for field in ASKED:
+        is_mine, is_theirs = mine[field] != upon[field], theirs[field] != upon[field]
+        assert (field in merge.contested) is (is_mine and is_theirs and mine[field] != theirs[field])
+        assert (field in merge.theirs_only) is (is_theirs and not is_mine)
+        if field not in merge.contested:
+            assert merge.merged[field] == (mine if is_mine else theirs)[field]
+        else:
+            assert merge.merged[field] == theirs[field]
+
+
+@given(FIELDS, FIELDS, FIELDS)
+def test_a_stride_that_either_side_left_out_or_took_in_is_left_out_or_taken_in(
+    upon: Values, mine: Values, theirs: Values
+) -> None:
+    before, own, other, merged = (
+        set(one["left_out_s.left"])  # type: ignore[arg-type]  # a tuple, as the strategy has it
+        for one in (upon, mine, theirs, three_way(upon, mine, theirs).merged)
+    )
+    assert merged >= (own - before) | (other - before)
+    assert not merged & ((before - own) | (before - other))
+    assert merged <= before | own | other
+
+
+@given(FIELDS, FIELDS, FIELDS)
+def test_it_is_the_same_from_either_side(upon: Values, mine: Values, theirs: Values) -> None:
+    here, there = three_way(upon, mine, theirs), three_way(upon, theirs, mine)
+    assert set(here.contested) == set(there.contested)
+    for field in upon:
+        if field not in here.contested:
+            assert here.merged[field] == there.merged[field]
+
+
+@given(FIELDS, FIELDS)
+def test_equal_edits_are_no_conflict_and_no_news(upon: Values, both: Values) -> None:
+    merge = three_way(upon, both, both)
+    assert (merge.merged, merge.contested, merge.theirs_only) == (both, (), ())
+
+
+@given(FIELDS, FIELDS, FIELDS)
+def test_what_was_said_since_is_neither_lost_nor_said_upon_what_was_never_shown(
+    sent: Values, said: Values, held: Values
+) -> None:
+    shown, still_said = rebased(sent, said, held)
+    for field in sent:
+        if said[field] != sent[field]:
+            assert still_said[field] == said[field]
+            assert shown[field] in (sent[field], said[field])
+        else:
+            assert still_said[field] == shown[field] == held[field]
+
+
+def test_a_side_is_one_word_of_two_columns() -> None:
+    """Else one station's affected side could stand beside the other's prosthetic one."""
+    upon = patient_fields(Patient(affected_side="left", prosthetic_side="none"))
+    mine = patient_fields(Patient(affected_side="right", prosthetic_side="none"))
+    theirs = patient_fields(Patient(affected_side="none", prosthetic_side="left"))
+    assert three_way(upon, mine, theirs).contested == ("sides",)
+
+
+def test_fields_and_back_are_the_same() -> None:
+    patient = Patient("P-1", 1970, "female", 1.7, 60.0, "knee", "stick", "none", "both", {"x": 1})
+    assert with_patient_fields(Patient(unknown={"x": 1}), patient_fields(patient)) == patient
+    told = Session((), surface="grass", zero_rad={Joint.LEFT_KNEE: 0.0}, turned_sign={Joint.LEFT_ANKLE: -1})
+    limits = Limits(frozenset({Side.LEFT}), cannot_stand=True)
+    values = session_fields(told, "words", limits)
+    assert with_session_fields(Session(()), "", Limits(), values) == (told, "words", limits)
+    walk = Recording("walk 1", RecordingKind.WALKING, "", {}, left_out_s={Side.LEFT: (1.0, 2.0)}, note="slow")
+    blank = Recording("walk 1", RecordingKind.STANDING, "", {})
+    assert with_recording_fields(blank, recording_fields(walk)) == walk

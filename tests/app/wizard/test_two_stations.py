@@ -1,0 +1,332 @@
+"""Two stations edit the same patient, session and walk: both versions are shown, and what is chosen holds."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtTest import QTest
+from pytestqt.qtbot import QtBot
+
+from app.storage.edited_fields import patient_fields, recording_fields, session_fields
+from app.storage.library import Library
+from app.storage.opened import open_library
+from app.storage.stored import BEGINNING, Limits, PlacedSensor
+from app.storage.three_way import Value
+from app.wizard.edit_dialog import EditDialog
+from app.wizard.recordings import SessionRecording
+from app.wizard.report.step import ReportStep
+from app.wizard.results.stride_choice import StrideChoice
+from app.wizard.visit import Visit
+from app.wizard.wizard import SENSORS, Wizard
+from app.workers.library_controller import LibraryController
+from core.body import Joint, Side, Site
+from core.samples import Patient, Recording, RecordingKind, SensorInfo, Session
+from tests.app.wizard.conftest import PASSPHRASE
+
+WAIT_MS = 20_000
+TOLD = Patient("DEMO-9", 1966, height_m=1.68, aids="stick")
+WALK = Recording("walk 1", RecordingKind.WALKING, "walk_1", {}, condition="shoes")
+WORN = {Site.LEFT_THIGH: PlacedSensor("A", SensorInfo()), Site.RIGHT_THIGH: PlacedSensor("B", SensorInfo())}
+
+
+class OtherStation:
+    """Another computer with the same library, one patient, session and walk in it."""
+
+    def __init__(self, library: Library) -> None:
+        self.library = library
+        self.patient = library.patients.create(TOLD)
+        visit = library.sessions.create(self.patient.id, Session(()))
+        library.sessions.place(visit.id, WORN)
+        self.session_id = visit.id
+        self.walk_id = library.recordings.start(visit.id, WALK, is_simulated=True).id
+
+    def say_of_patient(self, **told: Value) -> None:
+        upon = patient_fields(self.library.patients.get(self.patient.id).details)
+        self.library.edits.patient(self.patient.id, upon, upon | told)
+
+    def say_of_session(self, told: dict[str, Value]) -> None:
+        visit = self.library.sessions.get(self.session_id)
+        upon = session_fields(visit.details, visit.comment, visit.limits)
+        self.library.edits.session(self.session_id, upon, upon | told)
+
+    def say_of_walk(self, told: dict[str, Value]) -> None:
+        upon = recording_fields(self.walk)
+        self.library.edits.recording(self.walk_id, upon, upon | told)
+
+    @property
+    def told(self) -> Patient:
+        return self.library.patients.get(self.patient.id).details
+
+    @property
+    def walk(self) -> Recording:
+        stored = self.library.recordings.find(self.walk_id)
+        assert stored is not None
+        return stored.details
+
+    def history(self) -> list[tuple[str, object, object, bool]]:
+        """Field, old and new value of each change, oldest first, and whether it was taken back."""
+        return [
+            (change.field, change.old, change.new, one.is_undone)
+            for one in reversed(self.library.corrections.of_patient(self.patient.id))
+            for change in one.changes
+        ]
+
+    def refuse_broken_audit(self) -> None:
+        assert self.library.audit.verify(BEGINNING).faults == ()
+
+
+@pytest.fixture
+def other(controller: LibraryController, tmp_path: Path) -> Iterator[OtherStation]:
+    with open_library(tmp_path / "library", PASSPHRASE) as opened:
+        yield OtherStation(opened.library)
+
+
+@pytest.fixture
+def ours(qtbot: QtBot, wizard: Wizard, other: OtherStation) -> Visit:
+    """The session at our station, in the wizard, with the walk as it would have been read."""
+    wizard.show_session(other.session_id)
+    visit = wizard.visit
+    assert visit is not None
+    qtbot.waitUntil(lambda: visit.session is not None, timeout=WAIT_MS)
+    stored = other.library.recordings.find(other.walk_id)
+    assert stored is not None
+    assert visit.session is not None
+    visit.recordings.take_over(visit.session, (SessionRecording(stored),))  # it has no journal
+    return visit
+
+
+class Ear:
+    """Hears what the wizard says in its banner."""
+
+    def __init__(self, visit: Visit) -> None:
+        self.heard: list[str] = []
+        visit.merged.connect(self.hear)
+        visit.refused.connect(self.hear)
+
+    def hear(self, what: str, then: str) -> None:
+        self.heard.append(f"{what} {then}")
+
+
+def dialog_of(qtbot: QtBot, wizard: Wizard) -> EditDialog:
+    qtbot.waitUntil(lambda: wizard.asked.dialog is not None, timeout=WAIT_MS)
+    assert wizard.asked.dialog is not None
+    return wizard.asked.dialog
+
+
+def answer(dialog: EditDialog, *keys: Qt.Key) -> None:
+    for key in keys:
+        QTest.keyClick(dialog.focusWidget(), key)
+
+
+def settle(qtbot: QtBot, visit: Visit, other: OtherStation, is_so: Callable[[], bool]) -> None:
+    """Wait until the library holds it and nothing is asked any more."""
+    qtbot.waitUntil(lambda: is_so() and not visit.is_asking, timeout=WAIT_MS)
+    other.refuse_broken_audit()
+
+
+@pytest.mark.parametrize("is_ours", [True, False])
+def test_a_height_typed_at_both_stations_is_asked_about_and_what_is_chosen_holds(
+    qtbot: QtBot, wizard: Wizard, ours: Visit, other: OtherStation, is_ours: bool
+) -> None:
+    ear = Ear(ours)
+    other.say_of_patient(height_m=1.80)
+    ours.patient.edit(replace(ours.patient.details, height_m=1.82, mass_kg=70.0))
+    ours.patient.commit()
+    dialog = dialog_of(qtbot, wizard)
+    ((mine, theirs),) = dialog.cells
+    assert (mine.value, mine.whose, theirs.value) == ("182 cm", "Yours", "180 cm")
+    assert theirs.whose.startswith("Theirs: H. Keller, today ")
+    assert (other.told.height_m, other.told.mass_kg) == (1.80, 70.0)
+    answer(dialog, Qt.Key.Key_Left if is_ours else Qt.Key.Key_Right, Qt.Key.Key_Return)
+    chosen = 1.82 if is_ours else 1.80
+    settle(qtbot, ours, other, lambda: other.told.height_m == chosen == ours.patient.details.height_m)
+    expected: list[tuple[str, object, object, bool]] = [
+        ("height_m", 1.68, 1.80, False),
+        ("mass_kg", None, 70.0, False),
+        ("height_m", 1.80, 1.82, True),
+        ("height_m", 1.82, 1.80, False),
+    ]
+    assert other.history() == expected + [("height_m", 1.80, 1.82, False)] * is_ours
+    assert ear.heard == []  # what is asked about is not told as saved as well
+
+
+def test_other_fields_of_a_patient_are_merged_without_a_question_and_told(
+    qtbot: QtBot, wizard: Wizard, ours: Visit, other: OtherStation
+) -> None:
+    ear = Ear(ours)
+    other.say_of_patient(height_m=1.80)
+    ours.patient.edit(replace(ours.patient.details, aids="frame"))
+    ours.patient.commit()
+    qtbot.waitUntil(lambda: bool(ear.heard), timeout=WAIT_MS)
+    (heard,) = ear.heard
+    assert heard.startswith(
+        "Saved. DEMO-9 was also changed at another station meanwhile. Height: 180 cm (H. Keller, today "
+    )
+    assert wizard.asked.dialog is None
+    assert (other.told.height_m, other.told.aids) == (1.80, "frame")
+    assert ours.patient.details == other.told
+
+
+def test_what_nobody_else_changed_is_saved_without_a_word(
+    qtbot: QtBot, wizard: Wizard, ours: Visit, other: OtherStation
+) -> None:
+    ear = Ear(ours)
+    other.say_of_patient(height_m=1.80)
+    ours.patient.edit(replace(ours.patient.details, height_m=1.80))  # the same at both
+    ours.patient.commit()
+    ours.set_turned(Joint.LEFT_KNEE, -1)
+    ours.set_comment("Limps.", "")
+    ours.set_zero(Joint.LEFT_KNEE, 0.1)
+    other_sessions, session_id = other.library.sessions, other.session_id
+    settle(qtbot, ours, other, lambda: bool(other_sessions.get(session_id).details.zero_rad))
+    qtbot.waitUntil(lambda: ours.patient.is_saved, timeout=WAIT_MS)
+    assert ear.heard == []
+    assert wizard.asked.dialog is None
+
+
+def test_going_on_from_the_patient_waits_for_the_answer(qtbot: QtBot, wizard: Wizard, other: OtherStation) -> None:
+    wizard.begin(other.patient)
+    visit = wizard.visit
+    assert visit is not None
+    qtbot.waitUntil(lambda: visit.patient.is_saved, timeout=WAIT_MS)
+    other.say_of_patient(height_m=1.80)
+    visit.patient.edit(replace(visit.patient.details, height_m=1.82))
+    wizard.press_primary()
+    dialog = dialog_of(qtbot, wizard)
+    assert wizard.step_number != SENSORS
+    answer(dialog, Qt.Key.Key_Escape)
+    qtbot.waitUntil(lambda: wizard.step_number == SENSORS, timeout=WAIT_MS)
+    assert other.told.height_m == 1.80
+
+
+def test_words_of_the_report_typed_at_both_stations_are_asked_about(
+    qtbot: QtBot, wizard: Wizard, ours: Visit, other: OtherStation
+) -> None:
+    step = wizard.steps[-1]
+    assert isinstance(step, ReportStep)
+    wizard.shell.add_page(wizard.steps.index(step), step.page)
+    report = step.page.report
+    other.say_of_session({"comment": "The left foot drags."})
+    report.comment.setPlainText("Keep alignment C.")
+    report.flush()
+    dialog = dialog_of(qtbot, wizard)
+    assert [cell.value for cell in dialog.cells[0]] == ["Keep alignment C.", "The left foot drags."]
+    qtbot.waitUntil(lambda: report.comment.toPlainText() == "The left foot drags.", timeout=WAIT_MS)
+    answer(dialog, Qt.Key.Key_Left, Qt.Key.Key_Return)
+    sessions, session_id = other.library.sessions, other.session_id
+    settle(qtbot, ours, other, lambda: sessions.get(session_id).comment == "Keep alignment C.")
+    qtbot.waitUntil(lambda: report.comment.toPlainText() == "Keep alignment C.", timeout=WAIT_MS)
+    assert ("comment", "", "The left foot drags.", False) in other.history()
+
+
+def test_a_sign_turned_here_and_confirmed_there_is_asked_about_and_other_joints_are_not_touched(
+    qtbot: QtBot, wizard: Wizard, ours: Visit, other: OtherStation
+) -> None:
+    other.say_of_session(
+        {"turned_sign.left_knee": 1, "turned_sign.right_knee": -1, "zero_rad.left_ankle": np.deg2rad(5)}
+    )
+    ours.set_turned(Joint.LEFT_KNEE, -1)
+    dialog = dialog_of(qtbot, wizard)
+    assert [cell.value for cell in dialog.cells[0]] == ["turned by hand", "confirmed by hand"]
+    answer(dialog, Qt.Key.Key_Left, Qt.Key.Key_Return)
+    sessions, session_id = other.library.sessions, other.session_id
+    wanted = {Joint.LEFT_KNEE: -1, Joint.RIGHT_KNEE: -1}
+    settle(qtbot, ours, other, lambda: sessions.get(session_id).details.turned_sign == wanted)
+    assert sessions.get(session_id).details.zero_rad == {Joint.LEFT_ANKLE: np.deg2rad(5)}
+    qtbot.waitUntil(lambda: ours.details.turned_sign == wanted, timeout=WAIT_MS)
+
+
+def test_a_limit_said_here_does_not_take_back_one_said_there(qtbot: QtBot, ours: Visit, other: OtherStation) -> None:
+    other.say_of_session({"without_ankle.left": True})
+    ours.set_limits(replace(ours.limits, cannot_stand=True))
+    wanted = Limits(frozenset({Side.LEFT}), cannot_stand=True)
+    sessions, session_id = other.library.sessions, other.session_id
+    settle(qtbot, ours, other, lambda: sessions.get(session_id).limits == wanted == ours.limits)
+
+
+def test_a_condition_typed_at_both_stations_is_asked_about_and_a_further_change_asks_again(
+    qtbot: QtBot, wizard: Wizard, ours: Visit, other: OtherStation
+) -> None:
+    other.say_of_walk({"condition": "AFO"})
+    (walk,) = ours.recordings.walks
+    ours.recordings.change(walk, lambda told: replace(told, condition="barefoot"))
+    dialog = dialog_of(qtbot, wizard)
+    assert [cell.value for cell in dialog.cells[0]] == ["barefoot", "AFO"]
+    other.say_of_walk({"condition": "stick"})
+    answer(dialog, Qt.Key.Key_Left, Qt.Key.Key_Return)
+    qtbot.waitUntil(lambda: wizard.asked.dialog not in (None, dialog), timeout=WAIT_MS)
+    again = dialog_of(qtbot, wizard)
+    assert [cell.value for cell in again.cells[0]] == ["barefoot", "stick"]
+    answer(again, Qt.Key.Key_Left, Qt.Key.Key_Return)
+    settle(qtbot, ours, other, lambda: other.walk.condition == "barefoot")
+
+
+def test_strides_left_out_at_both_stations_are_all_left_out(qtbot: QtBot, ours: Visit, other: OtherStation) -> None:
+    ear = Ear(ours)
+    other.say_of_walk({"left_out_s.left": (4.0,)})
+    (walk,) = ours.recordings.walks
+    ours.recordings.change(walk, lambda told: replace(told, left_out_s={Side.LEFT: (7.0,)}))
+    settle(qtbot, ours, other, lambda: other.walk.left_out_s == {Side.LEFT: (4.0, 7.0)})
+    qtbot.waitUntil(lambda: bool(ear.heard), timeout=WAIT_MS)
+    assert "Strides left out, left: 2 strides: 4.0 s, 7.0 s" in ear.heard[0]
+    choice = StrideChoice(ours.recordings, ours)
+    choice.take_all_in("walk 1")
+    settle(qtbot, ours, other, lambda: other.walk.left_out_s == {})
+
+
+def test_taking_back_what_was_left_out_here_leaves_out_what_was_left_out_there(
+    qtbot: QtBot, ours: Visit, other: OtherStation
+) -> None:
+    undos: list[Callable[[], None]] = []
+    choice = StrideChoice(ours.recordings, ours)
+    choice.offered.connect(lambda _words, undo: undos.append(undo))
+    ours.recordings.change(ours.recordings.walks[0], lambda told: replace(told, left_out_s={Side.LEFT: (7.0,)}))
+    choice.take_all_in("walk 1")
+    other.say_of_walk({"left_out_s.right": (4.0,)})
+    undos[0]()
+    wanted = {Side.LEFT: (7.0,), Side.RIGHT: (4.0,)}
+    settle(qtbot, ours, other, lambda: other.walk.left_out_s == wanted)
+
+
+def test_sides_swapped_at_both_stations_are_swapped_once_and_taken_back_once(
+    qtbot: QtBot, ours: Visit, other: OtherStation
+) -> None:
+    swapped = {Site.LEFT_THIGH: WORN[Site.RIGHT_THIGH], Site.RIGHT_THIGH: WORN[Site.LEFT_THIGH]}
+    seen = {walk.id: walk.stored.placement.id for walk in ours.recordings.walks if walk.stored.placement}
+    other.library.edits.placement(other.session_id, seen, [([other.walk_id], swapped)])
+
+    def worn() -> object:
+        stored = other.library.recordings.find(other.walk_id)
+        return stored.placement.sensors if stored is not None and stored.placement is not None else None
+
+    with qtbot.waitSignal(ours.recordings.changed, timeout=WAIT_MS):
+        ours.swap_sides()
+    assert worn() == swapped
+
+
+def test_nothing_is_asked_while_the_window_is_locked_and_all_of_it_after(
+    qtbot: QtBot, wizard: Wizard, ours: Visit, other: OtherStation
+) -> None:
+    other.say_of_patient(height_m=1.80)
+    ours.patient.edit(replace(ours.patient.details, height_m=1.82))
+    ours.patient.commit()
+    dialog_of(qtbot, wizard)
+    wizard.asked.cover(is_covered=True)
+    assert wizard.asked.dialog is None
+    assert ours.is_asking
+    wizard.asked.cover(is_covered=False)
+    answer(dialog_of(qtbot, wizard), Qt.Key.Key_Left, Qt.Key.Key_Return)
+    settle(qtbot, ours, other, lambda: other.told.height_m == 1.82)
+
+
+def test_what_is_refused_by_another_station_after_the_visit_was_left_is_still_asked(
+    qtbot: QtBot, wizard: Wizard, ours: Visit, other: OtherStation
+) -> None:
+    other.say_of_patient(height_m=1.80)
+    ours.patient.edit(replace(ours.patient.details, height_m=1.82))
+    wizard.leave()  # which saves
+    answer(dialog_of(qtbot, wizard), Qt.Key.Key_Left, Qt.Key.Key_Return)
+    qtbot.waitUntil(lambda: other.told.height_m == 1.82, timeout=WAIT_MS)

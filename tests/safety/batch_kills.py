@@ -1,0 +1,207 @@
+"""T17: does a batch whose workers are killed every few seconds give what it gives undisturbed, each once?
+
+    python -m tests.safety.batch_kills --stand-ins 100000 --sessions 1000
+
+Numbers that stand in for sessions, then sessions, are done in this process, by a pool of processes and by a Dask
+cluster of this computer. Of the pool and of the cluster a worker is killed every `--every` seconds. What comes of all
+three has to be equal by hash: of the numbers each result, once; of the sessions every file and the table.
+"""
+
+import argparse
+import hashlib
+import os
+import random
+import signal
+import tempfile
+import threading
+import time
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from app.batch.executors import MOST_TRIES, PRELOADED, ProcessExecutor, of_a_cluster, of_this_computer
+from app.batch.spread import Workers, finished
+from tests.app.batch_stand_ins import StandIn, digest_of
+
+WORKERS = 2
+
+
+@dataclass(slots=True)
+class BatchKills:
+    """What was done, how often it was killed, how long it took, and what is not as it should be."""
+
+    kills: dict[str, int] = field(default_factory=dict)
+    took_s: dict[str, float] = field(default_factory=dict)
+    hashes: dict[str, str] = field(default_factory=dict)
+    faults: list[str] = field(default_factory=list)
+
+    def lines(self) -> Iterator[str]:
+        for name, digest in self.hashes.items():
+            kills = f"{self.kills[name]} workers killed, " if name in self.kills else ""
+            yield f"{name}: {kills}{self.took_s[name]:.1f} s, {digest[:16]}"
+        yield f"{len(self.faults)} faults"
+        yield from (f"- {fault}" for fault in self.faults)
+
+
+class Killer:
+    """Kills one of the workers every few seconds, until it is let go."""
+
+    def __init__(self, pids: Callable[[], tuple[int, ...]], every_s: float, seed: int) -> None:
+        self.kills = 0
+        self._pids, self._every_s, self._rng = pids, every_s, random.Random(seed)
+        self._ends = threading.Event()
+        self._thread = threading.Thread(target=self._kill, name="killer")
+
+    def __enter__(self) -> "Killer":
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._ends.set()
+        self._thread.join()
+
+    def _kill(self) -> None:
+        while not self._ends.wait(self._every_s):
+            if pids := self._pids():
+                with suppress(ProcessLookupError):  # it ended by itself just now
+                    os.kill(self._rng.choice(pids), signal.SIGKILL)
+                    self.kills += 1
+
+
+@contextmanager
+def killed_pool(every_s: float, seed: int) -> Iterator[tuple[Workers, Killer]]:
+    executor = ProcessExecutor(WORKERS, PRELOADED)
+    with Killer(executor.pids, every_s, seed) as killer:
+        yield Workers(executor, lambda: WORKERS, MOST_TRIES), killer
+    executor.shutdown()
+
+
+@contextmanager
+def killed_cluster(every_s: float, seed: int) -> Iterator[tuple[Workers, Killer]]:
+    with local_cluster() as cluster:
+
+        def pids() -> tuple[int, ...]:
+            nannies = list(cluster.workers.values())
+            return tuple(nanny.process.pid for nanny in nannies if nanny.process is not None and nanny.process.pid)
+
+        with of_a_cluster(cluster.scheduler_address) as workers, Killer(pids, every_s, seed) as killer:
+            yield workers, killer
+
+
+@contextmanager
+def local_cluster() -> Iterator[Any]:
+    """A Dask cluster of two processes on this computer, which nobody else reaches and which shows no page."""
+    import dask
+    from distributed import LocalCluster
+
+    # a cluster on one computer gives up a worker that is not back in 15 s: on a busy machine it is killed before that
+    with (
+        dask.config.set({"distributed.deploy.lost-worker-timeout": "1 hour"}),
+        LocalCluster(
+            n_workers=WORKERS, threads_per_worker=1, processes=True, dashboard_address=None, host="127.0.0.1"
+        ) as cluster,
+    ):
+        yield cluster
+
+
+@contextmanager
+def undisturbed() -> Iterator[tuple[Workers, None]]:
+    with of_this_computer(1) as workers:
+        yield workers, None
+
+
+def stand_ins(count: int, every_s: float, rounds: int, wanted: str, found: BatchKills) -> None:
+    """Do so many numbers in three ways."""
+    for name, some in ways(every_s, wanted).items():
+        with some as (workers, killer):
+            began_s = time.perf_counter()
+            given = (StandIn(number, rounds=rounds) for number in range(count))
+            results = [(task.number, result) for task, result in finished(digest_of, given, workers)]
+            note(found, f"{count} stand-ins, {name}", began_s, killer)
+        times = Counter(Counter(number for number, _ in results).values())
+        if times != {1: count}:
+            found.faults.append(f"{name}: so many numbers came so often: {dict(times)}")
+        failed = [number for number, result in results if isinstance(result, Exception)]
+        if failed:
+            found.faults.append(f"{name}: {len(failed)} numbers failed")
+        found.hashes[f"{count} stand-ins, {name}"] = hashlib.sha256(repr(sorted(results)).encode()).hexdigest()
+    compare(found)
+
+
+def sessions(folder: Path, count: int, every_s: float, wanted: str, found: BatchKills) -> None:
+    """Do so many sessions in three ways; each is another session."""
+    # here, not above: each worker begins with this module, and is killed soon
+    from app.analysed_folder import AnalysisChoices
+    from app.batch.done import batch_at
+    from app.batch.run import Batch
+    from app.batch.sources import SessionFolders
+    from core.results import Method
+    from tests.app.batch_material import results_in, write_swinging
+
+    choices = AnalysisChoices(Method.ROBUST, 2.0, has_report=False, has_log=False)
+    write_swinging(folder / "in", count, most_patients=max(1, count // 3))
+    for name, some in ways(every_s, wanted).items():
+        out = folder / name
+        with some as (workers, killer), batch_at(out) as batch:
+            began_s = time.perf_counter()
+            work = Batch(SessionFolders(folder / "in", out), batch, choices)
+            work.run(workers, _nobody_looks)
+            note(found, f"{count} sessions, {name}", began_s, killer)
+        if (work.result.analysed, work.result.rows) != (count, 3 * count):
+            found.faults.append(f"{name}: {work.result}")
+        found.hashes[f"{count} sessions, {name}"] = digest_in(results_in(out))
+    compare(found)
+
+
+def ways(every_s: float, wanted: str) -> dict[str, Any]:
+    known = {"serial": undisturbed(), "pool": killed_pool(every_s, 1), "dask": killed_cluster(every_s, 2)}
+    return {name: known[name] for name in wanted.split(",")}
+
+
+def note(found: BatchKills, name: str, began_s: float, killer: Killer | None) -> None:
+    found.took_s[name] = time.perf_counter() - began_s
+    if killer is not None:
+        found.kills[name] = killer.kills
+
+
+def compare(found: BatchKills) -> None:
+    by_kind: dict[str, set[str]] = {}
+    for name, digest in found.hashes.items():
+        by_kind.setdefault(name.rpartition(",")[0], set()).add(digest)
+    found.faults += [f"{kind}: the ways differ" for kind, digests in by_kind.items() if len(digests) > 1]
+
+
+def digest_in(files: Mapping[str, bytes]) -> str:
+    """Of all names and contents."""
+    whole = hashlib.sha256()
+    for name, content in files.items():
+        whole.update(f"{name} {len(content)}\0".encode() + content)
+    return whole.hexdigest()
+
+
+def _nobody_looks(_share: float, _what: str) -> None:
+    """Report to nobody."""
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--stand-ins", type=int, default=100_000)
+    parser.add_argument("--rounds", type=int, default=500, help="of a stand-in: how much work each is")
+    parser.add_argument("--sessions", type=int, default=1000)
+    parser.add_argument("--ways", default="serial,pool,dask")
+    parser.add_argument("--every", type=float, default=5.0, metavar="S", help="between two kills")
+    wanted, found = parser.parse_args(), BatchKills()
+    if wanted.stand_ins:
+        stand_ins(wanted.stand_ins, wanted.every, wanted.rounds, wanted.ways, found)
+    if wanted.sessions:
+        with tempfile.TemporaryDirectory() as folder:
+            sessions(Path(folder), wanted.sessions, wanted.every, wanted.ways, found)
+    print(*found.lines(), sep="\n")
+    raise SystemExit(bool(found.faults))
+
+
+if __name__ == "__main__":
+    main()
