@@ -1,5 +1,6 @@
 """Who opens the library? The pages before it is open and over it, and what the controller answers them."""
 
+import os
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -9,14 +10,15 @@ from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QWidget
 
 from app.pages.first_start_page import FirstStartPage
+from app.pages.join_page import JoinPage
 from app.pages.log_in_page import LogInPage
 from app.settings import Settings
-from app.storage.layout import KEYS
+from app.storage.layout import DATABASE_VARIABLE, KEYS
 from app.theme import ThemeNotifier
 from app.widgets.start_pages import WorkingPage
 from app.wording import tr
 from app.workers.library_controller import LibraryController
-from app.workers.library_state import LibraryPlace, OpenedState
+from app.workers.library_state import Joined, LibraryPlace, OpenedState
 
 if TYPE_CHECKING:
     from app.home.key_sheet import KeySheet
@@ -48,13 +50,14 @@ class Entry(QObject):
         self._sheet: KeySheet | None = None
         self.first_start = FirstStartPage(look, SHORTEST, _is_same_key)
         self.log_in = LogInPage(look, SHORTEST)
+        self.join = JoinPage(look)
         self.waiting = WorkingPage(look)
         self.waiting.stop.hide()
         self._connect()
 
     @property
     def pages(self) -> tuple[QWidget, ...]:
-        return (self.first_start, self.log_in, self.waiting)
+        return (self.first_start, self.log_in, self.join, self.waiting)
 
     @property
     def is_covering(self) -> bool:
@@ -67,10 +70,14 @@ class Entry(QObject):
     def begin(self) -> None:
         """Show the page that comes first: where there is no library yet, how to make one.
 
-        One that was opened here before is missing, rather than to be made: its disk may not be connected.
+        One that was opened here before is missing, rather than to be made: its disk may not be connected. Where the
+        environment names the clinic's server, its library is joined.
         """
         self._new, self._key, self._cover_of, self._tried = None, "", "", ""
         if not (self._folder / KEYS).exists():
+            if os.environ.get(DATABASE_VARIABLE):
+                self._join_by_itself()
+                return
             if self._settings.latest_library == str(self._folder):
                 from app.storage.root import count_sheltered  # rarely needed
 
@@ -81,6 +88,7 @@ class Entry(QObject):
             return
         self.log_in.forget_typed()
         self.log_in.show_operators(())
+        self.log_in.show_library("")
         self._show(self.log_in)
         self._controller.look(self._folder, self._on_looked, self._on_look_failed, self)
 
@@ -112,15 +120,15 @@ class Entry(QObject):
         self._controller.open_demonstration()
 
     def focus(self, page: QWidget) -> None:
-        if isinstance(page, FirstStartPage | LogInPage):
+        if isinstance(page, FirstStartPage | LogInPage | JoinPage):
             page.focus()
 
     def tell(self, what: str, remedy: str) -> None:
-        for page in (self.first_start, self.log_in):
+        for page in (self.first_start, self.log_in, self.join):
             page.banner.tell(what, remedy)
 
     def _show(self, page: QWidget) -> None:
-        for one in (self.first_start, self.log_in):
+        for one in (self.first_start, self.log_in, self.join):
             one.banner.hide()
         self.shown.emit(page)
 
@@ -134,18 +142,25 @@ class Entry(QObject):
         first.put_off.connect(self._enter)
         first.print_wished.connect(self._on_print_wished)
         first.save_wished.connect(self._on_save_wished)
+        first.join_wished.connect(self._on_join_wished)
+        self.join.joined.connect(self._on_server_named)
+        self.join.again_wished.connect(self._join_by_itself)
+        self.join.left.connect(self.begin)
         log_in.opened.connect(self._on_open_wished)
         log_in.recovered.connect(self._on_recovery_wished)
         log_in.remembered.connect(self._on_remembered_wished)
+        log_in.away_wished.connect(self._on_away_wished)
         log_in.left.connect(self.left)
         controller.opened.connect(self._on_opened)
         controller.not_opened.connect(self._on_not_opened)
+        controller.can_work_away.connect(log_in.offer_away)
 
     def _on_looked(self, place: LibraryPlace) -> None:
         self._place = place
         latest = self._settings.latest_operator
         self.log_in.show_operators(place.codes, place.remembered, latest, can_remember=place.has_keyring)
         self._delay = place.delay
+        self.log_in.show_library(_library_in_words(place.server))
         if (left_s := self._left_s(self.log_in.code)) > 0:
             self.log_in.refuse(_too_many(), left_s)
         self.log_in.focus()
@@ -157,6 +172,42 @@ class Entry(QObject):
         self.look_again()
         if self.first_start.is_missing:
             self.tell(tr("The library is still missing."), tr("Connect its disk, or put its folder back."))
+
+    def _on_join_wished(self) -> None:
+        self.join.ask()
+        self._show(self.join)
+
+    def _on_server_named(self, address: str, password: str, place: str) -> None:
+        self.join.show_busy(True)
+        self._controller.join(self._folder, address, password, place, self._on_joined, self._on_join_refused, self)
+
+    def _on_joined(self, joined: Joined) -> None:
+        if joined.refusal is not None:
+            self.join.refuse(" ".join(joined.refusal), is_place=joined.is_place)
+            return
+        self.join.ask()  # nothing typed is kept
+        self.begin()
+
+    def _on_join_refused(self, what: str, remedy: str) -> None:
+        self.join.refuse(f"{what} {remedy}", is_place=False)
+
+    def _join_by_itself(self) -> None:
+        """Become a station of the library on the server that the environment names."""
+        self.waiting.begin(tr("Looking for the clinic's library"))
+        self._show(self.waiting)
+        self._controller.join(
+            self._folder, os.environ[DATABASE_VARIABLE], "", "", self._on_joined_by_itself, self._on_unreached, self
+        )
+
+    def _on_joined_by_itself(self, joined: Joined) -> None:
+        if joined.refusal is not None:
+            self._on_unreached(*joined.refusal)
+        else:
+            self.begin()
+
+    def _on_unreached(self, what: str, remedy: str) -> None:
+        self.join.show_trouble(f"{what} {remedy}")
+        self._show(self.join)
 
     def _on_made(self, code: str, name: str, passphrase: str) -> None:
         self.first_start.show_busy(True)
@@ -179,6 +230,11 @@ class Entry(QObject):
         self.log_in.show_busy(True)
         self._controller.open_remembered(self._folder, code)
 
+    def _on_away_wished(self, code: str, passphrase: str) -> None:
+        self._tried = code
+        self.log_in.show_busy(True)
+        self._controller.open_away(self._folder, passphrase, code, self._delay)
+
     def _on_recovery_wished(self, code: str, recovery_key: str, passphrase: str) -> None:
         self._tried = code
         self.log_in.show_busy(True)
@@ -193,6 +249,7 @@ class Entry(QObject):
         self.log_in.refuse(f"{what} {remedy}", self._left_s(self._tried))
 
     def _on_opened(self, state: OpenedState) -> None:
+        self._tried = ""
         self.log_in.forget_typed()
         self.first_start.show_busy(False)
         if not state.is_demonstration:
@@ -279,6 +336,15 @@ def _confirming(typed: str) -> "Callable[[OpenedLibrary], None]":
         slots_of(opened.folder).confirm_recovery_key(typed)
 
     return confirm
+
+
+def _library_in_words(server: str | None) -> str:
+    """Which library a clinic's is, without its user; nothing of one in a folder."""
+    if server is None:
+        return ""
+    if not server:
+        return tr("The clinic's library on this computer")
+    return tr("The clinic's library on {server}").format(server=server)
 
 
 def _too_many() -> str:

@@ -11,15 +11,19 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QColor, QKeySequence, QPainter, QPaintEvent, QResizeEvent, QShortcut
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QStackedWidget, QVBoxLayout, QWidget
 
+from app.home.analysing_again import AnalysingAgain
 from app.home.deleting import Deleting
 from app.home.entry import ADMINISTRATOR
 from app.home.importing import Importing
 from app.home.patient_reading import PatientReading, compute_courses, read_patient
+from app.home.questions import Questions
 from app.home.recovering import Recovering
 from app.home.settings_controller import SettingsController
 from app.icons import Icon
+from app.pages.analyse_again_page import AnalyseAgainPage
 from app.pages.home_page import HomePage
 from app.pages.import_page import ImportPage
+from app.pages.questions_page import QuestionsPage
 from app.pages.settings_page import SettingsPage
 from app.patient_words import patient_line, person
 from app.settings import Scheme, Settings
@@ -43,7 +47,7 @@ if TYPE_CHECKING:
 
 COMPACT_BELOW = (1180, 720)
 WIDE_FROM = 1800
-PATIENTS, DEMONSTRATION, IMPORT = range(3)
+PATIENTS, DEMONSTRATION, IMPORT, QUESTIONS = range(4)
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,11 +79,16 @@ class Home(Themed):
         self.banner = Banner(look)
         self.rollback_banner = Banner(look)
         self._rollback: Rollback | None = None
+        self.away_banner = Banner(look)
+        self.away_banner.acted.connect(self.own_library_wished)
+        controller.server_back.connect(self._on_server_back)
         self.rollback_banner.acted.connect(self._on_rollback_accepted)
         self.recovering = Recovering(controller, self.banner, self)
         self.page = HomePage(look)
         self.importing = Importing(look, controller, self)
         self._settings_controller: SettingsController | None = None
+        self._questions: Questions | None = None
+        self._again: AnalysingAgain | None = None
         self.working = WorkingPage(look)
         self.bar = ActionBar(look)
         self.toast = Toast(look, self)
@@ -94,21 +103,56 @@ class Home(Themed):
         """The settings, made when they are first asked for: beside the rest of home they would hold up the screen."""
         return self._settings_controller or self._make_settings()
 
+    @property
+    def questions(self) -> Questions:
+        """The questions over many sessions, made when they are first asked for, as the settings are."""
+        return self._questions or self._make_questions()
+
+    @property
+    def again(self) -> AnalysingAgain:
+        """What is analysed again, made when it is first asked for."""
+        if self._again is None:
+            made = self._again = AnalysingAgain(self._look, self._controller, self)
+            self._add_page(made.page)
+            made.changed.connect(self._show)
+            made.working.connect(self._work)
+            made.progressed.connect(self._on_progressed)
+            made.done.connect(self._on_analysed_again)
+            made.table_made.connect(self._on_table_made)
+        return self._again
+
     def prepare(self) -> bool:
         """Make the next part before somebody asks for it; whether there was one."""
-        if self._settings_controller is not None:
+        if self._settings_controller is None:
+            self._make_settings()
+        elif self._questions is None:
+            self._make_questions()
+        else:
             return False
-        self._make_settings()
         return True
+
+    def finish(self) -> None:
+        """Wait for what runs, when the window was closed."""
+        if self._questions is not None:
+            self._questions.finish()
 
     def _make_settings(self) -> SettingsController:
         made = self._settings_controller = SettingsController(self._look, self._controller, self._settings, self)
         self._add_page(made.page)
         made.told.connect(self.banner.tell)
         made.restored.connect(self.refresh)
+        made.moved.connect(self._on_moved)
         self.deleting.undone.connect(made.read_deleted)
         if self._state is not None:
             made.show_library(self._state)
+        return made
+
+    def _make_questions(self) -> Questions:
+        made = self._questions = Questions(self._look, self._settings, self)
+        self._add_page(made.page)
+        made.changed.connect(self._show)
+        made.told.connect(self.banner.tell)
+        self._fit()
         return made
 
     def show_library(self, state: OpenedState) -> None:
@@ -125,9 +169,36 @@ class Home(Themed):
                 tr("Look through the latest session."),
             )
         self._show_rollback(state)
+        self._show_away(state)
         self.recovering.begin(state)
         self.refresh()
         self._go_to(self.page)
+
+    def _show_away(self, state: OpenedState) -> None:
+        """Say that the clinic's server is not there, or what was brought to it from when it was not."""
+        self.away_banner.hide()
+        if state.is_away:
+            self.away_banner.tell(
+                tr("You work without the clinic's server."),
+                tr(
+                    "Sessions that begin now are kept on this computer, and are on the server at the first log in once "
+                    "it answers. Patients of the clinic are not shown, and are known again by their codes."
+                ),
+            )
+        elif state.brought_from_away:
+            said = tr_n(
+                "{count} session that was made without the clinic's server is on it now.",
+                "{count} sessions that were made without the clinic's server are on it now.",
+                state.brought_from_away,
+            )
+            self.away_banner.tell(said.format(count=state.brought_from_away))
+
+    def _on_server_back(self) -> None:
+        self.away_banner.tell(
+            tr("The clinic's server answers again."),
+            tr("Log in to it: what was recorded here is then there for all stations."),
+            tr("Log in to the server"),
+        )
 
     def _show_rollback(self, state: OpenedState) -> None:
         """Say that the library is an older state than this computer has seen, and let an administrator accept it."""
@@ -157,7 +228,11 @@ class Home(Themed):
     def clear(self) -> None:
         """Keep nothing of any patient, for whoever comes next."""
         self._state = None
+        if self._again is not None:
+            self._again.page.forget()
         self.importing.forget()
+        if self._questions is not None:
+            self._questions.forget()
         self._patients.clear()
         self._reading = None
         self.deleting.forget()
@@ -168,13 +243,18 @@ class Home(Themed):
         self.page.forget_patients()
         self.page.show_patient("", "")
 
+    def _on_moved(self, state: OpenedState) -> None:
+        self._state = state
+        self._show()
+        self.refresh()
+
     def refresh(self, chosen: UUID | None = None) -> None:
         """Read the patients anew, and choose one of them, else the one that was chosen."""
-        self._chosen = chosen or self.page.patient_id
+        self._chosen = chosen  # none: whoever is chosen once they are read
         self._controller.run(_patients_in, self._on_patients, self.banner.tell, self)
 
     def show_settings(self) -> None:
-        self.settings.read_deleted()
+        self.settings.read()
         self._go_to(self.settings.page)
 
     def escape(self) -> None:
@@ -188,7 +268,7 @@ class Home(Themed):
 
     def focus(self) -> None:
         page = self.current
-        if isinstance(page, HomePage | ImportPage | SettingsPage):
+        if isinstance(page, AnalyseAgainPage | HomePage | ImportPage | SettingsPage | QuestionsPage):
             page.focus()
 
     def paintEvent(self, _event: QPaintEvent) -> None:
@@ -204,6 +284,7 @@ class Home(Themed):
             self._add_page(page)
         self._banner_row = QVBoxLayout()
         self._banner_row.addWidget(self.rollback_banner)
+        self._banner_row.addWidget(self.away_banner)
         self._banner_row.addWidget(self.banner)
         column = QVBoxLayout()
         column.setSpacing(0)
@@ -233,12 +314,14 @@ class Home(Themed):
         page.demonstration_wished.connect(self.demonstration_wished)
         page.import_wished.connect(self._begin_import)
         page.computing_wished.connect(self._compute)
+        page.panel.analysing_wished.connect(self._begin_again)
         page.patient_deleted.connect(self._on_patient_deleted)
         page.session_deleted.connect(self.deleting.session)
         self.rail.step_pressed.connect(self._on_rail_pressed)
         self.rail.below_pressed.connect(self._on_below_pressed)
         self.bar.primary_pressed.connect(self._on_primary)
         self.bar.quiet_pressed.connect(self._on_quiet)
+        self.bar.other_pressed.connect(self._on_other)
         self.bar.back_pressed.connect(self._on_back)
         self.importing.page.code_changed.connect(self._show)
         self.importing.page.changed.connect(self._show)
@@ -257,6 +340,7 @@ class Home(Themed):
         for keys, slot in (
             ("Ctrl+F", self._on_find),
             ("Ctrl+N", self._on_new_patient),
+            ("Ctrl+S", self._on_save),
             ("Ctrl+Z", self.toast.undo),
             ("F1", self._on_help),
         ):
@@ -291,6 +375,8 @@ class Home(Themed):
         self.rail.set_form(form)
         self.page.set_room(width - form.value, is_compact=is_compact)
         self.importing.page.set_room(width - form.value)
+        if self._questions is not None:
+            self._questions.page.set_room(width - form.value)
         self.bar.show_state(self._bar())
         px = self._look.theme.px
         self.toast.move(px(form.value + 24), self.height() - self.bar.height() - self.toast.height() - px(16))
@@ -299,23 +385,25 @@ class Home(Themed):
         """Show what can be done from the page in sight."""
         current = self.current
         is_demonstration = self._state is not None and self._state.is_demonstration
-        states = [current is self.page, False, current is self.importing.page]
-        icons = (Icon.HOME, Icon.BACK if is_demonstration else Icon.PLAY, Icon.IMPORT)
+        states = [current is self.page, False, current is self.importing.page, self._is_asking]
+        icons = (Icon.HOME, Icon.BACK if is_demonstration else Icon.PLAY, Icon.IMPORT, Icon.GROUPS)
         names = (
             tr("Patients"),
             tr("Leave the demonstration") if is_demonstration else tr("Open demonstration"),
             tr("Import recordings"),
+            tr("Questions"),
         )
         rows = (
             RailRow(name, state=StepState.CURRENT if is_current else StepState.TODO, icon=icon)
             for name, is_current, icon in zip(names, states, icons, strict=True)
         )
         self.rail.show_rows(tuple(rows))
-        note = (
-            tr("Simulated, not encrypted, gone when it is closed.")
-            if is_demonstration
-            else tr("Everything stays on this computer, encrypted.")
-        )
+        is_shared = self._state is not None and self._state.library.shared is not None
+        note = tr("Everything stays on this computer, encrypted.")
+        if is_shared:
+            note = tr("The clinic's library, shared by its stations.")
+        elif is_demonstration:
+            note = tr("Simulated, not encrypted, gone when it is closed.")
         self.rail.show_below(home_below(can_lock=not is_demonstration), note)
         self.bar.show_state(self._bar())
         self.bar.setVisible(current is not self.working)
@@ -323,6 +411,10 @@ class Home(Themed):
     def _bar(self) -> BarState:
         if self.current is self.importing.page:
             return self.importing.bar
+        if self._is_asking:
+            return self.questions.bar
+        if self._is_again:
+            return self.again.bar
         if self.current is not self.page:
             return BarState()
         new = BarAction(tr("New patient"), tr("Ctrl N"), Icon.ADD)
@@ -335,6 +427,14 @@ class Home(Themed):
         begin = BarAction(words, tr("Enter"), Icon.PLAY)
         note = "" if self.rail.form is RailForm.COMPACT else tr("No session is running.")
         return BarState(begin, quiet=(new,), note=note, has_back=False)
+
+    @property
+    def _is_again(self) -> bool:
+        return self._again is not None and self.current is self._again.page
+
+    @property
+    def _is_asking(self) -> bool:
+        return self._questions is not None and self.current is self._questions.page
 
     @property
     def patient(self) -> "stored.StoredPatient | None":
@@ -361,7 +461,7 @@ class Home(Themed):
         self.page.show_patient(told.code, about)
         own = patient.id
         if own != self._sessions_of:  # what stands there is another patient's
-            self._sessions_of = own
+            self._sessions_of, self._reading = own, None
             self.page.forget_sessions()
 
         def read(opened: "OpenedLibrary") -> PatientReading:
@@ -372,6 +472,8 @@ class Home(Themed):
     def _on_sessions(self, reading: PatientReading) -> None:
         if reading.patient_id != self.page.patient_id:
             return  # another was chosen meanwhile
+        if reading == self._reading:
+            return  # somebody may be moving in what stands there
         now = datetime.datetime.now().astimezone()
         self._reading = reading
         self.page.show_sessions(reading.lines(now), reading.visits(now), reading.next_step(now))
@@ -406,14 +508,38 @@ class Home(Themed):
     def _on_primary(self) -> None:
         if self.current is self.importing.page:
             self.importing.take_in()
+        elif self._is_asking:
+            self.questions.save()
+        elif self._is_again:
+            self.again.analyse()
         elif self.current is self.page and self.patient is not None:
             self.session_wished.emit(self.patient)
 
     def _on_quiet(self, _number: int) -> None:
         if self.current is self.importing.page:
             self.importing.leave_out()
+        elif self._is_asking:
+            self._begin_again()
         else:
             self._on_new_patient()
+
+    def _on_other(self, _number: int) -> None:
+        if self._is_again:
+            self.again.choose_folder()
+
+    def _begin_again(self) -> None:
+        """Show which sessions can be analysed again: those of the patient, where home shows one."""
+        self.again.begin(self.page.patient_id if self.current is self.page else None)
+        self._go_to(self.again.page)
+        self.bar.back.setFocus()  # until the sessions are read
+
+    def _on_analysed_again(self, what: str, then: str) -> None:
+        self._go_to(self.again.page)
+        self.banner.tell(what, then)
+
+    def _on_table_made(self, path: Path) -> None:
+        self.questions.open(path)
+        self._go_to(self.questions.page)
 
     def _on_back(self) -> None:
         self.importing.forget()
@@ -427,8 +553,12 @@ class Home(Themed):
             self.page.focus()
             self.page.search.selectAll()
 
+    def _on_save(self) -> None:
+        if self._is_asking:
+            self.questions.save()
+
     def _on_help(self) -> None:
-        self.help_wished.emit("home")
+        self.help_wished.emit("questions" if self._is_asking else "home")
 
     def _on_rail_pressed(self, number: int) -> None:
         if self.current is self.working:
@@ -437,6 +567,9 @@ class Home(Themed):
             self._on_back()
         elif number == IMPORT:
             self._begin_import()
+        elif number == QUESTIONS:
+            self._go_to(self.questions.page)
+            self.questions.begin()
         elif self._state is not None and self._state.is_demonstration:
             self.own_library_wished.emit()
         else:
@@ -495,6 +628,8 @@ class Home(Themed):
             self._go_to(self.page)
             self.banner.tell(tr("This was stopped."), tr("The visits that were computed stay in the course."))
             self.refresh()
+        elif self._again is not None and self._again.is_working:
+            self._again.stop()
         else:
             self.importing.stop()
 

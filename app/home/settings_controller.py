@@ -10,6 +10,7 @@ from uuid import UUID
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QWidget
 
+from app.home.clinic_settings import ClinicSettings
 from app.home.entry import ADMINISTRATOR, SHORTEST
 from app.home.key_sheet import KeySheet
 from app.pages.settings_page import DeletedLine, OperatorLine, SettingsPage
@@ -17,7 +18,7 @@ from app.patient_words import person, when
 from app.settings import Scheme, Settings
 from app.storage.backup import back_up
 from app.storage.keys import KeyRefusedError, KeySlots
-from app.storage.layout import KEYS
+from app.storage.opened import slots_of
 from app.storage.operators import CLINIC
 from app.storage.stored import Operator, Role
 from app.theme import ThemeNotifier
@@ -39,6 +40,7 @@ VIEWER, CLINICIAN = "viewer", "clinician"  # as app.storage.stored has them
 class SettingsController(QObject):
     told = Signal(str, str)
     restored = Signal()  # something that was deleted
+    moved = Signal(object)  # OpenedState: the library is at a clinic's server now, or no longer
 
     def __init__(self, look: ThemeNotifier, controller: LibraryController, settings: Settings, parent: QWidget) -> None:
         super().__init__(parent)
@@ -46,6 +48,8 @@ class SettingsController(QObject):
         self._state: OpenedState | None = None
         self._backup_folder = ""
         self.page = SettingsPage(look, SHORTEST, tuple(_roles().items()))
+        self._clinic = ClinicSettings(controller, self.page)
+        self._clinic.moved.connect(self._on_moved)
         self._sheet = KeySheet(self.page)
         self._sheet.told.connect(self.told)
         self._show_screen()
@@ -54,19 +58,24 @@ class SettingsController(QObject):
     def show_library(self, state: OpenedState) -> None:
         """Show what the operator who is logged in may set."""
         self._state = state
-        is_own = not state.is_demonstration
-        may_write = is_own and state.operator.role.value != VIEWER
+        # what a station works with without its server has the clinic's keys and operators
+        is_own = not state.is_demonstration and not state.is_away
+        # a clinic's server is backed up there, with its own tools
+        may_back_up = is_own and state.operator.role.value != VIEWER and state.library.shared is None
         is_administrator = is_own and state.operator.role.value == ADMINISTRATOR
         may_restore = state.operator.role.value != VIEWER
         self.page.show_library(
             has_access=is_own,
-            has_backup=may_write,
+            has_backup=may_back_up,
             has_deleted=may_restore,
             has_operators=is_administrator,
+            is_station=state.library.shared is not None,
+            may_move=is_administrator and state.library.shared is None,
             own=(state.operator.code, state.operator.name),
         )
         self.page.renew.setVisible(is_administrator)
         self.page.choose_folder.setVisible(is_administrator)
+        self._clinic.show_library(state)
         self._show_screen()
         self._on_backup_folder_read("")  # the one in sight is another library's
         if is_own:
@@ -79,6 +88,15 @@ class SettingsController(QObject):
     def read_deleted(self) -> None:
         """Show what can be had back now."""
         self._controller.run(_deleted_in, self.page.show_deleted, self._on_refused, self)
+
+    def read(self) -> None:
+        """Show what may have changed since the settings were looked at last."""
+        self.read_deleted()
+        self._clinic.read_waiting()
+
+    def _on_moved(self, state: OpenedState) -> None:
+        self.show_library(state)
+        self.moved.emit(state)
 
     def _on_restore_wished(self, row_id: UUID, is_patient: bool) -> None:
         def restore(opened: "OpenedLibrary") -> None:
@@ -318,7 +336,7 @@ def _deleted_in(opened: "OpenedLibrary") -> tuple[DeletedLine, ...]:
 
 def _slots(opened: "OpenedLibrary") -> KeySlots:
     opened.refuse_gone()  # another library's keys may be in its place
-    return KeySlots(opened.folder / KEYS)
+    return slots_of(opened.folder)
 
 
 def _roles() -> dict[str, str]:

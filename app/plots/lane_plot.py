@@ -64,6 +64,8 @@ class DatedPlot(Themed):
         self._look = look
         self.visits: tuple[CourseVisit, ...] = ()
         self._number: int | None = None
+        self._places: list[float] = []
+        self._places_of: object = None  # what they were found for; a pointer that moves asks for all of them
         self.setMouseTracking(True)
 
     @property
@@ -80,13 +82,19 @@ class DatedPlot(Themed):
 
     def x_of(self, number: int) -> float:
         """The place of a visit: by its day, and beside one that is too near to be told from it."""
+        seen = (self.visits, self.width(), self._look.theme.scale)
+        if self._places_of != seen:
+            self._places_of, self._places = seen, self._found_places()
+        return self._places[number]
+
+    def _found_places(self) -> list[float]:
         plot, px = self.plot, self._look.theme.px
         days = np.array([visit.day.toordinal() for visit in self.visits], float)
         room, span = plot.width() - 2 * px(INSET), max(days[-1] - days[0], 1.0)
         steps = np.arange(len(days)) * min(px(APART), room / max(len(days) - 1, 1))
         by_day = room * (days - days[0]) / span if days[-1] > days[0] else (room - steps[-1:]) / 2 + steps
         places = np.minimum(np.maximum.accumulate(by_day - steps), room - steps[-1]) + steps
-        return float(plot.left() + px(INSET) + places[number])
+        return [float(place) for place in plot.left() + px(INSET) + places]
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
         if self.visits:

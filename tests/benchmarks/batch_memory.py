@@ -1,0 +1,96 @@
+"""Does the memory of a batch stay flat over a thousand sessions, in the process that leads it and in its workers?
+
+    python -m tests.benchmarks.batch_memory --sessions 1000
+
+Prints the resident memory of each, and of the processes that read the files, as the batch goes on; growth is told from
+the first tenth on, when all that is used is imported.
+"""
+
+import argparse
+import os
+import tempfile
+from collections import defaultdict
+from pathlib import Path
+
+from app.analysed_folder import AnalysisChoices
+from app.batch.done import batch_at
+from app.batch.executors import MOST_TRIES, PRELOADED, ProcessExecutor
+from app.batch.run import Batch
+from app.batch.sources import SessionFolders
+from app.batch.spread import Workers
+from core.results import Method
+from tests.benchmarks.batch_material import write_walks
+
+WORKERS, LINES = 2, 20
+
+
+class Watch:
+    """Notes the memory of this process, of its workers and of their children, whenever the batch says how far it is."""
+
+    def __init__(self, executor: ProcessExecutor, sessions: int) -> None:
+        self._executor, self._sessions, self._next = executor, sessions, 0
+        self.noted: list[tuple[int, float, float, float]] = []
+
+    def __call__(self, share: float, _what: str) -> None:
+        done = round(share * self._sessions)
+        if done < self._next:
+            return
+        self._next = done + max(1, self._sessions // LINES)
+        workers = self._executor.pids()
+        children = children_of_all()
+        readers = [child for worker in workers for child in children[worker]]
+        found = (memory_mib([os.getpid()]), memory_mib(workers), memory_mib(readers))
+        self.noted.append((done, *found))
+        print(
+            f"{done:5d} sessions: leads {found[0]:6.1f} MiB, works {found[1]:6.1f}, reads {found[2]:6.1f}", flush=True
+        )
+
+
+def memory_mib(pids: list[int] | tuple[int, ...]) -> float:
+    """Resident memory of the largest of some processes; 0 where there is none."""
+    return max((resident_mib(pid) for pid in pids), default=0.0)
+
+
+def resident_mib(pid: int) -> float:
+    try:
+        lines = Path(f"/proc/{pid}/status").read_text().splitlines()
+    except OSError:
+        return 0.0
+    return next((int(line.split()[1]) / 1024 for line in lines if line.startswith("VmRSS:")), 0.0)
+
+
+def children_of_all() -> dict[int, list[int]]:
+    children = defaultdict(list)
+    for stat in Path("/proc").glob("[0-9]*/stat"):
+        try:
+            parent = int(stat.read_text().rpartition(")")[2].split()[1])
+        except OSError:
+            continue
+        children[parent].append(int(stat.parent.name))
+    return children
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--sessions", type=int, default=1000)
+    parser.add_argument("--strides", type=int, default=12)
+    parser.add_argument("--bare", action="store_true", help="without report.pdf and session.rrd")
+    wanted = parser.parse_args()
+    choices = AnalysisChoices(Method.ROBUST, 2.0, not wanted.bare, not wanted.bare)
+    executor = ProcessExecutor(WORKERS, PRELOADED)
+    with tempfile.TemporaryDirectory() as place:
+        folder, out = Path(place) / "in", Path(place) / "out"
+        write_walks(folder, wanted.sessions, min(wanted.sessions, 20), wanted.strides)
+        watch = Watch(executor, wanted.sessions)
+        with batch_at(out) as batch:
+            work = Batch(SessionFolders(folder, out), batch, choices)
+            work.run(Workers(executor, lambda: WORKERS, MOST_TRIES), watch)
+        executor.shutdown()
+    settled = next(noted for noted in watch.noted if noted[0] >= wanted.sessions / 10)
+    grown = [last - first for first, last in zip(settled[1:], watch.noted[-1][1:], strict=True)]
+    print(f"{work.result.analysed} analysed, {len(work.result.failures)} failed")
+    print("grown from the first tenth on, MiB: leads {:+.1f}, works {:+.1f}, reads {:+.1f}".format(*grown))
+
+
+if __name__ == "__main__":
+    main()

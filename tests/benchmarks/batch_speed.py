@@ -1,0 +1,55 @@
+"""How much faster is a batch with two workers than with one? The whole command, from its start to its table.
+
+    python -m tests.benchmarks.batch_speed --sessions 24 --pairs 5
+
+One worker and two take turns on the same sessions, simulated walks with free motion; the ratio of each pair is taken,
+then the median. 1.6 is wanted on two cores.
+"""
+
+import argparse
+import os
+import statistics
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from time import perf_counter
+
+from tests.benchmarks.batch_material import write_walks
+
+
+def took_s(folder: Path, out: Path, workers: int, more: list[str]) -> float:
+    command = [sys.executable, "-m", "app", "batch", str(folder), "--out", str(out), "--workers", str(workers), *more]
+    began_s = perf_counter()
+    subprocess.run(command, check=True, capture_output=True, env={**os.environ, "OPENBLAS_NUM_THREADS": "1"})
+    return perf_counter() - began_s
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--sessions", type=int, default=24)
+    parser.add_argument("--strides", type=int, default=20)
+    parser.add_argument("--pairs", type=int, default=5)
+    parser.add_argument("--workers", type=int, default=2)
+    parser.add_argument("--bare", action="store_true", help="without report.pdf and session.rrd")
+    wanted = parser.parse_args()
+    more, ratios = ["--no-report", "--no-rrd"] if wanted.bare else [], []
+    with tempfile.TemporaryDirectory() as place:
+        folder = Path(place) / "in"
+        write_walks(folder, wanted.sessions, min(wanted.sessions, 8), wanted.strides)
+        for pair in range(wanted.pairs):
+            one_s, many_s = (
+                took_s(folder, Path(place) / f"{pair} {workers}", workers, more) for workers in (1, wanted.workers)
+            )
+            ratios.append(one_s / many_s)
+            each_s = one_s / wanted.sessions
+            print(
+                f"one worker {one_s:.1f} s ({each_s:.2f} s a session), {wanted.workers} workers {many_s:.1f} s: ",
+                end="",
+            )
+            print(f"{ratios[-1]:.2f} times; load {os.getloadavg()[0]:.1f}", flush=True)
+    print(f"{wanted.workers} workers are {statistics.median(ratios):.2f} times as fast (median of {wanted.pairs})")
+
+
+if __name__ == "__main__":
+    main()
