@@ -11,21 +11,24 @@ import os
 import sys
 import warnings
 from collections.abc import Callable, Iterable, Sequence
-from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
 from app.agree_command import add_agree_arguments, agree
+from app.batch_command import add_batch_arguments, batch
+from app.clinic_command import add_clinic_arguments, clinic
 from app.compare_command import add_compare_arguments, compare
 from app.device_commands import EMULATED
 from app.export_command import add_export_arguments, export
 from app.import_command import add_import_arguments, import_files
 from app.library_commands import LibrarySession, add_key_arguments, default_folder, session_place
 from app.logs import log_folder, start_logging, version_of
+from app.query_command import add_query_arguments, query
 from app.report_command import add_report_arguments, make
 from app.terminal import Progress, finding_lines, one_of, positive
 
 if TYPE_CHECKING:
+    from app.analysed_folder import AnalysisChoices
     from core.results import Analysis
     from core.samples import Session
 
@@ -34,7 +37,10 @@ DONE, REFUSED, INTERRUPTED = 0, 2, 3
 # as core.results.Method and core.published.angles have them, whose imports would cost half a second here
 DEFAULT_TAU_S = 2.0
 METHODS = ("robust", "published")
-SUBCOMMANDS = ("analyse", "demo", "report", "compare", "agree", "export", "import", "recover", "audit", "devices")
+SUBCOMMANDS = (
+    *("analyse", "demo", "report", "compare", "agree", "export", "import", "batch", "query"),
+    *("clinic", "recover", "audit", "devices"),
+)
 OF_LIBRARY = "the folder of the library (your own)"
 
 
@@ -60,7 +66,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         return _run(wanted)
     except KeyboardInterrupt:
-        return _say_last(f"Stopped. {wanted.out} is as it was before.", INTERRUPTED)
+        left = getattr(wanted, "stopped", f"{wanted.out} is as it was before.")
+        return _say_last(f"Stopped. {left}", INTERRUPTED)
 
 
 def _begin_program() -> None:
@@ -120,10 +127,17 @@ def _parser() -> argparse.ArgumentParser:
         ("agree", "compare the angles of a session with an optical system", add_agree_arguments, agree),
         ("export", "write results for other programs", add_export_arguments, export),
         ("import", "add recordings of another program to a session", add_import_arguments, import_files),
+        ("batch", "analyse all sessions of a folder or of the library", add_batch_arguments, batch),
     ):
         subcommand = commands.add_parser(name, help=what)
         add_arguments(subcommand)
         subcommand.set_defaults(run=_telling(work))
+    of_clinic = commands.add_parser("clinic", help="share a library between the stations of a clinic")
+    add_clinic_arguments(of_clinic)
+    of_clinic.set_defaults(run=_telling(clinic), library=default_folder(), out="What was on the way")
+    asking = commands.add_parser("query", help="ask the table of a batch in SQL")
+    add_query_arguments(asking)
+    asking.set_defaults(run=_query)
     _add_recover(commands.add_parser("recover", help="close recordings that were interrupted"))
     _add_audit(commands.add_parser("audit", help="see whether a library's audit was changed"))
     _add_devices(commands.add_parser("devices", help="list the sensors that are heard, and how drivers were proved"))
@@ -222,6 +236,7 @@ def _add_devices(parser: argparse.ArgumentParser) -> None:
 
 
 def _analyse(wanted: argparse.Namespace) -> None:
+    from app.analysed_folder import write_analysed
     from app.reports.result_folder import OWN_SESSION, check_place, written_beside
 
     place = wanted.library if isinstance(wanted.session, LibrarySession) else wanted.session
@@ -230,9 +245,7 @@ def _analyse(wanted: argparse.Namespace) -> None:
     with Progress(sys.stderr) as progress, written_beside(wanted.out, keeps_session=session_is_inside) as folder:
         progress(0.0, str(wanted.session))
         session = _read(wanted, progress)
-        analysis = _write_analysis(
-            session, folder, wanted.method, wanted.tau, progress, not wanted.no_rrd, not wanted.no_report
-        )
+        analysis = write_analysed(session, folder, _choices(wanted), progress)
     _tell(analysis, wanted.out)
 
 
@@ -276,8 +289,10 @@ def _devices(wanted: argparse.Namespace) -> None:
 
 
 def _demo(wanted: argparse.Namespace) -> None:
+    from app.analysed_folder import AnalysisChoices, write_analysed
     from app.reports.csv_report import write_table
     from app.reports.result_folder import OWN_SESSION, check_demonstration_place, written_beside
+    from core.results import Method
     from devices.files.session_folder import read_session, write_session
     from devices.walker import DEMONSTRATION, simulate, truth_table
 
@@ -288,7 +303,7 @@ def _demo(wanted: argparse.Namespace) -> None:
         write_session(simulated.session, folder / OWN_SESSION)
         write_table(*truth_table(simulated.truth), folder / OWN_SESSION / "truth.csv")
         session = read_session(folder / OWN_SESSION)  # so that `analyse` gives the same bytes
-        analysis = _write_analysis(session, folder, METHODS[0], DEFAULT_TAU_S, progress)
+        analysis = write_analysed(session, folder, AnalysisChoices(Method(METHODS[0]), DEFAULT_TAU_S), progress)
     _tell(analysis, wanted.out)
 
 
@@ -303,33 +318,22 @@ def _telling(work: Callable[[argparse.Namespace, Progress], Iterable[str]]) -> C
     return run
 
 
-def _write_analysis(
-    session: "Session",
-    folder: Path,
-    method: str,
-    tau_s: float,
-    progress: Progress,
-    has_log: bool = True,
-    has_report: bool = True,
-) -> "Analysis":
-    from app.reports.result_folder import LOG, write_results
-    from core.analysis import analyse
+def _query(wanted: argparse.Namespace) -> None:
+    """Print an answer while it comes, which may be larger than memory, until nobody reads it any more."""
+    with Progress(sys.stderr):  # for its hold on Ctrl C; there is nothing to be told meanwhile
+        try:
+            for line in query(wanted):
+                print(line)
+            sys.stdout.flush()
+        except BrokenPipeError:  # as of `| head`
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _choices(wanted: argparse.Namespace) -> "AnalysisChoices":
+    from app.analysed_folder import AnalysisChoices
     from core.results import Method
 
-    analysis = analyse(session, Method(method), tau_s, progress)
-    progress(1.0, "writing")
-    write_results(session, analysis, folder)
-    if has_log:
-        from app.review.rerun_log import write_log
-
-        write_log(session, analysis, folder / LOG)
-    if has_report:
-        from app.reports.patient_report.report_file import write_report
-
-        progress(1.0, "report")
-        write_report(session, analysis, folder, datetime.now().astimezone(), version_of("gaitwright"))
-    progress(1.0, "writing")  # the last chance to be interrupted: what follows replaces the old results
-    return analysis
+    return AnalysisChoices(Method(wanted.method), wanted.tau, not wanted.no_report, not wanted.no_rrd)
 
 
 def _tell(analysis: "Analysis", out: Path) -> None:

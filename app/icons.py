@@ -54,6 +54,7 @@ class Icon(StrEnum):
     CARE = "care"
     WITHHELD = "withheld"
     LEGS = "legs"
+    GROUPS = "groups"
 
 
 VERDICT_ICONS = {  # circles speak of the measurement, triangles of the patient

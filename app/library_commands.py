@@ -7,6 +7,7 @@ refusals leave here as the one line that the command line prints.
 import argparse
 import getpass
 import math
+import os
 import sys
 import time
 from collections.abc import Callable, Iterator
@@ -18,6 +19,7 @@ from uuid import UUID
 
 import platformdirs
 
+from app.storage.layout import DATABASE_VARIABLE, STATION
 from devices.decoders import DECODERS
 from devices.files.refusal import FileRefusedError, one_line
 
@@ -62,9 +64,19 @@ def session_place(text: str) -> Path | LibrarySession:
     return LibrarySession.parsed(text) if text.startswith(PREFIX) else Path(text)
 
 
-def default_folder() -> Path:
+def own_folder() -> Path:
     """Where a user's own library is."""
     return platformdirs.user_data_path("gaitwright", appauthor=False) / "library"
+
+
+def default_folder() -> Path:
+    """Where the library is that opens by itself: the user's own, or beside it that of a station of the clinic.
+
+    It is a station's where the environment names the clinic's server; the own folder may have become one before.
+    """
+    own = own_folder()
+    is_clinic = os.environ.get(DATABASE_VARIABLE) and not (own / STATION).exists()
+    return own.with_name("clinic") if is_clinic else own
 
 
 def add_key_arguments(parser: argparse.ArgumentParser) -> None:
@@ -75,8 +87,8 @@ def add_key_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 @contextmanager
-def opened_library(wanted: argparse.Namespace) -> Iterator["OpenedLibrary"]:
-    """Open `wanted.library` for as long as is needed.
+def opened_library(wanted: argparse.Namespace, *, is_to_be_moved: bool = False) -> Iterator["OpenedLibrary"]:
+    """Open `wanted.library` for as long as is needed; `is_to_be_moved`: to a clinic's server, or back.
 
     Raises
     ------
@@ -92,7 +104,7 @@ def opened_library(wanted: argparse.Namespace) -> Iterator["OpenedLibrary"]:
     try:
         passphrase = _passphrase(wanted.passphrase_file, folder)
         with _counted(folder, wanted.operator):
-            opening = open_library(folder, passphrase, wanted.operator)
+            opening = open_library(folder, passphrase, wanted.operator, is_to_be_moved=is_to_be_moved)
         with opening as opened:
             yield opened
     except (LibraryError, KeyRefusedError) as refusal:

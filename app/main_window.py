@@ -84,6 +84,7 @@ class MainWindow(QWidget):
         self._before_help: QWidget | None = None
         self._covered: QWidget | None = None
         self._has_come_back = False  # the library, and nobody has read what was recorded meanwhile
+        self._must_refresh = False  # another station did something under the cover
         self._is_dark: bool | None = None  # not yet known
         self._apply_settings()  # before there is anything to be styled anew
         self.setWindowTitle("Gaitwright")
@@ -142,6 +143,8 @@ class MainWindow(QWidget):
         """Wait for the threads of what was running when the window was closed."""
         self.preparing.finish()
         self.session.finish()
+        if self._home is not None:
+            self._home.finish()
         self.controller.finish()
         if self._wizard is not None:
             self._wizard.finish()
@@ -208,9 +211,11 @@ class MainWindow(QWidget):
         self.entry.left.connect(self._log_out)
         self.entry.first_start.demonstration_wished.connect(self.open_demonstration)
         self.entry.log_in.demonstration_wished.connect(self.open_demonstration)
+        self.entry.join.demonstration_wished.connect(self.open_demonstration)
         self.controller.refused.connect(self._on_told)
         self.controller.gone.connect(self._on_library_gone)
         self.controller.back.connect(self._on_library_back)
+        self.controller.changed_elsewhere.connect(self._on_changed_elsewhere)
         self._poll.timeout.connect(self._on_poll)
         app = QApplication.instance()
         if isinstance(app, QApplication):
@@ -337,6 +342,7 @@ class MainWindow(QWidget):
         self._covered = self._before_help = None
         if self._wizard is not None:
             self._wizard.close_visit()
+            self._wizard.asked.forget()
         if self._home is not None:
             self._home.clear()
         self.controller.close()
@@ -365,8 +371,18 @@ class MainWindow(QWidget):
     def _on_library_back(self, what: str, then: str) -> None:
         self._on_library_gone(what, then)
         self._has_come_back = True
+        self._on_changed_elsewhere()  # nobody heard what others did meanwhile
         if not self.is_covered:
             self._recover_what_came_home()
+
+    def _on_changed_elsewhere(self) -> None:
+        """Another station of the clinic did something: what is on the screen of it is read anew."""
+        self._must_refresh = self.is_covered  # under the cover it waits for the passphrase
+        if self._home is None or self.is_covered:
+            return
+        self._home.refresh()
+        if self._wizard is not None:
+            self._wizard.look_for_changes()
 
     def _recover_what_came_home(self) -> None:
         """Read it, which needs the key: under the cover it waits for the passphrase."""
@@ -396,6 +412,8 @@ class MainWindow(QWidget):
             self.idle.unlock()
             return
         self._covered = self.screens.currentWidget()
+        if self._wizard is not None:
+            self._wizard.asked.cover(is_covered=True)
         self.entry.cover(state.operator.code, self._is_recording)
         if self.controller.gone_words is not None:
             self.entry.tell(*self.controller.gone_words)
@@ -406,6 +424,10 @@ class MainWindow(QWidget):
         self.idle.unlock()
         if covered is not None:
             self._show(covered)
+        if self._wizard is not None:
+            self._wizard.asked.cover(is_covered=False)
+        if self._must_refresh:
+            self._on_changed_elsewhere()
         self._recover_what_came_home()
 
     # how it looks

@@ -29,6 +29,8 @@ SENTENCES = {
     ),
     "doubled_stamps": "rows that repeat the time before them: {count}. The first of each was kept.",
     "damaged_stretches": "stretches that are damaged: {count}. They were passed over; what lay in them is missing.",
+    "slower_kept": "angular rate and acceleration came at unequal rates: the {kept} samples with both were kept, "
+    "{count} others left out. Set one rate for both in MT Manager.",
     "infinite_values": "infinite values: {count}. They are no measurement and count as missing.",
     "last_line_open": "the last line has no end, so its last value may be cut. Copy the file again if it matters.",
     "no_sites": "no sensor data. Nothing can be computed from this recording.",

@@ -9,6 +9,7 @@ import io
 import sys
 from collections.abc import Iterator
 from datetime import UTC, datetime
+from functools import cache
 from importlib import import_module
 from pathlib import Path
 
@@ -71,6 +72,7 @@ def refused(file: Path) -> Iterator[tuple[ast.Call, list[str]]]:
             yield call, [one for one in named if isinstance(one, str)]
 
 
+@cache
 def gathered() -> Catalog:
     """Give every sentence of `app`, those that findings are told by, and the refusals and drivers of `devices`."""
     catalogue = Catalog(charset="utf-8")

@@ -127,7 +127,7 @@ def _look_at(window: Any) -> dict[str, Any]:
         "focus": _name_of(focus) if focus is not None else "",
         "is_recording": bool(getattr(screen, "is_recording", False)),
         "banner": next((b.text for b in _banners(window) if b.isVisible()), ""),
-        "stopwatch_s": visit.elapsed_s if visit is not None else 0.0,
+        "stopwatch_s": (visit.elapsed_s or 0.0) if visit is not None else 0.0,
         "words": words,
         "controls": controls,
     }

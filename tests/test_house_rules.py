@@ -7,7 +7,7 @@ import subprocess
 import sys
 import tokenize
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import cache
 from importlib import import_module
 from pathlib import Path
@@ -42,12 +42,18 @@ def parse(file: Path) -> ast.Module:
     return ast.parse(file.read_text(encoding="utf-8"))
 
 
+@cache
+def nodes(file: Path) -> tuple[ast.AST, ...]:
+    """All parts of a file: walking through it takes longer than reading it."""
+    return tuple(ast.walk(parse(file)))
+
+
 def place(file: Path, line: int) -> str:
     return f"{file.relative_to(ROOT).as_posix()}:{line}"
 
 
 def imports(file: Path) -> Iterator[tuple[str, int]]:
-    for node in ast.walk(parse(file)):
+    for node in nodes(file):
         if isinstance(node, ast.Import):
             yield from ((alias.name, node.lineno) for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
@@ -114,7 +120,11 @@ def is_colour(node: ast.AST) -> bool:
 
 
 def colours(tree: ast.Module) -> list[int]:
-    return [node.lineno for node in ast.walk(tree) if isinstance(node, ast.expr) and is_colour(node)]
+    return colours_among(ast.walk(tree))
+
+
+def colours_among(parts: Iterable[ast.AST]) -> list[int]:
+    return [node.lineno for node in parts if isinstance(node, ast.expr) and is_colour(node)]
 
 
 def test_a_colour_is_found_however_it_is_named() -> None:
@@ -132,7 +142,7 @@ def test_a_colour_is_found_however_it_is_named() -> None:
 
 def test_only_one_file_names_a_colour() -> None:
     files = [file for file in python_files(*PACKAGES) if file != ROOT / "app" / "colours.py"]
-    assert [place(file, line) for file in files for line in colours(parse(file))] == []
+    assert [place(file, line) for file in files for line in colours_among(nodes(file))] == []
 
 
 EXCEPTION = re.compile(r"#\s*(?:type: ignore|noqa)")
@@ -246,7 +256,7 @@ def classes_of(*rooms: str) -> dict[str, list[Path]]:
     """Every class by its name, with the files that define one of that name."""
     defined: dict[str, list[Path]] = {}
     for file in python_files(*rooms):
-        for node in ast.walk(parse(file)):
+        for node in nodes(file):
             if isinstance(node, ast.ClassDef):
                 defined.setdefault(node.name, []).append(file.relative_to(ROOT))
     return defined
@@ -273,9 +283,13 @@ def test_modules_of_core_and_devices_open_with_a_statement() -> None:
 
 def private_lines(tree: ast.Module) -> set[int]:
     """Find the lines that reach for a private member of something else than `self` or `cls`."""
+    return private_lines_among(ast.walk(tree))
+
+
+def private_lines_among(parts: Iterable[ast.AST]) -> set[int]:
     return {
         node.lineno
-        for node in ast.walk(tree)
+        for node in parts
         if isinstance(node, ast.Attribute)
         and re.match(r"_[a-z]", node.attr)
         and not (isinstance(node.value, ast.Name) and node.value.id in ("self", "cls"))
@@ -298,7 +312,7 @@ def test_tests_ask_the_public_side() -> None:
     # the list may only shrink: whoever mends a file lowers its number, or takes its line away
     listed = (ROOT / "tests" / "private_members.txt").read_text(encoding="utf-8").splitlines()
     allowed = {name: int(count) for count, name in (line.split() for line in listed)}
-    found = {file.relative_to(ROOT).as_posix(): len(private_lines(parse(file))) for file in python_files("tests")}
+    found = {file.relative_to(ROOT).as_posix(): len(private_lines_among(nodes(file))) for file in python_files("tests")}
     assert {name: count for name, count in found.items() if count} == allowed
 
 

@@ -97,6 +97,10 @@ class AgreementPage(Themed):
         self._stack.setCurrentWidget(self.reading)
         self.reading.setFocus()
 
+    def show_sharper(self, pages: Sequence[bytes]) -> None:
+        """Show the same pages drawn finer, where they are being read."""
+        self.sheets.show_pages([Sheet(page) for page in pages])
+
     def show_saved(self, folder: str) -> None:
         self.note.setText(tr("Saved in {folder}.").format(folder=folder))
 

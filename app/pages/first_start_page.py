@@ -6,11 +6,12 @@ Where a library was opened here before and is missing, the page says so, and mak
 
 from collections.abc import Callable
 
-from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QWidget
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtGui import QResizeEvent
+from PySide6.QtWidgets import QBoxLayout, QWidget
 
 from app.icons import Icon
-from app.pages.entry import EntryPage
+from app.pages.entry import COLUMN, EntryPage
 from app.passphrases import REFUSED, strength_in_words, strength_of
 from app.theme import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
@@ -34,6 +35,7 @@ class FirstStartPage(EntryPage):
     renew_wished = Signal()
     put_off = Signal()
     demonstration_wished = Signal()
+    join_wished = Signal()  # the library that a clinic's stations share
     look_wished = Signal()  # whether the library that is missing is there now
 
     def __init__(self, look: ThemeNotifier, shortest: int, is_same_key: Callable[[str, str], bool]) -> None:
@@ -59,6 +61,7 @@ class FirstStartPage(EntryPage):
         self.again = Field(look, tr("Passphrase again"), is_secret=True)
         self.make = Button(look, tr("Make the library"), ButtonKind.PRIMARY, None, tr("Enter"))
         self.demonstration = Button(look, tr("Look at the demonstration first"), ButtonKind.QUIET, Icon.PLAY, height=44)
+        self.join = Button(look, tr("Join the clinic's library"), ButtonKind.QUIET, Icon.NEXT, height=44)
         self._key_title = Text(look, tr("Your recovery key"), size=26, weight=SEMIBOLD, wraps=True)
         self._key_lead = Text(
             look,
@@ -94,7 +97,7 @@ class FirstStartPage(EntryPage):
     @property
     def tab_order(self) -> list[QWidget]:
         fields = [self.code, self.name, self.passphrase, self.again]
-        first = [*(field.line_edit for field in fields), self.make, self.demonstration]
+        first = [*(field.line_edit for field in fields), self.make, self.join, self.demonstration]
         second = [self._key_words, self.print, self.save, self.typed.line_edit, self.go, self.renew, self.later]
         return [self.look_again, self.make_another, *first, *second]
 
@@ -155,6 +158,18 @@ class FirstStartPage(EntryPage):
         self.code.set_wrong(sentence)
         self.code.setFocus()
 
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._fit()
+
+    def _fit(self) -> None:
+        """The other ways stand beside each other where there is the room."""
+        px = self._look.theme.px
+        room = min(px(COLUMN), self.width() - px(48))
+        needed = self.join.sizeHint().width() + self.demonstration.sizeHint().width() + px(4)
+        way = QBoxLayout.Direction.LeftToRight if needed <= room else QBoxLayout.Direction.TopToBottom
+        self._other_ways.setDirection(way)
+
     def focus(self) -> None:
         key_part = self.typed if self._is_asking else self.print if self.recovery_key else None
         (key_part or (self.look_again if self._missing else self.code)).setFocus()
@@ -163,9 +178,10 @@ class FirstStartPage(EntryPage):
         self._first = Card(self._look, padding=24, spacing=16)
         for part in (self.code, self.name, self.passphrase, self._strength, self.again, self.make):
             self._first.column.addWidget(part)
-        self._demonstration_row = QHBoxLayout()
-        self._demonstration_row.addWidget(self.demonstration)
-        self._demonstration_row.addStretch(1)
+        self._other_ways = QBoxLayout(QBoxLayout.Direction.LeftToRight)
+        for way in (self.join, self.demonstration):
+            self._other_ways.addWidget(way, 0, Qt.AlignmentFlag.AlignLeft)
+        self._other_ways.addStretch(1)
         self._second = Card(self._look, padding=24, spacing=16)
         self._keep_row = QBoxLayout(QBoxLayout.Direction.LeftToRight)
         self._keep_row.addWidget(self.print, 1)
@@ -184,7 +200,7 @@ class FirstStartPage(EntryPage):
         self.column.addWidget(self._title)
         self.column.addWidget(self._lead)
         self.column.addWidget(self._first)
-        self.column.addLayout(self._demonstration_row)
+        self.column.addLayout(self._other_ways)
         self.column.addWidget(self._key_title)
         self.column.addWidget(self._key_lead)
         self.column.addWidget(self._asking_lead)
@@ -195,6 +211,7 @@ class FirstStartPage(EntryPage):
         self.make_another.clicked.connect(self._on_make_another)
         self.make.clicked.connect(self._on_make)
         self.demonstration.clicked.connect(self.demonstration_wished)
+        self.join.clicked.connect(self.join_wished)
         self.print.clicked.connect(self._on_print)
         self.save.clicked.connect(self._on_save)
         self.go.clicked.connect(self._on_go)
@@ -214,6 +231,7 @@ class FirstStartPage(EntryPage):
         for block in (self._title, self._lead, self._first):
             block.setVisible(is_first and not self.is_missing)
         self.demonstration.setVisible(is_first)
+        self.join.setVisible(is_first and not self.is_missing)
         for block in (self._key_title, self._second):
             block.setVisible(has_key or is_asking)
         for part in (self._key_lead, self._key_words, self.print, self.save):
@@ -279,3 +297,5 @@ class FirstStartPage(EntryPage):
     def _on_look_changed(self) -> None:
         super()._on_look_changed()
         self._keep_row.setSpacing(self._look.theme.px(12))
+        self._other_ways.setSpacing(self._look.theme.px(4))
+        self._fit()

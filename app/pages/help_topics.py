@@ -23,7 +23,9 @@ class Topic(StrEnum):
     WALKING = "walking"
     RESULTS = "results"
     REPORT = "report"
+    QUESTIONS = "questions"
     ACCURACY = "accuracy"
+    STATIONS = "stations"
     MESSAGES = "messages"
     KEYS = "keys"
     SENSORS_XIMU3 = "sensors-ximu3"
@@ -44,7 +46,9 @@ def topic_title(topic: Topic) -> str:
         Topic.WALKING: tr("Walking"),
         Topic.RESULTS: tr("Results"),
         Topic.REPORT: tr("Report"),
+        Topic.QUESTIONS: tr("Questions"),
         Topic.ACCURACY: tr("Accuracy"),
+        Topic.STATIONS: tr("Several stations"),
         Topic.MESSAGES: tr("What messages mean"),
         Topic.KEYS: tr("Keys"),
         Topic.SENSORS_XIMU3: "x-IMU3",

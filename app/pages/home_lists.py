@@ -220,8 +220,12 @@ class LineList(CellTable):
         """The width that words have, whether or not there is a scroll bar."""
         return self.width() - self.verticalScrollBar().sizeHint().width() - 2 * self._look.theme.px(PAD)
 
-    def show_lines(self, lines: Sequence[Line], chosen: UUID | None = None) -> None:
-        """Show other lines, with the one that has this id chosen, where it is among them."""
+    def show_lines(self, lines: Sequence[Line], chosen: UUID | None = None, *, stays: bool = False) -> None:
+        """Show other lines, with the one that has this id chosen, where it is among them.
+
+        `stays`: the list was only read anew, and is not scrolled.
+        """
+        scrolled = self.verticalScrollBar().value()
         self.lines = tuple(lines)
         has_states = any(isinstance(line, SessionLine) and line.state for line in lines)
         cells: list[LineCell] = [
@@ -234,6 +238,8 @@ class LineList(CellTable):
             [TableRow((cell,), key=cell.line.id) for cell in cells],
         )
         self.choose_line(chosen)
+        if stays:
+            self.verticalScrollBar().setValue(scrolled)
 
     def choose_line(self, line_id: UUID | None) -> None:
         self.choose(next((row for row, line in enumerate(self.lines) if line.id == line_id), -1))

@@ -102,8 +102,9 @@ class HomePage(Themed):
         """Show all patients there are, with one of them chosen, else the first that the search lets through."""
         focused = QApplication.focusWidget()
         is_left = focused is not None and self.empty.isAncestorOf(focused)
+        was_read = self._patients is not None
         self._patients = tuple(lines)
-        self._filter(chosen)
+        self._filter(chosen, stays=was_read and chosen in (None, self.patient_id))
         if is_left and not self.is_empty:  # what had the focus has gone, and Qt would give it to what is next to it
             self.focus()
 
@@ -216,14 +217,14 @@ class HomePage(Themed):
         self._left_room.setVisible(not is_single or self.view.choice == PATIENTS)
         self.panel.setVisible(not is_single or self.view.choice == PATIENT)
 
-    def _filter(self, chosen: UUID | None) -> None:
+    def _filter(self, chosen: UUID | None, *, stays: bool = False) -> None:
         wanted = self.search.text().strip().casefold().split()
         found: list[Line] = [line for line in self._patients or () if all(word in line.searched for word in wanted)]
         ids = {line.id for line in found}
         before = self.patient_id
         if chosen not in ids:
             chosen = before if before in ids else found[0].id if found else None
-        self.patients.show_lines(found, chosen)
+        self.patients.show_lines(found, chosen, stays=stays)
         self._count.setText(str(len(found)) if self._patients else "")
         self._count.setAccessibleName(tr_n("{count} patient", "{count} patients", len(found)).format(count=len(found)))
         self.patients.setVisible(bool(found))

@@ -29,6 +29,7 @@ class LogInPage(EntryPage):
     opened = Signal(str, str, bool)  # operator, passphrase, whether this computer is to remember it
     recovered = Signal(str, str, str)  # operator, recovery key, new passphrase
     remembered = Signal(str)  # operator, whom this computer remembers
+    away_wished = Signal(str, str)  # operator, passphrase: to work without the clinic's server
     left = Signal()  # another operator, from the cover
     demonstration_wished = Signal()
 
@@ -36,8 +37,10 @@ class LogInPage(EntryPage):
         super().__init__(look)
         self._shortest, self._left_s = shortest, 0.0
         self._is_cover = self._is_recording = self._is_recovering = self._is_busy = self._can_remember = False
+        self._can_work_away = False
         self._remembered: tuple[str, ...] = ()
         self._title = Text(look, size=26, weight=SEMIBOLD, wraps=True)
+        self.library = Text(look, tone="ink2", wraps=True)
         self._recording = QWidget()
         self._recording_words = Text(look, tr("Recording goes on"), size=20, weight=SEMIBOLD, wraps=True)
         self.operator_label = Text(look, tr("Operator"), weight=MEDIUM)
@@ -49,6 +52,7 @@ class LogInPage(EntryPage):
         self._strength = Text(look, tone="ink2", wraps=True)
         self.remember = Toggle(look, tr("Remember on this computer"), "", is_on=False)
         self.go = Button(look, tr("Open"), ButtonKind.PRIMARY, None, tr("Enter"))
+        self.work_away = Button(look, tr("Work without the server"), ButtonKind.SECONDARY)
         self.use_remembered = Button(look, tr("Open with this computer's keyring"), ButtonKind.SECONDARY)
         self.use_recovery = Button(look, tr("Use the recovery key"), ButtonKind.QUIET, height=44)
         self.leave = Button(look, tr("Another operator"), ButtonKind.QUIET, height=44)
@@ -57,6 +61,7 @@ class LogInPage(EntryPage):
         self._second.setInterval(SECOND_MS)
         self._build()
         self._connect()
+        self.show_library("")
         self._show()
         self._on_look_changed()
 
@@ -70,6 +75,7 @@ class LogInPage(EntryPage):
             self.again.line_edit,
             self.remember,
             self.go,
+            self.work_away,
             self.use_remembered,
             self.use_recovery,
             self.leave,
@@ -95,6 +101,11 @@ class LogInPage(EntryPage):
         self.operator.setCurrentIndex(max(self.operator.findData(latest), 0))
         self._is_cover = self._is_recovering = False
         self._show()
+
+    def show_library(self, words: str) -> None:
+        """Say which library it is that is logged in to; nothing where it is this computer's own."""
+        self.library.setText(words)
+        self.library.setVisible(bool(words))
 
     def show_cover(self, code: str, is_recording: bool) -> None:
         """Cover the window until the passphrase of the operator who is logged in is typed."""
@@ -124,8 +135,15 @@ class LogInPage(EntryPage):
         self.focus()
         self.passphrase.line_edit.selectAll()
 
+    def offer_away(self) -> None:
+        """Let the operator work without the clinic's server, which does not answer."""
+        self._can_work_away = True
+        self._show()
+        self.work_away.setFocus()
+
     def forget_typed(self) -> None:
         """Keep nothing of what was typed."""
+        self._can_work_away = False
         for field in self._fields:
             field.set_text("")
             field.set_wrong("")
@@ -154,6 +172,7 @@ class LogInPage(EntryPage):
         self._card.column.addWidget(self.again)
         self._card.column.addWidget(self.remember)
         self._card.column.addWidget(self.go)
+        self._card.column.addWidget(self.work_away)
         self._card.column.addWidget(self.use_remembered)
         self._quiet = QVBoxLayout()
         for button in (self.use_recovery, self.leave, self.demonstration):
@@ -162,12 +181,14 @@ class LogInPage(EntryPage):
             line.addStretch(1)
             self._quiet.addLayout(line)
         self.column.addWidget(self._title)
+        self.column.addWidget(self.library)
         self.column.addWidget(self._recording)
         self.column.addWidget(self._card)
         self.column.addLayout(self._quiet)
 
     def _connect(self) -> None:
         self.go.clicked.connect(self._on_go)
+        self.work_away.clicked.connect(self._on_work_away)
         for field in self._fields:
             field.line_edit.returnPressed.connect(self._on_go)
             field.edited.connect(self._on_edited)
@@ -198,6 +219,7 @@ class LogInPage(EntryPage):
         is_remembered = self.code in self._remembered
         self.remember.setVisible(self._can_remember and not is_recovering and not is_remembered and not self._is_cover)
         self.use_remembered.setVisible(is_remembered and not is_recovering and not self._is_cover)
+        self.work_away.setVisible(self._can_work_away and not is_recovering and not self._is_cover)
         self.use_recovery.setText(tr("Use the passphrase") if is_recovering else tr("Use the recovery key"))
         self.use_recovery.setVisible(not self._is_cover)
         self.demonstration.setVisible(not self._is_cover)
@@ -244,6 +266,10 @@ class LogInPage(EntryPage):
         for field in self._fields:
             field.set_wrong("")
         self._strength.setText(strength_in_words(self.new_passphrase.text, self._shortest, (self.code,)))
+
+    def _on_work_away(self) -> None:
+        if not self._is_busy:
+            self.away_wished.emit(self.code, self.passphrase.text)
 
     def _on_remembered(self) -> None:
         self.remembered.emit(self.code)

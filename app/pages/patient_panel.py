@@ -36,6 +36,7 @@ class PatientPanel(Themed):
     """
 
     next_wished = Signal(object)
+    analysing_wished = Signal()  # again, of this patient's sessions
     delete_patient_wished = Signal()
     delete_session_wished = Signal()
 
@@ -50,7 +51,8 @@ class PatientPanel(Themed):
         self.menu = QMenu(self)
         self.delete_patient = QAction(tr("Delete patient"), self.menu)
         self.delete_session = QAction(tr("Delete session"), self.menu)
-        self.menu.addActions([self.delete_session, self.delete_patient])
+        self.analyse_again = QAction(tr("Analyse sessions again"), self.menu)
+        self.menu.addActions([self.analyse_again, self.delete_session, self.delete_patient])
         self.condition = Choice(look, tr("Condition"))
         self.count = Text(look, tone="ink2", wraps=True)
         self.course = CourseCard(look)
@@ -78,10 +80,11 @@ class PatientPanel(Themed):
         self._sessions_card.setVisible(bool(code))
 
     def show_sessions(self, lines: Sequence[SessionLine]) -> None:
-        self.sessions.show_lines(lines)
+        line = self.sessions.line  # the same patient's, read anew, or none
+        self.sessions.show_lines(lines, line.id if line is not None else None, stays=line is not None)
         self.sessions.setVisible(bool(lines))
         self.none_yet.setVisible(not lines)
-        self.delete_session.setEnabled(False)
+        self.delete_session.setEnabled(self.sessions.line is not None)
         self._on_look_changed()
 
     def show_course(self, visits: Sequence[CourseVisit]) -> None:
@@ -142,6 +145,7 @@ class PatientPanel(Themed):
 
     def _connect(self) -> None:
         self.more.clicked.connect(self._on_more)
+        self.analyse_again.triggered.connect(self.analysing_wished)
         self.delete_patient.triggered.connect(self.delete_patient_wished)
         self.delete_session.triggered.connect(self.delete_session_wished)
         self.condition.currentIndexChanged.connect(self._show_lanes)

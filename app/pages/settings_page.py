@@ -8,6 +8,7 @@ from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QVBoxLayout, QWidget
 
 from app.icons import Icon
+from app.pages.clinic_cards import MoreStationsCard, StationCard
 from app.passphrases import REFUSED, strength_in_words, strength_of
 from app.theme import SCALES, ThemeNotifier
 from app.widgets.button import Button, ButtonKind
@@ -74,6 +75,10 @@ class SettingsPage(Themed):
         self._build_screen()
         self._build_access()
         self._build_backup()
+        self.station = StationCard(look)
+        self.more_stations = MoreStationsCard(look)
+        for card in (self.station, self.more_stations):
+            self._column.addWidget(card)
         self._build_deleted()
         self._build_clinic()
         self._build_operators()
@@ -93,6 +98,8 @@ class SettingsPage(Themed):
             self.renew,
             self.back_up,
             self.choose_folder,
+            *self.station.tab_order,
+            *self.more_stations.tab_order,
         ]
 
     def focus(self) -> None:
@@ -112,6 +119,8 @@ class SettingsPage(Themed):
         has_backup: bool,
         has_operators: bool,
         has_deleted: bool = False,
+        is_station: bool = False,
+        may_move: bool = False,
         own: tuple[str, ...] = (),
     ) -> None:
         """Show what the operator may set, whose code and name are `own`; nothing typed for another is kept."""
@@ -119,6 +128,8 @@ class SettingsPage(Themed):
         self.access_card.setVisible(has_access)
         self.backup_card.setVisible(has_backup)
         self.deleted_card.setVisible(has_deleted)
+        self.station.setVisible(is_station)
+        self.more_stations.setVisible(may_move)
         self._clinic.setVisible(has_operators)
         self.operators_card.setVisible(has_operators)
         self.forget_typed()
@@ -128,6 +139,7 @@ class SettingsPage(Themed):
         for field in (self.old, self.new, self.again, self.code, self.name, self.first):
             field.set_text("")
             field.set_wrong("")
+        self.more_stations.server.forget_typed()
         self._said.setText("")
         self._strength.setText(strength_in_words("", self._shortest))
 

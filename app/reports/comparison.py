@@ -22,7 +22,7 @@ from app.wording import joined, later, tr
 from core.body import Joint, Side
 from core.chosen_strides import left_out_by_hand
 from core.gait.cycles import POINTS, MeanCycle, mean_cycle
-from core.gait.spatiotemporal import MeanAndSd, mean_and_sd
+from core.gait.spatiotemporal import BothFeet, MeanAndSd, mean_and_sd
 from core.gait.symmetry import symmetry_index_percent
 from core.norms import MIN_STRIDES_FOR_MEAN
 from core.results import Analysis, JointCalibration, RecordingAnalysis, ZeroKind
@@ -178,16 +178,32 @@ class Part:
         ]
         return np.concatenate(found) if found and self.assessment(side, column).is_told else np.empty(0)
 
+    @cached_property
+    def _found_values(self) -> dict[tuple[Side, str], MeanAndSd]:
+        return {}
+
     def value(self, side: Side, column: str) -> MeanAndSd:
-        """Over the strides used of all walks."""
-        return mean_and_sd(self.values(side, column))
+        """Over the strides used of all walks; found once, for it stands in every row that the part is in."""
+        found = self._found_values.get((side, column))
+        if found is None:
+            found = self._found_values[side, column] = mean_and_sd(self.values(side, column))
+        return found
+
+    @cached_property
+    def _found_means(self) -> dict[tuple[Side, str, float], MeanOfStrides]:
+        return {}
 
     def mean(self, side: Side, column: str, kind: ComparisonKind) -> MeanOfStrides:
         """The same with its uncertainty in a comparison of a kind; walks of one strapping share their lags."""
         joint = joint_of(column, side)
         lag_sd_s = (self.calibrated[joint].lag_sd_s or 0.0) if joint and joint in self.calibrated else 0.0
         is_shared = kind in (ComparisonKind.HALVES, ComparisonKind.ATTACHED)
-        return mean_of_strides(self.values(side, column), 0.0 if is_shared else ANGLE_PER_LAG_DEG_S * lag_sd_s)
+        clock_error = 0.0 if is_shared else ANGLE_PER_LAG_DEG_S * lag_sd_s
+        found = self._found_means.get((side, column, clock_error))
+        if found is None:
+            found = mean_of_strides(self.values(side, column), clock_error)
+            self._found_means[side, column, clock_error] = found
+        return found
 
     def cycle(self, joint: Joint) -> MeanCycle:
         """Mean over the strides used of all walks, degrees; NaN throughout where its shape or sign is withheld."""
@@ -233,8 +249,12 @@ class Part:
         """Cadence, double support or speed (the names of `BothFeet`), mean of the walks; NaN if one withholds it."""
         if not assessment_of_both(self.verdicts, name).is_told:
             return math.nan
-        known = [value for walk in self.walks if math.isfinite(value := getattr(both_sides(walk), name))]
+        known = [value for walk in self._both_of_walks if math.isfinite(value := getattr(walk, name))]
         return fmean(known) if known else math.nan
+
+    @cached_property
+    def _both_of_walks(self) -> tuple[BothFeet, ...]:
+        return tuple(map(both_sides, self.walks))
 
     def of_walk(self, column: str, kind: ComparisonKind) -> MeanOfStrides:
         """Speed or cadence of both legs, as sure as one leg's strides are: neighbours step alike."""

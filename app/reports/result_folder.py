@@ -130,10 +130,11 @@ def check_demonstration_place(out: Path) -> None:
 
 
 @contextmanager
-def written_beside(out: Path, *, keeps_session: bool = False) -> Iterator[Path]:
+def written_beside(out: Path, *, keeps_session: bool = False, within: Path | None = None) -> Iterator[Path]:
     """Give a folder to write into, and put it in the place of `out` when all is written.
 
     Whatever is raised inside leaves `out` as it was. With `keeps_session` the recordings in `out` stay in it.
+    `within`: a folder of the same disk to write in until then, in place of the one that holds `out`.
 
     Raises
     ------
@@ -142,7 +143,7 @@ def written_beside(out: Path, *, keeps_session: bool = False) -> Iterator[Path]:
     """
     out = out.resolve()
     out.parent.mkdir(parents=True, exist_ok=True)
-    beside = Path(tempfile.mkdtemp(prefix=f".{out.name}-", dir=out.parent))
+    beside = Path(tempfile.mkdtemp(prefix=f".{out.name}-", dir=within or out.parent))
     new, old = beside / "new", beside / "old"
     try:
         new.mkdir()

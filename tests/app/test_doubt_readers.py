@@ -17,6 +17,8 @@ from devices.walker import DEMONSTRATION, simulate
 from tests.app.changed_analysis import recalibrated, with_few_strides
 from tests.app.doubt_readers import Doubts, Said, said_in_report, said_on_screen
 
+pytestmark = pytest.mark.endurance  # `test_exported_doubt` holds the same of four sessions in every run
+
 
 @pytest.fixture(scope="module")
 def session() -> Session:

@@ -19,6 +19,7 @@ from app import main_window
 from app.colours import DARK, LIGHT
 from app.home import session_screen
 from app.home.entry import SHORTEST
+from app.library_commands import default_folder
 from app.main_window import MainWindow
 from app.settings import Scheme, Settings
 from app.storage import keys
@@ -27,7 +28,7 @@ from app.storage.journal.disk import Room
 from app.storage.journal.payloads import Belonging
 from app.storage.journal.writer import JournalWriter
 from app.storage.keys import KeyRefusedError, KeySlots
-from app.storage.layout import KEYS
+from app.storage.layout import DATABASE_VARIABLE, KEYS, STATION
 from app.storage.library import Library
 from app.storage.login_delay import LoginDelay
 from app.storage.slots import Cost
@@ -688,3 +689,30 @@ def test_what_comes_home_under_the_cover_is_in_its_session_after_the_passphrase(
     assert not window.is_covered
     assert home.banner.text == "The library is back. 1 recording that was made meanwhile is in it now."
     assert sorted(one.details.name for one in library.sessions.get(session_id).recordings) == ["walk 1", "walk 2"]
+
+
+def test_where_the_environment_names_no_server_that_answers_it_is_said_and_tried_again(
+    qtbot: QtBot, open_window: Open, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(DATABASE_VARIABLE, "nowhere")
+    window = open_window(tmp_path / "clinic")
+    assert window.entry is not None
+    page = window.entry.join
+    qtbot.waitUntil(page.isVisible, timeout=WAIT_MS)
+    assert "no address of a PostgreSQL server" in page.lead.text()
+    page.again.click()
+    assert window.entry.waiting.isVisible()
+    qtbot.waitUntil(page.isVisible, timeout=WAIT_MS)
+    assert not (tmp_path / "clinic").exists()
+
+
+def test_the_environment_leads_to_a_folder_of_its_own_unless_the_own_one_is_a_station(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("app.library_commands.platformdirs.user_data_path", lambda *_, **__: tmp_path)
+    assert default_folder() == tmp_path / "library"
+    monkeypatch.setenv(DATABASE_VARIABLE, "postgresql://station@server/clinic")
+    assert default_folder() == tmp_path / "clinic"
+    (tmp_path / "library").mkdir()
+    (tmp_path / "library" / STATION).touch()
+    assert default_folder() == tmp_path / "library"

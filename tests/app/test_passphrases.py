@@ -72,5 +72,8 @@ def test_what_is_too_short_is_told_so() -> None:
 
 
 def test_the_lists_of_words_are_loaded_by_the_first_passphrase_only() -> None:
-    code = "import sys, app.passphrases as p; p.strength_in_words('', 10); assert 'zxcvbn' not in sys.modules"
-    subprocess.run([sys.executable, "-c", code], check=True)
+    loaded = "print('zxcvbn' in sys.modules)"
+    code = f"import sys, app.passphrases as p; {loaded}; p.strength_in_words('', 10); {loaded}"
+    code += f"; p.strength_in_words('lamp river onion', 10); {loaded}"
+    ran = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
+    assert ran.stdout.split() == ["False", "False", "True"]

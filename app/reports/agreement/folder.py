@@ -5,7 +5,7 @@ from pathlib import Path
 
 from app.reports.agreement.document import agreement_report
 from app.reports.agreement.pictures import pictures_of
-from app.reports.agreement.study import AgreementStudy
+from app.reports.agreement.study import AgreementStudy, as_shown
 from app.reports.agreement.tables import write_study
 from core.samples import Session
 
@@ -23,8 +23,9 @@ def write_agreement(
         The files cannot be written.
     """
     write_study(study, folder)
-    pictures = pictures_of(study, session.patient)
+    shown = as_shown(study, session.recordings)
+    pictures = pictures_of(shown, session.patient)
     for name, drawn in pictures.items():
         (folder / f"{name}.svg").write_text(drawn.svg, encoding="utf-8")
     if made_at is not None:
-        (folder / REPORT).write_bytes(agreement_report(study, session, pictures, made_at, version))
+        (folder / REPORT).write_bytes(agreement_report(shown, session, pictures, made_at, version))

@@ -11,13 +11,14 @@ from pathlib import Path
 
 import numpy as np
 
+from app.recording_names import shown_names
 from core.agreement.clock import MIN_OVERLAP_S, Alignment, FoundOffset, Misfit, align, find_offset
 from core.agreement.curves import ComparedTrial, TimedAngle, angle_at
 from core.agreement.events import EventAgreement, EventKey, Events, compare_events, compare_lengths, event_offset
 from core.agreement.figures import Agreement, AgreementOverWalks, agreement_of, over_walks
 from core.body import Joint, Side
 from core.results import Analysis, JointAngle, RecordingAnalysis, ZeroKind
-from core.samples import FloatArray, IntArray, RecordingKind
+from core.samples import FloatArray, IntArray, Recording, RecordingKind
 from devices.files.references.trial import EVENTS, ReferenceFile, ReferenceTrial
 from devices.files.refusal import FileRefusedError
 
@@ -85,6 +86,22 @@ class AgreementStudy:
 
     def over_walks(self, joint: Joint, kind: AngleKind = AngleKind.RESULT) -> AgreementOverWalks | None:
         return over_walks([walk.figures[joint, kind] for walk in self.walks if (joint, kind) in walk.figures])
+
+
+def as_shown(study: AgreementStudy, recordings: Sequence[Recording]) -> AgreementStudy:
+    """The study with its walks called as on screen and paper; tables for programs keep their own names.
+
+    Parameters
+    ----------
+    recordings
+        Those of the session, in order of time.
+    """
+    names = {name: str(shown) for name, shown in shown_names(recordings).items()}
+    walks = tuple(
+        replace(walk, recording=replace(walk.recording, name=names.get(walk.recording.name, walk.recording.name)))
+        for walk in study.walks
+    )
+    return replace(study, walks=walks, left_over=tuple(names.get(name, name) for name in study.left_over))
 
 
 def study_of(analysis: Analysis, files: Sequence[tuple[str, ReferenceFile]]) -> AgreementStudy:

@@ -144,3 +144,24 @@ def test_nothing_is_said_of_patients_and_sessions_that_are_still_to_be_read(page
     page.forget_patients()
     assert len(page.patients.lines) == 0
     assert not page.empty.isVisible()
+
+
+def test_a_list_that_is_read_anew_keeps_choice_and_scroll(page: HomePage, qapp: QApplication) -> None:
+    page.show_patients([patient(number) for number in range(1, 60)], UUID(int=30))
+    qapp.processEvents()
+    page.patients.verticalScrollBar().setValue(0)  # somebody looks elsewhere than at who is chosen
+    page.show_patients([patient(number) for number in range(1, 61)])
+    qapp.processEvents()
+    assert page.patient_id == UUID(int=30)
+    assert page.patients.verticalScrollBar().value() == 0
+    assert len(page.patients.lines) == 60
+
+
+def test_sessions_that_are_read_anew_keep_the_one_that_is_chosen(page: HomePage) -> None:
+    page.show_patients([patient(1)], UUID(int=1))
+    page.show_patient("P-0001", "")
+    page.show_sessions([session(2, "Barefoot"), session(1, "Barefoot")])
+    page.sessions.choose_line(UUID(int=1))
+    page.show_sessions([session(3, "Shoes"), session(2, "Barefoot"), session(1, "Barefoot")])
+    assert page.sessions.line is not None
+    assert page.sessions.line.id == UUID(int=1)

@@ -6,20 +6,24 @@ from uuid import UUID
 
 import numpy as np
 import pytest
-from PySide6.QtWidgets import QWidget
+from PySide6.QtWidgets import QFrame, QScrollArea, QWidget
 from pytestqt.qtbot import QtBot
 
 from app.import_drafts import drafts_of
+from app.pages.clinic_cards import StationView
 from app.pages.first_start_page import FirstStartPage
 from app.pages.help_page import HelpPage
 from app.pages.help_topics import Topic
 from app.pages.home_lists import PatientLine, SessionLine
 from app.pages.home_page import PATIENT, HomePage
 from app.pages.import_page import ImportPage
+from app.pages.join_page import JoinPage
 from app.pages.log_in_page import LogInPage
+from app.pages.questions_page import QuestionsPage
 from app.pages.settings_page import OperatorLine, SettingsPage
 from app.reports.course_lanes import CourseVisit
 from app.reports.course_words import NextStep
+from app.study.groups import GroupAnswer, Grouping, GroupQuestion, GroupRow
 from app.theme import ThemeNotifier
 from app.widgets.gauge import GaugeFace, GaugeMeasure, GaugeState
 from app.widgets.hint import Hint
@@ -69,6 +73,23 @@ def log_in(look: ThemeNotifier) -> QWidget:
     page = LogInPage(look, 12)
     page.show_operators(["hk", "mueller"], ["hk"], can_remember=True)
     return page
+
+
+def joining(look: ThemeNotifier) -> QWidget:
+    page = JoinPage(look)
+    page.refuse(tr("The clinic's server does not answer"), is_place=False)
+    return page
+
+
+def station(look: ThemeNotifier) -> QWidget:
+    page = SettingsPage(look, 12, [("clinician", tr("clinician"))])
+    page.show_library(has_access=False, has_backup=False, has_operators=False, is_station=True, may_move=True)
+    page.station.show_may(may_copy=True, may_bring_back=True)
+    page.station.show_station(StationView("postgresql://station@server/clinic", "/srv/recordings", 2))
+    scroll = QScrollArea()  # both cards together never fit
+    scroll.setWidgetResizable(True)
+    scroll.setWidget(page)
+    return scroll
 
 
 def cover(look: ThemeNotifier) -> QWidget:
@@ -127,6 +148,33 @@ def importing_files(look: ThemeNotifier) -> QWidget:
     (draft,) = drafts_of([("walk_1", ImportedTrial("apdm", sensors))])
     page.show_draft("session_2026", "APDM Moveo, Mobility Lab or Motion Studio", draft, "P-0300")
     page.show_unread([tr("This was stopped.")], can_try_again=True)
+    return page
+
+
+class ScrolledQuestions(QScrollArea):
+    """The page as home holds it: it is as high as its groups need."""
+
+    def __init__(self, page: QuestionsPage) -> None:
+        super().__init__()
+        self.setWidgetResizable(True)
+        self.setFrameShape(QFrame.Shape.NoFrame)
+        self.setWidget(page)
+        self.set_room = page.set_room
+
+
+def questions(look: ThemeNotifier) -> QWidget:
+    """With everything that can have to be said, and a group of one session."""
+    page = QuestionsPage(look)
+    page.show_table("batch of 2026/parameters.parquet", ["knee_range_deg", "speed_m_s"], tuple(Grouping))
+    whole = GroupRow("", 120, 80, 240, 58.4, 6.1, 0.56, 1.1, 9.2, 12, 30, 4, 3)
+    alone = GroupRow("80", 1, 1, 2, 61.0, np.nan, np.nan, np.nan, 9.2, 1, 0, 0, 0)
+    page.show_answer(GroupAnswer(GroupQuestion("knee_range_deg", Grouping.AGE), (alone, whole), 119, 80, 3, 2))
+    return ScrolledQuestions(page)
+
+
+def no_table(look: ThemeNotifier) -> QWidget:
+    page = QuestionsPage(look)
+    page.show_refused(tr("The table cannot be asked."), tr("The log holds the details."))
     return page
 
 
@@ -251,7 +299,11 @@ PAGES: dict[str, Callable[[ThemeNotifier], QWidget]] = {
     "empty home": empty_home,
     "import": importing,
     "import of files": importing_files,
+    "questions": questions,
+    "no table": no_table,
     "settings": settings,
+    "joining": joining,
+    "station": station,
     "patient": patient,
     "sensors": sensors,
     "no sensors": no_sensors,

@@ -1,6 +1,7 @@
 """A session beside an optical system, in the window: chosen, compared, read, refused and saved."""
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -121,3 +122,25 @@ def test_of_another_analysis_nothing_stays_in_sight(
     assert page.sheets.count > 1
     controller.show(session, analyse(session))
     assert page.sheets.count == 0
+
+
+def test_walks_are_called_as_on_the_screen_and_pages_are_drawn_finer_in_a_larger_window(
+    qtbot: QtBot,
+    page: AgreementPage,
+    controller: AgreementController,
+    walked: tuple[Session, Analysis, SessionTruth],
+    tmp_path: Path,
+) -> None:
+    session, analysis, truth = walked
+    conditions = {"walk 1": "Barefoot", "walk 2": "AFO"}
+    named = tuple(replace(one, condition=conditions.get(one.name, "")) for one in session.recordings)
+    page.resize(700, 680)
+    controller.show(replace(session, recordings=named), replace(analysis))
+    controller.compare([write_reference(tmp_path / "walk 1.csv", rows_of(truth, "walk 1"))])
+    qtbot.waitUntil(lambda: page.sheets.count > 1, timeout=30_000)
+    assert page.note.text() == "Not compared, as nothing fits them: B AFO."
+    coarse, count = page.sheets.pages[0].width, page.sheets.count
+    page.resize(1400, 680)
+    qtbot.waitUntil(lambda: page.sheets.pages[0].width > coarse, timeout=30_000)
+    assert page.sheets.count == count
+    assert page.note.text() == "Not compared, as nothing fits them: B AFO."

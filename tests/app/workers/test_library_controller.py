@@ -1,6 +1,7 @@
 """The thread that asks the library: in order, answered on the screen's thread, refused in words."""
 
 import shutil
+import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
 from datetime import UTC, datetime, timedelta
@@ -22,7 +23,8 @@ from app.storage.slots import Cost
 from app.storage.stored import LibraryError, Operator, Role, StoredPatient
 from app.workers.background import Report
 from app.workers.library_controller import LibraryController
-from app.workers.library_state import LibraryPlace, OpenedState
+from app.workers.library_state import Joined, LibraryPlace, OpenedState
+from app.workers.library_watch import LibraryWatch
 from app.workers.refusals import refusal_of
 from core.body import Site
 from core.samples import Patient
@@ -496,3 +498,61 @@ def test_a_change_of_the_key_that_is_refused_leaves_the_library_open(
     assert asker.refusals == [("Another program has the library open.", "Close it, then try again.")]
     controller.run(lambda library: len(library.library.operators.list()), asker.on_done, asker.on_failed, asker)
     qtbot.waitUntil(lambda: bool(asker.results), timeout=WAIT_MS)
+
+
+def test_what_is_no_address_is_refused_and_leaves_nothing(
+    qtbot: QtBot, controller: LibraryController, tmp_path: Path
+) -> None:
+    asker = Asker()
+    controller.join(tmp_path / "station", "nowhere", "", "", asker.on_done, asker.on_failed, asker)
+    qtbot.waitUntil(lambda: bool(asker.results), timeout=WAIT_MS)
+    (joined,) = asker.results
+    assert isinstance(joined, Joined)
+    assert joined.refusal is not None
+    assert "no address" in joined.refusal.what
+    assert not (tmp_path / "station").exists()
+
+
+def test_a_move_that_is_refused_leaves_the_library_open(
+    qtbot: QtBot, controller: LibraryController, folder: Path
+) -> None:
+    state = opened(qtbot, controller, folder)
+    asker = Asker()
+    controller.move_to_server("nowhere", "", str(folder), asker.on_done, asker.on_failed, asker.on_progressed, asker)
+    qtbot.waitUntil(lambda: bool(asker.refusals), timeout=WAIT_MS)
+    assert "no address" in asker.refusals[0][0]
+    assert controller.state is not None
+    assert controller.state.library is state.library
+    controller.run(lambda library: library.library.patients.search(), asker.on_done, asker.on_failed, asker)
+    qtbot.waitUntil(lambda: bool(asker.results), timeout=WAIT_MS)
+    assert asker.results == [()]
+
+
+def test_a_library_in_a_folder_is_not_brought_back(qtbot: QtBot, controller: LibraryController, folder: Path) -> None:
+    opened(qtbot, controller, folder)
+    asker = Asker()
+    controller.bring_back(asker.on_done, asker.on_failed, asker.on_progressed, asker)
+    qtbot.waitUntil(lambda: bool(asker.refusals), timeout=WAIT_MS)
+    assert "in a folder already" in asker.refusals[0][0]
+    assert controller.state is not None
+
+
+def test_a_watch_that_waits_for_a_server_holds_nobody_up(
+    qtbot: QtBot, controller: LibraryController, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    answers, asked = Event(), Event()
+
+    def listen(_watch: LibraryWatch) -> bool:
+        asked.set()
+        return answers.wait(WAIT_MS / 1000)
+
+    monkeypatch.setattr(LibraryWatch, "_listen", listen)
+    opened(qtbot, controller, folder)
+    qtbot.waitUntil(asked.is_set, timeout=WAIT_MS)
+    began_s = time.monotonic()
+    controller.close()
+    held_up_s = time.monotonic() - began_s
+    answers.set()
+    with qtbot.waitSignal(controller.closed, timeout=WAIT_MS):
+        pass
+    assert held_up_s < 0.1
