@@ -114,7 +114,7 @@ def _of_home(home: "Home", held: HeldLibrary) -> Iterator[str]:
     simulated = {identity for identity, is_simulated, _ in rows if is_simulated}
     for line in shown:
         conditions = {str(one) for (one,) in held.ask(CONDITIONS, line.id.hex)}
-        if set(filter(None, line.conditions.split(", "))) != {part for one in conditions for part in one.split(", ")}:
+        if set(filter(None, line.conditions.split("; "))) != {part for one in conditions for part in one.split("; ")}:
             yield f"home says conditions {line.conditions!r}, held are {sorted(conditions)}"
         if line.state == "simulated" and line.id.hex not in simulated:
             yield f"home calls session {line.when} simulated, it is not held as such"
