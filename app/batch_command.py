@@ -76,6 +76,17 @@ def batch(wanted: argparse.Namespace, report: Report) -> Iterator[str]:
     OSError
         OUT cannot be written.
     """
+    if wanted.folder == Path(LIBRARY):
+        _check_apart(wanted)
+    with _workers(wanted) as workers:  # first: they import what takes seconds while this process does
+        result, notes = _done(wanted, workers, report)
+    yield from _told(wanted.out, result)
+    yield from (f"- {one_line(note)}" for note in notes)
+    yield from (f"- {one_line(name)}: {one_line(reason)}" for name, reason in sorted(result.failures.items()))
+
+
+def _done(wanted: argparse.Namespace, workers: "Workers", report: Report) -> "tuple[BatchResult, list[str]]":
+    """What came of the batch, and what is to be said of its sessions; raises as `batch`."""
     from app.analysed_folder import AnalysisChoices
     from app.batch.done import batch_at
     from app.batch.run import Batch
@@ -83,20 +94,14 @@ def batch(wanted: argparse.Namespace, report: Report) -> Iterator[str]:
     from core.results import Method
 
     choices = AnalysisChoices(Method(wanted.method), wanted.tau, not wanted.no_report, not wanted.no_rrd)
-    is_library = wanted.folder == Path(LIBRARY)
-    if is_library:
-        _check_apart(wanted)
-    with _sessions(wanted, is_library) as sessions, batch_at(wanted.out) as folder, _workers(wanted) as workers:
+    with _sessions(wanted) as sessions, batch_at(wanted.out) as folder:
         work = Batch(sessions, folder, choices)
         try:
             work.run(workers, report)
         except ClusterLostError as lost:
             what = "the cluster is out of reach; what was done until then stays in OUT"
             raise FileRefusedError(wanted.dask, what, "Start it, then give the same command again") from lost
-        notes = list(sessions.notes())
-    yield from _told(wanted.out, work.result)
-    yield from (f"- {one_line(note)}" for note in notes)
-    yield from (f"- {one_line(name)}: {one_line(reason)}" for name, reason in sorted(work.result.failures.items()))
+        return work.result, list(sessions.notes())
 
 
 def _check_apart(wanted: argparse.Namespace) -> None:
@@ -117,8 +122,8 @@ def _check_apart(wanted: argparse.Namespace) -> None:
 
 
 @contextmanager
-def _sessions(wanted: argparse.Namespace, is_library: bool) -> "Iterator[SessionSource]":
-    if is_library:
+def _sessions(wanted: argparse.Namespace) -> "Iterator[SessionSource]":
+    if wanted.folder == Path(LIBRARY):
         from app.batch.library_sessions import LibrarySessions
 
         with opened_library(wanted) as opened:

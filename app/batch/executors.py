@@ -64,6 +64,13 @@ class ProcessExecutor(Executor):
         self._lock = threading.Lock()
         self._processes: set[_WorkerProcess] = set()
         self._is_stopped = False
+        self._count = count
+
+    def begin(self) -> None:
+        """Start the processes now, so that they import what they need while this one does."""
+        at_once = threading.Barrier(self._count)  # of which each thread comes by once, or one would start them all
+        for _ in range(self._count):
+            self._threads.submit(self._begin, at_once)
 
     def submit(self, fn: Callable[P, R], /, *args: P.args, **kwargs: P.kwargs) -> Future[R]:
         return self._threads.submit(self._ask, fn, args, kwargs)
@@ -87,6 +94,10 @@ class ProcessExecutor(Executor):
         """The processes that are there now."""
         with self._lock:
             return tuple(process.pid for process in self._processes)
+
+    def _begin(self, at_once: threading.Barrier) -> None:
+        at_once.wait()
+        self._own.process = self._started(None)
 
     def _ask(self, fn: Callable[..., R], args: tuple[object, ...], kwargs: dict[str, object]) -> R:
         """Have this thread's process do it; one that ends before it has begun is no loss but its own.
@@ -224,6 +235,7 @@ def of_this_computer(count: int) -> Iterator[Workers]:
         yield Workers(SerialExecutor(), lambda: 1, most_tries=1, has_queue=False, most_together=1)
         return
     executor = ProcessExecutor(count, PRELOADED)
+    executor.begin()
     try:
         yield Workers(executor, lambda: count, MOST_TRIES)
     except BaseException:

@@ -9,9 +9,10 @@ from devices.files.session_folder import write_session
 from devices.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
 
 
-def write_walks(folder: Path, count: int, different: int, strides: int) -> None:
-    """`count` session folders, of which so many are different; the others share their files on the disk."""
-    recordings = (Standing(), FreeMotion(), Walk(strides=strides))
+def write_walks(folder: Path, count: int, different: int, strides: int, walks: int) -> None:
+    """`count` sessions of so many walks, of which some are different; the others share their files on the disk."""
+    walked: list[Standing | FreeMotion | Walk] = [Walk(f"walk {1 + each}", strides=strides) for each in range(walks)]
+    recordings = (Standing(), FreeMotion(), *walked)
     for number in range(count):
         place = folder / f"visit {number:04d}"
         if number < different:

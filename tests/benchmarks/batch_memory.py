@@ -80,7 +80,7 @@ def main() -> None:
     executor = ProcessExecutor(WORKERS, PRELOADED)
     with tempfile.TemporaryDirectory() as place:
         folder, out = Path(place) / "in", Path(place) / "out"
-        write_walks(folder, wanted.sessions, min(wanted.sessions, 20), wanted.strides)
+        write_walks(folder, wanted.sessions, min(wanted.sessions, 20), wanted.strides, 1)
         watch = Watch(executor, wanted.sessions)
         with batch_at(out) as batch:
             work = Batch(SessionFolders(folder, out), batch, choices)

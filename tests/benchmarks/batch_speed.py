@@ -1,6 +1,6 @@
 """How much faster is a batch with two workers than with one? The whole command, from its start to its table.
 
-    python -m tests.benchmarks.batch_speed --sessions 24 --pairs 5
+    python -m tests.benchmarks.batch_speed --sessions 48 --pairs 5
 
 One worker and two take turns on the same sessions, simulated walks with free motion; the ratio of each pair is taken,
 then the median. 1.6 is wanted on two cores.
@@ -27,8 +27,9 @@ def took_s(folder: Path, out: Path, workers: int, more: list[str]) -> float:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--sessions", type=int, default=24)
-    parser.add_argument("--strides", type=int, default=20)
+    parser.add_argument("--sessions", type=int, default=48)
+    parser.add_argument("--strides", type=int, default=40)
+    parser.add_argument("--walks", type=int, default=3)
     parser.add_argument("--pairs", type=int, default=5)
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--bare", action="store_true", help="without report.pdf and session.rrd")
@@ -36,7 +37,7 @@ def main() -> None:
     more, ratios = ["--no-report", "--no-rrd"] if wanted.bare else [], []
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place) / "in"
-        write_walks(folder, wanted.sessions, min(wanted.sessions, 8), wanted.strides)
+        write_walks(folder, wanted.sessions, min(wanted.sessions, 8), wanted.strides, wanted.walks)
         for pair in range(wanted.pairs):
             one_s, many_s = (
                 took_s(folder, Path(place) / f"{pair} {workers}", workers, more) for workers in (1, wanted.workers)
