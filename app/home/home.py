@@ -12,10 +12,11 @@ from PySide6.QtGui import QColor, QKeySequence, QPainter, QPaintEvent, QResizeEv
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QStackedWidget, QVBoxLayout, QWidget
 
 from app.home.analysing_again import AnalysingAgain
+from app.home.computing_courses import ComputingCourses
 from app.home.deleting import Deleting
-from app.home.entry import ADMINISTRATOR
 from app.home.importing import Importing
-from app.home.patient_reading import PatientReading, compute_courses, read_patient
+from app.home.library_notices import LibraryNotices
+from app.home.patient_reading import PatientReading, read_patient
 from app.home.questions import Questions
 from app.home.recovering import Recovering
 from app.home.settings_controller import SettingsController
@@ -35,15 +36,13 @@ from app.widgets.start_pages import WorkingPage
 from app.widgets.step_rail import StepRail, home_below
 from app.widgets.themed import Themed
 from app.widgets.toast import Toast
-from app.wording import place, tr, tr_n
-from app.workers.background import Report
+from app.wording import place, tr
 from app.workers.library_controller import LibraryController
 from app.workers.library_state import OpenedState
 
 if TYPE_CHECKING:
     from app.storage import stored
     from app.storage.opened import OpenedLibrary
-    from app.storage.rollback import Rollback
 
 COMPACT_BELOW = (1180, 720)
 WIDE_FROM = 1800
@@ -74,15 +73,9 @@ class Home(Themed):
         self._patients: dict[UUID, stored.StoredPatient] = {}
         self._sessions_of: UUID | None = None  # the patient whose sessions are shown, or being read
         self._reading: PatientReading | None = None
-        self._is_computing = False
         self.rail = StepRail(look)
         self.banner = Banner(look)
-        self.rollback_banner = Banner(look)
-        self._rollback: Rollback | None = None
-        self.away_banner = Banner(look)
-        self.away_banner.acted.connect(self.own_library_wished)
-        controller.server_back.connect(self._on_server_back)
-        self.rollback_banner.acted.connect(self._on_rollback_accepted)
+        self.notices = LibraryNotices(look, controller, self)
         self.recovering = Recovering(controller, self.banner, self)
         self.page = HomePage(look)
         self.importing = Importing(look, controller, self)
@@ -93,6 +86,7 @@ class Home(Themed):
         self.bar = ActionBar(look)
         self.toast = Toast(look, self)
         self.deleting = Deleting(controller, self)
+        self.computing = ComputingCourses(controller, self)
         self._build()
         self._connect()
         self._go_to(self.page)
@@ -168,62 +162,10 @@ class Home(Themed):
                 tr("The library was not closed well, and what was saved last is damaged."),
                 tr("Look through the latest session."),
             )
-        self._show_rollback(state)
-        self._show_away(state)
+        self.notices.show(state)
         self.recovering.begin(state)
         self.refresh()
         self._go_to(self.page)
-
-    def _show_away(self, state: OpenedState) -> None:
-        """Say that the clinic's server is not there, or what was brought to it from when it was not."""
-        self.away_banner.hide()
-        if state.is_away:
-            self.away_banner.tell(
-                tr("You work without the clinic's server."),
-                tr(
-                    "Sessions that begin now are kept on this computer, and are on the server at the first log in once "
-                    "it answers. Patients of the clinic are not shown, and are known again by their codes."
-                ),
-            )
-        elif state.brought_from_away:
-            said = tr_n(
-                "{count} session that was made without the clinic's server is on it now.",
-                "{count} sessions that were made without the clinic's server are on it now.",
-                state.brought_from_away,
-            )
-            self.away_banner.tell(said.format(count=state.brought_from_away))
-
-    def _on_server_back(self) -> None:
-        self.away_banner.tell(
-            tr("The clinic's server answers again."),
-            tr("Log in to it: what was recorded here is then there for all stations."),
-            tr("Log in to the server"),
-        )
-
-    def _show_rollback(self, state: OpenedState) -> None:
-        """Say that the library is an older state than this computer has seen, and let an administrator accept it."""
-        self._rollback = rollback = state.rollback
-        self.rollback_banner.hide()
-        if rollback is None:
-            return
-        is_administrator = state.operator.role.value == ADMINISTRATOR
-        missing = tr("What was done from entry {first} to {last} of its audit is not all in it.")
-        then = tr("If a backup was restored, that is why: accept it. Else somebody put an older copy here.")
-        if not is_administrator:
-            then = tr("Tell an administrator, who can look into it and accept it where a backup was restored.")
-        self.rollback_banner.tell(
-            tr("This library is older than when this computer saw it last."),
-            f"{missing.format(first=rollback.first, last=rollback.last)} {then}",
-            tr("Accept this state") if is_administrator else "",
-        )
-
-    def _on_rollback_accepted(self) -> None:
-        if self._rollback is not None:
-            self._controller.accept_rollback(self._rollback, self._on_rollback_noted, self.banner.tell, self)
-
-    def _on_rollback_noted(self, _nothing: object) -> None:
-        self._rollback = None
-        self.rollback_banner.hide()
 
     def clear(self) -> None:
         """Keep nothing of any patient, for whoever comes next."""
@@ -238,7 +180,7 @@ class Home(Themed):
         self.deleting.forget()
         self.toast.hide()
         self.banner.hide()
-        self.rollback_banner.hide()
+        self.notices.forget()
         self.page.search.clear()
         self.page.forget_patients()
         self.page.show_patient("", "")
@@ -283,8 +225,8 @@ class Home(Themed):
         for page in (self.page, self.importing.page, self.working):
             self._add_page(page)
         self._banner_row = QVBoxLayout()
-        self._banner_row.addWidget(self.rollback_banner)
-        self._banner_row.addWidget(self.away_banner)
+        self._banner_row.addWidget(self.notices.rollback)
+        self._banner_row.addWidget(self.notices.away)
         self._banner_row.addWidget(self.banner)
         column = QVBoxLayout()
         column.setSpacing(0)
@@ -313,7 +255,7 @@ class Home(Themed):
         page.new_patient_wished.connect(self._on_new_patient)
         page.demonstration_wished.connect(self.demonstration_wished)
         page.import_wished.connect(self._begin_import)
-        page.computing_wished.connect(self._compute)
+        page.computing_wished.connect(self._on_computing_wished)
         page.panel.analysing_wished.connect(self._begin_again)
         page.patient_deleted.connect(self._on_patient_deleted)
         page.session_deleted.connect(self.deleting.session)
@@ -333,6 +275,12 @@ class Home(Themed):
         self.importing.told.connect(self.banner.tell)
         self.working.stop_pressed.connect(self._on_stop)
         self.recovering.recovered.connect(self.refresh)
+        self.notices.log_in_wished.connect(self.own_library_wished)
+        self.notices.refused.connect(self.banner.tell)
+        self.computing.working.connect(self._work)
+        self.computing.progressed.connect(self._on_progressed)
+        self.computing.left.connect(self._on_computing_left)
+        self.computing.told.connect(self.banner.tell)
         self.toast.undone.connect(self.deleting.undo)
         self.deleting.done.connect(self._on_deleted)
         self.deleting.undone.connect(self.refresh)
@@ -478,27 +426,13 @@ class Home(Themed):
         self._reading = reading
         self.page.show_sessions(reading.lines(now), reading.visits(now), reading.next_step(now))
 
-    def _compute(self) -> None:
-        """Evaluate those visits of the patient that have no figures in the course yet."""
-        if self._reading is None:
-            return
-        missing = [
-            visit.id for visit in self._reading.visits(datetime.datetime.now().astimezone()) if visit.course is None
-        ]
+    def _on_computing_wished(self) -> None:
+        if self._reading is not None:
+            visits = self._reading.visits(datetime.datetime.now().astimezone())
+            self.computing.begin([visit.id for visit in visits if visit.course is None])
 
-        def work(opened: "OpenedLibrary", report: Report) -> int:
-            return compute_courses(opened, missing, report)
-
-        self._is_computing = True
-        self._work(tr("Computing the visits"))
-        self._controller.run_long(work, self._on_computed, self._on_work_refused, self._on_progressed, self)
-
-    def _on_computed(self, unread: int) -> None:
-        self._is_computing = False
+    def _on_computing_left(self) -> None:
         self._go_to(self.page)
-        if unread:
-            said = tr_n("{count} visit could not be computed.", "{count} visits could not be computed.", unread)
-            self.banner.tell(said.format(count=unread), tr("Open it to see why."))
         self.refresh()
 
     def _on_new_patient(self) -> None:
@@ -622,21 +556,12 @@ class Home(Themed):
         self.working.show_progress(share, words[:1].upper() + words[1:])
 
     def _on_stop(self) -> None:
-        if self._is_computing:
-            self._is_computing = False
-            self._controller.stop_long()
-            self._go_to(self.page)
-            self.banner.tell(tr("This was stopped."), tr("The visits that were computed stay in the course."))
-            self.refresh()
+        if self.computing.is_working:
+            self.computing.stop()
         elif self._again is not None and self._again.is_working:
             self._again.stop()
         else:
             self.importing.stop()
-
-    def _on_work_refused(self, what: str, remedy: str) -> None:
-        self._is_computing = False
-        self._go_to(self.page)
-        self.banner.tell(what, remedy)
 
     def _on_look_changed(self) -> None:
         px = self._look.theme.px

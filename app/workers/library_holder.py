@@ -11,7 +11,7 @@ from threading import Lock
 from uuid import UUID
 
 from app.storage.bringing_home import bring_home
-from app.storage.clinic.away import bring_away_home, open_away, remember_operators
+from app.storage.clinic.away import bring_away_home, has_been_away, open_away, remember_operators
 from app.storage.clinic.handing_over import begin_station
 from app.storage.clinic.joining import is_station, join, new_station
 from app.storage.clinic.journal_store import PlaceMissingError
@@ -27,7 +27,7 @@ from app.storage.opened import OpenedLibrary, create_library, held_alone, logged
 from app.storage.recovery import find_interrupted
 from app.storage.rollback import Rollback, SeenLibraries
 from app.storage.root import GONE
-from app.storage.stored import LibraryError, LibraryFaultError, Operator, Role
+from app.storage.stored import LibraryError, Operator, Role, ServerSilentError
 from app.wording import tr
 from app.workers.background import Report
 from app.workers.library_opening import demonstration, let_keyring_remember, tidy
@@ -65,7 +65,7 @@ class LibraryHolder:
                 state = replace(_look_through(library, ends), rollback=self._look_back(library))
                 self._library, self._ends = library, ends.pop_all()
         except Exception as error:  # told where the library was to be opened
-            is_away = station is not None and isinstance(error, LibraryFaultError) and is_station(station)
+            is_away = station is not None and isinstance(error, ServerSilentError) and is_station(station)
             return NotOpened(*refusal_of(error), isinstance(error, KeyRefusedError), is_away)
         self._is_to_be_tidied = True
         return replace(state, recovery_key=recovery_key)
@@ -276,7 +276,7 @@ class LibraryHolder:
 
 def _look_through(library: OpenedLibrary, ends: ExitStack) -> OpenedState:
     ends.enter_context(held_alone(library.folder))
-    from_away = _begin_station(library)
+    from_away, still_away = _begin_station(library)
     operator = _operator_of(library)
     brought: frozenset[UUID] = frozenset()
     try:
@@ -292,6 +292,7 @@ def _look_through(library: OpenedLibrary, ends: ExitStack) -> OpenedState:
         is_recovery_key_confirmed=_is_recovery_key_confirmed(library),
         is_away=library.away_from is not None,
         brought_from_away=from_away,
+        still_away=still_away,
     )
 
 
@@ -301,18 +302,25 @@ def _is_recovery_key_confirmed(library: OpenedLibrary) -> bool:
     return slots_of(library.folder).is_recovery_key_confirmed
 
 
-def _begin_station(library: OpenedLibrary) -> int:
-    """What a clinic's station does first; how many sessions that were made without the server are on it now."""
+def _begin_station(library: OpenedLibrary) -> tuple[int, Refusal | None]:
+    """What a clinic's station does first.
+
+    Returns
+    -------
+    brought, refusal
+        How many sessions that were made without the server are on it now, and why others are still here.
+    """
     if library.shared is None:
-        return 0
-    brought = 0
+        return 0, None
+    brought, refusal = 0, None
     try:
         remember_operators(library)
         brought = bring_away_home(library)
     except (LibraryError, OSError) as error:  # it stays here, for the next time
         _log.warning("what was recorded without the server is still here", exc_info=error)
+        refusal = refusal_of(error) if has_been_away(library) else None
     begin_station(library)
-    return brought
+    return brought, refusal
 
 
 def _operator_of(library: OpenedLibrary) -> Operator:

@@ -37,6 +37,8 @@ class OpenedState:
         It is what a clinic's station works with while the server does not answer.
     brought_from_away
         How many sessions that were made without the clinic's server are on it now.
+    still_away
+        Why sessions that were made without the clinic's server are still on this computer alone.
     """
 
     library: "OpenedLibrary"
@@ -49,6 +51,7 @@ class OpenedState:
     is_recovery_key_confirmed: bool = True
     is_away: bool = False
     brought_from_away: int = 0
+    still_away: Refusal | None = None
 
     @property
     def is_demonstration(self) -> bool:

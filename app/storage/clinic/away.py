@@ -89,6 +89,11 @@ def open_away(folder: Path, data_key: DataKey, code: str) -> OpenedLibrary:
     return OpenedLibrary(library, away, data_key, away_from=station)
 
 
+def has_been_away(opened: OpenedLibrary) -> bool:
+    """Whether something that was recorded without the server is still on this computer alone."""
+    return any((opened.folder / name / DATABASE).exists() for name in (AWAY, COMING_HOME))
+
+
 def bring_away_home(opened: OpenedLibrary) -> int:
     """Take to the server what was recorded while it did not answer; how many sessions that were.
 

@@ -15,7 +15,13 @@ from sqlalchemy.orm.exc import StaleDataError
 
 from app.storage.data_key import KeyMaterial, checked
 from app.storage.database.finite_json import finite_json, from_finite_json
-from app.storage.stored import ChangedMeanwhileError, LibraryBusyError, LibraryError, LibraryFaultError
+from app.storage.stored import (
+    ChangedMeanwhileError,
+    LibraryBusyError,
+    LibraryError,
+    LibraryFaultError,
+    ServerSilentError,
+)
 from app.wording import tr
 
 OLDEST_SQLITE = (3, 51, 3)  # before it a reset of the write-ahead log could lose pages
@@ -49,11 +55,8 @@ PG_SENTENCES = (
         ('database "',),
         ("The clinic's server has no such database", "Compare its name with the server's"),
     ),
-    (
-        ("translate host name", "resolve host"),
-        ("There is no server of this name in the network", "Compare the address with the server's"),
-    ),
 )
+PG_NO_HOST = ("translate host name", "resolve host")
 AS_WRITER = {"takes_write_lock": True}
 AS_BUILDER = {"takes_write_lock": True, "leaves_references": True}
 
@@ -358,8 +361,12 @@ def _sentence(error: DBAPIError | PoolTimeoutError | sqlite.Error) -> LibraryErr
         for said, (what, remedy) in PG_SENTENCES:
             if any(one in words for one in said):
                 return LibraryFaultError(what, remedy)
+        if any(one in words for one in PG_NO_HOST):
+            return ServerSilentError(
+                "There is no server of this name in the network", "Compare the address with the server's"
+            )
     if (isinstance(error, DBAPIError) and error.connection_invalidated) or "connection" in words:
-        return LibraryFaultError("The clinic's server does not answer", "Try again when it is back")
+        return ServerSilentError("The clinic's server does not answer", "Try again when it is back")
     if "disk I/O" in words:
         return LibraryFaultError("The library's file cannot be read or written", "Check the disk, then try again")
     return LibraryFaultError(

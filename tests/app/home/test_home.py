@@ -35,6 +35,7 @@ from app.storage.stored import LibraryError, PlacedSensor, Role, StoredJournal, 
 from app.theme import ThemeNotifier, load_fonts
 from app.widgets.button import Button
 from app.workers.library_controller import LibraryController
+from app.workers.refusals import Refusal
 from core.body import Site
 from core.samples import ImuBlock, Patient, Recording, RecordingKind, SensorInfo, Session
 from devices.files.session_folder import write_session
@@ -472,16 +473,36 @@ def test_an_older_state_of_the_library_is_said_and_an_administrator_may_accept_i
     state = controller.state
     assert state is not None
     home.show_library(state)
-    assert not home.rollback_banner.isVisible()
+    assert not home.notices.rollback.isVisible()
     home.show_library(replace(state, operator=replace(state.operator, role=role), rollback=Rollback(first, 9)))
-    said = home.rollback_banner.text
+    said = home.notices.rollback.text
     assert said.startswith("This library is older than when this computer saw it last. What was done from entry 5 to 9")
-    button = home.rollback_banner.findChildren(Button)[0]
+    button = home.notices.rollback.findChildren(Button)[0]
     assert button.isVisible() is (role is Role.ADMINISTRATOR)
     assert ("Tell an administrator" in said) is (role is Role.CLINICIAN)
     if role is Role.ADMINISTRATOR:
         button.click()
-        qtbot.waitUntil(lambda: not home.rollback_banner.isVisible(), timeout=WAIT_MS)
+        qtbot.waitUntil(lambda: not home.notices.rollback.isVisible(), timeout=WAIT_MS)
+
+
+def test_what_became_of_work_without_the_server_is_said_and_of_other_libraries_nothing(
+    home: Home, controller: LibraryController
+) -> None:
+    state, away = controller.state, home.notices.away
+    assert state is not None
+    home.show_library(state)
+    assert not away.isVisible()
+    for changed, begins, ends in (
+        ({"is_away": True}, "You work without the clinic's server.", "known again by their codes."),
+        ({"brought_from_away": 1}, "1 session that was made without", "on it now."),
+        ({"still_away": Refusal("It is full.", "Ask.")}, "Sessions that were made without", "It is full. Ask."),
+    ):
+        home.show_library(replace(state, **changed))
+        assert away.isVisible()
+        assert away.text.startswith(begins)
+        assert away.text.endswith(ends)
+    home.clear()
+    assert not away.isVisible()
 
 
 def test_an_operator_is_removed_with_a_change_of_the_key_and_comes_back_with_a_new_passphrase(

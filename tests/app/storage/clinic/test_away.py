@@ -11,12 +11,15 @@ import pytest
 from app.storage.clinic import away
 from app.storage.clinic.away import AWAY, COMING_HOME, bring_away_home, open_away, remember_operators
 from app.storage.clinic.handing_over import hand_over
+from app.storage.clinic.server_state import ServerState, set_state
 from app.storage.exchange import session_with_samples
 from app.storage.opened import OpenedLibrary, held_alone
 from app.storage.recovery import adopt_home, find_interrupted, recover
 from app.storage.stored import LibraryError, NotAllowedError, Role
+from app.workers.library_holder import LibraryHolder
+from app.workers.library_state import NotOpened, OpenedState
 from core.samples import Patient, Session
-from tests.app.storage.clinic.conftest import silent
+from tests.app.storage.clinic.conftest import PASSPHRASE, silent
 from tests.app.storage.clinic.test_stations import found, read, record
 
 pytestmark = pytest.mark.endurance  # each starts with an empty server
@@ -181,3 +184,36 @@ def test_who_may_only_look_records_nothing_without_the_server(stations: Stations
     first.library.operators.change(replace(told, role=Role.VIEWER))
     with begin_away(first, "ab") as opened, pytest.raises(NotAllowedError):
         opened.library.patients.create(Patient(code="DEMO-9"))
+
+
+def test_a_closed_server_is_no_reason_to_work_without_it(stations: Stations) -> None:
+    first, _ = stations
+    with first.library.database.writing() as session:
+        set_state(session, ServerState.CLOSED)
+    first.library.close()
+    outcome = LibraryHolder(None).open(first.folder, PASSPHRASE, "hk", False, None)
+    assert isinstance(outcome, NotOpened)
+    assert outcome.what == "The library is no longer on the clinic's server."
+    assert not outcome.can_work_away
+
+
+def test_what_the_server_does_not_take_is_said_at_the_log_in_until_it_does(
+    stations: Stations, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    first, _ = stations
+    visit_away(first)
+    first.library.close()
+
+    def refused(*_: object) -> int:
+        raise LibraryError("The server is full", "Ask whoever keeps it")
+
+    holder = LibraryHolder(None)
+    with monkeypatch.context() as patched:
+        patched.setattr(away, "_bring_rows", refused)
+        outcome = holder.open(first.folder, PASSPHRASE, "hk", False, None)
+    assert isinstance(outcome, OpenedState)
+    assert outcome.still_away == ("The server is full.", "Ask whoever keeps it.")
+    again = holder.open(first.folder, PASSPHRASE, "hk", False, None)
+    holder.close()
+    assert isinstance(again, OpenedState)
+    assert (again.still_away, again.brought_from_away) == (None, 1)
