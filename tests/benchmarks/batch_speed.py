@@ -1,6 +1,6 @@
 """How much faster is a batch with two workers than with one? The whole command, from its start to its table.
 
-    python -m tests.benchmarks.batch_speed --sessions 48 --pairs 5
+    python -m tests.benchmarks.batch_speed --sessions 72 --pairs 5
 
 One worker and two take turns on the same sessions, simulated walks with free motion; the ratio of each pair is taken,
 then the median. 1.6 is wanted on two cores.
@@ -27,7 +27,7 @@ def took_s(folder: Path, out: Path, workers: int, more: list[str]) -> float:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--sessions", type=int, default=48)
+    parser.add_argument("--sessions", type=int, default=72)
     parser.add_argument("--strides", type=int, default=40)
     parser.add_argument("--walks", type=int, default=3)
     parser.add_argument("--pairs", type=int, default=5)

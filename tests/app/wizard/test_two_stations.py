@@ -245,6 +245,7 @@ def test_a_limit_said_here_does_not_take_back_one_said_there(qtbot: QtBot, ours:
     wanted = Limits(frozenset({Side.LEFT}), cannot_stand=True)
     sessions, session_id = other.library.sessions, other.session_id
     settle(qtbot, ours, other, lambda: sessions.get(session_id).limits == wanted == ours.limits)
+    assert (sessions.get(session_id).limits, ours.limits) == (wanted, wanted)
 
 
 def test_a_condition_typed_at_both_stations_is_asked_about_and_a_further_change_asks_again(
@@ -275,6 +276,7 @@ def test_strides_left_out_at_both_stations_are_all_left_out(qtbot: QtBot, ours: 
     choice = StrideChoice(ours.recordings, ours)
     choice.take_all_in("walk 1")
     settle(qtbot, ours, other, lambda: other.walk.left_out_s == {})
+    assert (other.walk.left_out_s, ours.recordings.walks[0].details.left_out_s) == ({}, {})
 
 
 def test_taking_back_what_was_left_out_here_leaves_out_what_was_left_out_there(
