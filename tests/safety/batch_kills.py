@@ -27,6 +27,7 @@ from app.batch.spread import Workers, finished
 from tests.app.batch_stand_ins import StandIn, digest_of
 
 WORKERS = 2
+PRELOADED_OF_BOTH = (*PRELOADED, "distributed.nanny")  # a killed worker of the cluster is back in no time, too
 
 
 @dataclass(slots=True)
@@ -73,7 +74,7 @@ class Killer:
 
 @contextmanager
 def killed_pool(every_s: float, seed: int) -> Iterator[tuple[Workers, Killer]]:
-    executor = ProcessExecutor(WORKERS, PRELOADED)
+    executor = ProcessExecutor(WORKERS, PRELOADED_OF_BOTH)
     with Killer(executor.pids, every_s, seed) as killer:
         yield Workers(executor, lambda: WORKERS, MOST_TRIES), killer
     executor.shutdown()
@@ -96,10 +97,17 @@ def local_cluster() -> Iterator[Any]:
     """A Dask cluster of two processes on this computer, which nobody else reaches and which shows no page."""
     import dask
     from distributed import LocalCluster
+    from distributed.utils import get_mp_context
 
-    # a cluster on one computer gives up a worker that is not back in 15 s: on a busy machine it is killed before that
+    settings = {
+        # a cluster on one computer gives up a worker that is not back in 15 s: on a busy machine it is killed before
+        "distributed.deploy.lost-worker-timeout": "1 hour",
+        "distributed.worker.multiprocessing-method": "forkserver",
+    }
+    with dask.config.set(settings):
+        get_mp_context().set_forkserver_preload(list(PRELOADED_OF_BOTH))  # after it has said what it would preload
     with (
-        dask.config.set({"distributed.deploy.lost-worker-timeout": "1 hour"}),
+        dask.config.set(settings),
         LocalCluster(
             n_workers=WORKERS, threads_per_worker=1, processes=True, dashboard_address=None, host="127.0.0.1"
         ) as cluster,

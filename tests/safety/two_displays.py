@@ -214,7 +214,9 @@ def _change_the_same(one: StationOnScreen, two: StationOnScreen, server: Server)
     two.lead(Stop("42-changes", at_step("PatientStep"), ("press ctrl+a", f"type {HEIGHTS[1]}", "press Tab")))
     told = "meanwhile"
     two.lead(
-        Stop("43-told", lambda seen: any(told in words for words in seen.words), ("click Leave theirs",), lingers_s=1.0),
+        Stop(
+            "43-told", lambda seen: any(told in words for words in seen.words), ("click Leave theirs",), lingers_s=1.0
+        ),
         Stop("44-answered", lambda seen: at_step("PatientStep")(seen) and not seen.says(told), lingers_s=1.0),
     )
     after = _patient(server)
