@@ -38,6 +38,7 @@ COUNTED_S = 5.0  # how long the number of a cluster's workers is believed
 MOST_STARTS = 20  # of a process that ends before it does anything
 PRELOADED = ("app.batch.task",)  # and with it all that computes
 BEGUN = "begun"
+CALLS_EACH = 100  # of a process, which is then renewed: what writes reports and logs keeps 2 to 5 MB of each
 ENDING_S = 5.0  # until a process that has nothing to do any more is killed
 
 
@@ -109,7 +110,7 @@ class ProcessExecutor(Executor):
         """
         for _ in range(MOST_STARTS):
             process: _WorkerProcess | None = getattr(self._own, "process", None)
-            if process is None or not process.is_there:
+            if process is None or not process.is_there or process.calls >= CALLS_EACH:
                 process = self._own.process = self._started(process)
             has_begun = False
             try:
@@ -146,7 +147,7 @@ class _WorkerProcess:
         self._process = context.Process(target=serve, args=(theirs,), name="batch worker", daemon=True)  # type: ignore[attr-defined]  # the stubs lack it
         self._process.start()
         theirs.close()
-        self.pid = self._process.pid or 0
+        self.pid, self.calls = self._process.pid or 0, 0
 
     @property
     def is_there(self) -> bool:
@@ -160,6 +161,7 @@ class _WorkerProcess:
         EOFError, OSError
             It has ended.
         """
+        self.calls += 1
         self._pipe.send(what)
         self._pipe.recv()
 

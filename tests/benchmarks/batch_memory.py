@@ -2,8 +2,8 @@
 
     python -m tests.benchmarks.batch_memory --sessions 1000
 
-Prints the resident memory of each, and of the processes that read the files, as the batch goes on; growth is told from
-the first tenth on, when all that is used is imported.
+Prints the resident memory of each, and of the processes that read the files, as the batch goes on. Workers are renewed
+now and then, so their memory rises and falls: told is the most of the first quarter, and of the last.
 """
 
 import argparse
@@ -21,7 +21,7 @@ from app.batch.spread import Workers
 from core.results import Method
 from tests.benchmarks.batch_material import write_walks
 
-WORKERS, LINES = 2, 20
+WORKERS, LINES = 2, 100
 
 
 class Watch:
@@ -86,10 +86,12 @@ def main() -> None:
             work = Batch(SessionFolders(folder, out), batch, choices)
             work.run(Workers(executor, lambda: WORKERS, MOST_TRIES), watch)
         executor.shutdown()
-    settled = next(noted for noted in watch.noted if noted[0] >= wanted.sessions / 10)
-    grown = [last - first for first, last in zip(settled[1:], watch.noted[-1][1:], strict=True)]
     print(f"{work.result.analysed} analysed, {len(work.result.failures)} failed")
-    print("grown from the first tenth on, MiB: leads {:+.1f}, works {:+.1f}, reads {:+.1f}".format(*grown))
+    quarter = wanted.sessions / 4
+    for name, first, last in (("first", 0.0, quarter), ("last", wanted.sessions - quarter, wanted.sessions)):
+        noted = [one[1:] for one in watch.noted if first <= one[0] <= last]
+        most = map(max, zip(*noted, strict=True))
+        print("most in the {} quarter, MiB: leads {:.1f}, works {:.1f}, reads {:.1f}".format(name, *most))
 
 
 if __name__ == "__main__":

@@ -1,5 +1,6 @@
 """Tasks are handed out in groups of a second, each is finished once, and a lost worker costs its own task at most."""
 
+import os
 from collections import Counter
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
@@ -8,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from app.batch import spread
+from app.batch import executors, spread
 from app.batch.executors import ProcessExecutor, SerialExecutor, of_this_computer
 from app.batch.spread import ClusterLostError, WorkerLostError, Workers, finished, work_group
 from tests.app.batch_stand_ins import (
@@ -129,6 +130,17 @@ def test_a_task_that_kills_every_worker_ends_as_a_failure_with_its_reason() -> N
     assert list(lost) == [13]
     assert str(lost[13]) == "it was ended by SIGKILL"
     assert len(found) == 20
+
+
+@pytest.mark.endurance  # processes take seconds to start
+def test_a_process_is_renewed_before_what_libraries_keep_of_each_task_fills_the_memory(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(executors, "CALLS_EACH", 4)
+    executor = ProcessExecutor(1)
+    found = [executor.submit(os.getpid).result() for _ in range(10)]
+    executor.shutdown()
+    assert [found.count(pid) for pid in dict.fromkeys(found)] == [4, 4, 2]
 
 
 def test_processes_that_are_stopped_are_gone() -> None:
