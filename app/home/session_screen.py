@@ -2,7 +2,6 @@
 
 import logging
 from collections.abc import Callable
-from functools import partial
 from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -31,16 +30,13 @@ from app.widgets.text import Text
 from app.widgets.themed import Themed
 from app.wording import filled, later, place, side_name, tr
 from app.workers.background import Background, Work
+from app.workers.behind_results import BehindResults
 from app.workers.opening import opening_demonstration, opening_folder
 from core.body import Side
 from devices.files.refusal import FileRefusedError
 
 if TYPE_CHECKING:  # their imports take a second; the window must not wait for them
-    from app.pages.agreement_page import AgreementPage
-    from app.pages.found_page import FoundPage
     from app.pages.result_page import ResultPage
-    from app.workers.agreement_controller import AgreementController
-    from app.workers.diagnostics_controller import DiagnosticsController
     from app.workers.opening import Opened
     from core.samples import Patient
 
@@ -74,11 +70,6 @@ class SessionScreen(Themed):
         self._has_way_back = False
         self._results: ResultPage | None = None
         self._opened: Opened | None = None
-        self._found: FoundPage | None = None
-        self._how_found: DiagnosticsController | None = None
-        self._agreement: AgreementPage | None = None
-        self._compared: AgreementController | None = None
-        self._saved_for: FoundPage | AgreementPage | None = None
         self._saved_in = Path()
         self._dialog: QFileDialog | None = None
         self.header = Header(look)
@@ -86,6 +77,7 @@ class SessionScreen(Themed):
         self.empty = EmptyPage(look)
         self.working = WorkingPage(look)
         self.pages = PageStack()
+        self.behind = BehindResults(look, self.pages, self._looking, self._comparing, self)
         self.bar = _ActionBar(look)
         self._build()
         self._connect()
@@ -118,10 +110,8 @@ class SessionScreen(Themed):
 
     def leave(self) -> None:
         """Go back, first to the results where these are looked behind, and end what is running."""
-        shown = self.pages.currentWidget()
-        if shown is not None and (shown is self._found or shown is self._agreement):
-            self._looking.stop()
-            self._comparing.stop()
+        if self.behind.is_in_sight:
+            self.behind.stop()
             self._show_page(self._results or self.empty)
         elif self._results is not None and self._results.isVisible() and self._results.leave_behind():
             return
@@ -189,6 +179,9 @@ class SessionScreen(Themed):
         self._background.progressed.connect(self._on_progressed)
         self._background.done.connect(self._on_done)
         self._background.failed.connect(self._on_failed)
+        self.behind.refused.connect(self.banner.tell)
+        self.behind.writing.connect(self._on_figures_wished)
+        self.behind.closed.connect(self.leave)
         self._saving.done.connect(self._on_figures_saved)
         self._saving.failed.connect(self._on_figures_not_saved)
 
@@ -205,10 +198,6 @@ class SessionScreen(Themed):
             self.working.stop.setFocus()
         elif page is self.empty:
             self.empty.open_folder.setFocus()
-        elif self._found is not None and page is self._found:
-            self._found.focus()
-        elif self._agreement is not None and page is self._agreement:
-            self._agreement.focus()
         elif self._results is not None:
             self._results.focus()
         self._fit()
@@ -222,8 +211,7 @@ class SessionScreen(Themed):
         self.bar.set_narrow(is_narrow)
         if self._results is not None:
             self._results.set_room(width, height - HEADER - BAR)
-        if self._found is not None:
-            self._found.set_room(width, height - HEADER)
+        self.behind.set_room(width, height - HEADER)
 
     def _on_folder_selected(self, folder: str) -> None:
         self.open_folder(Path(folder))
@@ -258,46 +246,29 @@ class SessionScreen(Themed):
         self.bar.tell(self._results.band_words if self._results is not None else "")
 
     def _on_how_found(self) -> None:
-        """Look behind the recording that is shown; the page is made at the first time."""
+        """Look behind the recording that is shown."""
         recording = self._results.recording if self._results is not None else None
-        if self._opened is None or recording is None:
-            return
-        if self._found is None or self._how_found is None:
-            from app.pages.found_page import FoundPage
-            from app.workers.diagnostics_controller import DiagnosticsController
-
-            self._found = FoundPage(self._look)
-            self.pages.addWidget(self._found)
-            self._how_found = DiagnosticsController(self._found, self._looking, self)
-            self._how_found.refused.connect(self.banner.tell)
-            self._how_found.writing.connect(partial(self._on_figures_wished, self._found))
-            self._found.closed.connect(self.leave)
-        self._how_found.show(self._opened.session, self._opened.analysis, recording)
-        self._show_page(self._found)
+        if self._opened is not None and recording is not None:
+            self.behind.show_found(self._opened.session, self._opened.analysis, recording)
+            self._show_behind()
 
     def _on_agreement(self) -> None:
-        """Put the session beside an optical system; the page is made at the first time."""
-        if self._opened is None:
-            return
-        if self._agreement is None or self._compared is None:
-            from app.pages.agreement_page import AgreementPage
-            from app.workers.agreement_controller import AgreementController
+        """Put the session beside an optical system."""
+        if self._opened is not None:
+            self.behind.show_agreement(self._opened.session, self._opened.analysis)
+            self._show_behind()
 
-            self._agreement = AgreementPage(self._look)
-            self.pages.addWidget(self._agreement)
-            self._compared = AgreementController(self._agreement, self._comparing, self)
-            self._compared.writing.connect(partial(self._on_figures_wished, self._agreement))
-            self._agreement.closed.connect(self.leave)
-        self._compared.show(self._opened.session, self._opened.analysis)
-        self._show_page(self._agreement)
+    def _show_behind(self) -> None:
+        self.bar.hide()
+        self.behind.focus()
+        self._fit()
 
-    def _on_figures_wished(self, page: "FoundPage | AgreementPage", folder: Path, write: Callable[[], None]) -> None:
-        self._saved_in, self._saved_for = folder, page
+    def _on_figures_wished(self, _what: str, folder: Path, write: Callable[[], None]) -> None:
+        self._saved_in = folder
         self._saving.start(lambda _report: write())
 
     def _on_figures_saved(self) -> None:
-        if self._saved_for is not None:
-            self._saved_for.show_saved(self._saved_in.name)
+        self.behind.show_saved(self._saved_in)
 
     def _on_figures_not_saved(self, error: Exception) -> None:
         from app.workers.diagnostics_controller import cannot_write

@@ -3,7 +3,6 @@
 from collections.abc import Callable
 from dataclasses import replace
 from enum import Enum, auto
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -26,20 +25,17 @@ from app.wizard.keys import KeyAction as KeyAction
 from app.wizard.results.stride_choice import StrideChoice
 from app.wizard.step import Step
 from app.wording import capitalised, name_of, place, tr
+from app.workers.behind_results import BehindResults
 from core.body import Joint
 from core.samples import RecordingKind
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from app.pages.agreement_page import AgreementPage
-    from app.pages.found_page import FoundPage
     from app.pages.result_page import ResultPage
     from app.pages.result_parts import ResultParts
     from app.wizard.recordings import SessionRecording
     from app.wizard.visit import Visit
-    from app.workers.agreement_controller import AgreementController
-    from app.workers.diagnostics_controller import DiagnosticsController
     from core.results import Analysis
     from core.samples import Recording, Session
 
@@ -52,11 +48,7 @@ class Shown(Enum):
 
     RESULTS = auto()  # the curves and figures, or why there are none yet
     CORRECTIONS = auto()  # what can be put right about the walks
-    DIAGNOSTICS = auto()  # how a joint was found, of the analysis that is shown
-    AGREEMENT = auto()  # what it and an optical system differ by
-
-
-BEHIND = (Shown.DIAGNOSTICS, Shown.AGREEMENT)
+    BEHIND = auto()  # how a joint was found, or what an optical system measured, of the analysis that is shown
 
 
 class ResultsStep(Step):
@@ -66,9 +58,6 @@ class ResultsStep(Step):
         self._shown: Analysis | None = None
         self._held: tuple[object, Analysis] | None = None  # by the page of results, which may be out of sight
         self._part = Shown.RESULTS
-        self._how_found: DiagnosticsController | None = None
-        self._compared: AgreementController | None = None
-        self._saved_for: FoundPage | AgreementPage | None = None
         self._undos: list[Callable[[], object]] = []  # the latest last
         self._strides = StrideChoice(visit.recordings, self)
         self._strides.offered.connect(self._offer)
@@ -81,8 +70,11 @@ class ResultsStep(Step):
     @property
     def page(self) -> "_ResultsFrame":
         if self._frame is None:
-            self._frame = _ResultsFrame(self._look)
+            self._frame = _ResultsFrame(self._look, self._visit)
             self._frame.sentence.pressed.connect(self._on_sentence_pressed)
+            self._frame.behind.refused.connect(self.told)
+            self._frame.behind.writing.connect(self._on_figures_wished)
+            self._frame.behind.closed.connect(self._on_answered)
         return self._frame
 
     @property
@@ -118,7 +110,7 @@ class ResultsStep(Step):
     def bar(self) -> BarState:
         if self._shown is None or not self._kept_walks:
             return BarState()
-        if self._part in BEHIND:
+        if self._part is Shown.BEHIND:
             return BarState(primary=BarAction(tr("Go to the report"), tr("Enter"), Icon.CHEVRON), has_back=False)
         quiet: tuple[BarAction, ...] = ()
         if self._part is not Shown.CORRECTIONS:
@@ -143,7 +135,7 @@ class ResultsStep(Step):
     def on_intent(self, intent: Intent) -> bool:
         if intent.action not in (KeyAction.BACK, KeyAction.LEAVE):
             return False
-        if self._part in BEHIND:
+        if self._part is Shown.BEHIND:
             self._on_answered()
             return True
         return self._part is Shown.RESULTS and self.page.has_results and self.page.results().leave_behind()
@@ -155,8 +147,7 @@ class ResultsStep(Step):
 
     def leave(self) -> None:
         self._part = Shown.RESULTS
-        self._visit.looking.stop()
-        self._visit.comparing.stop()
+        self.page.behind.stop()
 
     def _evaluate_if_stale(self) -> None:
         evaluation = self._visit.evaluation
@@ -168,14 +159,12 @@ class ResultsStep(Step):
     def _show(self) -> None:
         page, evaluation = self.page, self._visit.evaluation
         is_of_shown = evaluation.analysis is self._shown and not evaluation.is_busy
-        if self._part in BEHIND and not is_of_shown:
+        if self._part is Shown.BEHIND and not is_of_shown:
             self._part = Shown.RESULTS
         if self._part is Shown.CORRECTIONS:
             self._show_corrections()
-        elif self._part is Shown.DIAGNOSTICS:
-            page.setCurrentWidget(page.found())
-        elif self._part is Shown.AGREEMENT:
-            page.setCurrentWidget(page.agreement())
+        elif self._part is Shown.BEHIND:
+            pass  # its page is there already
         elif evaluation.is_busy:
             page.working.begin(tr("Analysing the walks"))
             page.setCurrentWidget(page.working)
@@ -213,56 +202,34 @@ class ResultsStep(Step):
         is_live = self._visit.sensors.acquisition is not None
         results.show_visit(AnalysedVisit(session, analysis), can_choose=True, is_live=is_live)
 
-    # how a joint was found
+    # what stands behind the results
 
     def _ask(self) -> None:
         evaluation, recording = self._visit.evaluation, self.page.results().recording
-        if evaluation.session is None or evaluation.analysis is None or recording is None:
-            return
-        self._part = Shown.DIAGNOSTICS
-        self._controller_of_found().show(evaluation.session, evaluation.analysis, recording)
-        self._show()
-        self.page.found().focus()
-
-    def _controller_of_found(self) -> "DiagnosticsController":
-        if self._how_found is None:
-            from app.workers.diagnostics_controller import DiagnosticsController
-
-            self._how_found = DiagnosticsController(self.page.found(), self._visit.looking, self)
-            self._how_found.refused.connect(self.told)
-            self._how_found.writing.connect(partial(self._on_figures_wished, self.page.found(), "how-found"))
-            self.page.found().closed.connect(self._on_answered)
-        return self._how_found
+        if evaluation.session is not None and evaluation.analysis is not None and recording is not None:
+            self.page.behind.show_found(evaluation.session, evaluation.analysis, recording)
+            self._show_behind()
 
     def _compare(self) -> None:
-        """Put the session beside an optical system; the page is made at the first time."""
+        """Put the session beside an optical system."""
         evaluation = self._visit.evaluation
-        if evaluation.session is None or evaluation.analysis is None:
-            return
-        self._part = Shown.AGREEMENT
-        page = self.page.agreement()
-        if self._compared is None:
-            from app.workers.agreement_controller import AgreementController
+        if evaluation.session is not None and evaluation.analysis is not None:
+            self.page.behind.show_agreement(evaluation.session, evaluation.analysis)
+            self._show_behind()
 
-            self._compared = AgreementController(page, self._visit.comparing, self)
-            self._compared.writing.connect(partial(self._on_figures_wished, page, "agreement"))
-            page.closed.connect(self._on_answered)
-        self._compared.show(evaluation.session, evaluation.analysis)
+    def _show_behind(self) -> None:
+        self._part = Shown.BEHIND
         self._show()
-        page.focus()
+        self.page.behind.focus()
 
     def _on_answered(self) -> None:
         self._part = Shown.RESULTS
-        self._visit.looking.stop()
-        self._visit.comparing.stop()
+        self.page.behind.stop()
         self._show()
 
-    def _on_figures_wished(
-        self, page: "FoundPage | AgreementPage", what: str, folder: Path, write: Callable[[], None]
-    ) -> None:
+    def _on_figures_wished(self, what: str, folder: Path, write: Callable[[], None]) -> None:
         from app.workers.diagnostics_controller import saved_from_library
 
-        self._saved_for = page
         if (session := self._visit.session) is not None:
             session_id = session.id
             self._visit.controller.run(
@@ -274,8 +241,7 @@ class ResultsStep(Step):
 
     def _on_figures_saved(self, folder: Path) -> None:
         self.told.emit("", "")
-        if self._saved_for is not None:
-            self._saved_for.show_saved(folder.name)
+        self.page.behind.show_saved(folder)
 
     def _on_figures_not_saved(self, what: str, remedy: str) -> None:
         self.told.emit(what, remedy)
@@ -442,17 +408,16 @@ def _are_same(evaluated: "Sequence[Recording]", recordings: "Sequence[Recording]
 class _ResultsFrame(PageStack):
     """The results, or what stands in their place."""
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self, look: ThemeNotifier, visit: "Visit") -> None:
         super().__init__()
         self._look = look
+        self.behind = BehindResults(look, self, visit.looking, visit.comparing, self)
         self.sentence = SentencePage(look)
         self.working = WorkingPage(look)
         self.working.stop.hide()  # an analysis takes a second; there is nothing to go back to
         self._parts: ResultParts | None = None
         self._results: ResultPage | None = None
         self._correct: CorrectPage | None = None
-        self._found: FoundPage | None = None
-        self._agreement: AgreementPage | None = None
         self.has_correct = False
         self._room = (0.0, 0.0)
         for page in (self.sentence, self.working):
@@ -489,27 +454,9 @@ class _ResultsFrame(PageStack):
             self.addWidget(self._correct)
         return self._correct
 
-    def found(self) -> "FoundPage":
-        if self._found is None:
-            from app.pages.found_page import FoundPage
-
-            self._found = FoundPage(self._look)
-            self._found.set_room(*self._room)
-            self.addWidget(self._found)
-        return self._found
-
-    def agreement(self) -> "AgreementPage":
-        if self._agreement is None:
-            from app.pages.agreement_page import AgreementPage
-
-            self._agreement = AgreementPage(self._look)
-            self.addWidget(self._agreement)
-        return self._agreement
-
     def set_room(self, width: float, height: float) -> None:
         self._room = width, height
-        if self._found is not None:
-            self._found.set_room(width, height)
+        self.behind.set_room(width, height)
         if self._results is not None:
             self._results.set_room(width, height)
         if self._correct is not None:
@@ -519,9 +466,7 @@ class _ResultsFrame(PageStack):
         shown: QWidget | None = self.currentWidget()
         if self._results is not None and shown is self._results:
             self._results.focus()
-        elif self._found is not None and shown is self._found:
-            self._found.focus()
-        elif self._agreement is not None and shown is self._agreement:
-            self._agreement.focus()
         elif shown is self.sentence:
             self.sentence.button.setFocus()
+        else:
+            self.behind.focus()

@@ -226,7 +226,8 @@ def test_how_a_joint_was_found_is_shown_saved_audited_and_left_again(
     qtbot: QtBot, visit: Visit, step: ResultsStep, controller: LibraryController, tmp_path: Path
 ) -> None:
     step.page.results().quality.how_found.click()
-    page = step.page.found()
+    page = step.page.behind.found
+    assert page is not None
     assert step.page.currentWidget() is page
     assert not step.bar().has_back
     qtbot.waitUntil(page.save.isEnabled, timeout=30_000)
@@ -361,7 +362,8 @@ def test_the_agreement_with_an_optical_system_is_saved_audited_and_left_again(
     reference = tmp_path / "optics.csv"
     reference.write_text("\n".join([f"time_s,{','.join(joints)}", *rows, ""]), encoding="utf-8")
     step.page.results().quality.agreement.click()
-    page = step.page.agreement()
+    page = step.page.behind.agreement
+    assert page is not None
     assert step.page.currentWidget() is page
     page.choose.click()
     (chooser,) = page.findChildren(QFileDialog)
