@@ -23,7 +23,7 @@ pytestmark = [
 
 def test_stand_ins_are_equal_by_hash_and_each_is_done_once() -> None:
     found = batch_kills.BatchKills()
-    batch_kills.stand_ins(40_000, 5.0, 500, "serial,pool,dask", found)
+    batch_kills.stand_ins(15_000, 5.0, 500, "serial,pool,dask", found)
     assert found.faults == [], "\n".join(found.lines())
 
 

@@ -159,7 +159,8 @@ def test_what_a_killed_station_left_half_put_goes_after_a_day(tmp_path: Path) ->
 
 
 HOLDS = (
-    "import sys, time\nfrom pathlib import Path\nfrom app.storage.opened import open_library\n"
+    "import sys, time\nfrom pathlib import Path\nfrom app.storage.database import engine\n"
+    "from app.storage.opened import open_library\nengine.PG_IDLE_S = 3.0\n"  # nobody waits 20 s here
     "with open_library(Path(sys.argv[1]), 'four short words here', 'hk') as opened:\n"
     "    with opened.library.database.writing():\n        print('held', flush=True)\n        time.sleep(600)\n"
 )
