@@ -23,7 +23,7 @@ FINE_HZ, MARGIN_S = 500.0, 0.25
 STANDING_S = 3.0
 TAPE_M = (2.0, 12.0)  # of a course of 14 m, where the 10 m begin and end
 CHAIR_TO_CONE_M = 3.0
-LEFT_SEAT_RAD = np.deg2rad(5.0)  # a thigh so far from where it rests on the seat has left it; likewise from standing
+EDGE_SHARE = 0.1  # of the way between seat and standing: from there on the thighs have left one or reached the other
 PAUSE_S = 1.0  # both feet on the floor for so long is a pause
 ALL_SITES = (Site.LEFT_THIGH, Site.RIGHT_THIGH, Site.LEFT_FOOT, Site.RIGHT_FOOT)
 LONG_S = {"2_min": 120.0, "6_min": 360.0}
@@ -367,11 +367,12 @@ def _seat_truth(motions: Mapping[Side, LegMotion], changes: Sequence[SeatChange]
     for change in changes:
         here = slice(*np.searchsorted(time_s, [change.start_s, change.end_s]))
         begins, ends = tilt[here.start], tilt[here.stop]
-        away = np.flatnonzero(np.abs(tilt[here] - ends) > LEFT_SEAT_RAD)[-1] + 1
+        edge = EDGE_SHARE * abs(begins - ends)
+        away = np.flatnonzero(np.abs(tilt[here] - ends) > edge)[-1] + 1
         if change.is_down:
             found["seated_s"].append(float(time_s[here][away]))
         else:
-            left = np.flatnonzero(np.abs(tilt[here] - begins) > LEFT_SEAT_RAD)[0]
+            left = np.flatnonzero(np.abs(tilt[here] - begins) > edge)[0]
             found["left_seat_s"].append(float(time_s[here][left]))
             found["upright_s"].append(float(time_s[here][away]))
     return {name: np.array(values) for name, values in found.items()}

@@ -55,7 +55,7 @@ class Definition:
 
 
 _FIRST_CONTACT = "first initial contact after both feet stood for 1 s"
-_LEFT_SEAT = "the thighs have risen by 5 deg over where they rested on the seat"
+_LEFT_SEAT = "the thighs have come a tenth of the way from the seat to standing"
 _FEET = PublishedError("distance_m", 0.0, 13.0, "six minutes by foot sensors; named to us, the paper was not read")
 _RATER = PublishedError("distance_m", 16.0, 39.0, "six minutes by a rater; named to us, the paper was not read")
 
@@ -65,8 +65,8 @@ DEFINITIONS: Mapping[TimedProtocol, Definition] = {
     ),
     TimedProtocol.TWO_MINUTES: Definition(_FIRST_CONTACT, "120 s later", duration_s=120.0),
     TimedProtocol.SIX_MINUTES: Definition(_FIRST_CONTACT, "360 s later", duration_s=360.0, errors=(_FEET, _RATER)),
-    TimedProtocol.UP_AND_GO: Definition(_LEFT_SEAT, "the thighs are within 5 deg of where they rest then", rises=1),
+    TimedProtocol.UP_AND_GO: Definition(_LEFT_SEAT, "the thighs have come nine tenths of the way down", rises=1),
     TimedProtocol.SIT_TO_STAND: Definition(
-        _LEFT_SEAT, "the thighs are within 5 deg of standing for the fifth time", rises=5
+        _LEFT_SEAT, "the thighs have come nine tenths of the way up for the fifth time", rises=5
     ),
 }

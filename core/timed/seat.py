@@ -14,9 +14,9 @@ from core.sensors import SensorTracks
 
 STEP_S = 0.01
 SEATED_RAD, STANDING_RAD = np.deg2rad(50.0), np.deg2rad(30.0)  # a step lifts the mean of both thighs by less
-NEAR_RAD = np.deg2rad(5.0)  # of its rest: a thigh there has not left the seat, or has come to stand
+EDGE_SHARE = 0.1  # of the way between seat and standing: from there on the thighs have left the one or reached the other
 QUIET_RAD_S = np.deg2rad(15.0)
-REST_S = 1.0  # how far from its rest on the seat or upright the thigh may still be looked at
+REST_S = 1.0  # beside a rise or a sitting down, the patient stands; and what a sensor may miss at either end
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,26 +89,29 @@ def motions_of_tilt(time_s: FloatArray, tilt_rad: FloatArray) -> SeatMotions:
     changes = np.flatnonzero(np.diff(state[sure]))
     rate = np.abs(np.gradient(tilt_rad, time_s)) if len(time_s) > 1 else np.zeros_like(tilt_rad)
     edges = [0, *(int(sure[k + 1]) for k in changes), len(tilt_rad)]
+    near = round(REST_S / STEP_S)
     rises, seated = [], []
     for number, k in enumerate(changes.tolist()):
         before, after = int(sure[k]), int(sure[k + 1])
+        earlier, later = slice(edges[number], before + 1), slice(after, edges[number + 2])
         if state[after] < 0:
-            level = _level(tilt_rad[edges[number] : before + 1], rate[edges[number] : before + 1], 1.0)
-            left = _last(tilt_rad[: after + 1] >= level - NEAR_RAD, edges[number])
-            until = min(edges[number + 2], after + round(REST_S / STEP_S))
-            upright = after + int(np.argmax(tilt_rad[after:until] <= tilt_rad[after:until].min() + NEAR_RAD))
+            seat = _seat_level(tilt_rad[earlier], rate[earlier])
+            stand = float(tilt_rad[later][:near].min())
+            left = _last(tilt_rad[: after + 1] >= seat - EDGE_SHARE * (seat - stand), edges[number])
+            upright = after + int(np.argmax(tilt_rad[later] <= stand + EDGE_SHARE * (seat - stand)))
             rises.append(Rise(float(time_s[left]), float(time_s[upright])))
         else:
-            rest = slice(after, edges[number + 2])
-            level = _level(tilt_rad[rest], rate[rest], 1.0)
-            seated.append(float(time_s[after + int(np.argmax(tilt_rad[rest] >= level - NEAR_RAD))]))
+            seat = _seat_level(tilt_rad[later], rate[later])
+            stand = float(tilt_rad[earlier][-near:].min())
+            down = np.argmax(tilt_rad[later] >= seat - EDGE_SHARE * (seat - stand))
+            seated.append(float(time_s[after + int(down)]))
     return SeatMotions(tuple(rises), tuple(seated))
 
 
-def _level(tilt: FloatArray, rate: FloatArray, share: float) -> float:
-    """Where the thighs rest on the seat: the middle of what is quiet, else the most they reach, times `share`."""
+def _seat_level(tilt: FloatArray, rate: FloatArray) -> float:
+    """Where the thighs rest on the seat: the middle of what is quiet, else the most they reach."""
     quiet = tilt[rate < QUIET_RAD_S]
-    return share * float(np.median(quiet) if len(quiet) else tilt.max())
+    return float(np.median(quiet) if len(quiet) else tilt.max())
 
 
 def _last(holds: FloatArray, begin: int) -> int:

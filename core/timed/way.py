@@ -6,16 +6,16 @@ does not count.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
 
 from core.body import Segment, Side, Site
 from core.gait.events import FootEvents, detect_events
-from core.gait.foot import FootMotion
+from core.gait.foot import FootMotion, follow
 from core.gait.strides import MAX_STRIDE_S
-from core.pair import OrientedTrack
+from core.pair import OrientedTrack, moving_mean
 from core.samples import FloatArray, Recording
 from core.sensors import SensorTracks
 from core.walking import prosthetic_sides
@@ -23,11 +23,15 @@ from core.walking import prosthetic_sides
 STEP_S = 0.02
 SILENCE_S = 0.3  # shorter gaps are bridged or cost no step
 STILL_S = 1.0  # both feet on the floor for so long: a pause, or the stillness before a start
+CALM_S, MOVING_RAD_S = 0.1, 0.3  # a foot that stands turns more slowly, on average over
+STANDING_S = 1.5  # longer than a slow walker's foot lies flat
+PIECE_PAD_S = 0.6
 LOST_SWING_S = 1.5  # beside a silence a swing may be missing
 TURNING_RAD = np.deg2rad(20.0)  # in the time of one stride; straight strides turn a foot by up to 5 deg
 MIN_TURN_RAD = np.deg2rad(60.0)
 ABOUT_RAD = np.deg2rad(120.0)  # from here on, a turn ends a lap
 ONE_TURN_M = 0.6  # two turns to one side with no more way between them are one
+MAX_ARC_RAD = np.deg2rad(150.0)
 USUAL_STRIDE_S = 1.2  # where no stride tells
 
 
@@ -89,12 +93,6 @@ class BodyWay:
         found = np.concatenate([np.empty((0, 2)), *rows])
         return np.asarray(found[np.argsort(found[:, 0])])
 
-    @property
-    def stride_s(self) -> FloatArray:
-        """Time (k,) of each stride of both feet, in order of foot; pauses left out."""
-        times = np.concatenate([np.empty(0), *(np.diff(foot.contact_s) for foot in self.feet.values())])
-        return np.asarray(times[times < MAX_STRIDE_S])
-
     def way_at(self, time_s: float) -> float:
         """How far the body has come, m."""
         return float(np.interp(time_s, self.time_s, self.way_m))
@@ -137,18 +135,25 @@ def body_way(tracks: SensorTracks, recording: Recording) -> BodyWay:
         if not tracks.is_usable(recording, site):
             continue
         worn = tracks.oriented(recording, site, block)
-        motions = tracks.foot_motions(recording, site, block)
         is_rigid = side in prosthetic_sides(tracks.session.patient)
         speed, turning = np.full_like(time_s, np.nan), np.full_like(time_s, np.nan)
         offs, ons = [np.empty(0)], [np.empty(0)]
-        for one, motion in zip(worn, motions, strict=True):
-            events = detect_events(motion, one.track.is_measured, is_rigid)
-            off_s, on_s = _moments(motion, events)
-            here = (time_s >= one.track.start_s - STEP_S) & (time_s <= one.track.end_s + STEP_S)
-            speed[here] = _rate(time_s[here], off_s, on_s, np.cumsum(events.length_m))
-            turning[here] = _turning(time_s[here], off_s, on_s, one, motion)
-            offs.append(off_s)
-            ons.append(on_s)
+        for whole in worn:
+            heard = (time_s >= whole.track.start_s - STEP_S) & (time_s <= whole.track.end_s + STEP_S)
+            speed[heard], turning[heard] = 0.0, 0.0
+            for one in moving_pieces(whole):
+                motion = follow(one)
+                events = detect_events(motion, one.track.is_measured, is_rigid)
+                off_s, on_s = _moments(motion, events)
+                here = (time_s >= one.track.start_s - STEP_S) & (time_s <= one.track.end_s + STEP_S)
+                heading = _headings(one, motion)
+                arc_m = _arcs(events.length_m, heading[1::2] - heading[::2])
+                total_m = np.cumsum(arc_m)
+                way_m = np.stack([total_m - arc_m, total_m], axis=1).ravel()
+                speed[here] += _rate(time_s[here], off_s, on_s, way_m)
+                turning[here] += _rate(time_s[here], off_s, on_s, heading)
+                offs.append(off_s)
+                ons.append(on_s)
         feet[side] = FootSteps(np.concatenate(offs), np.concatenate(ons))
         silences += _silences(site, worn, start_s, end_s)
         speeds.append(speed)
@@ -156,7 +161,40 @@ def body_way(tracks: SensorTracks, recording: Recording) -> BodyWay:
     if not feet:
         nothing = np.empty(0)
         return BodyWay(nothing, nothing, nothing, feet, ())
-    return BodyWay(time_s, _total(speeds), _total(turnings), feet, tuple(silences))
+    return BodyWay(time_s, _smooth(_total(speeds), feet), _total(turnings), feet, tuple(silences))
+
+
+def moving_pieces(whole: OrientedTrack) -> list[OrientedTrack]:
+    """A foot's track from each long standing to the next, with a little of both.
+
+    Zero velocity is known at one instant of each stance. Where a patient stands for seconds, that instant may lie far
+    from the step: the filter's tilt has changed by then, and the first step after the standing came out a quarter too
+    short.
+    """
+    track = whole.track
+    speed = moving_mean(np.linalg.norm(track.gyr_rad_s, axis=1), max(1, round(CALM_S / track.step_s)))
+    moving = np.flatnonzero(speed > MOVING_RAD_S)
+    if not len(moving):
+        return []
+    cuts = np.flatnonzero(np.diff(moving) * track.step_s > STANDING_S)
+    begins, ends = moving[[0, *(cuts + 1).tolist()]], moving[[*cuts.tolist(), -1]]
+    pad = round(PIECE_PAD_S / track.step_s)
+    rows = [slice(max(0, int(a) - pad), int(b) + pad + 1) for a, b in zip(begins, ends, strict=True)]
+    return [_piece(whole, row) for row in rows]
+
+
+def _piece(whole: OrientedTrack, row: slice) -> OrientedTrack:
+    track = whole.track
+    part = replace(
+        track,
+        start_s=track.start_s + track.step_s * row.start,
+        gyr_rad_s=track.gyr_rad_s[row],
+        acc_m_s2=track.acc_m_s2[row],
+        mag=None,
+        q_device=None,
+        is_measured=track.is_measured[row],
+    )
+    return OrientedTrack(part, whole.q_earth_from_sensor[row])
 
 
 def _moments(motion: FootMotion, events: FootEvents) -> tuple[FloatArray, FloatArray]:
@@ -170,26 +208,35 @@ def _moments(motion: FootMotion, events: FootEvents) -> tuple[FloatArray, FloatA
     return knots[::2], knots[1::2]
 
 
-def _rate(time_s: FloatArray, off_s: FloatArray, on_s: FloatArray, total: FloatArray) -> FloatArray:
-    """The rate (n,) of what grows to `total` (k,) in each swing, evenly, and not between them."""
+def _rate(time_s: FloatArray, off_s: FloatArray, on_s: FloatArray, values: FloatArray) -> FloatArray:
+    """The rate (n,) of what has `values` (2 k,) at the beginning and end of each swing, evenly from one to the next."""
     if not len(off_s):
         return np.zeros_like(time_s)
     knots = np.stack([off_s, on_s], axis=1).ravel()
-    values = np.stack([np.concatenate([[0.0], total[:-1]]), total], axis=1).ravel()
     return np.asarray(np.diff(np.interp(time_s, knots, values), prepend=values[0]) / STEP_S)
 
 
-def _turning(
-    time_s: FloatArray, off_s: FloatArray, on_s: FloatArray, one: OrientedTrack, motion: FootMotion
-) -> FloatArray:
-    """Rate (n,), rad/s, of a heading that changes from each stance of a foot to its next."""
-    if not len(off_s):
-        return np.zeros_like(time_s)
+def _headings(one: OrientedTrack, motion: FootMotion) -> FloatArray:
+    """The foot's heading (2 k,), rad, in the stances before and after each swing."""
     upward = np.einsum("ni,ni->n", one.earth_from_sensor[:, 2], one.track.gyr_rad_s)
     heading = np.cumsum(upward) * one.track.step_s
-    knots = np.stack([off_s, on_s], axis=1).ravel()
-    values = heading[np.stack([motion.swings.anchor_before, motion.swings.anchor_after], axis=1).ravel()]
-    return np.asarray(np.diff(np.interp(time_s, knots, values), prepend=values[0]) / STEP_S)
+    return np.asarray(heading[np.stack([motion.swings.anchor_before, motion.swings.anchor_after], axis=1).ravel()])
+
+
+def _arcs(chord_m: FloatArray, turn_rad: FloatArray) -> FloatArray:
+    """Lengths (k,) of the arcs under a swing's straight way (k,): a foot that turns cuts off the body's bend."""
+    half = 0.5 * np.clip(np.abs(turn_rad), 0.0, MAX_ARC_RAD)
+    return np.asarray(chord_m / np.sinc(half / np.pi))
+
+
+def _smooth(way_m: FloatArray, feet: Mapping[Side, FootSteps]) -> FloatArray:
+    """The way (n,) without the rise and fall of speed in each step, which the body has less of than the feet."""
+    return moving_mean(way_m, max(1, round(0.5 * _usual_stride_s(feet) / STEP_S)))
+
+
+def _usual_stride_s(feet: Mapping[Side, FootSteps]) -> float:
+    times = np.concatenate([np.empty(0), *(np.diff(foot.contact_s) for foot in feet.values())])
+    return float(np.median(times[times < MAX_STRIDE_S])) if np.any(times < MAX_STRIDE_S) else USUAL_STRIDE_S
 
 
 def _total(rates: list[FloatArray]) -> FloatArray:
@@ -209,8 +256,7 @@ def turns_of(way: BodyWay) -> tuple[Turn, ...]:
     """Every turn of 60 deg and more, by the heading over the time of one stride."""
     if not len(way.time_s):
         return ()
-    strides = way.stride_s
-    half = max(1, round(0.5 * (float(np.median(strides)) if len(strides) else USUAL_STRIDE_S) / STEP_S))
+    half = max(1, round(0.5 * _usual_stride_s(way.feet) / STEP_S))
     padded = np.concatenate([np.full(half, way.heading_rad[0]), way.heading_rad, np.full(half, way.heading_rad[-1])])
     change = padded[2 * half :] - padded[: -2 * half]
     spans: list[tuple[int, int, float]] = []
