@@ -71,7 +71,7 @@ class Course:
     sites: tuple[Site, ...] = ALL_SITES
     tissue: Tissue = Tissue.RIGID
     rate_hz: float = 100.0
-    errors: SensorErrors = SensorErrors()
+    errors: SensorErrors = field(default_factory=SensorErrors)
 
 
 @dataclass(frozen=True, slots=True)
@@ -268,7 +268,11 @@ def _bouts(course: Course, rng: np.random.Generator) -> list[Bout]:
         return [Bout(_straight(course, 15.0, 0.0, rng), (), 0.5, 1.5)]
     if course.kind is CourseKind.UP_AND_GO:
         steps = [*_straight(course, CHAIR_TO_CONE_M, 0.0, rng), *_turn(course, 0, rng)]
-        steps += [*_straight(course, CHAIR_TO_CONE_M, 0.5, rng), *_turn(course, 1, rng), *_straight(course, 0.6, 1, rng)]
+        steps += [
+            *_straight(course, CHAIR_TO_CONE_M, 0.5, rng),
+            *_turn(course, 1, rng),
+            *_straight(course, 0.6, 1, rng),
+        ]
         return [Bout(steps, (_about(rng), _about(rng)), 0.5, 0.4)]
     lasts_s = LONG_S[course.kind] + 6.0
     pause_s = sorted(rng.uniform(0.15, 0.85, course.pauses) * lasts_s)
@@ -278,7 +282,7 @@ def _bouts(course: Course, rng: np.random.Generator) -> list[Bout]:
         steps: list[CourseStep] = []
         turns: list[float] = []
         until_s = pause_s.pop(0) if pause_s else np.inf
-        while walked_s < min(until_s, lasts_s):
+        while not steps or walked_s < min(until_s, lasts_s):
             piece_m = min(to_turn_m, 3.0)
             piece = _straight(course, piece_m, walked_s / lasts_s, rng)
             to_turn_m -= sum(step.length_m for step in piece)
@@ -352,9 +356,7 @@ def _truth(
         way_m=way,
         contacts_s=contacts,
         turns=tuple(turns),
-        pauses_s=tuple(
-            (a, b) for a, b in stands if b - a >= PAUSE_S and not np.any((contacts > a) & (contacts < b))
-        ),
+        pauses_s=tuple((a, b) for a, b in stands if b - a >= PAUSE_S and not np.any((contacts > a) & (contacts < b))),
         **_seat_truth(motions, changes),
     )
 

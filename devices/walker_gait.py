@@ -214,9 +214,7 @@ def plan_standing(time_s: FloatArray, duration_s: float) -> WalkPlan:
     return WalkPlan(dict.fromkeys(Side, gait), duration_s, np.zeros_like(time_s), dict.fromkeys(Side, foot))
 
 
-def walk_leg(
-    leg: Leg, plan: WalkPlan, time_s: FloatArray, sway_m: FloatArray, rng: np.random.Generator
-) -> LegMotion:
+def walk_leg(leg: Leg, plan: WalkPlan, time_s: FloatArray, sway_m: FloatArray, rng: np.random.Generator) -> LegMotion:
     """One leg's poses on the fine clock; `sway_m` (n, 2) is the body's, forward and left.
 
     Parameters

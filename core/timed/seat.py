@@ -14,7 +14,9 @@ from core.sensors import SensorTracks
 
 STEP_S = 0.01
 SEATED_RAD, STANDING_RAD = np.deg2rad(50.0), np.deg2rad(30.0)  # a step lifts the mean of both thighs by less
-EDGE_SHARE = 0.1  # of the way between seat and standing: from there on the thighs have left the one or reached the other
+EDGE_SHARE = (
+    0.1  # of the way between seat and standing: from there on the thighs have left the one or reached the other
+)
 QUIET_RAD_S = np.deg2rad(15.0)
 REST_S = 1.0  # beside a rise or a sitting down, the patient stands; and what a sensor may miss at either end
 

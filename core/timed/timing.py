@@ -7,6 +7,7 @@ beside it. A foot sensor that falls silent takes the distance, never the time.
 import math
 from dataclasses import dataclass
 from enum import StrEnum
+from itertools import pairwise
 
 import numpy as np
 
@@ -134,8 +135,7 @@ def time_test(
     if definition.tape_m is not None and len(keys_s) < 2 and has_distance:
         walked = definition.tape_m[1] - definition.tape_m[0]
     is_taped = definition.tape_m is not None and len(keys_s) == 2
-    turns = turns_of(way)
-    inside = tuple(t for t in turns if start_s <= t.middle_s <= end_s)
+    inside = tuple(t for t in turns_of(way) if start_s <= t.middle_s <= end_s)
     thirds_s = np.linspace(start_s, end_s, THIRDS + 1).tolist() if is_whole else []
     return TimedTest(
         protocol=protocol,
@@ -149,7 +149,7 @@ def time_test(
         turns=inside,
         pauses_s=tuple((a, b) for a, b in pauses_of(way) if start_s <= a < end_s),
         laps=tuple(_part(way, a, b) for a, b in laps_between(inside, start_s, end_s)) if is_whole else (),
-        thirds=tuple(_part(way, a, b) for a, b in zip(thirds_s[:-1], thirds_s[1:], strict=True)),
+        thirds=tuple(_part(way, a, b) for a, b in pairwise(thirds_s)),
         rises=tuple(rise for rise in seat.rises if start_s <= rise.left_seat_s <= end_s),
         silences=silences,
         missing=tuple(dict.fromkeys(missing)),
