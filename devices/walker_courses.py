@@ -40,7 +40,7 @@ class CourseKind(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Course:
+class TimedCourse:
     """Everything one simulated course depends on.
 
     Attributes
@@ -127,10 +127,10 @@ class SimulatedCourse:
     truth: CourseTruth
 
 
-def draw_course(kind: CourseKind, seed: int) -> Course:
+def draw_course(kind: CourseKind, seed: int) -> TimedCourse:
     """A course by chance, of a patient of any speed, with pauses, hesitations and now and then a silent sensor."""
     rng = np.random.default_rng([seed, 11])
-    course = Course(
+    course = TimedCourse(
         kind,
         seed=seed,
         speed_m_s=float(rng.uniform(0.4, 1.6)),
@@ -149,7 +149,7 @@ def draw_course(kind: CourseKind, seed: int) -> Course:
     return course
 
 
-def simulate_course(course: Course) -> SimulatedCourse:
+def simulate_course(course: TimedCourse) -> SimulatedCourse:
     """Standing, then the course; the same settings give the same samples."""
     settings = WalkerSettings(
         seed=course.seed, sites=course.sites, tissue=course.tissue, rate_hz=course.rate_hz, errors=course.errors
@@ -185,12 +185,12 @@ def simulate_course(course: Course) -> SimulatedCourse:
     )
 
 
-def _rng(course: Course, *key: int | Site) -> np.random.Generator:
+def _rng(course: TimedCourse, *key: int | Site) -> np.random.Generator:
     numbers = [list(Site).index(k) if isinstance(k, Site) else k for k in key]
     return np.random.default_rng([course.seed, list(CourseKind).index(course.kind), *numbers])
 
 
-def _stand(course: Course, legs: Mapping[Side, Leg]) -> dict[Side, LegMotion]:
+def _stand(course: TimedCourse, legs: Mapping[Side, Leg]) -> dict[Side, LegMotion]:
     time_s = _fine_clock(STANDING_S)
     rng = _rng(course, 7)
     sway_m = sway_of(time_s, rng)
@@ -203,7 +203,7 @@ def _fine_clock(duration_s: float) -> FloatArray:
     return np.arange(-margin, int(np.ceil(duration_s * FINE_HZ)) + margin + 1) / FINE_HZ
 
 
-def _walk(course: Course, legs: Mapping[Side, Leg]) -> tuple[dict[Side, LegMotion], CourseTruth, float]:
+def _walk(course: TimedCourse, legs: Mapping[Side, Leg]) -> tuple[dict[Side, LegMotion], CourseTruth, float]:
     """Both legs' poses on the fine clock, what is true of them, and how long the recording lasts."""
     rng = _rng(course, 8)
     start_s = round(rng.uniform(1.6, 3.0) * FINE_HZ) / FINE_HZ
@@ -249,7 +249,7 @@ def _turned(motion: LegMotion, compass: FloatArray) -> LegMotion:
     )
 
 
-def _more_rises(course: Course, at_s: float, rng: np.random.Generator) -> list[SeatChange]:
+def _more_rises(course: TimedCourse, at_s: float, rng: np.random.Generator) -> list[SeatChange]:
     """Down and up four times, each in a time of its own."""
     changes = []
     for _ in range(4):
@@ -260,7 +260,7 @@ def _more_rises(course: Course, at_s: float, rng: np.random.Generator) -> list[S
     return changes
 
 
-def _bouts(course: Course, rng: np.random.Generator) -> list[Bout]:
+def _bouts(course: TimedCourse, rng: np.random.Generator) -> list[Bout]:
     """What the patient walks between one pause and the next."""
     if course.kind is CourseKind.SIT_TO_STAND:
         return []
@@ -274,7 +274,11 @@ def _bouts(course: Course, rng: np.random.Generator) -> list[Bout]:
             *_straight(course, 0.6, 1, rng),
         ]
         return [Bout(steps, (_about(rng), _about(rng)), 0.5, 0.4)]
-    lasts_s = LONG_S[course.kind] + 6.0
+    return _to_and_fro(course, LONG_S[course.kind] + 6.0, rng)
+
+
+def _to_and_fro(course: TimedCourse, lasts_s: float, rng: np.random.Generator) -> list[Bout]:
+    """From turn to turn for at least `lasts_s`, with the patient's pauses."""
     pause_s = sorted(rng.uniform(0.15, 0.85, course.pauses) * lasts_s)
     bouts: list[Bout] = []
     walked_s, to_turn_m = 0.0, course.lap_m
@@ -305,7 +309,7 @@ def _about(rng: np.random.Generator) -> float:
     return float(rng.choice([-1.0, 1.0]) * (np.pi + rng.normal(0.0, np.deg2rad(6.0))))
 
 
-def _straight(course: Course, way_m: float, done: float, rng: np.random.Generator) -> list[CourseStep]:
+def _straight(course: TimedCourse, way_m: float, done: float, rng: np.random.Generator) -> list[CourseStep]:
     """Steps for at least `way_m`, by a patient who has `done` a share of the test."""
     steps: list[CourseStep] = []
     gait = gait_at(course.speed_m_s)
@@ -320,7 +324,7 @@ def _straight(course: Course, way_m: float, done: float, rng: np.random.Generato
     return steps
 
 
-def _turn(course: Course, number: int, rng: np.random.Generator) -> list[CourseStep]:
+def _turn(course: TimedCourse, number: int, rng: np.random.Generator) -> list[CourseStep]:
     """Shorter steps on the turn; a patient who hesitates waits before it and takes two short steps on the straight."""
     gait = gait_at(course.speed_m_s)
     step_m, step_s = min(0.28, 0.5 * gait.stride_m), 0.5 * gait.stride_s

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.body import Segment, Side, Site
-from core.samples import FloatArray, Recording, RecordingKind
+from core.samples import BoolArray, FloatArray, Recording, RecordingKind
 from core.sensors import SensorTracks
 
 STEP_S = 0.01
@@ -116,7 +116,7 @@ def _seat_level(tilt: FloatArray, rate: FloatArray) -> float:
     return float(np.median(quiet) if len(quiet) else tilt.max())
 
 
-def _last(holds: FloatArray, begin: int) -> int:
+def _last(holds: BoolArray, begin: int) -> int:
     """The last index from `begin` on at which it holds."""
     found = np.flatnonzero(holds[begin:])
     return begin + (int(found[-1]) if len(found) else 0)

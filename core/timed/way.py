@@ -137,7 +137,8 @@ def body_way(tracks: SensorTracks, recording: Recording) -> BodyWay:
         worn = tracks.oriented(recording, site, block)
         is_rigid = side in prosthetic_sides(tracks.session.patient)
         speed, turning = np.full_like(time_s, np.nan), np.full_like(time_s, np.nan)
-        offs, ons = [np.empty(0)], [np.empty(0)]
+        offs: list[FloatArray] = [np.empty(0)]
+        ons: list[FloatArray] = [np.empty(0)]
         for whole in worn:
             heard = (time_s >= whole.track.start_s - STEP_S) & (time_s <= whole.track.end_s + STEP_S)
             speed[heard], turning[heard] = 0.0, 0.0
@@ -279,7 +280,13 @@ def turns_of(way: BodyWay) -> tuple[Turn, ...]:
 
 
 def pauses_of(way: BodyWay) -> tuple[tuple[float, float], ...]:
-    """From contact to toe-off wherever both feet stood for a second between two steps, seconds."""
+    """Wherever both feet stood for a second between two steps.
+
+    Returns
+    -------
+    tuple of (float, float)
+        From contact to toe-off, seconds.
+    """
     swings = way.swings_s
     landed = np.maximum.accumulate(swings[:, 1]) if len(swings) else np.empty(0)
     found = []
@@ -291,7 +298,13 @@ def pauses_of(way: BodyWay) -> tuple[tuple[float, float], ...]:
 
 
 def start_of(way: BodyWay) -> tuple[float, float]:
-    """The first contact after both feet stood for a second, and the toe-off of its swing, seconds; NaN: none."""
+    """The start of a walk: the first contact after both feet stood for a second.
+
+    Returns
+    -------
+    float, float
+        That contact and the toe-off of its swing, seconds; NaN where there is none.
+    """
     swings = way.swings_s
     if len(swings):
         landed = np.concatenate([way.time_s[:1], np.maximum.accumulate(swings[:-1, 1])])
@@ -303,6 +316,12 @@ def start_of(way: BodyWay) -> tuple[float, float]:
 
 
 def laps_between(turns: tuple[Turn, ...], start_s: float, end_s: float) -> tuple[tuple[float, float], ...]:
-    """The pieces of a test from turn to turn, the last one as far as it came, seconds."""
+    """The pieces of a test from turn to turn, the last one as far as it came.
+
+    Returns
+    -------
+    tuple of (float, float)
+        From the middle of one turn to that of the next, seconds.
+    """
     inner = [turn.middle_s for turn in turns if turn.is_about and start_s < turn.middle_s < end_s]
     return tuple(pairwise([start_s, *inner, end_s]))

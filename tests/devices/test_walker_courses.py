@@ -8,9 +8,9 @@ import pytest
 from core.body import Side, Site
 from core.samples import FloatArray
 from devices.walker_body import NO_ERRORS
-from devices.walker_courses import Course, CourseKind, SimulatedCourse, draw_course, simulate_course
+from devices.walker_courses import CourseKind, SimulatedCourse, TimedCourse, draw_course, simulate_course
 
-UP_AND_GO = Course(CourseKind.UP_AND_GO, seed=3, errors=NO_ERRORS, hesitates=True)
+UP_AND_GO = TimedCourse(CourseKind.UP_AND_GO, seed=3, errors=NO_ERRORS, hesitates=True)
 
 
 @pytest.fixture(scope="module")
@@ -23,7 +23,7 @@ def two_minutes() -> SimulatedCourse:
     # short laps and two pauses: many seams between bouts
     feet = (Site.LEFT_FOOT, Site.RIGHT_FOOT)
     return simulate_course(
-        Course(CourseKind.TWO_MINUTES, seed=5, lap_m=10.0, pauses=2, sites=feet, errors=NO_ERRORS, hesitates=True)
+        TimedCourse(CourseKind.TWO_MINUTES, seed=5, lap_m=10.0, pauses=2, sites=feet, errors=NO_ERRORS, hesitates=True)
     )
 
 
@@ -96,7 +96,7 @@ def test_laps_are_as_long_as_asked_and_turns_go_to_both_sides() -> None:
     signs = [
         np.sign(turn.angle_rad)
         for seed in range(3)
-        for turn in simulate_course(Course(CourseKind.UP_AND_GO, seed=seed, sites=(Site.LEFT_FOOT,))).truth.turns
+        for turn in simulate_course(TimedCourse(CourseKind.UP_AND_GO, seed=seed, sites=(Site.LEFT_FOOT,))).truth.turns
     ]
     assert {-1.0, 1.0} == set(signs)
 

@@ -11,11 +11,11 @@ from core.sensors import SensorTracks
 from core.timed.protocols import DEFINITIONS, TimedProtocol
 from core.timed.timing import NotMeasured, TimedTest, time_test
 from devices.walker_body import Tissue
-from devices.walker_courses import Course, CourseKind, CourseTruth, SimulatedCourse, draw_course, simulate_course
+from devices.walker_courses import CourseKind, CourseTruth, SimulatedCourse, TimedCourse, draw_course, simulate_course
 
 FEET = (Site.LEFT_FOOT, Site.RIGHT_FOOT)
-TEN_METRES = Course(CourseKind.TEN_METRES, seed=2, speed_m_s=0.9, sites=FEET, tissue=Tissue.SOFT)
-TWO_MINUTES = Course(
+TEN_METRES = TimedCourse(CourseKind.TEN_METRES, seed=2, speed_m_s=0.9, sites=FEET, tissue=Tissue.SOFT)
+TWO_MINUTES = TimedCourse(
     CourseKind.TWO_MINUTES, seed=4, speed_m_s=1.0, lap_m=12.0, pauses=1, hesitates=True, slowing=0.25, sites=FEET
 )
 
