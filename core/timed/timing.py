@@ -90,7 +90,7 @@ class TimedTest:
 
     @property
     def definition(self) -> Definition:
-        """What starts and ends it, and its published errors."""
+        """What starts and ends it, and what is known of its error."""
         return DEFINITIONS[self.protocol]
 
 
