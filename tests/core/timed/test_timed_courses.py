@@ -120,7 +120,7 @@ def test_up_and_go_from_leaving_the_seat_to_sitting_again(up_and_go: SimulatedCo
     assert found.start_s == pytest.approx(truth.left_seat_s[0], abs=0.05)
     assert found.end_s == pytest.approx(truth.seated_s[0], abs=0.05)
     assert [np.sign(t.angle_rad) for t in found.turns] == [np.sign(t.angle_rad) for t in truth.turns]
-    assert found.distance_m == pytest.approx(truth.way_m[-1], rel=0.02)
+    assert found.distance_m == pytest.approx(truth.way_m[-1], rel=0.01)  # its turns as arcs: 1.5 % less without
     assert len(found.rises) == 1
 
 
