@@ -31,7 +31,7 @@ from devices.walker_body import (
     make_leg,
 )
 from devices.walker_gait import plan_standing, plan_walk, walk_leg
-from devices.walker_motion import Z_AXIS, LegMotion, move_freely, rotation_about
+from devices.walker_motion import Z_AXIS, LegMotion, move_freely, rotation_about, sway_of
 from devices.walker_sensors import (
     SEGMENT_ROW,
     Mounting,
@@ -271,9 +271,8 @@ def _stand_or_walk(
     else:
         time_s = _fine_clock(settings, wanted.duration_s)
         plan = plan_standing(time_s, wanted.duration_s)
-    walk = wanted if isinstance(wanted, Walk) else None
-    sway_m = _sway(time_s, rng)
-    return {side: walk_leg(legs[side], plan, walk, time_s, sway_m, per_leg[side]) for side in Side}, plan.duration_s
+    sway_m = sway_of(time_s, rng)
+    return {side: walk_leg(legs[side], plan, time_s, sway_m, per_leg[side]) for side in Side}, plan.duration_s
 
 
 def _fine_clock(settings: WalkerSettings, duration_s: float) -> FloatArray:
@@ -281,13 +280,6 @@ def _fine_clock(settings: WalkerSettings, duration_s: float) -> FloatArray:
     fine_hz = settings.rate_hz * np.ceil(FINE_HZ / settings.rate_hz)
     margin = int(np.ceil(MARGIN_S * fine_hz))
     return np.arange(-margin, int(np.ceil(duration_s * fine_hz)) + margin + 1) / fine_hz
-
-
-def _sway(time_s: FloatArray, rng: np.random.Generator) -> FloatArray:
-    """Quiet standing: the body sways (n, 2), forward and left, by a few millimetres at 0.1 to 0.6 Hz."""
-    frequency, phase = rng.uniform(0.1, 0.6, (2, 4)), rng.uniform(0.0, 2.0 * np.pi, (2, 4))
-    waves = [np.sin(2.0 * np.pi * np.outer(time_s, f) + p).sum(axis=1) for f, p in zip(frequency, phase, strict=True)]
-    return np.stack(waves, axis=-1) * 0.0015
 
 
 def _turned(motion: LegMotion, rotation: FloatArray) -> LegMotion:

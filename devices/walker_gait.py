@@ -77,13 +77,23 @@ class StepPlan:
 
 
 @dataclass(frozen=True, slots=True)
+class Bend:
+    """Where the path turns: its middle along the path, how far (positive to the left), and the length of its arc."""
+
+    middle_m: float
+    turn_rad: float
+    arc_m: float
+
+
+@dataclass(frozen=True, slots=True)
 class WalkPlan:
-    """Both feet's steps, and when the hips speed up and slow down along the path."""
+    """Both feet's steps, when the hips speed up and slow down along the path, and where the path turns."""
 
     gaits: Mapping[Side, Gait]
     duration_s: float
     hip_path_m: FloatArray
     steps: dict[Side, StepPlan]
+    bends: tuple[Bend, ...] = ()
 
 
 def plan_walk(
@@ -132,7 +142,7 @@ def plan_walk(
     other = Side.RIGHT if first is Side.LEFT else Side.LEFT
     stride_time = 0.5 * (time + np.concatenate([time[:1], time[:-1]]))
     plans = {
-        side: _plan_foot(
+        side: plan_foot(
             gaits[side],
             side is prosthetic_side,
             contact[k::2],
@@ -142,10 +152,11 @@ def plan_walk(
         )
         for k, side in enumerate((first, other))
     }
-    return WalkPlan(gaits, float(stopped + walk.standing_after_s + 0.4 * stride_s), hip_path, plans)
+    bend = Bend(0.5 * float(hip_path.max()), walk.turn_rad, max(abs(walk.turn_rad) * TURN_RADIUS_M, 0.1))
+    return WalkPlan(gaits, float(stopped + walk.standing_after_s + 0.4 * stride_s), hip_path, plans, (bend,))
 
 
-def _plan_foot(
+def plan_foot(
     gait: Gait,
     is_prosthetic: bool,
     contact_s: FloatArray,
@@ -153,6 +164,22 @@ def _plan_foot(
     stride_time: FloatArray,
     changes: FootChanges,
 ) -> StepPlan:
+    """The stances of one foot from when it lands and where its ankle then stands.
+
+    Parameters
+    ----------
+    contact_s : (k,)
+        Ascending.
+    ankle_m : (k + 1,)
+        Along the path, the place of standing first.
+    stride_time : (k,)
+        Each stride's time over the usual one.
+
+    Returns
+    -------
+    StepPlan
+        Of k + 1 stances.
+    """
     full_contact, heel_rise = (0.14, 0.30) if is_prosthetic else (gait.full_contact, gait.heel_rise)
     swing_s = (1.0 - gait.stance - 0.01 * changes.stance_percent) * gait.stride_s * stride_time
     starts = np.concatenate([[-np.inf], contact_s])
@@ -183,13 +210,11 @@ def plan_standing(time_s: FloatArray, duration_s: float) -> WalkPlan:
     """
     gait = gait_at(1.19)
     place_m = np.array([-HIP_AHEAD_OF_ANKLE_M])
-    foot = _plan_foot(gait, False, np.empty(0), place_m, np.empty(0), NO_CHANGES.of_foot(Side.LEFT, 0))
+    foot = plan_foot(gait, False, np.empty(0), place_m, np.empty(0), NO_CHANGES.of_foot(Side.LEFT, 0))
     return WalkPlan(dict.fromkeys(Side, gait), duration_s, np.zeros_like(time_s), dict.fromkeys(Side, foot))
 
 
-def walk_leg(
-    leg: Leg, plan: WalkPlan, walk: Walk | None, time_s: FloatArray, sway_m: FloatArray, rng: np.random.Generator
-) -> LegMotion:
+def walk_leg(leg: Leg, plan: WalkPlan, time_s: FloatArray, sway_m: FloatArray, rng: np.random.Generator) -> LegMotion:
     """One leg's poses on the fine clock; `sway_m` (n, 2) is the body's, forward and left.
 
     Parameters
@@ -239,7 +264,7 @@ def walk_leg(
         inversion=_curve(INVERSION_DEG, steps, time_s, step_s) - sway,
         rotation=_curve(ROTATION_DEG, steps, time_s, step_s),
     )
-    path_m, heading = _path(walk, plan.hip_path_m)
+    path_m, heading = _path(plan.bends, plan.hip_path_m)
     place, yaw = _footholds(leg, steps, path_m, heading)
     foot = rotation_about(Z_AXIS, _yaw_at(yaw, steps, time_s)) @ rotation_about(Y_AXIS, lean - ankle)
     thigh = foot @ np.swapaxes(knee_rotation(leg, angles) @ ankle_rotation(leg, angles), 1, 2)
@@ -373,9 +398,10 @@ def _shock(steps: StepPlan, time_s: FloatArray) -> FloatArray:
     """A decaying 25 Hz oscillation (n,) of some 0.6 after each initial contact, over before full contact."""
     total = np.zeros_like(time_s)
     for on, full in zip(steps.contact_s[1:], steps.full_contact_s[1:], strict=True):
-        t = np.maximum(time_s - on - 0.005, 0.0)  # swing is bridged to a contact without it
+        here = slice(*np.searchsorted(time_s, [on, 2.0 * full - on + 0.01]))
+        t = np.maximum(time_s[here] - on - 0.005, 0.0)  # swing is bridged to a contact without it
         fade = np.maximum(1.0 - t / (full - on), 0.0) ** 3
-        total += 4.7 * (1.0 - np.exp(-t / 0.008)) ** 4 * np.exp(-t / 0.02) * np.sin(2.0 * np.pi * 25.0 * t) * fade
+        total[here] += 4.7 * (1.0 - np.exp(-t / 0.008)) ** 4 * np.exp(-t / 0.02) * np.sin(2.0 * np.pi * 25.0 * t) * fade
     return total
 
 
@@ -435,12 +461,12 @@ def _curve(rows_deg: tuple[tuple[float, float], ...], steps: StepPlan, time_s: F
     return smooth(np.deg2rad(_knots(time_s, rows, 0.0)), step_s, 0.05)
 
 
-def _path(walk: Walk | None, hip_path_m: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _path(bends: tuple[Bend, ...], hip_path_m: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Where the path lies, (3, m): its length, x, y on a grid of its own; and its heading (m,)."""
     length = np.arange(hip_path_m.min() - 0.5, hip_path_m.max() + 0.5, 0.01)
-    turn = walk.turn_rad if walk else 0.0
-    half, arc = 0.5 * hip_path_m.max(), max(abs(turn) * TURN_RADIUS_M, 0.1)
-    heading = turn * smooth_step((length - half) / (1.3 * arc) + 0.5)
+    heading = np.zeros_like(length)
+    for bend in bends:
+        heading += bend.turn_rad * smooth_step((length - bend.middle_m) / (1.3 * bend.arc_m) + 0.5)
     xy = np.cumsum(np.stack([np.cos(heading), np.sin(heading)]), axis=1) * 0.01
     return np.vstack([length, xy]), heading
 
@@ -457,8 +483,10 @@ def _yaw_at(yaw: FloatArray, steps: StepPlan, time_s: FloatArray) -> FloatArray:
     """Direction of the foot (n,): it turns in swing only, with a little sway of its own."""
     total = np.full_like(time_s, yaw[0])
     for i, (off, on) in enumerate(zip(steps.toe_off_s[:-1], steps.contact_s[1:], strict=True)):
-        u = np.clip((time_s - off) / (on - off), 0.0, 1.0)
-        total += (yaw[i + 1] - yaw[i]) * smooth_step(u) + np.deg2rad(4.0) * (4.0 * u * (1.0 - u)) ** 3
+        begin, end = np.searchsorted(time_s, [off, on])
+        u = (time_s[begin:end] - off) / (on - off)
+        total[begin:end] += (yaw[i + 1] - yaw[i]) * smooth_step(u) + np.deg2rad(4.0) * (4.0 * u * (1.0 - u)) ** 3
+        total[end:] += yaw[i + 1] - yaw[i]
     return total
 
 

@@ -166,6 +166,24 @@ def smooth_step(x: FloatArray) -> FloatArray:
     return u**3 * (10.0 - 15.0 * u + 6.0 * u**2)
 
 
+def sway_of(time_s: FloatArray, rng: np.random.Generator) -> FloatArray:
+    """Quiet standing: the body sways by a few millimetres at 0.1 to 0.6 Hz.
+
+    Parameters
+    ----------
+    time_s : (n,)
+        Fine clock.
+
+    Returns
+    -------
+    (n, 2)
+        Forward and left, m.
+    """
+    frequency, phase = rng.uniform(0.1, 0.6, (2, 4)), rng.uniform(0.0, 2.0 * np.pi, (2, 4))
+    waves = [np.sin(2.0 * np.pi * np.outer(time_s, f) + p).sum(axis=1) for f, p in zip(frequency, phase, strict=True)]
+    return np.stack(waves, axis=-1) * 0.0015
+
+
 def move_freely(
     leg: Leg, recording: FreeMotion, time_s: FloatArray, start_s: float, rng: np.random.Generator
 ) -> LegMotion:

@@ -19,7 +19,7 @@ def walked(manner: Manner, speed_m_s: float = 0.6, strides: int = 4) -> LegMotio
     time_s = np.arange(-0.25, 16.0, STEP_S)
     plan = plan_walk(walk, time_s, Side.LEFT, None, np.random.default_rng(1))
     leg = make_leg(WalkerSettings(), Side.LEFT)
-    return walk_leg(leg, plan, walk, time_s, np.zeros((len(time_s), 2)), np.random.default_rng(2))
+    return walk_leg(leg, plan, time_s, np.zeros((len(time_s), 2)), np.random.default_rng(2))
 
 
 def heel_and_toe_m(motion: LegMotion) -> tuple[FloatArray, FloatArray]:

@@ -39,7 +39,7 @@ def walking_leg(settings: WalkerSettings) -> tuple[Leg, LegMotion]:
     time_s = np.arange(-250, 6000) / 1000.0
     walk = Walk(strides=3)
     plan = plan_walk(walk, time_s, leg.side, None, rng)
-    return leg, walk_leg(leg, plan, walk, time_s, np.zeros((len(time_s), 2)), rng)
+    return leg, walk_leg(leg, plan, time_s, np.zeros((len(time_s), 2)), rng)
 
 
 def worn(site: Site, settings: WalkerSettings = DENSE) -> tuple[ImuBlock, tuple[FloatArray, FloatArray], FloatArray]:

@@ -1,0 +1,327 @@
+"""How the body comes along and turns, from both feet: each carries half of the way.
+
+While one foot swings, the body goes half as far; the mean of both feet's ways keeps within a few centimetres of it. The
+heading is the integral of each foot's rate about the vertical, read where the foot stands, so that the sway of a swing
+does not count.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+
+from core.body import Segment, Side, Site
+from core.gait.events import FootEvents, detect_events
+from core.gait.foot import FootMotion, follow
+from core.gait.strides import MAX_STRIDE_S
+from core.pair import OrientedTrack, moving_mean
+from core.samples import FloatArray, Recording
+from core.sensors import SensorTracks
+from core.walking import prosthetic_sides
+
+STEP_S = 0.02
+SILENCE_S = 0.3  # shorter gaps are bridged or cost no step
+STILL_S = 1.0  # both feet on the floor for so long: a pause, or the stillness before a start
+CALM_S, MOVING_RAD_S = 0.1, 0.3  # a foot that stands turns more slowly, on average over
+STANDING_S = 1.5  # longer than a slow walker's foot lies flat
+PIECE_PAD_S = 0.6
+LOST_SWING_S = 1.5  # beside a silence a swing may be missing
+TURNING_RAD = np.deg2rad(20.0)  # in the time of one stride; straight strides turn a foot by up to 5 deg
+MIN_TURN_RAD = np.deg2rad(60.0)
+ABOUT_RAD = np.deg2rad(120.0)  # from here on, a turn ends a lap
+ONE_TURN_M = 0.6  # two turns to one side with no more way between them are one
+MAX_ARC_RAD = np.deg2rad(150.0)
+USUAL_STRIDE_S = 1.2  # where no stride tells
+
+
+@dataclass(frozen=True, slots=True)
+class Turn:
+    """A turn of the body: when, and how far, positive to the left."""
+
+    start_s: float
+    end_s: float
+    angle_rad: float
+
+    @property
+    def is_about(self) -> bool:
+        return abs(self.angle_rad) >= ABOUT_RAD
+
+    @property
+    def middle_s(self) -> float:
+        return 0.5 * (self.start_s + self.end_s)
+
+
+@dataclass(frozen=True, slots=True)
+class Silence:
+    """A sensor that was not heard, and when."""
+
+    site: Site
+    start_s: float
+    end_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class FootSteps:
+    """One foot's swings, ascending: when it left, when it landed (k,)."""
+
+    toe_off_s: FloatArray
+    contact_s: FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class BodyWay:
+    """The body's way on an even clock.
+
+    Attributes
+    ----------
+    time_s, way_m, heading_rad : (n,)
+        The way with its turns, the heading to the left, from the first sample on; of the foot that is heard where the
+        other is silent.
+    """
+
+    time_s: FloatArray
+    way_m: FloatArray
+    heading_rad: FloatArray
+    feet: Mapping[Side, FootSteps]
+    silences: tuple[Silence, ...]
+
+    @property
+    def swings_s(self) -> FloatArray:
+        """Toe-off and contact (k, 2) of both feet's swings, in order of toe-off."""
+        rows = [np.stack([foot.toe_off_s, foot.contact_s], axis=1) for foot in self.feet.values()]
+        found = np.concatenate([np.empty((0, 2)), *rows])
+        return np.asarray(found[np.argsort(found[:, 0])])
+
+    def way_at(self, time_s: float) -> float:
+        """How far the body has come, m."""
+        return float(np.interp(time_s, self.time_s, self.way_m))
+
+    def passes_s(self, way_m: float) -> float:
+        """When the body has come so far, s; NaN where it never does."""
+        if not len(self.way_m) or self.way_m[-1] < way_m:
+            return float("nan")
+        k = int(np.searchsorted(self.way_m, way_m))
+        return float(np.interp(way_m, self.way_m[max(k - 1, 0) : k + 1], self.time_s[max(k - 1, 0) : k + 1]))
+
+    def silences_in(self, start_s: float, end_s: float) -> tuple[Silence, ...]:
+        """Those that lie between two instants, in part or whole."""
+        return tuple(one for one in self.silences if one.start_s < end_s and one.end_s > start_s)
+
+    def cadence_in(self, start_s: float, end_s: float) -> float:
+        """Steps per minute while walking, from the median stride; NaN without a stride."""
+        times = []
+        for foot in self.feet.values():
+            inside = foot.contact_s[(foot.contact_s >= start_s) & (foot.contact_s <= end_s)]
+            times += [float(t) for t in np.diff(inside) if t < MAX_STRIDE_S]
+        return 120.0 / float(np.median(times)) if times else float("nan")
+
+
+def body_way(tracks: SensorTracks, recording: Recording) -> BodyWay:
+    """The body's way over a recording of up to a quarter of an hour; without foot sensors it has no samples.
+
+    Returns
+    -------
+    BodyWay
+        Seconds on the recording's clock, metres, radians.
+    """
+    block = tracks.blocks(recording)[0]
+    start_s, end_s = tracks.span_of(recording)
+    time_s = np.arange(start_s, end_s + 0.5 * STEP_S, STEP_S)
+    speeds, turnings, silences = [], [], []
+    feet: dict[Side, FootSteps] = {}
+    for side in Side:
+        site = Site(f"{side}_{Segment.FOOT}")
+        if not tracks.is_usable(recording, site):
+            continue
+        worn = tracks.oriented(recording, site, block)
+        is_rigid = side in prosthetic_sides(tracks.session.patient)
+        speed, turning = np.full_like(time_s, np.nan), np.full_like(time_s, np.nan)
+        offs: list[FloatArray] = [np.empty(0)]
+        ons: list[FloatArray] = [np.empty(0)]
+        for whole in worn:
+            heard = (time_s >= whole.track.start_s - STEP_S) & (time_s <= whole.track.end_s + STEP_S)
+            speed[heard], turning[heard] = 0.0, 0.0
+            for one in moving_pieces(whole):
+                motion = follow(one)
+                events = detect_events(motion, one.track.is_measured, is_rigid)
+                off_s, on_s = _moments(motion, events)
+                here = (time_s >= one.track.start_s - STEP_S) & (time_s <= one.track.end_s + STEP_S)
+                heading = _headings(one, motion)
+                arc_m = _arcs(events.length_m, heading[1::2] - heading[::2])
+                total_m = np.cumsum(arc_m)
+                way_m = np.stack([total_m - arc_m, total_m], axis=1).ravel()
+                speed[here] += _rate(time_s[here], off_s, on_s, way_m)
+                turning[here] += _rate(time_s[here], off_s, on_s, heading)
+                offs.append(off_s)
+                ons.append(on_s)
+        feet[side] = FootSteps(np.concatenate(offs), np.concatenate(ons))
+        silences += _silences(site, worn, start_s, end_s)
+        speeds.append(speed)
+        turnings.append(turning)
+    if not feet:
+        nothing = np.empty(0)
+        return BodyWay(nothing, nothing, nothing, feet, ())
+    return BodyWay(time_s, _smooth(_total(speeds), feet), _total(turnings), feet, tuple(silences))
+
+
+def moving_pieces(whole: OrientedTrack) -> list[OrientedTrack]:
+    """A foot's track from each long standing to the next, with a little of both.
+
+    Zero velocity is known at one instant of each stance. Where a patient stands for seconds, that instant may lie far
+    from the step: the filter's tilt has changed by then, and the first step after the standing came out a quarter too
+    short.
+    """
+    track = whole.track
+    speed = moving_mean(np.linalg.norm(track.gyr_rad_s, axis=1), max(1, round(CALM_S / track.step_s)))
+    moving = np.flatnonzero(speed > MOVING_RAD_S)
+    if not len(moving):
+        return []
+    cuts = np.flatnonzero(np.diff(moving) * track.step_s > STANDING_S)
+    begins, ends = moving[[0, *(cuts + 1).tolist()]], moving[[*cuts.tolist(), -1]]
+    pad = round(PIECE_PAD_S / track.step_s)
+    rows = [slice(max(0, int(a) - pad), int(b) + pad + 1) for a, b in zip(begins, ends, strict=True)]
+    return [_piece(whole, row) for row in rows]
+
+
+def _piece(whole: OrientedTrack, row: slice) -> OrientedTrack:
+    track = whole.track
+    part = replace(
+        track,
+        start_s=track.start_s + track.step_s * row.start,
+        gyr_rad_s=track.gyr_rad_s[row],
+        acc_m_s2=track.acc_m_s2[row],
+        mag=None,
+        q_device=None,
+        is_measured=track.is_measured[row],
+    )
+    return OrientedTrack(part, whole.q_earth_from_sensor[row])
+
+
+def _moments(motion: FootMotion, events: FootEvents) -> tuple[FloatArray, FloatArray]:
+    """When each swing begins and ends (k,), never before the one before it has ended."""
+    swings = motion.swings
+    off_s = np.where(np.isfinite(events.toe_off_s), events.toe_off_s, motion.time_of(swings.anchor_before + 0.0))
+    on_s = np.where(
+        np.isfinite(events.initial_contact_s), events.initial_contact_s, motion.time_of(swings.anchor_after + 0.0)
+    )
+    knots = np.maximum.accumulate(np.stack([off_s, np.maximum(on_s, off_s + 1e-3)], axis=1).ravel())
+    return knots[::2], knots[1::2]
+
+
+def _rate(time_s: FloatArray, off_s: FloatArray, on_s: FloatArray, values: FloatArray) -> FloatArray:
+    """The rate (n,) of what has `values` (2 k,) at the beginning and end of each swing, evenly from one to the next."""
+    if not len(off_s):
+        return np.zeros_like(time_s)
+    knots = np.stack([off_s, on_s], axis=1).ravel()
+    return np.asarray(np.diff(np.interp(time_s, knots, values), prepend=values[0]) / STEP_S)
+
+
+def _headings(one: OrientedTrack, motion: FootMotion) -> FloatArray:
+    """The foot's heading (2 k,), rad, in the stances before and after each swing."""
+    upward = np.einsum("ni,ni->n", one.earth_from_sensor[:, 2], one.track.gyr_rad_s)
+    heading = np.cumsum(upward) * one.track.step_s
+    return np.asarray(heading[np.stack([motion.swings.anchor_before, motion.swings.anchor_after], axis=1).ravel()])
+
+
+def _arcs(chord_m: FloatArray, turn_rad: FloatArray) -> FloatArray:
+    """Lengths (k,) of the arcs under a swing's straight way (k,): a foot that turns cuts off the body's bend."""
+    half = 0.5 * np.clip(np.abs(turn_rad), 0.0, MAX_ARC_RAD)
+    return np.asarray(chord_m / np.sinc(half / np.pi))
+
+
+def _smooth(way_m: FloatArray, feet: Mapping[Side, FootSteps]) -> FloatArray:
+    """The way (n,) without the rise and fall of speed in each step, which the body has less of than the feet."""
+    return moving_mean(way_m, max(1, round(0.5 * _usual_stride_s(feet) / STEP_S)))
+
+
+def _usual_stride_s(feet: Mapping[Side, FootSteps]) -> float:
+    times = np.concatenate([np.empty(0), *(np.diff(foot.contact_s) for foot in feet.values())])
+    return float(np.median(times[times < MAX_STRIDE_S])) if np.any(times < MAX_STRIDE_S) else USUAL_STRIDE_S
+
+
+def _total(rates: list[FloatArray]) -> FloatArray:
+    """The integral (n,) of the mean of what is known among rates (n,) each."""
+    stacked = np.stack(rates)
+    known = np.isfinite(stacked)
+    mean = np.where(known, stacked, 0.0).sum(axis=0) / np.maximum(known.sum(axis=0), 1)
+    return np.asarray(np.cumsum(mean) * STEP_S)
+
+
+def _silences(site: Site, worn: list[OrientedTrack], start_s: float, end_s: float) -> list[Silence]:
+    edges = [start_s, *(t for one in worn for t in (one.track.start_s, one.track.end_s)), end_s]
+    return [Silence(site, a, b) for a, b in zip(edges[::2], edges[1::2], strict=True) if b - a > SILENCE_S]
+
+
+def turns_of(way: BodyWay) -> tuple[Turn, ...]:
+    """Every turn of 60 deg and more, by the heading over the time of one stride."""
+    if not len(way.time_s):
+        return ()
+    half = max(1, round(0.5 * _usual_stride_s(way.feet) / STEP_S))
+    padded = np.concatenate([np.full(half, way.heading_rad[0]), way.heading_rad, np.full(half, way.heading_rad[-1])])
+    change = padded[2 * half :] - padded[: -2 * half]
+    spans: list[tuple[int, int, float]] = []
+    for sign in (1.0, -1.0):
+        edges = np.flatnonzero(np.diff(np.concatenate([[0], sign * change > TURNING_RAD, [0]]).astype(np.int8)))
+        spans += [(int(a), int(b) - 1, sign) for a, b in zip(edges[::2], edges[1::2], strict=True)]
+    joined: list[tuple[int, int, float]] = []
+    for begin, end, sign in sorted(spans):
+        if joined and joined[-1][2] == sign and way.way_m[begin] - way.way_m[joined[-1][1]] < ONE_TURN_M:
+            joined[-1] = (joined[-1][0], end, sign)
+        else:
+            joined.append((begin, end, sign))
+    found = []
+    for begin, end, _ in joined:
+        inner = way.heading_rad[max(0, begin - half)], way.heading_rad[min(len(way.time_s) - 1, end + half)]
+        angle = float(inner[1] - inner[0])
+        if abs(angle) >= MIN_TURN_RAD:
+            found.append(Turn(float(way.time_s[begin]), float(way.time_s[end]), angle))
+    return tuple(found)
+
+
+def pauses_of(way: BodyWay) -> tuple[tuple[float, float], ...]:
+    """Wherever both feet stood for a second between two steps.
+
+    Returns
+    -------
+    tuple of (float, float)
+        From contact to toe-off, seconds.
+    """
+    swings = way.swings_s
+    landed = np.maximum.accumulate(swings[:, 1]) if len(swings) else np.empty(0)
+    found = []
+    for landed_s, off_s in zip(landed[:-1].tolist(), swings[1:, 0].tolist(), strict=True):
+        is_heard = not way.silences_in(landed_s - LOST_SWING_S, off_s + LOST_SWING_S)
+        if off_s - landed_s >= STILL_S and is_heard:
+            found.append((landed_s, off_s))
+    return tuple(found)
+
+
+def start_of(way: BodyWay) -> tuple[float, float]:
+    """The start of a walk: the first contact after both feet stood for a second.
+
+    Returns
+    -------
+    float, float
+        That contact and the toe-off of its swing, seconds; NaN where there is none.
+    """
+    swings = way.swings_s
+    if len(swings):
+        landed = np.concatenate([way.time_s[:1], np.maximum.accumulate(swings[:-1, 1])])
+        still = np.flatnonzero(swings[:, 0] - landed >= STILL_S)
+        if len(still):
+            first = swings[still[0]]
+            return float(first[1]), float(first[0])
+    return float("nan"), float("nan")
+
+
+def laps_between(turns: tuple[Turn, ...], start_s: float, end_s: float) -> tuple[tuple[float, float], ...]:
+    """The pieces of a test from turn to turn, the last one as far as it came.
+
+    Returns
+    -------
+    tuple of (float, float)
+        From the middle of one turn to that of the next, seconds.
+    """
+    inner = [turn.middle_s for turn in turns if turn.is_about and start_s < turn.middle_s < end_s]
+    return tuple(pairwise([start_s, *inner, end_s]))

@@ -1,0 +1,173 @@
+"""Are timed tests of the simulated patient told as they were, and what was not measured left out?"""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from core.body import Site
+from core.samples import RateKind, Recording, Session
+from core.sensors import SensorTracks
+from core.timed.protocols import DEFINITIONS, TimedProtocol
+from core.timed.timing import NotMeasured, TimedTest, time_test
+from devices.walker_body import Tissue
+from devices.walker_courses import CourseKind, CourseTruth, SimulatedCourse, TimedCourse, draw_course, simulate_course
+
+FEET = (Site.LEFT_FOOT, Site.RIGHT_FOOT)
+TEN_METRES = TimedCourse(CourseKind.TEN_METRES, seed=2, speed_m_s=0.9, sites=FEET, tissue=Tissue.SOFT)
+TWO_MINUTES = TimedCourse(
+    CourseKind.TWO_MINUTES, seed=4, speed_m_s=1.0, lap_m=12.0, pauses=1, hesitates=True, slowing=0.25, sites=FEET
+)
+
+
+def timed(session: Session, protocol: TimedProtocol, keys_s: tuple[float, ...] = ()) -> TimedTest:
+    tracks = SensorTracks(session, session.recordings, frozenset(), RateKind.INSTANTANEOUS)
+    return time_test(tracks, session.recordings[-1], protocol, keys_s)
+
+
+def with_course(session: Session, course: Recording) -> Session:
+    return replace(session, recordings=(session.recordings[0], course))
+
+
+def cut(session: Session, from_s: float, to_s: float) -> Session:
+    """Only what lies between two instants of the course."""
+    course = session.recordings[1]
+    imu = {site: b.select((b.time_s >= from_s) & (b.time_s <= to_s)) for site, b in course.imu.items()}
+    return with_course(session, replace(course, imu=imu))
+
+
+@pytest.fixture(scope="module")
+def ten_metres() -> SimulatedCourse:
+    return simulate_course(TEN_METRES)
+
+
+@pytest.fixture(scope="module")
+def two_minutes() -> SimulatedCourse:
+    return simulate_course(TWO_MINUTES)
+
+
+@pytest.fixture(scope="module")
+def up_and_go() -> SimulatedCourse:
+    return simulate_course(draw_course(CourseKind.UP_AND_GO, 1))
+
+
+def turns_between(truth: CourseTruth, start_s: float, end_s: float) -> list[float]:
+    return [turn.angle_rad for turn in truth.turns if start_s <= 0.5 * (turn.start_s + turn.end_s) <= end_s]
+
+
+def test_ten_metres_are_timed_without_a_key(ten_metres: SimulatedCourse) -> None:
+    truth = ten_metres.truth
+    found = timed(ten_metres.session, TimedProtocol.TEN_METRES)
+    assert found.time_s == pytest.approx(truth.passes_s(12.0) - truth.passes_s(2.0), abs=0.1)
+    assert truth.way_at(found.end_s) - truth.way_at(found.start_s) == pytest.approx(10.0, rel=0.02)
+    assert found.distance_m == 10.0
+    assert np.isnan(found.tape_difference_m)  # no tape: the sensors would be compared with themselves
+    assert found.missing == ()
+
+
+def test_keys_at_the_tape_win_and_the_sensors_own_distance_is_told(ten_metres: SimulatedCourse) -> None:
+    truth = ten_metres.truth
+    # one who presses late at the end: time as pressed, 10.00 m, and the sensors say that it was more
+    keys_s = (truth.passes_s(2.0), truth.passes_s(12.5))
+    found = timed(ten_metres.session, TimedProtocol.TEN_METRES, keys_s)
+    assert found.time_s == pytest.approx(keys_s[1] - keys_s[0], abs=1e-9)
+    assert found.distance_m == 10.0
+    assert found.tape_difference_m == pytest.approx(0.5, abs=0.2)
+    assert found.speed_m_s == pytest.approx(10.0 / found.time_s)
+
+
+def test_two_minutes_with_turns_a_pause_and_a_slowing_patient(two_minutes: SimulatedCourse) -> None:
+    truth = two_minutes.truth
+    found = timed(two_minutes.session, TimedProtocol.TWO_MINUTES)
+    start_s = float(truth.contacts_s[0])
+    assert found.start_s == pytest.approx(start_s, abs=0.05)
+    assert found.time_s == pytest.approx(120.0)
+    assert found.distance_m == pytest.approx(truth.way_at(start_s + 120.0), rel=0.02)
+    assert found.missing == ()
+    angles = turns_between(truth, start_s, start_s + 120.0)
+    assert len(angles) >= 5
+    np.testing.assert_allclose([turn.angle_rad for turn in found.turns], angles, atol=np.deg2rad(8.0))
+    assert len(found.laps) == len(angles) + 1
+    assert sum(lap.distance_m for lap in found.laps) == pytest.approx(found.distance_m, abs=0.7)  # + the first step
+    ((pause_start_s, pause_end_s),) = found.pauses_s
+    ((true_start_s, true_end_s),) = truth.pauses_s
+    assert (pause_start_s, pause_end_s) == pytest.approx((true_start_s, true_end_s), abs=0.06)
+    first, last = found.thirds[0], found.thirds[-1]
+    assert last.cadence_steps_min < 0.95 * first.cadence_steps_min
+
+
+def test_a_silent_foot_takes_the_distance_and_not_the_time() -> None:
+    course = replace(TWO_MINUTES, silent_s={Site.LEFT_FOOT: (50.0, 55.0)})
+    made = simulate_course(course)
+    found = timed(made.session, TimedProtocol.TWO_MINUTES)
+    assert found.time_s == pytest.approx(120.0)
+    assert np.isnan(found.distance_m)
+    assert np.isnan(found.speed_m_s)
+    assert found.missing == (NotMeasured.SILENT,)
+    (silence,) = found.silences
+    assert silence.site is Site.LEFT_FOOT
+    assert (silence.start_s, silence.end_s) == pytest.approx((50.0, 55.0), abs=0.05)
+    start_s = float(made.truth.contacts_s[0])
+    assert len(found.turns) == len(turns_between(made.truth, start_s, start_s + 120.0))
+    assert len(found.pauses_s) == len(made.truth.pauses_s)
+    # laps that the silence does not touch keep their distance
+    assert sum(np.isfinite(lap.distance_m) for lap in found.laps) == len(found.laps) - 1
+
+
+def test_up_and_go_from_leaving_the_seat_to_sitting_again(up_and_go: SimulatedCourse) -> None:
+    truth = up_and_go.truth
+    found = timed(up_and_go.session, TimedProtocol.UP_AND_GO)
+    assert found.start_s == pytest.approx(truth.left_seat_s[0], abs=0.05)
+    assert found.end_s == pytest.approx(truth.seated_s[0], abs=0.05)
+    assert [np.sign(t.angle_rad) for t in found.turns] == [np.sign(t.angle_rad) for t in truth.turns]
+    assert found.distance_m == pytest.approx(truth.way_m[-1], rel=0.01)  # its turns as arcs: 1.5 % less without
+    assert len(found.rises) == 1
+
+
+@pytest.mark.parametrize("seed", [0, 5])
+def test_five_rises_are_timed_to_the_fifth(seed: int) -> None:
+    made = simulate_course(draw_course(CourseKind.SIT_TO_STAND, seed))
+    found = timed(made.session, TimedProtocol.SIT_TO_STAND)
+    assert found.time_s == pytest.approx(made.truth.upright_s[4] - made.truth.left_seat_s[0], abs=0.1)
+    np.testing.assert_allclose([rise.left_seat_s for rise in found.rises], made.truth.left_seat_s, atol=0.1)
+    np.testing.assert_allclose([rise.upright_s for rise in found.rises], made.truth.upright_s, atol=0.1)
+    assert found.pauses_s == ()
+    # cut after the fourth it is not finished
+    shorter = cut(made.session, 0.0, float(made.truth.left_seat_s[4]) - 0.3)
+    assert timed(shorter, TimedProtocol.SIT_TO_STAND).missing == (NotMeasured.NOT_FINISHED,)
+
+
+def test_what_is_missing_is_named(ten_metres: SimulatedCourse, up_and_go: SimulatedCourse) -> None:
+    # no still second: the recording begins in the middle of the walk
+    late = cut(ten_metres.session, float(ten_metres.truth.contacts_s[4]), np.inf)
+    found = timed(late, TimedProtocol.TWO_MINUTES)
+    assert NotMeasured.NO_START in found.missing
+    assert np.isnan(found.time_s)
+    # it ends before ten metres, and long before two minutes
+    short = cut(ten_metres.session, 0.0, ten_metres.truth.passes_s(9.0))
+    assert timed(short, TimedProtocol.TEN_METRES).missing == (NotMeasured.NOT_FINISHED,)
+    assert timed(short, TimedProtocol.TWO_MINUTES).missing == (NotMeasured.NOT_FINISHED,)
+    # no thighs, or nobody stood
+    assert NotMeasured.NO_THIGHS in timed(ten_metres.session, TimedProtocol.UP_AND_GO).missing
+    unseen = replace(up_and_go.session, recordings=up_and_go.session.recordings[1:])
+    assert NotMeasured.NO_THIGHS in timed(unseen, TimedProtocol.UP_AND_GO).missing
+    # no feet: the chair's time stays
+    course = up_and_go.session.recordings[1]
+    thighs = {site: block for site, block in course.imu.items() if site not in FEET}
+    only = timed(with_course(up_and_go.session, replace(course, imu=thighs)), TimedProtocol.UP_AND_GO)
+    assert only.missing == (NotMeasured.NO_FEET,)
+    assert only.time_s > 0.0
+    assert np.isnan(only.distance_m)
+
+
+def test_keys_out_of_order_are_refused(ten_metres: SimulatedCourse) -> None:
+    with pytest.raises(ValueError, match="expected none, the start, or start and end"):
+        timed(ten_metres.session, TimedProtocol.TEN_METRES, (5.0, 4.0))
+
+
+def test_every_test_is_defined_with_its_error_and_what_was_not_read_is_marked() -> None:
+    assert set(DEFINITIONS) == set(TimedProtocol)
+    assert all(definition.errors for definition in DEFINITIONS.values())
+    errors = [error for definition in DEFINITIONS.values() for error in definition.errors]
+    assert all(error.is_verified == ("not read" not in error.source) for error in errors)
+    assert sum(not error.is_verified for error in errors) == 2

@@ -1,0 +1,186 @@
+"""How well are timed tests told, on 200 simulated courses and on people's recordings?
+
+    python -m tests.validation.timed_courses [--scale 1.0]
+
+Courses: distance, time, turns, laps, pauses and rises against the truth, one line per test, every miss beside its seed.
+Nothing ties the ends of a 10 m walk to a tape unless keys are pressed: it is timed both ways. The recordings are used
+where GAITWRIGHT_TEST_DATA names the shared folder: a person who walks and turns beside optics, people after a stroke on
+a treadmill, who neither start nor turn.
+"""
+
+import argparse
+import os
+import tempfile
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from core.body import Side
+from core.samples import RateKind, Recording, Session
+from core.sensors import SensorTracks
+from core.timed.protocols import TimedProtocol
+from core.timed.timing import TimedTest, time_test
+from core.timed.way import body_way, pauses_of, start_of, turns_of
+from devices.files.session_folder import read_session
+from devices.walker_courses import TAPE_M, CourseKind, CourseTruth, draw_course, simulate_course
+from tests.benchmarks.gait import optical_foot
+from tests.validation.recordings_with_references import feet
+
+COURSES = {
+    CourseKind.TEN_METRES: 60,
+    CourseKind.TWO_MINUTES: 40,
+    CourseKind.SIX_MINUTES: 10,
+    CourseKind.UP_AND_GO: 50,
+    CourseKind.SIT_TO_STAND: 40,
+}
+LASTS_S = {CourseKind.TWO_MINUTES: 120.0, CourseKind.SIX_MINUTES: 360.0}
+MAX_DISTANCE_PERCENT, MAX_TIME_S, MAX_PAUSE_S = 2.0, 0.1, 0.1
+
+
+@dataclass(slots=True)
+class Score:
+    """One test's errors over all its courses; `wrong` names what was missed, with the seed."""
+
+    distance_percent: list[float] = field(default_factory=list)
+    start_s: list[float] = field(default_factory=list)
+    time_s: list[float] = field(default_factory=list)
+    pause_s: list[float] = field(default_factory=list)
+    turn_deg: list[float] = field(default_factory=list)
+    tape_percent: list[float] = field(default_factory=list)
+    turns: int = 0
+    pauses: int = 0
+    rises: int = 0
+    silent: int = 0
+    wrong: list[str] = field(default_factory=list)
+
+    def add(self, seed: int, found: TimedTest, truth: CourseTruth, kind: CourseKind, *, is_silent: bool) -> None:
+        start_s, end_s = true_span(kind, truth)
+        self.start_s.append(found.start_s - start_s)
+        self.time_s.append(found.time_s - (end_s - start_s))
+        if not abs(self.time_s[-1]) <= MAX_TIME_S:
+            self.wrong.append(f"{seed}: time {self.time_s[-1]:+.3f} s")
+        if is_silent != np.isnan(found.distance_m):
+            self.wrong.append(f"{seed}: distance {found.distance_m} of a sensor that was silent: {is_silent}")
+        self.silent += is_silent
+        way_m = truth.way_at(end_s)
+        if kind is CourseKind.TEN_METRES:  # 10 m by definition: what the body went between the ends that were found
+            way_m = truth.way_at(found.end_s) - truth.way_at(found.start_s)
+        if way_m > 0.0 and not is_silent:
+            self.distance_percent.append(100.0 * (found.distance_m / way_m - 1.0))
+            if abs(self.distance_percent[-1]) > MAX_DISTANCE_PERCENT:
+                self.wrong.append(f"{seed}: distance {self.distance_percent[-1]:+.1f} %")
+        self._add_events(seed, found, truth, start_s, end_s)
+
+    def _add_events(self, seed: int, found: TimedTest, truth: CourseTruth, start_s: float, end_s: float) -> None:
+        turns = [turn for turn in truth.turns if start_s <= 0.5 * (turn.start_s + turn.end_s) <= end_s]
+        self.turns += len(turns)
+        signs = [np.sign(turn.angle_rad) for turn in turns]
+        if signs != [np.sign(turn.angle_rad) for turn in found.turns]:
+            self.wrong.append(f"{seed}: {len(found.turns)} turns of {len(turns)}, or to the other side")
+        else:
+            pairs = zip(found.turns, turns, strict=True)
+            self.turn_deg += [float(np.rad2deg(a.angle_rad - b.angle_rad)) for a, b in pairs]
+        if len(found.laps) != len(turns) + 1:
+            self.wrong.append(f"{seed}: {len(found.laps)} laps of {len(turns) + 1}")
+        pauses = [(a, b) for a, b in truth.pauses_s if start_s <= a < end_s]
+        self.pauses += len(pauses)
+        if len(pauses) != len(found.pauses_s):
+            self.wrong.append(f"{seed}: {len(found.pauses_s)} pauses of {len(pauses)}")
+        else:
+            self.pause_s += [(a[1] - a[0]) - (b[1] - b[0]) for a, b in zip(found.pauses_s, pauses, strict=True)]
+        self.rises += len(truth.left_seat_s)
+        if len(found.rises) != len(truth.left_seat_s):
+            self.wrong.append(f"{seed}: {len(found.rises)} rises of {len(truth.left_seat_s)}")
+
+
+def true_span(kind: CourseKind, truth: CourseTruth) -> tuple[float, float]:
+    """Start and end by the truth."""
+    if kind is CourseKind.TEN_METRES:
+        return truth.passes_s(TAPE_M[0]), truth.passes_s(TAPE_M[1])
+    if kind is CourseKind.UP_AND_GO:
+        return float(truth.left_seat_s[0]), float(truth.seated_s[0])
+    if kind is CourseKind.SIT_TO_STAND:
+        return float(truth.left_seat_s[0]), float(truth.upright_s[4])
+    return float(truth.contacts_s[0]), float(truth.contacts_s[0]) + LASTS_S[kind]
+
+
+def tracks_of(session: Session) -> tuple[SensorTracks, Recording]:
+    return SensorTracks(session, session.recordings, frozenset(), RateKind.INSTANTANEOUS), session.recordings[-1]
+
+
+def score(kind: CourseKind, seeds: range) -> Score:
+    """Time every course of one kind."""
+    total = Score()
+    for seed in seeds:
+        course = draw_course(kind, seed)
+        made = simulate_course(course)
+        tracks, recording = tracks_of(made.session)
+        found = time_test(tracks, recording, TimedProtocol(kind.value))
+        total.add(seed, found, made.truth, kind, is_silent=bool(course.silent_s))
+        if kind is CourseKind.TEN_METRES:
+            by_key = time_test(tracks, recording, TimedProtocol(kind.value), true_span(kind, made.truth))
+            total.tape_percent.append(100.0 * by_key.tape_difference_m / by_key.distance_m)
+    return total
+
+
+def spread(values: list[float], unit: str, digits: int = 2) -> str:
+    """Median, 95th percentile and worst of the sizes."""
+    if not values:
+        return "-"
+    sizes = np.abs(values)
+    cells = (f"{value:.{digits}f}" for value in (np.median(values), np.nanquantile(sizes, 0.95), np.nanmax(sizes)))
+    return "median {}, p95 {}, worst {} ".format(*cells) + unit
+
+
+def told(kind: CourseKind, total: Score) -> Iterator[str]:
+    """What is printed of one test."""
+    yield f"{kind}: {len(total.time_s)} courses, {total.silent} with a silent sensor"
+    yield f"  distance {spread(total.distance_percent, '%')}"
+    if total.tape_percent:
+        yield f"  the sensors' own 10 m between two keys {spread(total.tape_percent, '%')}"
+    yield f"  time {spread(total.time_s, 's', 3)}; start {spread(total.start_s, 's', 3)}"
+    yield f"  {total.turns} turns, angle {spread(total.turn_deg, 'deg', 1)}"
+    yield f"  {total.pauses} pauses, length {spread(total.pause_s, 's', 3)}; {total.rises} rises"
+    yield f"  missed: {'; '.join(total.wrong) or 'nothing'}"
+
+
+def recordings(data: Path) -> Iterator[str]:
+    """What can be told of people's recordings."""
+    with tempfile.TemporaryDirectory() as folder:
+        session = read_session(feet(data, Path(folder)).session)
+    tracks, recording = tracks_of(session)
+    way = body_way(tracks, recording)
+    turns = ", ".join(f"{np.rad2deg(turn.angle_rad):+.0f}" for turn in turns_of(way))
+    start_s = start_of(way)[0]
+    yield f"healthy feet beside optics: {way.way_m[-1]:.1f} m, turns {turns or 'none'} deg, start {start_s:.2f} s"
+    strides = [one for side in Side for one in optical_foot(data, side).strides]
+    ours = sum(way.way_at(one.end_s) - way.way_at(one.start_s) for one in strides)
+    optics = sum(one.length_m for one in strides)
+    yield f"  {len(strides)} strides of {optics:.2f} m by optics, the body's way {100.0 * (ours / optics - 1.0):+.2f} %"
+    for place in sorted((data / "stroke_treadmill").glob("stroke0*")):
+        tracks, recording = tracks_of(read_session(place))
+        way = body_way(tracks, recording)
+        lasts_s = way.time_s[-1] - way.time_s[0]
+        yield (
+            f"{place.name}: {lasts_s:.0f} s, belt passed {way.way_m[-1]:.1f} m, turns {len(turns_of(way))}, "
+            f"pauses {len(pauses_of(way))}, start {start_of(way)[0]:.2f} s, cadence "
+            f"{way.cadence_in(way.time_s[0], way.time_s[-1]):.0f} steps/min"
+        )
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--scale", type=float, default=1.0, help="share of the 200 courses")
+    scale = parser.parse_args().scale
+    for kind, count in COURSES.items():
+        for line in told(kind, score(kind, range(max(1, round(scale * count))))):
+            print(line, flush=True)
+    data = os.environ.get("GAITWRIGHT_TEST_DATA")
+    for line in recordings(Path(data)) if data else ():
+        print(line, flush=True)
+
+
+if __name__ == "__main__":
+    main()
