@@ -31,21 +31,18 @@ def late_swing_of_knee(cycles: FloatArray) -> dict[str, FloatArray]:
         Name to (k,), rad or percent of the stride; NaN where the knee has no peak in swing.
     """
     peak = find_peak(cycles, SWING_PEAK).percent
-    percent = np.arange(POINTS)
-    after = np.where(percent >= peak[:, None], cycles, np.inf)  # a stride without peak keeps nothing
-    least = after.min(axis=1, initial=np.inf)
-    is_there = after <= least[:, None] + EXTENDED_RAD
-    first = is_there.argmax(axis=1)
-    # between the sample before and this one the knee came so near
-    rows = np.arange(len(cycles))
-    before, at = cycles[rows, np.maximum(first - 1, 0)], cycles[rows, first]
-    fall = np.where(before > at, before - at, np.inf)
-    arrived = first - np.clip((least + EXTENDED_RAD - at) / fall, 0.0, 1.0)
-    is_known = np.isfinite(least)
-    return {
-        "knee_terminal_extension_rad": np.where(is_known, least, np.nan),
-        "knee_extended_before_contact_percent": np.where(is_known, POINTS - 1 - arrived, np.nan),
-    }
+    extension, early = np.full(len(cycles), np.nan), np.full(len(cycles), np.nan)
+    known = np.flatnonzero(np.isfinite(peak))
+    after = np.where(np.arange(POINTS) >= peak[known, None], cycles[known], np.inf)
+    extension[known] = least = after.min(axis=1, initial=np.inf)
+    near = least + EXTENDED_RAD
+    first = (after <= near[:, None]).argmax(axis=1)
+    # between the sample before and this one the knee came so near; from a low peak on it always was
+    before, at = cycles[known, np.maximum(first - 1, 0)], cycles[known, first]
+    is_falling = before > near
+    share = np.divide(near - at, before - at, out=np.zeros(len(known)), where=is_falling)
+    early[known] = POINTS - 1 - (first - share)
+    return {"knee_terminal_extension_rad": extension, "knee_extended_before_contact_percent": early}
 
 
 def foot_measures(strides: Strides, time_s: FloatArray, pitch_rad: FloatArray) -> dict[str, FloatArray]:

@@ -72,7 +72,7 @@ MEASURES = (
     FittingMeasure(
         "foot_heel_rise_deg",
         "greatest pitch of the foot, toes down, from heel rise to the middle of swing; zero is the standing foot",
-        "How high the heel is: the length of the foot and where its sensor sits are unknown. Nor how far the knee bends",
+        "How high the heel is: the length of the foot and where its sensor sits are unknown",
     ),
     FittingMeasure(
         "foot_pitch_at_contact_deg",

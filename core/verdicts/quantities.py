@@ -70,7 +70,7 @@ FITTING: Mapping[str, QuantityClass] = {  # the columns of fitting.csv; what the
         for instant in ("initial_contact", "mid_stance", "toe_off")
     },
 }
-_CLASSES: Mapping[str, QuantityClass] = {**QUANTITIES, **FITTING}
+CLASSES: Mapping[str, QuantityClass] = {**QUANTITIES, **FITTING}
 SEGMENTS = ("shank", "thigh")
 OF_BOTH = ("cadence_steps_min", "double_support_percent", "speed_m_s")
 WINDOWS = {f"{window.name}_deg": window for window in (*KNEE_WINDOWS, *ANKLE_WINDOWS)}
@@ -95,7 +95,7 @@ def joint_of(name: str, side: Side) -> Joint | None:
 
 def assessment_of(verdicts: Verdicts, side: Side, name: str) -> Assessment:
     """What may be said of one column of strides.csv, peaks.csv or fitting.csv."""
-    joint, wanted = joint_of(name, side), _CLASSES[name]
+    joint, wanted = joint_of(name, side), CLASSES[name]
     if joint is not None:
         found = verdicts.joint(joint)
         if name.startswith(SEGMENTS):  # read at events of the foot

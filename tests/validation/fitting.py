@@ -1,31 +1,42 @@
 """How true are the measures for fitting on simulated patients, and how large a change of them is found?
 
-    python -m tests.validation.fitting [--people 20] [--sessions 0] [--first 0] [--tissue rigid soft real]
+    python -m tests.validation.fitting [--people 20] [--sessions 0] [--first 0] [--tissue soft] [--optics]
 
 The first table: bias of a walk's mean and the 90th percentile of its size, each leg of each person one. With
 `--sessions` a second: walks that differ by 1.7 times a measure's error, and walks that do not differ at all.
 """
 
 import argparse
+import os
 from collections import defaultdict
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
 from core.analysis import analyse
 from core.body import Side
 from core.results import RecordingAnalysis
+from core.samples import FloatArray
 from core.verdicts.measurement_error import ComparisonKind, Difference, Judgement, compare, mean_of_strides
 from core.verdicts.quantities import FITTING, assessment_of, values_of
-from devices.walker import PEOPLE, FreeMotion, GaitChange, SimulatedSession, Standing, Tissue, Walk, WalkerSettings
-from devices.walker import simulate
+from devices.walker import (
+    PEOPLE,
+    FreeMotion,
+    GaitChange,
+    SimulatedSession,
+    Standing,
+    Tissue,
+    Walk,
+    WalkerSettings,
+    simulate,
+)
+from tests.validation.fitting_optics import feet_beside_optics, hinges_beside_optics
 from tests.validation.fitting_truth import true_strides
 
 SAME_S = 0.15  # a stride is the true one whose contact lies so near
-OLDER = (
-    *("knee_while_loading_deg", "knee_loading_peak_deg", "knee_swing_peak_percent"),
-)
+OLDER = (*("knee_while_loading_deg", "knee_loading_peak_deg", "knee_swing_peak_percent"),)
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,7 +64,7 @@ def errors_of(made: SimulatedSession, walk: RecordingAnalysis) -> Iterator[Error
         yield Errors(side, found, len(matched))
 
 
-def _value(walk: RecordingAnalysis, side: Side, name: str) -> np.ndarray:
+def _value(walk: RecordingAnalysis, side: Side, name: str) -> FloatArray:
     if name == "knee_swing_peak_percent":
         return walk.gait[side].parameters[name]
     return values_of(walk, side, name)
@@ -66,7 +77,7 @@ def settings_of(seed: int, tissue: Tissue, prosthetic: Side | None = None) -> Wa
 
 def accuracy(people: int, first: int, tissue: Tissue, prosthetic: Side | None = None) -> Iterator[str]:
     """One row per measure; of prosthetic legs alone where `prosthetic` names one."""
-    errors = defaultdict(list)
+    errors: dict[str, list[float]] = defaultdict(list)
     for seed in range(first, first + people):
         made = simulate(settings_of(seed, tissue, prosthetic))
         for one in errors_of(made, analyse(made.session).recordings[-1]):
@@ -82,7 +93,7 @@ def accuracy(people: int, first: int, tissue: Tissue, prosthetic: Side | None = 
             yield f"| {name} | 0 of {len(values)} | - | - |"
 
 
-CHANGES = {  # what the walker can change, and the measure that is to show it, with what a degree or point of it makes
+CHANGES: Mapping[str, tuple[Callable[[float], GaitChange], str]] = {  # and the measure that is to show it
     "knee stop, peak in swing": (lambda x: GaitChange(knee_deg=x), "knee_swing_peak_deg"),
     "foot angle at toe-off": (lambda x: GaitChange(ankle_deg=x), "foot_heel_rise_deg"),
     "stance, foot flat": (lambda x: GaitChange(stance_percent=x), "foot_flat_percent"),
@@ -97,14 +108,14 @@ def told(seed: int, tissue: Tissue, change: GaitChange) -> dict[str, Difference]
     one, other = analyse(made.session).recordings[-2:]
     found = {}
     for name in (*FITTING, "knee_swing_peak_deg", "knee_while_loading_deg"):
-        means = [
+        mean, before = (
             mean_of_strides(values_of(walk, Side.LEFT, name)[walk.gait[Side.LEFT].strides.is_used])
             for walk in (other, one)
-        ]
+        )
         said = tuple(assessment_of(walk.verdicts, Side.LEFT, name) for walk in (other, one))
         speeds = [np.nanmean(values_of(walk, Side.LEFT, "speed_m_s")) for walk in (other, one)]
         apart = float(speeds[0] - speeds[1])
-        found[name] = compare(name, ComparisonKind.ATTACHED, *means, said, speed_apart_m_s=apart)
+        found[name] = compare(name, ComparisonKind.ATTACHED, mean, before, said, speed_apart_m_s=apart)
     return found
 
 
@@ -125,7 +136,8 @@ def power(sessions: int, first: int, tissue: Tissue) -> Iterator[str]:
         some = [told(seed, tissue, change(size))[name] for seed in seeds]
         moved = float(np.median([one.difference for one in some]))
         found = sum(one.exceeds for one in some)
-        yield f"| {title}: {size:.2f} | {name} | moved {moved:.2f}, 1.7 E {1.7 * error:.2f} | found in {found} of {len(some)} |"
+        said = f"moved {moved:.2f}, 1.7 E {1.7 * error:.2f} | found in {found} of {len(some)}"
+        yield f"| {title}: {size:.2f} | {name} | {said} |"
 
 
 def main() -> None:
@@ -135,7 +147,14 @@ def main() -> None:
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--tissue", type=Tissue, nargs="+", default=list(Tissue))
     parser.add_argument("--prosthetic", type=Side, default=None)
+    parser.add_argument("--optics", action="store_true")
     wanted = parser.parse_args()
+    if wanted.optics:
+        data = Path(os.environ["GAITWRIGHT_TEST_DATA"])
+        print("two feet beside optics: measure, strides, bias, sd, median, middle half")
+        print(*feet_beside_optics(data), sep="\n", flush=True)
+        print("mechanical hinge beside optics: lean, samples, rms")
+        print(*hinges_beside_optics(data), sep="\n", flush=True)
     for tissue in wanted.tissue:
         if wanted.people:
             print(f"{tissue}: measure, legs, bias, p90", flush=True)
