@@ -156,6 +156,7 @@ _VOLUNTEERS = (
 )
 _BORROWED = f"the knee's figure, for want of one of the ankle ({_VOLUNTEERS})"
 _OF_KNEE = f"the knee's figure, for want of one of segments and feet ({_VOLUNTEERS})"
+_OF_FOOT = "1 deg as of the ankle, and 0.8 deg that 2.5 % of stride length make of a foot at toe-off: an estimate"
 _OF_STANCE = "that of stance, for want of one"
 _POSTURE = "with 3 deg of posture in each zero"
 _BIAS = "events 10 ms early or late, alike in every stride of one leg"
@@ -193,7 +194,7 @@ SIGMAS: Mapping[ComparisonKind, Mapping[QuantityKind, Sigma]] = {
         QuantityKind.LENGTH: Sigma(2.5, _WALKS, is_relative=True, is_verified=True),
         QuantityKind.SEGMENT_SHAPE: Sigma(1.0, _OF_KNEE, is_borrowed=True),
         QuantityKind.SEGMENT_HEIGHT: Sigma(1.2, _OF_KNEE, is_borrowed=True),
-        QuantityKind.FOOT_PITCH: Sigma(1.0, _OF_KNEE, is_borrowed=True),
+        QuantityKind.FOOT_PITCH: Sigma(1.3, _OF_FOOT, is_borrowed=True),  # hypot of both
         QuantityKind.FOOT_FLAT: Sigma(1.0, _GUESS, is_borrowed=True),  # two events of two kinds, each less sure
         QuantityKind.KNEE_TIMING: Sigma(0.5, _OF_STANCE, is_borrowed=True),
     },
