@@ -16,6 +16,7 @@ from core.calibration.zero import wrapped_to_zero
 from core.chosen_strides import leave_out
 from core.clock_drift import about_clocks, clock_drifts
 from core.findings import Finding, Severity
+from core.gait.inclination import inclination
 from core.gait.strides import Reason
 from core.identified import Identified, clock_moved_s, identify
 from core.joint_findings import about_angles, about_joint, about_missing_joints, about_session
@@ -283,9 +284,27 @@ def _angles(
     time_s, gait = _clock_of(tracks, recording), dict[Side, SideGait]()
     if recording.kind is RecordingKind.WALKING:
         offsets = {side: _clock_offset_s(tracks, recording, side, lags) for side in Side}
-        gait = gait_in(tracks, recording, time_s, joints, offsets)
+        leaning: dict[Site, FloatArray] = {}
+        for joint in (knee for knee in joints if knee.is_knee):
+            leaning |= _inclinations(tracks, calibrated[bases[recording.name, joint]], measured[recording.name, joint])
+        gait = gait_in(tracks, recording, time_s, joints, offsets, leaning)
     lost = {site: lost_percent(block) for site, block in recording.imu.items() if tracks.is_usable(recording, site)}
     return RecordingAnalysis(recording.name, recording.folder, recording.kind, time_s, joints, gait, lost)
+
+
+def _inclinations(tracks: SensorTracks, knee: JointCalibration, found: Twist) -> dict[Site, FloatArray]:
+    """How thigh and shank lean (n,), relative to the standing that gave the knee its zero."""
+    standing = next((r for r in tracks.span if r.name == knee.standing_from), None)
+    leaning = {}
+    for site, axis, lean_rad in (
+        (knee.joint.proximal, knee.axis_proximal, found.lean_1_rad),
+        (knee.joint.distal, knee.axis_distal, found.lean_2_rad),
+    ):
+        rest = tracks.rest(standing, site) if standing is not None else None
+        if lean_rad is not None:
+            up = rest.acc_m_s2 if rest is not None else None
+            leaning[site] = inclination(lean_rad, axis, up, knee.clinical_sign)
+    return leaning
 
 
 Slipped = dict[tuple[str, Side], float]

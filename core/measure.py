@@ -13,6 +13,7 @@ from core.angles.twist import off_axis_rate, ringing, twist
 from core.body import Joint
 from core.calibration.heading import heading_over
 from core.calibration.zero import within_half_a_turn
+from core.gait.inclination import lean_about
 from core.orientation import oriented_to_north
 from core.pair import OrientedTrack, Pair, pair_up
 from core.published.angles import angle_from_orientations, published_angle
@@ -52,6 +53,7 @@ class Twist:
     `broken_sd_rad` (n,) is what gaps add to the uncertainty: an orientation that starts anew amid a movement has to
     find the vertical first. The others are thinned samples (m, ...) while the joint's segments move: the angle, all of
     the off-axis rate, what of it is above 3 Hz, and each sensor's own rate about its own axis.
+    `lean_1_rad`, `lean_2_rad` (n,): how both segments stand to the vertical, as `lean_about` has it; of knees only.
     """
 
     twist_rad: FloatArray
@@ -63,6 +65,8 @@ class Twist:
     moving_ringing: FloatArray
     moving_rate_1: FloatArray
     moving_rate_2: FloatArray
+    lean_1_rad: FloatArray | None = None
+    lean_2_rad: FloatArray | None = None
 
 
 def pairs_of(tracks: SensorTracks, recording: Recording, joint: Joint, block: Block, lag_s: float) -> list[Pair]:
@@ -129,7 +133,8 @@ def measure(
     Twist
         Angles in rad at `time_s`, NaN where unknown.
     """
-    angles = {name: np.full(len(time_s), np.nan) for name in ("twist", "published", "orientation", "broken_sd")}
+    names = ("twist", "published", "orientation", "broken_sd", *(("lean_1", "lean_2") if joint.is_knee else ()))
+    angles = {name: np.full(len(time_s), np.nan) for name in names}
     witnesses: list[tuple[FloatArray, ...]] = []
     j1, j2 = geometry.axis_1, geometry.axis_2
     for block in tracks.blocks(recording):
@@ -139,6 +144,9 @@ def measure(
             fused = published_angle(pair, j1, j2, geometry.centre_1_m, geometry.centre_2_m, geometry.tau_s)
             angle = hinge_angle(pair, j1, j2, geometry.unknowns) if geometry.is_hinge else twist(pair, j1, j2, heading)
             found = {"twist": angle, "published": -fused}
+            if joint.is_knee:
+                found["lean_1"] = lean_about(j1, pair.earth_from_1[:, 2])
+                found["lean_2"] = lean_about(j2, pair.earth_from_2[:, 2])
             if len(pairs) > 1:
                 share = min(1.0, (SETTLED_S / pair.duration_s) ** 2)
                 found["broken_sd"] = np.full(len(pair), share * BROKEN_SD_RAD)
@@ -166,6 +174,8 @@ def measure(
         moving_ringing=joined[2] if joined else np.empty((0, 2)),
         moving_rate_1=joined[3] if joined else np.empty(0),
         moving_rate_2=joined[4] if joined else np.empty(0),
+        lean_1_rad=angles.get("lean_1"),
+        lean_2_rad=angles.get("lean_2"),
     )
 
 

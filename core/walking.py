@@ -18,6 +18,8 @@ from core.gait.cycles import (
     range_of_cycles,
 )
 from core.gait.events import FootEvents, detect_events
+from core.gait.fitting import foot_measures, inclination_measures, late_swing_of_knee
+from core.gait.foot import FootMotion
 from core.gait.phases import phases_at
 from core.gait.shank import gait_of_shank
 from core.gait.spatiotemporal import parameters_of
@@ -25,6 +27,7 @@ from core.gait.strides import Strides, strides_of
 from core.results import JointAngle, SideGait
 from core.samples import BoolArray, FloatArray, Patient, Recording
 from core.sensors import SensorTracks
+from core.tracks import Block
 
 SAME_S = 0.2  # two landings of one foot lie further apart
 
@@ -81,6 +84,7 @@ def gait_in(
     time_s: FloatArray,
     joints: Mapping[Joint, JointAngle],
     clock_offsets_s: Mapping[Side, float],
+    inclinations: Mapping[Site, FloatArray],
 ) -> dict[Side, SideGait]:
     """Both sides' gait in one walk, from the foot, else from the shank; a side with neither is missing.
 
@@ -90,14 +94,17 @@ def gait_in(
         The recording's clock.
     clock_offsets_s
         What brings the clock of each side's sensor, `site_of_events`, to it.
+    inclinations
+        Of thighs and shanks, (n,) each, rad, forward positive; NaN where unknown.
 
     Returns
     -------
     dict of Side to SideGait
         On the recording's clock.
     """
+    pitch_rad = {side: np.full(len(time_s), np.nan) for side in Side}
     events = {
-        side: _events(tracks, recording, site, clock_offsets_s[side])
+        side: _events(tracks, recording, site, clock_offsets_s[side], time_s, pitch_rad[side])
         for side in Side
         if (site := site_of_events(tracks, recording, side)) is not None
     }
@@ -111,7 +118,13 @@ def gait_in(
             for joint in (knee_of(side), ankle_of(side))
             if joint in joints
         }
-        parameters = {**parameters_of(mine, other), **_joint_parameters(mine, cycles)}
+        leaning = {site.segment: found for site, found in inclinations.items() if site.side is side}
+        parameters = {
+            **parameters_of(mine, other),
+            **_joint_parameters(mine, cycles),
+            **foot_measures(mine, time_s, pitch_rad[side]),
+            **inclination_measures(mine, time_s, leaning),
+        }
         gait[side] = SideGait(
             tuple(found),
             mine,
@@ -123,8 +136,21 @@ def gait_in(
     return gait
 
 
-def _events(tracks: SensorTracks, recording: Recording, site: Site, offset_s: float) -> list[FootEvents]:
-    """Events of one side, stretch by stretch; long recordings block by block, the seams within a stretch closed."""
+def _events(
+    tracks: SensorTracks,
+    recording: Recording,
+    site: Site,
+    offset_s: float,
+    time_s: FloatArray,
+    pitch_rad: FloatArray,
+) -> list[FootEvents]:
+    """Events of one side, stretch by stretch; long recordings block by block, the seams within a stretch closed.
+
+    Parameters
+    ----------
+    time_s, pitch_rad : (n,)
+        The recording's clock; the foot's pitch is written where it is known.
+    """
     found: list[FootEvents] = []
     is_rigid = site.side in prosthetic_sides(tracks.session.patient)
     for block in tracks.blocks(recording):
@@ -134,6 +160,7 @@ def _events(tracks: SensorTracks, recording: Recording, site: Site, offset_s: fl
             if site.segment is Segment.FOOT:
                 motion = tracks.foot_motions(recording, site, block)[k]
                 events = detect_events(motion, worn.track.is_measured, is_rigid)
+                _place_pitch(motion, worn.track.is_measured, offset_s, block, time_s, pitch_rad)
             else:
                 events = gait_of_shank(worn)
             events = _rows(events, events.initial_contact_s < block.core_to_s)
@@ -142,6 +169,18 @@ def _events(tracks: SensorTracks, recording: Recording, site: Site, offset_s: fl
             else:
                 found.append(events)
     return [_later(events, offset_s) for events in found if len(events)]
+
+
+def _place_pitch(
+    motion: FootMotion, is_measured: BoolArray, offset_s: float, block: Block, time_s: FloatArray, into: FloatArray
+) -> None:
+    """Write the pitch of one stretch at the stamps (n,) of the recording's clock, in place."""
+    last_s = motion.start_s + motion.step_s * (len(motion.pitch_rad) - 1)
+    bounds = max(motion.start_s, block.core_from_s) + offset_s, min(last_s, block.core_to_s) + offset_s
+    here = slice(*np.searchsorted(time_s, bounds))
+    position = (time_s[here] - offset_s - motion.start_s) / motion.step_s
+    pitch = np.where(is_measured, motion.pitch_rad, np.nan)
+    into[here] = np.interp(position, np.arange(len(pitch)), pitch)
 
 
 def _continued(before: FootEvents, after: FootEvents, seam_s: float) -> FootEvents:
@@ -178,6 +217,8 @@ def _joint_parameters(strides: Strides, cycles: Mapping[Joint, FloatArray]) -> d
             if window.name == "knee_swing_peak":
                 parameters["knee_swing_peak_percent"] = peak.percent
         parameters[f"{kind}_range_rad"] = range_of_cycles(curves)
+        if joint.is_knee:
+            parameters |= late_swing_of_knee(curves)
         for excursion in EXCURSIONS:
             if excursion.name.startswith(kind):
                 parameters[f"{excursion.name}_rad"] = excursion_of_cycles(curves, excursion)

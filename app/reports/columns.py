@@ -12,7 +12,8 @@ from typing import NamedTuple
 from app.reports.csv_report import write_table
 from core.body import Joint, Side
 from core.gait.cycles import PeakWindow
-from core.verdicts.quantities import EXCURSIONS_BY_COLUMN, PARAMETERS, QUANTITIES, WINDOWS, QuantityClass
+from core.verdicts.fitting import BY_COLUMN
+from core.verdicts.quantities import EXCURSIONS_BY_COLUMN, FITTING, PARAMETERS, QUANTITIES, WINDOWS, QuantityClass
 
 COLUMNS = "columns.csv"
 HEADER = ("file", "column", "unit", "sign", "definition", "needs")
@@ -54,6 +55,12 @@ def _of_stride(name: str) -> ColumnMeaning:
         excursion = EXCURSIONS_BY_COLUMN[name]
         return ColumnMeaning(f"{_extreme(excursion.high, 'largest')} less {_extreme(excursion.low, 'smallest')}", needs)
     return ColumnMeaning(OF_STRIDE[name], needs, sign)
+
+
+def _of_fitting(name: str) -> ColumnMeaning:
+    """A column of fitting.csv."""
+    sign = FLEXION["knee"] if name == "knee_terminal_extension_deg" else ""
+    return ColumnMeaning(BY_COLUMN[name].definition, NEEDS.get(FITTING[name], ""), sign)
 
 
 def _extreme(window: PeakWindow | None, which: str) -> str:
@@ -187,6 +194,34 @@ KNOWN: Mapping[str, Mapping[str, ColumnMeaning]] = {
         },
         **{name: _of_stride(name) for name in EXCURSIONS_BY_COLUMN},
         **{f"{kind}_status": _word(f"{STATUS}when the {kind} peaks, and its excursions") for kind in FLEXION},
+    },
+    "fitting.csv": {
+        "side": SIDE,
+        "start_s": TIMES["start_s"],
+        **{name: _of_fitting(name) for name in FITTING},
+        "used": USED,
+        "knee_height_status": _word(f"{STATUS}how straight the knee becomes"),
+        "knee_timing_status": _word(f"{STATUS}when the knee is straight"),
+        "foot_timing_status": _word(f"{STATUS}how long the foot is flat"),
+        "foot_pitch_status": _word(f"{STATUS}the pitch of the foot"),
+        "segment_turn_status": _word(f"{STATUS}by how much the shank turns"),
+        "segment_inclination_status": _word(f"{STATUS}how thigh and shank lean"),
+    },
+    "fitting_means.csv": {
+        "recording": _word("its folder"),
+        "side": SIDE,
+        "measure": _word("the column of fitting.csv, strides.csv or peaks.csv"),
+        **MEAN,
+        "error": ColumnMeaning(
+            "half of what two means as sure, of walks with the sensors left on, have to differ by",
+            AS_PARAMETER,
+            "",
+            AS_ROW,
+        ),
+        "unverified": _word("true where definition or error rests on a source that could not be read"),
+        "status": _word(f"{STATUS}the measure"),
+        "source": _word("where the measure comes from"),
+        "cannot_say": _word("what the measure does not tell"),
     },
     "sides.csv": {
         **OF_PART,

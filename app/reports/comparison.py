@@ -38,8 +38,8 @@ from core.verdicts.measurement_error import (
 )
 from core.verdicts.model import Assessment, Verdict, Verdicts, pooled, together
 from core.verdicts.quantities import (
+    CLASSES,
     EXCURSIONS_BY_COLUMN,
-    QUANTITIES,
     WINDOWS,
     QuantityClass,
     assessment_of,
@@ -91,7 +91,7 @@ class Measure:
     @property
     def needs_height(self) -> bool:
         """Whether it says something only with a zero of the same kind."""
-        return QUANTITIES.get(self.column) is QuantityClass.HEIGHT
+        return CLASSES.get(self.column) is QuantityClass.HEIGHT
 
 
 MEASURES = (

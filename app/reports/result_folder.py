@@ -24,6 +24,8 @@ from app.reports.differences import (
     write_differences,
     write_sides,
 )
+from app.reports.fitting_csv import MEANS as FITTING_MEANS
+from app.reports.fitting_csv import fitting_means, write_fitting_strides
 from app.reports.gait_csv import peak_table, write_gait
 from app.reports.summary import MOST_BYTES, read_summary, write_summary
 from core.results import Analysis
@@ -42,7 +44,7 @@ TAKEN = tuple(
     (name,)
     for name in (
         *(SUMMARY, LOG, REPORT, OWN_SESSION),
-        *(PEAKS, DIFFERENCES, COMPARED_CYCLES, SIDES, VISITS, VISITS_CYCLES, COLUMNS, METADATA),
+        *(PEAKS, FITTING_MEANS, DIFFERENCES, COMPARED_CYCLES, SIDES, VISITS, VISITS_CYCLES, COLUMNS, METADATA),
     )
 )
 
@@ -64,8 +66,10 @@ def write_results(session: Session, analysis: Analysis, folder: Path) -> None:
         (folder / recording.folder).mkdir(parents=True, exist_ok=True)
         write_angles(recording, folder / recording.folder / ANGLES)
         write_gait(recording, folder / recording.folder)
+        write_fitting_strides(recording, folder / recording.folder)
     if any(recording.gait for recording in analysis.recordings):
         write_table(*peak_table(analysis.recordings), folder / PEAKS)
+        write_table(*fitting_means(analysis.recordings), folder / FITTING_MEANS)
     _write_comparisons(session, analysis, folder)
     describe_tables(analysis, folder)
     write_summary(analysis, folder / SUMMARY)

@@ -10,6 +10,7 @@ import numpy as np
 
 from app.gates_in_words import gate_sentence
 from app.reports.comparison import Part, compare_legs, first_and_second
+from app.reports.fitting_csv import fitting_of_side
 from app.reports.reference_bands import reference_curves
 from app.wording import sentence
 from core.body import Joint, Side
@@ -135,7 +136,8 @@ def _side(side: Side, recording: RecordingAnalysis) -> dict[str, Any]:
         figures[f"{name}_error"], figures[f"{name}_status"] = _number(error), str(found.assessment.verdict)
     joints = {kind: Joint(f"{side}_{kind}") for kind in KINDS}
     scores = {kind: _number(_score_deg(recording, joint)) for kind, joint in joints.items()}
-    return {**figures, "gait_variable_score_deg": scores}
+    fitting = fitting_of_side(recording, side)
+    return {**figures, "gait_variable_score_deg": scores, "fitting": fitting}
 
 
 def _score_deg(recording: RecordingAnalysis, joint: Joint) -> float:

@@ -61,6 +61,11 @@ class QuantityKind(StrEnum):
     TIME = "time"
     SPEED = "speed"
     LENGTH = "length"
+    SEGMENT_SHAPE = "segment_shape"
+    SEGMENT_HEIGHT = "segment_height"
+    FOOT_PITCH = "foot_pitch"
+    FOOT_FLAT = "foot_flat"
+    KNEE_TIMING = "knee_timing"
 
 
 KINDS: Mapping[str, QuantityKind] = {  # by the columns of strides.csv and of `both`; what is missing is not judged
@@ -88,17 +93,36 @@ KINDS: Mapping[str, QuantityKind] = {  # by the columns of strides.csv and of `b
         else QuantityKind.ANKLE_SHAPE
         for excursion in EXCURSIONS
     },
+    "knee_terminal_extension_deg": QuantityKind.KNEE_HEIGHT,
+    "knee_extended_before_contact_percent": QuantityKind.KNEE_TIMING,
+    "foot_flat_percent": QuantityKind.FOOT_FLAT,
+    "foot_pitch_at_contact_deg": QuantityKind.FOOT_PITCH,
+    "foot_heel_rise_deg": QuantityKind.FOOT_PITCH,
+    **dict.fromkeys(
+        ("shank_heel_rocker_deg", "shank_over_flat_foot_deg", "shank_forefoot_rocker_deg"), QuantityKind.SEGMENT_SHAPE
+    ),
+    **{
+        f"{segment}_at_{instant}_deg": QuantityKind.SEGMENT_HEIGHT
+        for segment in ("shank", "thigh")
+        for instant in ("initial_contact", "mid_stance", "toe_off")
+    },
 }
 
 
 # What a quantity changes by with walking speed, per m/s: peak knee flexion in swing and stance of 42 adults from slow
-# to fast (Fukuchi, Fukuchi & Duarte 2018, doi 10.7717/peerj.4640); the ankle's is the knee's, for want of one.
+# to fast (Fukuchi, Fukuchi & Duarte 2018, doi 10.7717/peerj.4640); those of ankle, segments and foot are the knee's,
+# and those of foot flat and of the knee's timing are stance's, for want of any.
 PER_SPEED: Mapping[QuantityKind, float] = {
     QuantityKind.KNEE_SHAPE: 11.0,
     QuantityKind.KNEE_HEIGHT: 11.0,
     QuantityKind.ANKLE_SHAPE: 11.0,
     QuantityKind.ANKLE_HEIGHT: 11.0,
     QuantityKind.STANCE: 4.8,
+    QuantityKind.SEGMENT_SHAPE: 11.0,
+    QuantityKind.SEGMENT_HEIGHT: 11.0,
+    QuantityKind.FOOT_PITCH: 11.0,
+    QuantityKind.FOOT_FLAT: 4.8,
+    QuantityKind.KNEE_TIMING: 4.8,
 }
 
 
@@ -131,6 +155,9 @@ _VOLUNTEERS = (
     "motion-sensor knees, two visits, three testers, 15 volunteers: minimal detectable change 3.37 to 9.21 deg"
 )
 _BORROWED = f"the knee's figure, for want of one of the ankle ({_VOLUNTEERS})"
+_OF_KNEE = f"the knee's figure, for want of one of segments and feet ({_VOLUNTEERS})"
+_OF_FOOT = "1 deg as of the ankle, and 0.8 deg that 2.5 % of stride length make of a foot at toe-off: an estimate"
+_OF_STANCE = "that of stance, for want of one"
 _POSTURE = "with 3 deg of posture in each zero"
 _BIAS = "events 10 ms early or late, alike in every stride of one leg"
 _GUESS = "an estimate"
@@ -140,6 +167,9 @@ _STRAPS: Mapping[QuantityKind, Sigma] = {  # where each mean has a strapping of 
     QuantityKind.ANKLE_SHAPE: _of_error(9.2, _BORROWED, is_borrowed=True),
     QuantityKind.KNEE_HEIGHT: _of_error(12.4, f"{_VOLUNTEERS}, {_POSTURE}"),
     QuantityKind.ANKLE_HEIGHT: _of_error(12.4, f"{_BORROWED}, {_POSTURE}", is_borrowed=True),
+    QuantityKind.SEGMENT_SHAPE: _of_error(9.2, _OF_KNEE, is_borrowed=True),
+    QuantityKind.SEGMENT_HEIGHT: _of_error(12.4, f"{_OF_KNEE}, {_POSTURE}", is_borrowed=True),
+    QuantityKind.FOOT_PITCH: _of_error(9.2, _OF_KNEE, is_borrowed=True),
 }
 _STRAPPED_ANEW: Mapping[QuantityKind, Sigma] = {
     **_STRAPS,
@@ -147,6 +177,8 @@ _STRAPPED_ANEW: Mapping[QuantityKind, Sigma] = {
     QuantityKind.TIME: Sigma(4.0, _GUESS, is_relative=True),
     QuantityKind.SPEED: Sigma(4.0, _GUESS, is_relative=True),
     QuantityKind.LENGTH: Sigma(5.0, _GUESS, is_relative=True),
+    QuantityKind.FOOT_FLAT: Sigma(3.0, _OF_STANCE, is_borrowed=True),
+    QuantityKind.KNEE_TIMING: Sigma(3.0, _OF_STANCE, is_borrowed=True),
 }
 
 SIGMAS: Mapping[ComparisonKind, Mapping[QuantityKind, Sigma]] = {
@@ -160,6 +192,11 @@ SIGMAS: Mapping[ComparisonKind, Mapping[QuantityKind, Sigma]] = {
         QuantityKind.TIME: Sigma(2.0, _WALKS, is_relative=True, is_verified=True),
         QuantityKind.SPEED: Sigma(3.0, _WALKS, is_relative=True),
         QuantityKind.LENGTH: Sigma(2.5, _WALKS, is_relative=True, is_verified=True),
+        QuantityKind.SEGMENT_SHAPE: Sigma(1.0, _OF_KNEE, is_borrowed=True),
+        QuantityKind.SEGMENT_HEIGHT: Sigma(1.2, _OF_KNEE, is_borrowed=True),
+        QuantityKind.FOOT_PITCH: Sigma(1.3, _OF_FOOT, is_borrowed=True),  # hypot of both
+        QuantityKind.FOOT_FLAT: Sigma(1.0, _GUESS, is_borrowed=True),  # two events of two kinds, each less sure
+        QuantityKind.KNEE_TIMING: Sigma(0.5, _OF_STANCE, is_borrowed=True),
     },
     ComparisonKind.LEGS: {
         **_STRAPS,
@@ -178,7 +215,7 @@ _BETWEEN: Mapping[ComparisonKind, tuple[ErrorSource, ...]] = {
     ComparisonKind.STRAPPINGS: (ErrorSource.WALKS, ErrorSource.STRAPS),
     ComparisonKind.VISITS: (ErrorSource.WALKS, ErrorSource.STRAPS, ErrorSource.DAYS),
 }
-_HEIGHTS = (QuantityKind.KNEE_HEIGHT, QuantityKind.ANKLE_HEIGHT)
+_HEIGHTS = (QuantityKind.KNEE_HEIGHT, QuantityKind.ANKLE_HEIGHT, QuantityKind.SEGMENT_HEIGHT)
 _OWN_LEG = (QuantityKind.STANCE, QuantityKind.TIME, QuantityKind.LENGTH)  # between legs the events' bias counts
 
 

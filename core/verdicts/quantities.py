@@ -55,6 +55,23 @@ QUANTITIES: Mapping[str, QuantityClass] = {
     **dict.fromkeys(EXCURSIONS_BY_COLUMN, QuantityClass.EXCURSION),
 }
 PARAMETERS = tuple(_OF_STRIDES)
+FITTING: Mapping[str, QuantityClass] = {  # the columns of fitting.csv; what they mean: core.verdicts.fitting
+    "knee_terminal_extension_deg": QuantityClass.HEIGHT,
+    "knee_extended_before_contact_percent": QuantityClass.PEAK_TIME,
+    "foot_flat_percent": QuantityClass.TIMING,
+    "foot_pitch_at_contact_deg": QuantityClass.DISTANCE,  # told by the same motion of the foot as its length is
+    "foot_heel_rise_deg": QuantityClass.DISTANCE,
+    "shank_heel_rocker_deg": QuantityClass.EXCURSION,
+    "shank_over_flat_foot_deg": QuantityClass.EXCURSION,
+    "shank_forefoot_rocker_deg": QuantityClass.EXCURSION,
+    **{
+        f"{segment}_at_{instant}_deg": QuantityClass.HEIGHT
+        for segment in ("shank", "thigh")
+        for instant in ("initial_contact", "mid_stance", "toe_off")
+    },
+}
+CLASSES: Mapping[str, QuantityClass] = {**QUANTITIES, **FITTING}
+SEGMENTS = ("shank", "thigh")
 OF_BOTH = ("cadence_steps_min", "double_support_percent", "speed_m_s")
 WINDOWS = {f"{window.name}_deg": window for window in (*KNEE_WINDOWS, *ANKLE_WINDOWS)}
 
@@ -68,16 +85,22 @@ class SideMean:
 
 
 def joint_of(name: str, side: Side) -> Joint | None:
-    """Whose angle a column of strides.csv tells; None for time and distance."""
-    kind = name.split("_")[0]
-    return {"knee": knee_of, "ankle": ankle_of}[kind](side) if kind in ("knee", "ankle") else None
+    """Whose angle a column of strides.csv or fitting.csv tells; None for time, distance and the foot alone.
+
+    Thigh and shank lean about the knee's axis, so what holds of the knee holds of them.
+    """
+    found = {"knee": knee_of, "ankle": ankle_of, "shank": knee_of, "thigh": knee_of}.get(name.split("_")[0])
+    return found(side) if found is not None else None
 
 
 def assessment_of(verdicts: Verdicts, side: Side, name: str) -> Assessment:
-    """What may be said of one column of strides.csv."""
-    joint, wanted = joint_of(name, side), QUANTITIES[name]
+    """What may be said of one column of strides.csv, peaks.csv or fitting.csv."""
+    joint, wanted = joint_of(name, side), CLASSES[name]
     if joint is not None:
         found = verdicts.joint(joint)
+        if name.startswith(SEGMENTS):  # read at events of the foot
+            parts = (found.height if wanted is QuantityClass.HEIGHT else found.shape, found.sign)
+            return together((*parts, verdicts.leg(side).timing))
         if wanted is QuantityClass.SHAPE:
             return found.shape
         return together((found.height if wanted is QuantityClass.HEIGHT else found.shape, found.sign))

@@ -28,7 +28,7 @@ from devices.files.session_folder import write_session
 
 ROOT = Path(__file__).parents[2]
 
-TABLES = ("angles.csv", "cycles.csv", "events.csv", "strides.csv")
+TABLES = ("angles.csv", "cycles.csv", "events.csv", "fitting.csv", "strides.csv")
 
 
 def swinging(seconds: float, seed: int) -> dict[Site, ImuBlock]:
@@ -84,6 +84,7 @@ def test_a_session_becomes_results_in_the_folders_of_its_recordings(session: Pat
     assert list(files_in(tmp_path / "out")) == [
         "columns.csv",
         "csv-metadata.json",
+        "fitting_means.csv",
         *(f"free_motion/{table}" for table in TABLES),
         "peaks.csv",
         "report.pdf",
@@ -287,6 +288,7 @@ def test_an_analysis_is_replaced_and_nothing_of_it_stays(session: Path, tmp_path
     assert list(files_in(tmp_path / "out")) == [
         "columns.csv",
         "csv-metadata.json",
+        "fitting_means.csv",
         *(f"free_motion/{table}" for table in TABLES),
         "peaks.csv",
         "summary.json",

@@ -134,7 +134,8 @@ def stand_ins(count: int, every_s: float, rounds: int, wanted: str, found: Batch
             found.faults.append(f"{name}: so many numbers came so often: {dict(times)}")
         failed = [number for number, result in results if isinstance(result, Exception)]
         if failed:
-            found.faults.append(f"{name}: {len(failed)} numbers failed")
+            why = {repr(result) for _, result in results if isinstance(result, Exception)}
+            found.faults.append(f"{name}: {len(failed)} numbers failed: {sorted(why)[:3]}")
         found.hashes[f"{count} stand-ins, {name}"] = hashlib.sha256(repr(sorted(results)).encode()).hexdigest()
     compare(found)
 

@@ -56,6 +56,7 @@ def test_every_column_of_every_table_is_told_of_and_no_other(out: Path) -> None:
     assert files == {
         *("angles.csv", "events.csv", "strides.csv", "cycles.csv"),
         *("peaks.csv", "differences.csv", "compared_cycles.csv", "sides.csv"),
+        *("fitting.csv", "fitting_means.csv"),
     }
     assert (COLUMNS,) in TAKEN
 

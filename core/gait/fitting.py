@@ -1,0 +1,113 @@
+"""What a prosthetist reads of each stride beside peaks and ranges: knee in late swing, foot, and how the segments lean.
+
+Values per stride, whatever may be said of them; which verdict each rests on, and what it cannot say, is told in
+`core.verdicts.fitting`.
+"""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from core.body import Segment
+from core.gait.cycles import KNEE_WINDOWS, POINTS, cycles_of, find_peak
+from core.gait.strides import Strides
+from core.samples import FloatArray
+
+EXTENDED_RAD = np.deg2rad(3.0)  # a knee that has come so near to its straightest has arrived; its last degrees are slow
+SWING_PEAK = KNEE_WINDOWS[-1]
+
+
+def late_swing_of_knee(cycles: FloatArray) -> dict[str, FloatArray]:
+    """How straight the knee becomes before it bears weight, and how early it is there, of each stride (k, 101).
+
+    Parameters
+    ----------
+    cycles : (k, 101)
+        Knee flexion, rad; NaN throughout where it is not known.
+
+    Returns
+    -------
+    dict
+        Name to (k,), rad or percent of the stride; NaN where the knee has no peak in swing.
+    """
+    peak = find_peak(cycles, SWING_PEAK).percent
+    extension, early = np.full(len(cycles), np.nan), np.full(len(cycles), np.nan)
+    known = np.flatnonzero(np.isfinite(peak))
+    after = np.where(np.arange(POINTS) >= peak[known, None], cycles[known], np.inf)
+    extension[known] = least = after.min(axis=1, initial=np.inf)
+    near = least + EXTENDED_RAD
+    first = (after <= near[:, None]).argmax(axis=1)
+    # between the sample before and this one the knee came so near; from a low peak on it always was
+    before, at = cycles[known, np.maximum(first - 1, 0)], cycles[known, first]
+    is_falling = before > near
+    share = np.divide(near - at, before - at, out=np.zeros(len(known)), where=is_falling)
+    early[known] = POINTS - 1 - (first - share)
+    return {"knee_terminal_extension_rad": extension, "knee_extended_before_contact_percent": early}
+
+
+def foot_measures(strides: Strides, time_s: FloatArray, pitch_rad: FloatArray) -> dict[str, FloatArray]:
+    """How long a foot stands flat, how it lands and how far its heel comes up, of each stride.
+
+    Parameters
+    ----------
+    time_s, pitch_rad : (n,)
+        Pitch of the foot, toes up, zero where it stands; NaN where not known.
+
+    Returns
+    -------
+    dict
+        Name to (k,), percent or rad.
+    """
+    flat = np.maximum(strides.heel_rise_s - strides.full_contact_s, 0.0)
+    cycles = cycles_of(time_s, pitch_rad, strides.start_s, strides.end_s)
+    middle = 0.5 * (strides.toe_off_s + strides.end_s)
+    at_s = strides.start_s[:, None] + strides.time_s[:, None] * np.linspace(0.0, 1.0, POINTS)
+    is_rising = (at_s >= strides.heel_rise_s[:, None]) & (at_s <= middle[:, None]) & np.isfinite(cycles)
+    lowest = np.where(is_rising, cycles, np.inf).min(axis=1, initial=np.inf)
+    return {
+        "foot_flat_percent": 100.0 * flat / strides.time_s,
+        "foot_pitch_at_contact_rad": cycles[:, 0] if len(cycles) else np.empty(0),
+        "foot_heel_rise_rad": np.where(np.isfinite(lowest), -lowest, np.nan),
+    }
+
+
+def inclination_measures(
+    strides: Strides, time_s: FloatArray, inclinations: Mapping[Segment, FloatArray]
+) -> dict[str, FloatArray]:
+    """How thigh and shank lean through stance, and how far the shank turns over each rocker.
+
+    Parameters
+    ----------
+    time_s : (n,)
+        Clock of strides and inclinations.
+    inclinations
+        Of thigh and shank (n,), rad, forward positive, NaN where not known.
+
+    Returns
+    -------
+    dict
+        Name to (k,), rad.
+    """
+    instants = {
+        "initial_contact": strides.start_s,
+        "full_contact": strides.full_contact_s,
+        "mid_stance": 0.5 * (strides.start_s + strides.toe_off_s),
+        "heel_rise": strides.heel_rise_s,
+        "toe_off": strides.toe_off_s,
+    }
+    measures: dict[str, FloatArray] = {}
+    for segment, leaning in inclinations.items():
+        is_known = np.isfinite(cycles_of(time_s, leaning, strides.start_s, strides.end_s)).all(axis=1)
+        at = {
+            name: np.where(is_known, np.interp(at_s, time_s, leaning), np.nan)
+            if len(time_s)
+            else np.full(len(strides), np.nan)
+            for name, at_s in instants.items()
+        }
+        for name in ("initial_contact", "mid_stance", "toe_off"):
+            measures[f"{segment}_at_{name}_rad"] = at[name]
+        if segment is Segment.SHANK:
+            measures["shank_heel_rocker_rad"] = at["full_contact"] - at["initial_contact"]
+            measures["shank_over_flat_foot_rad"] = at["heel_rise"] - at["full_contact"]
+            measures["shank_forefoot_rocker_rad"] = at["toe_off"] - at["heel_rise"]
+    return measures

@@ -1,0 +1,68 @@
+"""Does every measure for fitting rest on the right verdict, and is each told of in the one table?"""
+
+import pytest
+
+from core.body import Joint, Side
+from core.verdicts.fitting import BY_COLUMN, MEASURES
+from core.verdicts.measurement_error import KINDS, ComparisonKind, sigma_of
+from core.verdicts.model import READ, Assessment, JointVerdicts, LegVerdicts, Verdict, Verdicts
+from core.verdicts.quantities import FITTING, QUANTITIES, assessment_of
+
+BAD = Assessment(Verdict.WITHHELD)
+INSTANTS = ("initial_contact", "mid_stance", "toe_off")
+# what each measure needs, written out
+LEANING = {f"{segment}_at_{instant}_deg" for segment in ("shank", "thigh") for instant in INSTANTS}
+TURNING = {f"shank_{name}_deg" for name in ("heel_rocker", "over_flat_foot", "forefoot_rocker")}
+FOOT = {"foot_pitch_at_contact_deg", "foot_heel_rise_deg"}
+KNEE_SIGNED = {"knee_terminal_extension_deg", "knee_extended_before_contact_percent"}
+
+
+def verdicts(
+    joint: Joint | None = None, part: str = "", timing: Assessment = READ, distance: Assessment = READ
+) -> Verdicts:
+    """All of the left leg can be read but what is named."""
+    found = {
+        one: JointVerdicts(
+            **{name: BAD if (one, name) == (joint, part) else READ for name in ("shape", "height", "sign")}
+        )
+        for one in Joint
+    }
+    return Verdicts(found, {Side.LEFT: LegVerdicts(timing, distance), Side.RIGHT: LegVerdicts(READ, READ)}, READ)
+
+
+@pytest.mark.parametrize(
+    ("found", "expected"),
+    [
+        (verdicts(), set()),
+        (verdicts(Joint.LEFT_KNEE, "height"), {*LEANING, "knee_terminal_extension_deg"}),
+        (verdicts(Joint.LEFT_KNEE, "shape"), {*TURNING, "knee_extended_before_contact_percent"}),
+        (verdicts(Joint.LEFT_KNEE, "sign"), {*LEANING, *TURNING, *KNEE_SIGNED}),
+        (verdicts(Joint.LEFT_ANKLE, "shape"), set()),
+        (verdicts(Joint.RIGHT_KNEE, "sign"), set()),
+        (verdicts(timing=BAD), {*LEANING, *TURNING, "foot_flat_percent"}),
+        (verdicts(distance=BAD), FOOT),
+    ],
+)
+def test_a_measure_is_withheld_where_what_it_rests_on_is(found: Verdicts, expected: set[str]) -> None:
+    assert {name for name in FITTING if not assessment_of(found, Side.LEFT, name).is_told} == expected
+
+
+def test_every_measure_is_defined_once_and_says_what_it_cannot() -> None:
+    assert {*LEANING, *TURNING, *FOOT, *KNEE_SIGNED, "foot_flat_percent"} == set(FITTING)
+    assert set(FITTING) <= set(BY_COLUMN) <= {*FITTING, *QUANTITIES}
+    assert len(BY_COLUMN) == len(MEASURES)
+    assert all(measure.definition and measure.cannot_say and measure.source for measure in MEASURES)
+    assert not set(FITTING) & set(QUANTITIES)  # the older tables keep their rows
+    assert not any("step_length" in column for column in BY_COLUMN)  # the feet's distance is unknown
+
+
+def test_every_measure_of_fitting_is_judged_between_walks_and_none_makes_a_sentence_of_a_borrowed_error() -> None:
+    assert set(FITTING) <= set(KINDS)
+    for name in FITTING:
+        for kind in ComparisonKind:
+            sigma = sigma_of(name, kind)
+            if kind is ComparisonKind.HALVES or sigma is None or name == "knee_terminal_extension_deg":
+                continue  # that one is a knee's angle and has the knee's own error
+            assert sigma.is_borrowed, (name, kind)
+            assert not sigma.is_verified, (name, kind)
+    assert sigma_of("foot_flat_percent", ComparisonKind.LEGS) is None
