@@ -17,9 +17,9 @@ class Measure(StrEnum):
     """What is aimed at, one value per stride; more is nearer to the target. The values are the words of targets.csv.
 
     KNEE_SWING_PEAK: largest knee flexion of the swing, deg; an angle from the zero of standing.
-    FOOT_STRIKE: pitch of the foot at initial contact, deg, toes up positive, zero where it lay flat in the stance before.
-    STANCE_RATIO: duration of a leg's stance in percent of that of the other leg's latest stance: the symmetry ratio of
-    Patterson et al. 2010 (Gait Posture 31:241, doi 10.1016/j.gaitpost.2009.10.014) of single stances.
+    FOOT_STRIKE: pitch of the foot at initial contact, deg, toes up positive, zero as it lay in the stance before.
+    STANCE_RATIO: duration of a leg's stance in percent of that of the other leg's latest stance: the symmetry ratio
+    (Patterson et al. 2010, Gait Posture 31:241; the source could not be read) of single stances.
     CADENCE: two steps over the duration of the stride that has just ended, steps/min, of either foot.
     """
 

@@ -133,7 +133,7 @@ class ControlsCard(Card):
 
     def _show(self) -> None:
         """Show the field of the chosen measure, and which sides it can be of."""
-        measure, side = self.choice
+        measure = self.choice[0]
         self.side.setVisible(measure.has_side)
         if measure.has_side:
             sides = {one: (measure, one) in self._reasons for one in Side}

@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from PySide6.QtCore import QPointF, QRectF, Qt
-from PySide6.QtGui import QBrush, QColor, QFont, QFontMetricsF, QPainter, QPainterPath, QPolygonF
+from PySide6.QtGui import QBrush, QColor, QFont, QFontMetricsF, QPainter, QPainterPath, QPen, QPolygonF
 
 from app.icons import Icon, paint_icon
 from app.patient_screen.patient_view import (
@@ -134,6 +134,7 @@ def _paint_bar(painter: QPainter, view: PatientView, target: Target, theme: Them
     if view.value is not None:
         painter.fillRect(QRectF(BAR.topLeft(), QPointF(_x(target, view.value), BAR.bottom())), inks.full)
     painter.restore()
+    painter.fillRect(QRectF(at - 6, BAR.top(), 12, BAR.height()), QColor(c.surface))  # parts the line from the fill
     painter.fillRect(QRectF(at - 3, 374, 6, 186), QColor(c.ink))
     painter.setPen(Qt.PenStyle.NoPen)
     painter.setBrush(QColor(c.ink))
@@ -149,17 +150,14 @@ def _paint_bar(painter: QPainter, view: PatientView, target: Target, theme: Them
 
 
 def _paint_hatch(painter: QPainter, box: QRectF, colour: QColor) -> None:
-    pen = painter.pen()
-    pen.setStyle(Qt.PenStyle.SolidLine)
-    pen.setColor(colour)
-    pen.setWidthF(2.5)
-    painter.setPen(pen)
+    painter.save()
     painter.setClipRect(box, Qt.ClipOperation.IntersectClip)
+    painter.setPen(QPen(colour, 2.5))
     x = box.left() - box.height()
     while x < box.right():
         painter.drawLine(QPointF(x, box.bottom()), QPointF(x + box.height(), box.top()))
         x += 20
-    painter.setClipRect(BAR, Qt.ClipOperation.NoClip)
+    painter.restore()
 
 
 def _paint_last(painter: QPainter, view: PatientView, target: Target, theme: Theme, inks: _Inks) -> None:

@@ -22,7 +22,7 @@ MAX_REST_RAD_S = 1.0  # a foot that never turns more slowly in a stance was not 
 
 @dataclass(frozen=True, slots=True)
 class FootStrike:
-    """`pitch_rad` at the initial contact at `time_s`, toes up positive; `told_s` is the sample that told the contact."""
+    """`pitch_rad` at the initial contact at `time_s`, toes up positive; `told_s`: the sample that told it."""
 
     time_s: float
     told_s: float

@@ -20,7 +20,7 @@ from core.samples import FloatArray
 from core.targets import Measure
 from core.tracks import MAX_REPORTED_GAP_S
 
-# A walking knee falls by as much within 0.04 s of its peak; noise and the steps of its filters stay below a tenth of it.
+# A walking knee falls by as much within 0.04 s of its peak; noise and its filters' steps stay below a tenth of it.
 PASSED_RAD = np.deg2rad(2.0)
 BEFORE_TOE_OFF_S = 0.08  # a stiff knee bends most just before the foot leaves; offline its peak is sought from 55 % on
 KEPT_S = 5.0  # of angles: longer than a swing with the delay of its events
@@ -30,8 +30,8 @@ KEPT_S = 5.0  # of angles: longer than a swing with the delay of its events
 class StrideValue:
     """`value` in the measure's unit, of the leg or foot of `side`.
 
-    `event_s` is the instant of what was measured, the peak or the foot's event, `told_s` the sample that told it, both on
-    the clock of the angles.
+    `event_s` is the instant of what was measured, the peak or the foot's event, `told_s` the sample that told it, both
+    on the clock of the angles.
     """
 
     measure: Measure

@@ -1,4 +1,4 @@
-"""Joins the patient's screen to a walk: values of the live estimator go to its bar and its tone as soon as they are told.
+"""Joins the patient's screen to a walk: values of the live estimator go to its bar and tone as soon as they are told.
 
 A value does not wait for the next of the thirty looks a second at the estimator: its thread says that there is one, and
 the screen's thread takes it. What was reached is counted while a walk is recorded, for each target that was set.
@@ -158,9 +158,7 @@ class PatientFeedback(QObject):
             sounds.play(Sound.REACHED)
         if self._counted is not None:
             so_far = self._counted.get(target, TargetTally(target, 0, 0))
-            self._counted[target] = replace(
-                so_far, reached=so_far.reached + is_reached, strides=so_far.strides + 1
-            )
+            self._counted[target] = replace(so_far, reached=so_far.reached + is_reached, strides=so_far.strides + 1)
 
     def _show(self) -> None:
         if self.window is not None:
