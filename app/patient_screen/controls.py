@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from PySide6.QtCore import Signal
+from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QBoxLayout, QSizePolicy, QWidget
 
@@ -18,8 +18,8 @@ from app.wording import tr
 from core.body import Side
 from core.targets import Measure, Target
 
-NARROW_BELOW = 980
-FIELD_WIDTH = 150
+NARROW_BELOW = 720
+FIELD_WIDTH = 170
 Choice = tuple[Measure, Side | None]
 ACROSS, DOWN = QBoxLayout.Direction.LeftToRight, QBoxLayout.Direction.TopToBottom
 
@@ -74,10 +74,9 @@ class ControlsCard(Card):
         self._choose.addWidget(self.side)
         for field in (self.target, self.rate):
             self._set.addWidget(field)
-        self._set.addWidget(self.tick)
-        self._set.addStretch(1)
-        self._set.addWidget(self.full)
-        self._set.addWidget(self.close_screen)
+        for button in (self.tick, self.full, self.close_screen):
+            self._set.addWidget(button, 0, Qt.AlignmentFlag.AlignBottom)
+        self._set.insertStretch(3, 1)
         for row in (self._choose, self._set):
             self.column.addLayout(row)
         self.column.addWidget(self._reason)
@@ -182,4 +181,4 @@ class ControlsCard(Card):
         for row in (self._choose, self._set):
             row.setSpacing(px(12))
         for field in (self.target, self.rate):
-            field.setMaximumWidth(px(FIELD_WIDTH))
+            field.setFixedWidth(px(FIELD_WIDTH))

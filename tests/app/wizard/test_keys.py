@@ -65,6 +65,8 @@ MEANINGS = [
     (Key.Key_7, Held.ControlModifier, Intent(KeyAction.STEP, 7)),
     (Key.Key_Left, Held.AltModifier, Intent(KeyAction.BACK)),
     (Key.Key_F1, Held.NoModifier, Intent(KeyAction.HELP)),
+    (Key.Key_F8, Held.NoModifier, Intent(KeyAction.PATIENT_SCREEN)),
+    (Key.Key_F11, Held.NoModifier, Intent(KeyAction.FULL_SCREEN)),
     (Key.Key_F6, Held.NoModifier, Intent(KeyAction.NEXT_REGION)),
     (Key.Key_F6, Held.ShiftModifier, Intent(KeyAction.PREVIOUS_REGION)),
     (Key.Key_Plus, Held.ControlModifier | Held.ShiftModifier, Intent(KeyAction.LARGER)),
