@@ -13,7 +13,7 @@ from enum import StrEnum
 from core.body import Side
 
 
-class Measure(StrEnum):
+class TargetMeasure(StrEnum):
     """What is aimed at, one value per stride; more is nearer to the target. The values are the words of targets.csv.
 
     KNEE_SWING_PEAK: largest knee flexion of the swing, deg; an angle from the zero of standing.
@@ -35,7 +35,7 @@ class Measure(StrEnum):
     @property
     def has_side(self) -> bool:
         """Whether it is of one leg; the cadence is of both."""
-        return self is not Measure.CADENCE
+        return self is not TargetMeasure.CADENCE
 
     @property
     def limits(self) -> tuple[int, int]:
@@ -44,16 +44,16 @@ class Measure(StrEnum):
 
 
 _UNITS = {
-    Measure.KNEE_SWING_PEAK: "deg",
-    Measure.FOOT_STRIKE: "deg",
-    Measure.STANCE_RATIO: "%",
-    Measure.CADENCE: "steps/min",
+    TargetMeasure.KNEE_SWING_PEAK: "deg",
+    TargetMeasure.FOOT_STRIKE: "deg",
+    TargetMeasure.STANCE_RATIO: "%",
+    TargetMeasure.CADENCE: "steps/min",
 }
 _LIMITS = {  # wider than any walk; they catch figures typed into the wrong field
-    Measure.KNEE_SWING_PEAK: (5, 100),
-    Measure.FOOT_STRIKE: (-20, 45),
-    Measure.STANCE_RATIO: (50, 150),
-    Measure.CADENCE: (20, 180),
+    TargetMeasure.KNEE_SWING_PEAK: (5, 100),
+    TargetMeasure.FOOT_STRIKE: (-20, 45),
+    TargetMeasure.STANCE_RATIO: (50, 150),
+    TargetMeasure.CADENCE: (20, 180),
 }
 
 
@@ -61,7 +61,7 @@ _LIMITS = {  # wider than any walk; they catch figures typed into the wrong fiel
 class Target:
     """`value` in the measure's unit; `side` is None where the measure is of both legs."""
 
-    measure: Measure
+    measure: TargetMeasure
     side: Side | None
     value: int
 
@@ -100,9 +100,9 @@ def tallies_of(note: str) -> tuple[TargetTally, ...]:
     found = []
     for line in note.splitlines():
         read = _LINE.fullmatch(line.strip())
-        if read is None or read["measure"] not in list(Measure):
+        if read is None or read["measure"] not in list(TargetMeasure):
             continue
-        measure = Measure(read["measure"])
+        measure = TargetMeasure(read["measure"])
         if measure.has_side is (read["side"] == _BOTH) or measure.unit != read["unit"]:
             continue
         side = Side(read["side"]) if measure.has_side else None

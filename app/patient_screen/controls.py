@@ -16,17 +16,19 @@ from app.widgets.notice import Notice
 from app.widgets.segmented import Segmented
 from app.wording import tr
 from core.body import Side
-from core.targets import Measure, Target
+from core.targets import Target, TargetMeasure
 
 NARROW_BELOW = 720
 FIELD_WIDTH = 170
-Choice = tuple[Measure, Side | None]
+Choice = tuple[TargetMeasure, Side | None]
 ACROSS, DOWN = QBoxLayout.Direction.LeftToRight, QBoxLayout.Direction.TopToBottom
 
 
 def choices() -> tuple[Choice, ...]:
     """Every measure of every leg that it can be of."""
-    return tuple((measure, side) for measure in Measure for side in (tuple(Side) if measure.has_side else (None,)))
+    return tuple(
+        (measure, side) for measure in TargetMeasure for side in (tuple(Side) if measure.has_side else (None,))
+    )
 
 
 class ControlsCard(Card):
@@ -52,14 +54,14 @@ class ControlsCard(Card):
         self._reasons: Mapping[Choice, str] = {}
         self._is_ticking = False
         words = {
-            Measure.KNEE_SWING_PEAK: tr("Knee in swing"),
-            Measure.FOOT_STRIKE: tr("Foot at contact"),
-            Measure.STANCE_RATIO: tr("Stance symmetry"),
-            Measure.CADENCE: tr("Cadence"),
+            TargetMeasure.KNEE_SWING_PEAK: tr("Knee in swing"),
+            TargetMeasure.FOOT_STRIKE: tr("Foot at contact"),
+            TargetMeasure.STANCE_RATIO: tr("Stance symmetry"),
+            TargetMeasure.CADENCE: tr("Cadence"),
         }
-        self.measure = Segmented(look, tr("Measure"), [(key, words[key], "") for key in Measure])
+        self.measure = Segmented(look, tr("Measure"), [(key, words[key], "") for key in TargetMeasure])
         self.side = Segmented(look, tr("Side"), [(Side.LEFT, tr("Left"), ""), (Side.RIGHT, tr("Right"), "")])
-        low, high = Measure.KNEE_SWING_PEAK.limits
+        low, high = TargetMeasure.KNEE_SWING_PEAK.limits
         self.target = NumberField(look, tr("Target"), low=low, high=high, unit="°")
         self.rate = NumberField(look, tr("Metronome"), low=LEAST, high=MOST, unit=tr("/min"))
         self.tick = Button(look, tr("Start metronome"), ButtonKind.SECONDARY, Icon.SOUND)
@@ -96,7 +98,7 @@ class ControlsCard(Card):
 
     @property
     def choice(self) -> Choice:
-        measure = Measure(self.measure.choice)
+        measure = TargetMeasure(self.measure.choice)
         return measure, Side(self.side.choice) if measure.has_side else None
 
     @property
@@ -113,9 +115,9 @@ class ControlsCard(Card):
         if reasons == self._reasons:
             return
         self._reasons = dict(reasons)
-        gated = {m for m in Measure if all(choice in reasons for choice in choices() if choice[0] is m)}
-        if gated != set(Measure):  # one has to be chosen, whatever it is worth
-            for measure in Measure:
+        gated = {m for m in TargetMeasure if all(choice in reasons for choice in choices() if choice[0] is m)}
+        if gated != set(TargetMeasure):  # one has to be chosen, whatever it is worth
+            for measure in TargetMeasure:
                 self.measure.set_reason(measure, tr("cannot be read") if measure in gated else "")
         self._show()
         self._tell()

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from app.wording import tr, tr_n
 from core.body import Side
-from core.targets import Measure, Target
+from core.targets import Target, TargetMeasure
 
 SHOWN_STRIDES = 10
 MINUS = "\N{MINUS SIGN}"
@@ -45,30 +45,30 @@ class PatientView:
 
 def title_of(target: Target) -> str:
     """What to do, in words for the patient."""
-    if target.measure is Measure.CADENCE:
+    if target.measure is TargetMeasure.CADENCE:
         return tr("Both legs: step more often")
     left, right = {
-        Measure.KNEE_SWING_PEAK: (tr("Left knee: bend it as you swing"), tr("Right knee: bend it as you swing")),
-        Measure.FOOT_STRIKE: (tr("Left foot: toes up as you land"), tr("Right foot: toes up as you land")),
-        Measure.STANCE_RATIO: (tr("Left leg: stand on it longer"), tr("Right leg: stand on it longer")),
+        TargetMeasure.KNEE_SWING_PEAK: (tr("Left knee: bend it as you swing"), tr("Right knee: bend it as you swing")),
+        TargetMeasure.FOOT_STRIKE: (tr("Left foot: toes up as you land"), tr("Right foot: toes up as you land")),
+        TargetMeasure.STANCE_RATIO: (tr("Left leg: stand on it longer"), tr("Right leg: stand on it longer")),
     }[target.measure]
     return left if target.side is Side.LEFT else right
 
 
-def unit_words(measure: Measure) -> str:
+def unit_words(measure: TargetMeasure) -> str:
     """What the bare figure of a measure is, where that is not said by its sign."""
     return {
-        Measure.STANCE_RATIO: tr("of the time on the other leg"),
-        Measure.CADENCE: tr("steps per minute"),
+        TargetMeasure.STANCE_RATIO: tr("of the time on the other leg"),
+        TargetMeasure.CADENCE: tr("steps per minute"),
     }.get(measure, "")
 
 
-def figure(value: int, measure: Measure) -> str:
+def figure(value: int, measure: TargetMeasure) -> str:
     """A value as it is shown large: "54°", "96 %", "110"."""
     number = str(value).replace("-", MINUS)
-    if measure in (Measure.KNEE_SWING_PEAK, Measure.FOOT_STRIKE):
+    if measure in (TargetMeasure.KNEE_SWING_PEAK, TargetMeasure.FOOT_STRIKE):
         return f"{number}°"
-    return f"{number}\N{NO-BREAK SPACE}%" if measure is Measure.STANCE_RATIO else number
+    return f"{number}\N{NO-BREAK SPACE}%" if measure is TargetMeasure.STANCE_RATIO else number
 
 
 def steps_words(count: int) -> str:

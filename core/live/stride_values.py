@@ -17,7 +17,7 @@ from core.gait.strides import MAX_STRIDE_S
 from core.live.angle import AngleSamples
 from core.live.walking import LiveFoot, WalkingState
 from core.samples import FloatArray
-from core.targets import Measure
+from core.targets import TargetMeasure
 from core.tracks import MAX_REPORTED_GAP_S
 
 # A walking knee falls by as much within 0.04 s of its peak; noise and its filters' steps stay below a tenth of it.
@@ -34,7 +34,7 @@ class StrideValue:
     on the clock of the angles.
     """
 
-    measure: Measure
+    measure: TargetMeasure
     side: Side
     value: float
     event_s: float
@@ -57,7 +57,7 @@ class StrideValues:
             if joint is not None:
                 told += self._knee_values(side, joint.samples, foot)
             told += (
-                StrideValue(Measure.FOOT_STRIKE, side, math.degrees(one.pitch_rad), one.time_s, one.told_s)
+                StrideValue(TargetMeasure.FOOT_STRIKE, side, math.degrees(one.pitch_rad), one.time_s, one.told_s)
                 for one in foot.strikes
             )
         told += self._event_values(state.feet)
@@ -65,7 +65,7 @@ class StrideValues:
 
     def _knee_values(self, side: Side, samples: AngleSamples, foot: LiveFoot) -> Iterator[StrideValue]:
         for peak_rad, at_s, told_s in self._knees[side].update(samples, foot.events):
-            yield StrideValue(Measure.KNEE_SWING_PEAK, side, math.degrees(peak_rad), at_s, told_s)
+            yield StrideValue(TargetMeasure.KNEE_SWING_PEAK, side, math.degrees(peak_rad), at_s, told_s)
 
     def _event_values(self, feet: Mapping[Side, LiveFoot]) -> Iterator[StrideValue]:
         every = [(event, side) for side, foot in feet.items() for event in foot.events]
@@ -74,11 +74,11 @@ class StrideValues:
                 stride_s = event.time_s - self._contacts_s[side]
                 self._contacts_s[side] = event.time_s
                 if 0.0 < stride_s <= MAX_STRIDE_S:
-                    yield StrideValue(Measure.CADENCE, side, 120.0 / stride_s, event.time_s, event.told_s)
+                    yield StrideValue(TargetMeasure.CADENCE, side, 120.0 / stride_s, event.time_s, event.told_s)
             elif event.event is FootEvent.TOE_OFF:
                 ratio = self._stance_ratio(side, event.time_s)
                 if ratio is not None:
-                    yield StrideValue(Measure.STANCE_RATIO, side, 100.0 * ratio, event.time_s, event.told_s)
+                    yield StrideValue(TargetMeasure.STANCE_RATIO, side, 100.0 * ratio, event.time_s, event.told_s)
 
     def _stance_ratio(self, side: Side, off_s: float) -> float | None:
         """This leg's stance that has just ended over the other's latest; None where one of them is not known."""

@@ -4,13 +4,13 @@ from collections.abc import Collection, Mapping
 
 from core.body import Joint, Segment, Side, Site, knee_of
 from core.results import JointCalibration
-from core.targets import Measure
+from core.targets import TargetMeasure
 from core.verdicts.gates import calibration_verdicts
 from core.verdicts.model import NOT_MEASURED, READ, TOE_OFF_GATE, Assessment, GateReason, Verdict, assess
 
 
 def assess_target(
-    measure: Measure,
+    measure: TargetMeasure,
     side: Side | None,
     worn: Collection[Site],
     calibration: Mapping[Joint, JointCalibration],
@@ -28,15 +28,15 @@ def assess_target(
         Whose foot rolls on where a heel would rise: its stance is compared with nothing.
     """
     feet = {one.side for one in worn if one.segment is Segment.FOOT}
-    if measure is Measure.CADENCE:
+    if measure is TargetMeasure.CADENCE:
         return READ if feet else NOT_MEASURED
     if side not in feet:
         return NOT_MEASURED
-    if measure is Measure.STANCE_RATIO:
+    if measure is TargetMeasure.STANCE_RATIO:
         if feet != set(Side):
             return NOT_MEASURED
         return assess([GateReason(TOE_OFF_GATE, Verdict.WITHHELD)]) if prosthetic_sides else READ
-    if measure is Measure.FOOT_STRIKE:
+    if measure is TargetMeasure.FOOT_STRIKE:
         return READ
     knee = knee_of(side)
     if knee not in calibration or not {knee.proximal, knee.distal} <= set(worn):

@@ -44,7 +44,7 @@ from core.analysis import analyse
 from core.body import Side, Site
 from core.live.stride_values import StrideValue
 from core.samples import RecordingKind
-from core.targets import Measure, Target
+from core.targets import Target, TargetMeasure
 from devices.replay import ReplaySource
 from devices.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
 from tests.benchmarks.live_road import stood
@@ -167,7 +167,7 @@ def run(seconds: float) -> None:
             acquisition.record(JournalWriter.create(Path(folder), uuid.uuid4(), KEY, room=NO_ROOM_ASKED))
             acquisition.set_estimator(estimator)
             every: tuple[list[Any], list[Any], list[Any]] = [], [], []
-            for measure in Measure:
+            for measure in TargetMeasure:
                 watch.target = Target(measure, Side.RIGHT if measure.has_side else None, ALWAYS_REACHED)
                 page.patient_controls.target_set.emit(watch.target)
                 acquisition.ask(RecordingKind.WALKING)

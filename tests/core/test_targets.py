@@ -3,11 +3,11 @@
 import pytest
 
 from core.body import Side
-from core.targets import Measure, Target, TargetTally, shown_value, tallies_of, with_tallies
+from core.targets import Target, TargetMeasure, TargetTally, shown_value, tallies_of, with_tallies
 
-KNEE = Target(Measure.KNEE_SWING_PEAK, Side.LEFT, 55)
-BEAT = Target(Measure.CADENCE, None, 110)
-TOES = Target(Measure.FOOT_STRIKE, Side.RIGHT, -5)
+KNEE = Target(TargetMeasure.KNEE_SWING_PEAK, Side.LEFT, 55)
+BEAT = Target(TargetMeasure.CADENCE, None, 110)
+TOES = Target(TargetMeasure.FOOT_STRIKE, Side.RIGHT, -5)
 
 
 @pytest.mark.parametrize(("value", "shown", "is_reached"), [(54.4, 54, False), (54.5, 55, True), (55.0, 55, True)])

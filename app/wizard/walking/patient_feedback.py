@@ -23,7 +23,7 @@ from app.theme import ThemeNotifier
 from app.wording import tr
 from core.body import Joint, Segment, Side, Site
 from core.results import JointCalibration
-from core.targets import Measure, Target, TargetTally, shown_value
+from core.targets import Target, TargetMeasure, TargetTally, shown_value
 from core.verdicts.live_targets import assess_target
 
 if TYPE_CHECKING:
@@ -186,7 +186,7 @@ class PatientFeedback(QObject):
 
 def reasons_against(
     worn: tuple[Site, ...], calibration: Mapping[Joint, JointCalibration], prosthetic_sides: frozenset[Side]
-) -> dict[tuple[Measure, Side | None], str]:
+) -> dict[tuple[TargetMeasure, Side | None], str]:
     """Why each measure that cannot be a target cannot, in sentences."""
     reasons = {}
     for measure, side in choices():
@@ -197,11 +197,11 @@ def reasons_against(
     return reasons
 
 
-def _not_measured(measure: Measure, side: Side | None, worn: tuple[Site, ...]) -> str:
+def _not_measured(measure: TargetMeasure, side: Side | None, worn: tuple[Site, ...]) -> str:
     feet = {site.side for site in worn if site.segment is Segment.FOOT}
-    if measure in (Measure.CADENCE, Measure.STANCE_RATIO) and not feet:
+    if measure in (TargetMeasure.CADENCE, TargetMeasure.STANCE_RATIO) and not feet:
         return tr("No foot sensor is worn.")
-    if measure is Measure.STANCE_RATIO:
+    if measure is TargetMeasure.STANCE_RATIO:
         return tr("Both feet need a sensor.")
     if side not in feet:
         return tr("This foot has no sensor.")
@@ -216,8 +216,8 @@ def _is_gated(target: Target, view: "WalkingReadout", worn: Collection[Site]) ->
     if target.side is None:
         heard = {site for site in feet if site in worn} - doubtful
         return not heard
-    if target.measure is Measure.KNEE_SWING_PEAK:
+    if target.measure is TargetMeasure.KNEE_SWING_PEAK:
         return bool(doubtful & {Site(f"{target.side}_{segment}") for segment in Segment})
-    if target.measure is Measure.FOOT_STRIKE:
+    if target.measure is TargetMeasure.FOOT_STRIKE:
         return Site(f"{target.side}_{Segment.FOOT}") in doubtful
     return bool(doubtful & feet)

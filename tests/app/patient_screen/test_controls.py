@@ -8,7 +8,7 @@ from pytestqt.qtbot import QtBot
 from app.patient_screen.controls import ControlsCard, choices
 from app.theme import ThemeNotifier
 from core.body import Side
-from core.targets import Measure, Target
+from core.targets import Target, TargetMeasure
 
 
 @pytest.fixture
@@ -30,20 +30,20 @@ def test_a_target_is_what_was_typed_for_a_measure_of_a_leg(qtbot: QtBot, card: C
     assert card.target.text == ""
     with qtbot.waitSignal(card.target_set) as told:
         typed(card, "55")
-    assert told.args == [Target(Measure.KNEE_SWING_PEAK, Side.LEFT, 55)]
+    assert told.args == [Target(TargetMeasure.KNEE_SWING_PEAK, Side.LEFT, 55)]
     with qtbot.waitSignal(card.target_set) as told:
         card.side.choose(Side.RIGHT)
     assert told.args == [None]  # of the other leg none was typed
     assert card.target.text == ""
-    card.measure.choose(Measure.CADENCE)
+    card.measure.choose(TargetMeasure.CADENCE)
     assert not card.side.isVisible()
     with qtbot.waitSignal(card.target_set) as told:
         typed(card, "110")
-    assert told.args == [Target(Measure.CADENCE, None, 110)]
-    card.measure.choose(Measure.KNEE_SWING_PEAK)
+    assert told.args == [Target(TargetMeasure.CADENCE, None, 110)]
+    card.measure.choose(TargetMeasure.KNEE_SWING_PEAK)
     with qtbot.waitSignal(card.target_set) as told:
         card.side.choose(Side.LEFT)
-    assert told.args == [Target(Measure.KNEE_SWING_PEAK, Side.LEFT, 55)]
+    assert told.args == [Target(TargetMeasure.KNEE_SWING_PEAK, Side.LEFT, 55)]
 
 
 def test_a_figure_that_makes_no_sense_sets_no_target(qtbot: QtBot, card: ControlsCard) -> None:
@@ -57,12 +57,12 @@ def test_what_is_gated_cannot_be_chosen_and_says_why(qtbot: QtBot, card: Control
     typed(card, "55")
     why = "No zero was set, so heights say nothing."
     with qtbot.waitSignal(card.target_set) as told:
-        card.show_reasons({(Measure.KNEE_SWING_PEAK, Side.LEFT): why})
+        card.show_reasons({(TargetMeasure.KNEE_SWING_PEAK, Side.LEFT): why})
     assert card.side.choice == Side.RIGHT  # which is not gated
     assert told.args == [None]
     left, _right = card.side.segments
     assert not left.isEnabled()
-    both = {(Measure.KNEE_SWING_PEAK, side): why for side in Side}
+    both = {(TargetMeasure.KNEE_SWING_PEAK, side): why for side in Side}
     card.show_reasons(both)
     knee, foot, *_ = card.measure.segments
     assert not knee.isEnabled()

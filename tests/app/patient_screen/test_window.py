@@ -10,9 +10,9 @@ from app.patient_screen.patient_view import PatientView, figure, title_of
 from app.patient_screen.window import PatientWindow
 from app.theme import ThemeNotifier
 from core.body import Side
-from core.targets import Measure, Target
+from core.targets import Target, TargetMeasure
 
-KNEE = Target(Measure.KNEE_SWING_PEAK, Side.LEFT, 55)
+KNEE = Target(TargetMeasure.KNEE_SWING_PEAK, Side.LEFT, 55)
 TEN = (51, 56, 53, 55, 57, 56, 58, 55, 56, 54)
 
 
@@ -72,16 +72,16 @@ def test_before_the_first_step_nothing_is_counted() -> None:
 
 
 @pytest.mark.parametrize("side", Side)
-@pytest.mark.parametrize("measure", [measure for measure in Measure if measure.has_side])
-def test_each_title_names_its_leg(measure: Measure, side: Side) -> None:
+@pytest.mark.parametrize("measure", [measure for measure in TargetMeasure if measure.has_side])
+def test_each_title_names_its_leg(measure: TargetMeasure, side: Side) -> None:
     said = title_of(Target(measure, side, 50))
     assert said.startswith("Left" if side is Side.LEFT else "Right")
 
 
 def test_figures_have_their_unit_and_a_true_minus() -> None:
-    assert figure(-3, Measure.FOOT_STRIKE) == "\N{MINUS SIGN}3°"
-    assert figure(96, Measure.STANCE_RATIO) == "96\N{NO-BREAK SPACE}%"
-    assert figure(110, Measure.CADENCE) == "110"
+    assert figure(-3, TargetMeasure.FOOT_STRIKE) == "\N{MINUS SIGN}3°"
+    assert figure(96, TargetMeasure.STANCE_RATIO) == "96\N{NO-BREAK SPACE}%"
+    assert figure(110, TargetMeasure.CADENCE) == "110"
 
 
 @pytest.mark.parametrize("key", [Qt.Key.Key_Escape, Qt.Key.Key_F8])

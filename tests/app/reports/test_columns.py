@@ -12,7 +12,7 @@ from app.reports.result_folder import TAKEN, VISITS, VISITS_CYCLES, describe_tab
 from core.analysis import analyse
 from core.results import Analysis
 from core.samples import Session
-from core.targets import Measure, Target, TargetTally, with_tallies
+from core.targets import Target, TargetMeasure, TargetTally, with_tallies
 from devices.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
 
 Row = dict[str, str]
@@ -23,7 +23,7 @@ def visit() -> tuple[Session, Analysis]:
     wanted = (Standing(), FreeMotion(), Walk(strides=5), Walk("walk 2", strides=5))
     session = simulate(WalkerSettings(seed=5, recordings=wanted)).session
     conditions = {"walk 1": "shoes", "walk 2": "barefoot"}
-    note = with_tallies("", [TargetTally(Target(Measure.CADENCE, None, 110), 2, 4)])
+    note = with_tallies("", [TargetTally(Target(TargetMeasure.CADENCE, None, 110), 2, 4)])
     recordings = tuple(replace(one, condition=conditions.get(one.name, ""), note=note) for one in session.recordings)
     session = replace(session, recordings=recordings)
     return session, analyse(session)

@@ -7,12 +7,12 @@ import pytest
 from app.reports.targets import HEADER, target_rows
 from core.body import Side
 from core.samples import Recording, RecordingKind
-from core.targets import Measure, Target, TargetTally, with_tallies
+from core.targets import Target, TargetMeasure, TargetTally, with_tallies
 
 WALK = Recording("walk 1", RecordingKind.WALKING, "walk_1", {}, condition="=Shoes")
 TALLIES = (
-    TargetTally(Target(Measure.KNEE_SWING_PEAK, Side.LEFT, 55), 2, 3),
-    TargetTally(Target(Measure.CADENCE, None, 110), 4, 4),
+    TargetTally(Target(TargetMeasure.KNEE_SWING_PEAK, Side.LEFT, 55), 2, 3),
+    TargetTally(Target(TargetMeasure.CADENCE, None, 110), 4, 4),
 )
 
 

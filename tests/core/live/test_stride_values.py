@@ -21,7 +21,7 @@ from core.live.sensors import LiveSensor
 from core.live.stride_values import StrideValue, StrideValues
 from core.live.walking import LiveFoot, LiveJoint, LiveWalk, WalkingState
 from core.samples import FloatArray
-from core.targets import Measure
+from core.targets import TargetMeasure
 from devices.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
 
 STEP_S = 0.01
@@ -56,7 +56,7 @@ def told_by_knee(angle_deg: FloatArray, time_s: FloatArray, block: int = 3) -> l
         due, events = [e for e in events if e.told_s <= until_s], [e for e in events if e.told_s > until_s]
         joint = LiveJoint(angles(time_s[part], angle_deg[part]), False)
         found += values.update(WalkingState({knee_of(Side.LEFT): joint}, {Side.LEFT: foot(*due)}))
-    return [one for one in found if one.measure is Measure.KNEE_SWING_PEAK]
+    return [one for one in found if one.measure is TargetMeasure.KNEE_SWING_PEAK]
 
 
 TIME_S = np.arange(0.0, 0.7, STEP_S)
@@ -88,7 +88,7 @@ def test_a_swing_whose_angle_is_not_known_throughout_has_no_value() -> None:
     assert len(told_by_knee(late, TIME_S)) == 1
 
 
-def values_of(events: Sequence[tuple[Side, LiveEvent]], measure: Measure) -> list[StrideValue]:
+def values_of(events: Sequence[tuple[Side, LiveEvent]], measure: TargetMeasure) -> list[StrideValue]:
     values, found = StrideValues(), list[StrideValue]()
     for side, one in events:
         feet = {each: foot(*((one,) if each is side else ())) for each in Side}
@@ -101,7 +101,7 @@ def test_stances_are_told_in_percent_of_the_other_legs_latest() -> None:
     walk = [(left, event(ON, 0.0)), (right, event(ON, 0.5)), (left, event(OFF, 0.6)), (right, event(OFF, 1.25))]
     walk += [(left, event(ON, 1.0)), (left, event(OFF, 1.66))]
     walk.sort(key=lambda one: one[1].told_s)
-    one, two = values_of(walk, Measure.STANCE_RATIO)
+    one, two = values_of(walk, TargetMeasure.STANCE_RATIO)
     assert (one.side, two.side) == (right, left)
     assert one.value == pytest.approx(100 * 0.75 / 0.6)
     assert two.value == pytest.approx(100 * 0.66 / 0.75)
@@ -110,12 +110,12 @@ def test_stances_are_told_in_percent_of_the_other_legs_latest() -> None:
 def test_a_stance_before_a_pause_is_compared_with_nothing() -> None:
     left, right = Side.LEFT, Side.RIGHT
     walk = [(right, event(ON, 0.0)), (right, event(OFF, 0.6)), (left, event(ON, 9.0)), (left, event(OFF, 9.6))]
-    assert values_of(walk, Measure.STANCE_RATIO) == []
+    assert values_of(walk, TargetMeasure.STANCE_RATIO) == []
 
 
 def test_cadence_is_two_steps_over_the_stride_that_has_ended_and_none_over_a_pause() -> None:
     contacts = [(Side.LEFT, event(ON, at_s)) for at_s in (0.0, 1.2, 2.2, 7.0, 8.0)]
-    assert [one.value for one in values_of(contacts, Measure.CADENCE)] == pytest.approx([100.0, 120.0, 120.0])
+    assert [one.value for one in values_of(contacts, TargetMeasure.CADENCE)] == pytest.approx([100.0, 120.0, 120.0])
 
 
 def oriented(pitch_rad: FloatArray, time_s: FloatArray, mounting: Rotation) -> tuple[OrientedSamples, FloatArray]:
@@ -181,8 +181,8 @@ def test_the_values_of_a_walk_are_those_of_the_bones(seed: int, tissue: Tissue, 
     for side in Side:
         knee, events = truth.joints[knee_of(side)], truth.feet[side].events
         standing_deg = math.degrees(knee.standing_rad)
-        peaks = [one for one in told if one.side is side and one.measure is Measure.KNEE_SWING_PEAK]
-        strikes = [one for one in told if one.side is side and one.measure is Measure.FOOT_STRIKE]
+        peaks = [one for one in told if one.side is side and one.measure is TargetMeasure.KNEE_SWING_PEAK]
+        strikes = [one for one in told if one.side is side and one.measure is TargetMeasure.FOOT_STRIKE]
         assert len(peaks) >= len(events.initial_contact_s) - 1
         for off_s, on_s in zip(events.toe_off_s[1:-1], events.initial_contact_s[1:-1], strict=True):
             in_swing = (knee.time_s > off_s) & (knee.time_s < on_s)
