@@ -198,7 +198,10 @@ def _visit(site_of: dict[str, Site], calibration: Any) -> Any:
     """What the screen asks of a visit."""
     sensors = SimpleNamespace(sensor_at={site: name for name, site in site_of.items()}, site_of=site_of)
     return SimpleNamespace(
-        sensors=sensors, evaluation=SimpleNamespace(calibration=calibration), prosthetic_sides=frozenset()
+        sensors=sensors,
+        evaluation=SimpleNamespace(calibration=calibration),
+        prosthetic_sides=frozenset(),
+        rests=site_of,
     )
 
 

@@ -21,7 +21,7 @@ from app.patient_screen.window import PatientWindow
 from app.sounds import Sound
 from app.theme import ThemeNotifier
 from app.wording import tr
-from core.body import Joint, Segment, Side, Site
+from core.body import Joint, Segment, Side, Site, knee_of
 from core.results import JointCalibration
 from core.targets import Target, TargetMeasure, TargetTally, shown_value
 from core.verdicts.live_targets import assess_target
@@ -118,8 +118,9 @@ class PatientFeedback(QObject):
     def show_reasons(self) -> None:
         """Judge anew what can be a target; what no longer can is none from here on."""
         sensors = self._visit.sensors
+        rested = {site for sensor, site in sensors.site_of.items() if sensor in self._visit.rests}
         reasons = reasons_against(
-            tuple(sensors.sensor_at), self._visit.evaluation.calibration, self._visit.prosthetic_sides
+            tuple(sensors.sensor_at), rested, self._visit.evaluation.calibration, self._visit.prosthetic_sides
         )
         self._controls.show_reasons(reasons)
 
@@ -185,15 +186,25 @@ class PatientFeedback(QObject):
 
 
 def reasons_against(
-    worn: tuple[Site, ...], calibration: Mapping[Joint, JointCalibration], prosthetic_sides: frozenset[Side]
+    worn: tuple[Site, ...],
+    rested: Collection[Site],
+    calibration: Mapping[Joint, JointCalibration],
+    prosthetic_sides: frozenset[Side],
 ) -> dict[tuple[TargetMeasure, Side | None], str]:
-    """Why each measure that cannot be a target cannot, in sentences."""
+    """Why each measure that cannot be a target cannot, in sentences.
+
+    `rested` are the sites whose sensors have lain still: the live angle of others drifts with their bias.
+    """
     reasons = {}
     for measure, side in choices():
         found = assess_target(measure, side, worn, calibration, prosthetic_sides)
         if not found.is_told:
             sentences = [gate_sentence(reason) for reason in found.reasons[:1]]
             reasons[measure, side] = sentences[0] if sentences else _not_measured(measure, side, worn)
+        elif measure is TargetMeasure.KNEE_SWING_PEAK and side is not None:
+            knee = knee_of(side)
+            if not {knee.proximal, knee.distal} <= set(rested):
+                reasons[measure, side] = tr("Its sensors have not rested. Let the patient stand still first.")
     return reasons
 
 

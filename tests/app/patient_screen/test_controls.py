@@ -5,7 +5,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
-from app.patient_screen.controls import ControlsCard, choices
+from app.patient_screen.controls import Choice, ControlsCard, choices
 from app.theme import ThemeNotifier
 from core.body import Side
 from core.targets import Target, TargetMeasure
@@ -62,7 +62,7 @@ def test_what_is_gated_cannot_be_chosen_and_says_why(qtbot: QtBot, card: Control
     assert told.args == [None]
     left, _right = card.side.segments
     assert not left.isEnabled()
-    both = {(TargetMeasure.KNEE_SWING_PEAK, side): why for side in Side}
+    both: dict[Choice, str] = {(TargetMeasure.KNEE_SWING_PEAK, side): why for side in Side}
     card.show_reasons(both)
     knee, foot, *_ = card.measure.segments
     assert not knee.isEnabled()

@@ -1,6 +1,7 @@
 """targets.csv: what the notes of walks say of their targets, and nothing else that somebody noted."""
 
 from dataclasses import replace
+from typing import Any
 
 import pytest
 
@@ -26,7 +27,7 @@ def test_each_target_of_a_walk_has_its_row() -> None:
 
 
 @pytest.mark.parametrize("changes", [{"note": "A stick was used."}, {"is_kept": False}])
-def test_a_walk_without_targets_or_that_does_not_count_has_none(changes: dict[str, object]) -> None:
+def test_a_walk_without_targets_or_that_does_not_count_has_none(changes: dict[str, Any]) -> None:
     noted = replace(WALK, note=with_tallies("", TALLIES))
     assert len([*target_rows([noted])]) == 2
     assert [*target_rows([replace(noted, **changes)])] == []

@@ -166,7 +166,8 @@ def test_the_values_of_a_walk_are_those_of_the_bones(seed: int, tissue: Tissue, 
         rest = rest_of(block)
         assert rest is not None
         sensors[site] = LiveSensor(rate_hz, rest.gyr_rad_s)
-    live, values, told = LiveWalk(sensors, analyse(made.session).calibrations[-1].joints), StrideValues(), []
+    live, values = LiveWalk(sensors, analyse(made.session).calibrations[-1].joints), StrideValues()
+    told: list[StrideValue] = []
     end_s = max(float(block.time_s[-1]) for block in walk.imu.values())
     for a, b in pairwise(np.arange(0.0, end_s + 0.06, 0.03)):
         blocks = {}

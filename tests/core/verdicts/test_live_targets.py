@@ -1,6 +1,7 @@
 """Which measures may be a target, by the calibration alone: one test for what closes each, one where nothing does."""
 
 from dataclasses import replace
+from typing import Any
 
 import pytest
 
@@ -31,7 +32,7 @@ def test_with_six_sensors_and_a_sure_calibration_every_measure_may_be_a_target(m
         ({"lag_sd_s": 0.02}, "lag"),
     ],
 )
-def test_a_gated_knee_is_no_target_and_the_other_knee_is(changes: dict[str, object], gate: str) -> None:
+def test_a_gated_knee_is_no_target_and_the_other_knee_is(changes: dict[str, Any], gate: str) -> None:
     told = {**SURE, Joint.LEFT_KNEE: replace(SURE[Joint.LEFT_KNEE], **changes)}
     found = assess_target(TargetMeasure.KNEE_SWING_PEAK, Side.LEFT, ALL, told, ())
     assert not found.is_told

@@ -26,6 +26,7 @@ from tests.core.verdicts.built_walk import calibration
 KNEE = Target(TargetMeasure.KNEE_SWING_PEAK, Side.LEFT, 55)
 BEAT = Target(TargetMeasure.CADENCE, None, 110)
 SURE = {joint: calibration(joint) for joint in Joint}
+ALL = tuple(Site)
 WORN = {f"DEMO-{site}": site for site in Site}
 
 
@@ -68,7 +69,7 @@ def feedback(qtbot: QtBot, look: ThemeNotifier, estimator: Told, heard: list[Sou
     page.show()
     sensors = SimpleNamespace(sensor_at={site: name for name, site in WORN.items()}, site_of=WORN)
     evaluation = SimpleNamespace(calibration=SURE)
-    visit: Any = SimpleNamespace(sensors=sensors, evaluation=evaluation, prosthetic_sides=frozenset())
+    visit: Any = SimpleNamespace(sensors=sensors, evaluation=evaluation, prosthetic_sides=frozenset(), rests=WORN)
     feedback = PatientFeedback(look, visit, card, page)
     feedback.toggle()
     told: Any = estimator
@@ -77,6 +78,13 @@ def feedback(qtbot: QtBot, look: ThemeNotifier, estimator: Told, heard: list[Sou
     yield feedback
     feedback.watch(None)
     feedback.close()
+
+
+def card_of(feedback: PatientFeedback) -> ControlsCard:
+    page = feedback.parent()
+    card = page.findChild(ControlsCard) if page is not None else None
+    assert isinstance(card, ControlsCard)
+    return card
 
 
 def knee(*values: float, side: Side = Side.LEFT) -> list[tuple[TargetMeasure, Side, float]]:
@@ -101,7 +109,7 @@ def test_the_last_ten_are_kept_and_strides_of_either_foot_count_for_the_cadence(
 ) -> None:
     estimator.tell(*knee(*range(40, 52)))
     qtbot.waitUntil(lambda: feedback.view.last == tuple(range(42, 52)))
-    feedback.parent().findChild(ControlsCard).target_set.emit(BEAT)
+    card_of(feedback).target_set.emit(BEAT)
     assert feedback.view.last == ()
     estimator.tell((TargetMeasure.CADENCE, Side.LEFT, 109.0), (TargetMeasure.CADENCE, Side.RIGHT, 111.0))
     qtbot.waitUntil(lambda: feedback.view.last == (109, 111))
@@ -136,7 +144,7 @@ def test_what_befalls_the_other_leg_does_not_matter(feedback: PatientFeedback, e
 
 
 def test_cadence_waits_only_where_no_foot_is_heard(feedback: PatientFeedback, estimator: Told) -> None:
-    feedback.parent().findChild(ControlsCard).target_set.emit(BEAT)
+    card_of(feedback).target_set.emit(BEAT)
     estimator.tell(missing=(Site.RIGHT_FOOT,))
     feedback.judge(estimator.state)
     assert not feedback.view.is_waiting
@@ -154,7 +162,7 @@ def test_a_walk_counts_its_own_strides_for_each_target(
     assert feedback.view.last == ()
     estimator.tell(*knee(54.0, 55.0, 56.0))
     qtbot.waitUntil(lambda: len(feedback.view.last) == 3)
-    feedback.parent().findChild(ControlsCard).target_set.emit(BEAT)
+    card_of(feedback).target_set.emit(BEAT)
     estimator.tell((TargetMeasure.CADENCE, Side.LEFT, 100.0))
     qtbot.waitUntil(lambda: feedback.view.last == (100,))
     assert feedback.end_walk() == (TargetTally(KNEE, 2, 3), TargetTally(BEAT, 0, 1))
@@ -167,14 +175,15 @@ def test_closed_it_neither_sounds_nor_counts(
     feedback.begin_walk()
     window = feedback.window
     assert window is not None
-    window.close()
-    assert not feedback.is_open
+    with qtbot.waitSignal(window.closed):
+        window.close()
+    assert not window.isVisible()
     estimator.tell(*knee(60.0))
     qtbot.wait(20)
     assert heard == []
     assert feedback.end_walk() == ()
     feedback.toggle()
-    assert feedback.is_open
+    assert feedback.window is not window
     assert feedback.target == KNEE  # what was typed stays
 
 
@@ -184,18 +193,22 @@ def test_the_patient_is_not_named_on_it(feedback: PatientFeedback) -> None:
 
 
 def test_reasons_are_said_in_words_of_what_is_gated_only() -> None:
-    assert reasons_against(tuple(Site), SURE, frozenset()) == {}
+    assert reasons_against(tuple(Site), ALL, SURE, frozenset()) == {}
     told = {**SURE, Joint.LEFT_KNEE: replace(SURE[Joint.LEFT_KNEE], zero=ZeroKind.NONE)}
-    reasons = reasons_against(tuple(Site), told, frozenset({Side.RIGHT}))
+    reasons = reasons_against(tuple(Site), ALL, told, frozenset({Side.RIGHT}))
     assert reasons[TargetMeasure.KNEE_SWING_PEAK, Side.LEFT].startswith("No zero was set")
     assert (TargetMeasure.KNEE_SWING_PEAK, Side.RIGHT) not in reasons
     assert "prosthetic foot rolls on" in reasons[TargetMeasure.STANCE_RATIO, Side.LEFT]
-    assert reasons_against((), {}, frozenset())[TargetMeasure.CADENCE, None] == "No foot sensor is worn."
+    assert reasons_against((), (), {}, frozenset())[TargetMeasure.CADENCE, None] == "No foot sensor is worn."
     one_leg = tuple(site for site in Site if site.side is Side.LEFT)
-    reasons = reasons_against(one_leg, SURE, frozenset())
+    reasons = reasons_against(one_leg, ALL, SURE, frozenset())
     assert reasons[TargetMeasure.STANCE_RATIO, Side.LEFT] == "Both feet need a sensor."
     assert reasons[TargetMeasure.FOOT_STRIKE, Side.RIGHT] == "This foot has no sensor."
     assert (TargetMeasure.FOOT_STRIKE, Side.LEFT) not in reasons
-    assert reasons_against(tuple(Site), {}, frozenset())[TargetMeasure.KNEE_SWING_PEAK, Side.LEFT].startswith(
+    without = tuple(site for site in Site if site is not Site.RIGHT_THIGH)
+    reasons = reasons_against(tuple(Site), without, SURE, frozenset())
+    assert [*reasons.values()] == ["Its sensors have not rested. Let the patient stand still first."]
+    assert (TargetMeasure.KNEE_SWING_PEAK, Side.RIGHT) in reasons
+    assert reasons_against(tuple(Site), ALL, {}, frozenset())[TargetMeasure.KNEE_SWING_PEAK, Side.LEFT].startswith(
         "The knee's"
     )

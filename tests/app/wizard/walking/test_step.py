@@ -12,6 +12,7 @@ from app.patient_screen.window import PatientWindow
 from app.theme import ThemeNotifier
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.results.step import ResultsStep
+from app.wizard.resuming import rests_of
 from app.wizard.visit import Visit
 from app.wizard.walking.readout import WalkingReadout
 from app.wizard.walking.step import WalkingStep
@@ -116,12 +117,20 @@ def test_what_the_patient_reached_is_shown_and_kept_with_the_walk(
     assert step.on_intent(Intent(KeyAction.PATIENT_SCREEN))
     controls = step.page.patient_controls
     assert controls.isVisible()
-    assert controls.reason == ""
+    knee, *_ = controls.measure.segments
+    assert not knee.isEnabled()  # nobody has seen its sensors rest, so its angle drifts
+    assert step.on_intent(Intent(KeyAction.PATIENT_SCREEN))
+    assert not controls.isVisible()
+    step.leave()
+    visit.rests = rests_of(visit.recordings.every)
+    step.enter()
+    assert step.on_intent(Intent(KeyAction.PATIENT_SCREEN))
+    assert knee.isEnabled()
     (window,) = [one for one in QApplication.topLevelWidgets() if isinstance(one, PatientWindow) and one.isVisible()]
     controls.target_set.emit(Target(TargetMeasure.KNEE_SWING_PEAK, Side.RIGHT, 30))
     walk(qtbot, step, visit, 12.0)
     assert len(window.view.last) >= 5
-    assert all(40 < value < 80 for value in window.view.last), window.view.last
+    assert all(40 < value < 80 for value in window.view.last)
     qtbot.waitUntil(lambda: visit.recordings.walks[0].details.note != "", timeout=10_000)
     (tally,) = tallies_of(visit.recordings.walks[0].details.note)
     assert tally.target == Target(TargetMeasure.KNEE_SWING_PEAK, Side.RIGHT, 30)
