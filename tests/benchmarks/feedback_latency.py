@@ -167,7 +167,12 @@ def run(seconds: float) -> None:
         sounds.play = watch.on_sound  # the tone itself is not measured, and nobody is to hear it
         feedback.window.installEventFilter(watch)
         tick = QTimer()
-        tick.timeout.connect(lambda: math.isnan(estimator.state.now_s) or page.show_view(estimator.state))
+
+        def draw() -> None:
+            if not math.isnan(estimator.state.now_s):
+                page.show_view(estimator.state)
+
+        tick.timeout.connect(draw)
         tick.start(TICK_MS)
         print("All in ms: 50 %, 95 %, worst.\n")
         print("| measure | strides | from the event: known | bar | tone | from its end: bar | tone |")
