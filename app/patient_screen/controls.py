@@ -18,8 +18,8 @@ from app.wording import tr
 from core.body import Side
 from core.targets import Target, TargetMeasure
 
-NARROW_BELOW = 720
-FIELD_WIDTH = 170
+NARROW_BELOW = 980
+FIELD_WIDTH = 120
 Choice = tuple[TargetMeasure, Side | None]
 ACROSS, DOWN = QBoxLayout.Direction.LeftToRight, QBoxLayout.Direction.TopToBottom
 
