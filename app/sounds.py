@@ -34,12 +34,15 @@ class Sound(StrEnum):
     COUNT = "count"
     READY = "ready"
     LOSS = "loss"
+    REACHED = "reached"
+    TICK = "tick"
 
 
 class Loudspeaker(QObject):
     """Plays one sound after the other. Where nothing can play, it lets the desktop beep.
 
-    Of several that are asked for while another sounds only the latest is kept: an old one would tell what is over.
+    Of several that are asked for while another sounds only the latest is kept: an old one would tell what is over. Only
+    the tick of a metronome takes no other's place: it says nothing that the next one does not.
     """
 
     _unheard = Signal()
@@ -63,6 +66,8 @@ class Loudspeaker(QObject):
         while True:
             with contextlib.suppress(Full):
                 self._next.put_nowait(sound)
+                return
+            if sound is Sound.TICK:
                 return
             with contextlib.suppress(Empty):
                 self._next.get_nowait()

@@ -41,6 +41,8 @@ SOUNDS: Mapping[str, tuple[Tone, ...]] = {
     "count": (Tone(440.0, 0.10),),
     "ready": (Tone(990.0, 0.35, rises_s=0.06, falls_s=0.25),),
     "loss": (LOW, PAUSE, LOW),
+    "reached": (Tone(880.0, 0.20, falls_s=0.12),),
+    "tick": (Tone(660.0, 0.05, rises_s=0.005, falls_s=0.03),),
 }
 
 

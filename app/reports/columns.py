@@ -230,6 +230,17 @@ KNOWN: Mapping[str, Mapping[str, ColumnMeaning]] = {
         **JUDGED,
         "symmetry_index_percent": ColumnMeaning("difference by the mean of both legs", AS_PARAMETER),
     },
+    "targets.csv": {
+        "recording": _word("its folder"),
+        "condition": _word("what was worn or set"),
+        "measure": _word("what the patient aimed at on a screen of their own, stride by stride, as it was told live"),
+        "side": _word("left or right; empty of both legs"),
+        "target": _word("the value to be reached, in the unit beside it"),
+        "unit": _word("of the target"),
+        "reached": _word("values that, rounded to a whole number, reached the target"),
+        "strides": _word("values that were told"),
+        "reached_percent": ColumnMeaning("share of the values told that reached the target"),
+    },
     **dict.fromkeys(("differences.csv", "visits.csv"), DIFFERENCES),
     **dict.fromkeys(("compared_cycles.csv", "visits_cycles.csv"), CYCLES),
 }

@@ -28,6 +28,8 @@ from app.reports.fitting_csv import MEANS as FITTING_MEANS
 from app.reports.fitting_csv import fitting_means, write_fitting_strides
 from app.reports.gait_csv import peak_table, write_gait
 from app.reports.summary import MOST_BYTES, read_summary, write_summary
+from app.reports.targets import HEADER as TARGET_COLUMNS
+from app.reports.targets import TARGETS, target_rows
 from core.results import Analysis
 from core.samples import Session
 from devices.files.refusal import FileRefusedError
@@ -44,7 +46,8 @@ TAKEN = tuple(
     (name,)
     for name in (
         *(SUMMARY, LOG, REPORT, OWN_SESSION),
-        *(PEAKS, FITTING_MEANS, DIFFERENCES, COMPARED_CYCLES, SIDES, VISITS, VISITS_CYCLES, COLUMNS, METADATA),
+        *(PEAKS, FITTING_MEANS, DIFFERENCES, COMPARED_CYCLES, SIDES, TARGETS),
+        *(VISITS, VISITS_CYCLES, COLUMNS, METADATA),
     )
 )
 
@@ -70,6 +73,8 @@ def write_results(session: Session, analysis: Analysis, folder: Path) -> None:
     if any(recording.gait for recording in analysis.recordings):
         write_table(*peak_table(analysis.recordings), folder / PEAKS)
         write_table(*fitting_means(analysis.recordings), folder / FITTING_MEANS)
+    if targets := [*target_rows(session.recordings)]:
+        write_table(TARGET_COLUMNS, targets, folder / TARGETS)
     _write_comparisons(session, analysis, folder)
     describe_tables(analysis, folder)
     write_summary(analysis, folder / SUMMARY)

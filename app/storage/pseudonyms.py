@@ -19,6 +19,7 @@ from uuid import UUID
 
 from app.storage.unit_of_work import DEMO
 from core.samples import Patient, Recording, SensorInfo, Session
+from core.targets import tallies_of, with_tallies
 from devices.files.imports import folder_for, free_name
 
 AGE = "age_years"  # among what a patient's table of a session folder may hold beside what we read of it
@@ -103,7 +104,7 @@ class Pseudonyms:
                 site: replace(block, sensor=sensors[block.sensor], unknown={}) for site, block in recording.imu.items()
             },
             started=self.shifted(patient_id, recording.started),
-            note="",
+            note=with_tallies("", tallies_of(recording.note)),  # figures and words of the program's own
             unknown={},
         )
 

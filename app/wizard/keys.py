@@ -50,6 +50,8 @@ class KeyAction(Enum):
     SAVE = auto()
     PRINT = auto()
     UNDO = auto()
+    PATIENT_SCREEN = auto()  # F8
+    FULL_SCREEN = auto()  # F11
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,6 +91,11 @@ _STEPS: dict[int, int] = {
     _Key.Key_5: 5,
     _Key.Key_6: 6,
     _Key.Key_7: 7,
+}
+_FUNCTIONS: dict[int, KeyAction] = {
+    _Key.Key_F1: KeyAction.HELP,
+    _Key.Key_F8: KeyAction.PATIENT_SCREEN,
+    _Key.Key_F11: KeyAction.FULL_SCREEN,
 }
 _REPEATED_WHILE_HELD = {KeyAction.EARLIER, KeyAction.LATER, KeyAction.LARGER, KeyAction.SMALLER}
 _ENTER = (_Key.Key_Return, _Key.Key_Enter)
@@ -200,7 +207,7 @@ def _modified_intent(event: QKeyEvent) -> Intent | None:
     if held == Qt.KeyboardModifier.NoModifier:
         if key == _Key.Key_F6:
             return Intent(KeyAction.PREVIOUS_REGION if has_shift else KeyAction.NEXT_REGION)
-        return Intent(KeyAction.HELP) if key == _Key.Key_F1 else None
+        return Intent(_FUNCTIONS[key]) if key in _FUNCTIONS else None
     if held == Qt.KeyboardModifier.AltModifier:
         return Intent(KeyAction.BACK) if key == _Key.Key_Left else None
     if held != Qt.KeyboardModifier.ControlModifier:

@@ -182,6 +182,11 @@ class LiveEvents:
         return self._phase
 
     @property
+    def pitch_axis(self) -> Vector | None:
+        """About which the foot pitches, in sensor axes: a positive rate lifts the toes; None while it is not known."""
+        return self._motion.pitch_axis
+
+    @property
     def changes(self) -> list[PhaseChange]:
         """What the samples of the last update made of the phase.
 

@@ -11,6 +11,7 @@ from core.body import Joint, Segment, Side, Site, ankle_of, knee_of
 from core.gait.live import FootEvent, LiveEvent, LiveEvents, PhaseChange
 from core.gait.phases import Phase
 from core.live.angle import AngleSamples, LiveAngle
+from core.live.foot_pitch import FootPitch, FootStrike
 from core.live.orientation import NOTHING, OrientedSamples
 from core.live.pairing import PairedSamples, joined_rows
 from core.live.sensors import LiveSensor, LiveSensors
@@ -34,13 +35,17 @@ class LiveJoint:
 
 @dataclass(frozen=True, slots=True)
 class LiveFoot:
-    """One foot now: what is new, its phase, its cadence (steps per minute, NaN while it does not walk), its strides."""
+    """One foot now: what is new, its phase, its cadence (steps per minute, NaN while it does not walk), its strides.
+
+    `strikes` are the pitches at those of the new contacts that followed a flat stance.
+    """
 
     events: tuple[LiveEvent, ...]
     changes: tuple[PhaseChange, ...]
     phase: Phase
     cadence_steps_min: float
     strides: int
+    strikes: tuple[FootStrike, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,16 +150,21 @@ class _LiveFoot:
     def __init__(self, pitch_axis: FloatArray | None, clock_offset_s: float) -> None:
         self._events = LiveEvents(pitch_axis)
         self._clock_offset_s = clock_offset_s
+        self._pitch = FootPitch()
         self._contacts = 0
 
     def update(self, samples: OrientedSamples) -> LiveFoot:
         heard = samples.is_measured
-        time_s = samples.time_s[heard] + self._clock_offset_s
-        events = tuple(self._events.update(time_s, samples.gyr_rad_s[heard], samples.acc_m_s2[heard]))
+        if not heard.all():
+            samples = OrientedSamples(samples.tick[heard], samples.time_s[heard], samples.signals[heard], heard[heard])
+        time_s = samples.time_s + self._clock_offset_s
+        events = tuple(self._events.update(time_s, samples.gyr_rad_s, samples.acc_m_s2))
+        axis = self._events.pitch_axis
+        strikes = self._pitch.update(time_s, samples, events, None if axis is None else np.array(axis))
         self._contacts += sum(event.event is FootEvent.INITIAL_CONTACT for event in events)
         changes = tuple(self._events.changes)
         strides = max(0, self._contacts - 1)
-        return LiveFoot(events, changes, self._events.phase, self._events.cadence_steps_min, strides)
+        return LiveFoot(events, changes, self._events.phase, self._events.cadence_steps_min, strides, strikes)
 
 
 class _StrapWatch:

@@ -78,6 +78,13 @@ def verdicts_of(
     return Verdicts(joints, legs, _between(recording))
 
 
+def calibration_verdicts(calibration: JointCalibration) -> JointVerdicts:
+    """What may be said of a joint by its calibration alone, before there is a walk."""
+    shape = [*_calibrated(calibration)]
+    sign = [*_sign(calibration)]
+    return JointVerdicts(assess(shape), assess([*shape, *_zero(calibration), *sign]), assess(sign))
+
+
 def judged(analysis: Analysis) -> Analysis:
     """The same analysis with every recording's verdicts made anew."""
     recordings = tuple(
@@ -91,9 +98,7 @@ def _joint_verdicts(
     recording: RecordingAnalysis, joint: Joint, calibration: JointCalibration, may_be_stiff: bool
 ) -> JointVerdicts:
     shape = [
-        *_pairing(calibration),
-        *_axis(calibration),
-        *_lag(calibration),
+        *_calibrated(calibration),
         *_lost(recording, joint.proximal, joint.distal),
         *_drifting(recording, Verdict.WITHHELD, joint.proximal, joint.distal),
     ]
@@ -131,6 +136,12 @@ def _leg_verdicts(
 
 
 # joints
+
+
+def _calibrated(found: JointCalibration) -> Iterator[GateReason]:
+    yield from _pairing(found)
+    yield from _axis(found)
+    yield from _lag(found)
 
 
 def _pairing(found: JointCalibration) -> Iterator[GateReason]:

@@ -59,6 +59,8 @@ def test_a_sound_begins_and_ends_without_a_click(sound: Sound) -> None:
         (Sound.COUNT, 440, 440),
         (Sound.READY, 990, 990),
         (Sound.LOSS, 220, 220),
+        (Sound.REACHED, 880, 880),
+        (Sound.TICK, 660, 660),
     ],
 )
 def test_a_sound_has_its_tones(sound: Sound, first_hz: float, last_hz: float) -> None:
@@ -132,6 +134,19 @@ def test_two_sounds_never_overlap_and_of_those_that_wait_the_latest_is_heard(qtb
     qtbot.waitUntil(lambda: len(played(tmp_path)) == 2)
     qtbot.waitUntil(lambda: not flag.exists())
     assert played(tmp_path) == ["count.wav", "stop.wav"]
+
+
+def test_a_tick_takes_no_other_sounds_place_and_gives_its_own(qtbot: QtBot, tmp_path: Path) -> None:
+    flag = tmp_path / "sounding"
+    alone = f"os.mkdir({str(flag)!r}); time.sleep(0.1); os.rmdir({str(flag)!r})"
+    loudspeaker = Loudspeaker([player(tmp_path, alone)])
+    loudspeaker.play(Sound.COUNT)
+    qtbot.waitUntil(flag.exists)
+    for sound in (Sound.TICK, Sound.REACHED, Sound.TICK):
+        loudspeaker.play(sound)
+    qtbot.waitUntil(lambda: len(played(tmp_path)) == 2)
+    qtbot.waitUntil(lambda: not flag.exists())
+    assert played(tmp_path) == ["count.wav", "reached.wav"]
 
 
 def test_a_player_that_cannot_play_is_left_for_the_next(qtbot: QtBot, tmp_path: Path) -> None:

@@ -3,7 +3,7 @@
 import math
 from bisect import bisect_left
 from collections import deque
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from itertools import pairwise
 
 import numpy as np
@@ -15,12 +15,14 @@ from core.gait.phases import Phase
 from core.gait.strides import MAX_STRIDE_S
 from core.live.angle import AngleSamples
 from core.live.sensors import LiveSensor
+from core.live.stride_values import StrideValue, StrideValues
 from core.live.walking import LiveFoot, LiveWalk
 from core.results import JointCalibration
 from core.samples import FloatArray, ImuBlock
 
 KEPT_S = 15.0
 SILENT_S = 0.5
+KEPT_VALUES = 64  # of strides; who looks thirty times a second misses none
 
 
 class WalkingEstimator:
@@ -30,6 +32,11 @@ class WalkingEstimator:
     ----------
     live_sensors
         By name. Sensors that are missing here, or in `site_of`, are not worn.
+
+    Attributes
+    ----------
+    on_value
+        Called by the estimator's thread whenever `state` has a new value of a stride, so that nobody has to look.
     """
 
     def __init__(
@@ -48,6 +55,10 @@ class WalkingEstimator:
         self._first_s: float | None = None
         self._now_s = -np.inf
         self._count_from_s = -np.inf  # set by the screen
+        self._values = StrideValues()
+        self._told: deque[StrideValue] = deque(maxlen=KEPT_VALUES)
+        self._values_told = 0
+        self.on_value: Callable[[], None] | None = None
         self._wishes: deque[tuple[Joint, JointCalibration]] = deque()  # put in by the screen, taken by the estimator
         self.state = WalkingReadout()
 
@@ -73,6 +84,9 @@ class WalkingEstimator:
             return
         self._hear(worn)
         told = self._walking.update(worn)
+        values = self._values.update(told)
+        self._told.extend(values)
+        self._values_told += len(values)
         kept_from_s = self._now_s - KEPT_S
         joints = {}
         for joint, curve in self._curves.items():
@@ -95,7 +109,11 @@ class WalkingEstimator:
             cadence_steps_min=float(np.mean(cadences)) if cadences else math.nan,
             slips=told.slips,
             missing=missing,
+            stride_values=tuple(self._told),
+            values_told=self._values_told,
         )
+        if values and (on_value := self.on_value) is not None:
+            on_value()
 
     def _hear(self, worn: Mapping[Site, ImuBlock]) -> None:
         for site, block in worn.items():

@@ -15,6 +15,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.icons import Icon
+from app.patient_screen.controls import ControlsCard
 from app.recording_names import LETTERS
 from app.theme import ThemeNotifier
 from app.widgets.focus_ring import NO_RING
@@ -76,6 +77,7 @@ class WalkingPage(Themed):
         self._has_message = False
         self._message: tuple[str, str] | None = None
         self.tabs = Segmented(look, tr("What is shown"), [("walks", tr("Walks"), ""), ("curves", tr("Curves"), "")])
+        self.patient_controls = ControlsCard(look)  # in sight while the patient's screen is
         self.stopped = StoppedCard(look)
         self.empty = EmptyCard(look)
         self.charts = WalkingCharts(look)
@@ -96,7 +98,8 @@ class WalkingPage(Themed):
     @property
     def tab_order(self) -> list[QWidget]:
         """The controls in the order of reading, those of this moment only."""
-        controls: list[QWidget] = [*self.tabs.segments, self.stopped.keep, self.stopped.discard]
+        controls: list[QWidget] = [*self.patient_controls.controls, *self.tabs.segments]
+        controls += [self.stopped.keep, self.stopped.discard]
         controls += [*self.walks.buttons, self.walks.restrapped]
         controls += [*self.next.chooser.buttons, self.next.chooser.own.line_edit]
         return [one for one in controls if one.isVisibleTo(self)]
@@ -201,7 +204,8 @@ class WalkingPage(Themed):
         self._middle.addLayout(self._left, 1)
         self._middle.addLayout(self._right)
         self._column = QVBoxLayout(self._inside)
-        for widget in (self.notice, self.tabs, self.stopped):
+        self.patient_controls.setVisible(False)
+        for widget in (self.notice, self.patient_controls, self.tabs, self.stopped):
             self._column.addWidget(widget)
         self._column.addLayout(self._middle, 1)
         self._column.addWidget(self.next)

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 
 from core.body import Joint, Side, Site
 from core.gait.phases import Phase
+from core.live.stride_values import StrideValue
 from core.samples import FloatArray
 from core.strap import Slip
 
@@ -55,6 +56,9 @@ class WalkingReadout:
         Of both feet; NaN while nobody walks.
     missing
         Sites that are silent.
+    stride_values, values_told
+        The values of the last strides in the order of telling, for a target; and how many there were of them so far,
+        those that are no longer among them included.
     """
 
     now_s: float = math.nan
@@ -64,6 +68,8 @@ class WalkingReadout:
     cadence_steps_min: float = math.nan
     slips: tuple[Slip, ...] = ()
     missing: tuple[Site, ...] = ()
+    stride_values: tuple[StrideValue, ...] = ()
+    values_told: int = 0
 
     @property
     def knees(self) -> dict[Side, LiveTrace]:

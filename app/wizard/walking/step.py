@@ -26,12 +26,14 @@ from app.wizard.walk_messages import (
     slip_message,
 )
 from app.wizard.walking.estimator import WalkingEstimator
+from app.wizard.walking.patient_feedback import PatientFeedback
 from app.wizard.walking.walk_labels import label_after, labels_for
 from app.wizard.walking.walk_list import WalkRow, WalkState
 from app.wording import tr
 from core.body import Joint, Side
 from core.live.walking import STRIDES_FOR_ANKLE
 from core.samples import Recording, RecordingKind
+from core.targets import TargetTally, with_tallies
 
 if TYPE_CHECKING:
     from app.wizard.recordings import SessionRecording
@@ -48,6 +50,8 @@ class WalkingStep(Step):
     def __init__(self, look: ThemeNotifier, visit: "Visit", parent: QObject | None = None) -> None:
         super().__init__(look, visit, parent)
         self._page: WalkingPage | None = None
+        self._feedback: PatientFeedback | None = None  # made with the page
+        self._tallies: dict[str, tuple[TargetTally, ...]] = {}  # of walks that are still to be read back
         self._estimator: WalkingEstimator | None = None
         self._shown: WalkingReadout | None = None
         self._at_stop: WalkingReadout | None = None
@@ -79,6 +83,8 @@ class WalkingStep(Step):
             page.undo_pressed.connect(self._on_undo_pressed)
             page.renamed.connect(self._on_renamed)
             page.restrapped_pressed.connect(self._on_restrapped_pressed)
+            self._feedback = PatientFeedback(self._look, self._visit, page.patient_controls, self)
+            self._feedback.run_wished.connect(self._run)
         return self._page
 
     @property
@@ -152,6 +158,9 @@ class WalkingStep(Step):
 
     def leave(self) -> None:
         self._is_in_sight = False
+        if self._feedback is not None:
+            self._feedback.close()
+            self._feedback.watch(None)
         if (acquisition := self._visit.sensors.acquisition) is not None:
             acquisition.set_estimator(None)
         self._estimator = None
@@ -160,12 +169,16 @@ class WalkingStep(Step):
         if self._ticks % WATCH_TICKS == 0:
             self._watch_sensors()
         self._ticks += 1
-        if self._estimator is None or not self._visit.recordings.is_recording:
+        is_recording = self._visit.recordings.is_recording
+        is_fed_back = self._feedback is not None and self._feedback.is_open
+        if self._estimator is None or not (is_recording or is_fed_back):
             return
         view, sensors = self._estimator.state, self._visit.sensors
         if sensors.are_silent and sensors.acquisition is not None:
             view = view.while_silent(sensors.acquisition.now_s, sensors.site_of.values())
-        if view is self._shown or math.isnan(view.now_s):
+        if self._feedback is not None and is_fed_back:
+            self._feedback.judge(view)
+        if not is_recording or view is self._shown or math.isnan(view.now_s):
             return
         self._shown = view
         strides = self._strides(view)
@@ -173,6 +186,9 @@ class WalkingStep(Step):
         self._ask_for_ankles(strides)
 
     def bar(self) -> BarState:
+        return replace(self._bar(), quiet=(BarAction(tr("Patient's screen"), "F8"),))
+
+    def _bar(self) -> BarState:
         recordings = self._visit.recordings
         if recordings.ongoing is not None and not recordings.is_stopping:
             acquisition = self._visit.sensors.acquisition
@@ -222,7 +238,12 @@ class WalkingStep(Step):
         if number == 0:
             self._run()
 
+    def on_quiet(self, number: int) -> None:
+        if self._feedback is not None:
+            self._feedback.toggle()
+
     def on_intent(self, intent: Intent) -> bool:
+        feedback = self._feedback
         match intent.action:
             case KeyAction.RUN:
                 self._run()
@@ -232,6 +253,12 @@ class WalkingStep(Step):
                 self._keep(self._asked, is_kept=False)
             case KeyAction.LABEL:
                 self.page.choose_digit(intent.number)
+            case KeyAction.PATIENT_SCREEN:
+                self.on_quiet(0)
+            case KeyAction.FULL_SCREEN if feedback is not None:
+                feedback.toggle_full_screen()
+            case KeyAction.LEAVE if feedback is not None and feedback.is_open:
+                feedback.close()
             case _:
                 return False
         return True
@@ -269,11 +296,15 @@ class WalkingStep(Step):
         recordings.begin(acquisition, RecordingKind.WALKING, self._label)
         if self._estimator is not None and recordings.ongoing is not None:
             self._estimator.count_from(recordings.ongoing.began_s)
+        if self._feedback is not None:
+            self._feedback.begin_walk()
         self.page.focus()
 
     def _stop(self) -> None:
         acquisition, view = self._visit.sensors.acquisition, self._shown
         self._at_stop = view
+        if self._feedback is not None and self._visit.recordings.ongoing is not None:
+            self._tallies[self._visit.recordings.ongoing.details.name] = self._feedback.end_walk()
         self._visit.recordings.stop(None if view is None else self._strides(view))
         if acquisition is not None:
             acquisition.ask(None)
@@ -299,6 +330,8 @@ class WalkingStep(Step):
         if self._visit.recordings.ongoing is not None:
             self._estimator.count_from(self._visit.recordings.ongoing.began_s)
         acquisition.set_estimator(self._estimator)
+        if self._feedback is not None:
+            self._feedback.watch(self._estimator)
 
     def _strides(self, view: "WalkingReadout") -> dict[Side, int]:
         """Those of this walk, also where another estimator began amid it."""
@@ -337,6 +370,8 @@ class WalkingStep(Step):
             for joint in Joint:
                 if not joint.is_knee and joint in calibration:
                     self._estimator.recalibrate(joint, calibration[joint])
+        if self._feedback is not None:
+            self._feedback.show_reasons()
         self._show()
 
     # what is to be said
@@ -484,7 +519,16 @@ class WalkingStep(Step):
     def _on_ended(self, recording: "SessionRecording") -> None:
         if recording.details.kind is RecordingKind.WALKING:
             self._label = label_after(self._visit.patient.details, self._used)
+            self._keep_tallies(recording)
             self._show()
+
+    def _keep_tallies(self, recording: "SessionRecording") -> None:
+        """Note with the walk how often its targets were reached."""
+        tallies = self._tallies.pop(recording.details.name, ())
+        if self._feedback is not None and not self._visit.recordings.is_recording:
+            tallies += self._feedback.end_walk()  # of a walk that ended by itself
+        if tallies:
+            self._visit.recordings.change(recording, lambda told: replace(told, note=with_tallies(told.note, tallies)))
 
     @Slot()
     def _on_troubled(self) -> None:

@@ -12,6 +12,7 @@ from app.reports.result_folder import TAKEN, VISITS, VISITS_CYCLES, describe_tab
 from core.analysis import analyse
 from core.results import Analysis
 from core.samples import Session
+from core.targets import Target, TargetMeasure, TargetTally, with_tallies
 from devices.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
 
 Row = dict[str, str]
@@ -22,7 +23,8 @@ def visit() -> tuple[Session, Analysis]:
     wanted = (Standing(), FreeMotion(), Walk(strides=5), Walk("walk 2", strides=5))
     session = simulate(WalkerSettings(seed=5, recordings=wanted)).session
     conditions = {"walk 1": "shoes", "walk 2": "barefoot"}
-    recordings = tuple(replace(one, condition=conditions.get(one.name, "")) for one in session.recordings)
+    note = with_tallies("", [TargetTally(Target(TargetMeasure.CADENCE, None, 110), 2, 4)])
+    recordings = tuple(replace(one, condition=conditions.get(one.name, ""), note=note) for one in session.recordings)
     session = replace(session, recordings=recordings)
     return session, analyse(session)
 
@@ -55,7 +57,7 @@ def test_every_column_of_every_table_is_told_of_and_no_other(out: Path) -> None:
     files = {file for file, _ in told}
     assert files == {
         *("angles.csv", "events.csv", "strides.csv", "cycles.csv"),
-        *("peaks.csv", "differences.csv", "compared_cycles.csv", "sides.csv"),
+        *("peaks.csv", "differences.csv", "compared_cycles.csv", "sides.csv", "targets.csv"),
         *("fitting.csv", "fitting_means.csv"),
     }
     assert (COLUMNS,) in TAKEN

@@ -5,17 +5,21 @@ from dataclasses import replace
 
 import pytest
 from PySide6.QtCore import QTimer
+from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
+from app.patient_screen.window import PatientWindow
 from app.theme import ThemeNotifier
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.results.step import ResultsStep
+from app.wizard.resuming import rests_of
 from app.wizard.visit import Visit
 from app.wizard.walking.readout import WalkingReadout
 from app.wizard.walking.step import WalkingStep
 from app.wizard.walking.walk_list import WalkState
-from core.body import Joint, Site
+from core.body import Joint, Side, Site
 from core.samples import Patient, RecordingKind
+from core.targets import Target, TargetMeasure, tallies_of
 from devices.replay import ReplaySource
 from tests.app.wizard.conftest import SPEED
 
@@ -103,6 +107,38 @@ def test_space_starts_and_stops_and_keeps(qtbot: QtBot, step: WalkingStep, visit
     assert states(step) == [("A", "Alignment A", WalkState.KEPT), ("B", "Alignment B", WalkState.RECORDING)]
     with qtbot.waitSignal(visit.recordings.ended, timeout=10_000):
         step.on_intent(RUN)
+    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=20_000)
+
+
+def test_what_the_patient_reached_is_shown_and_kept_with_the_walk(
+    qtbot: QtBot, step: WalkingStep, visit: Visit
+) -> None:
+    calibrate(qtbot, visit)
+    assert step.on_intent(Intent(KeyAction.PATIENT_SCREEN))
+    controls = step.page.patient_controls
+    assert controls.isVisible()
+    knee, *_ = controls.measure.segments
+    assert not knee.isEnabled()  # nobody has seen its sensors rest, so its angle drifts
+    assert step.on_intent(Intent(KeyAction.PATIENT_SCREEN))
+    assert not controls.isVisible()
+    step.leave()
+    visit.rests = rests_of(visit.recordings.every)
+    step.enter()
+    assert step.on_intent(Intent(KeyAction.PATIENT_SCREEN))
+    assert knee.isEnabled()
+    (window,) = [one for one in QApplication.topLevelWidgets() if isinstance(one, PatientWindow) and one.isVisible()]
+    controls.target_set.emit(Target(TargetMeasure.KNEE_SWING_PEAK, Side.RIGHT, 30))
+    walk(qtbot, step, visit, 12.0)
+    assert len(window.view.last) >= 5
+    assert all(40 < value < 80 for value in window.view.last)
+    qtbot.waitUntil(lambda: visit.recordings.walks[0].details.note != "", timeout=10_000)
+    (tally,) = tallies_of(visit.recordings.walks[0].details.note)
+    assert tally.target == Target(TargetMeasure.KNEE_SWING_PEAK, Side.RIGHT, 30)
+    assert tally.reached == tally.strides >= 5
+    assert step.on_intent(Intent(KeyAction.LEAVE))
+    assert not controls.isVisible()
+    walk(qtbot, step, visit, 4.0)  # without the screen: nothing is noted
+    assert visit.recordings.walks[1].details.note == ""
     qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=20_000)
 
 

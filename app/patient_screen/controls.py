@@ -1,0 +1,186 @@
+"""What the operator sets for the patient's screen: measure, side, the target that is typed, and the metronome."""
+
+from collections.abc import Mapping
+
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtGui import QResizeEvent
+from PySide6.QtWidgets import QBoxLayout, QSizePolicy, QWidget
+
+from app.icons import Icon
+from app.patient_screen.metronome import LEAST, MOST
+from app.theme import ThemeNotifier
+from app.widgets.button import Button, ButtonKind
+from app.widgets.card import Card
+from app.widgets.field import NumberField
+from app.widgets.notice import Notice
+from app.widgets.segmented import Segmented
+from app.wording import tr
+from core.body import Side
+from core.targets import Target, TargetMeasure
+
+NARROW_BELOW = 980
+FIELD_WIDTH = 120
+Choice = tuple[TargetMeasure, Side | None]
+ACROSS, DOWN = QBoxLayout.Direction.LeftToRight, QBoxLayout.Direction.TopToBottom
+
+
+def choices() -> tuple[Choice, ...]:
+    """Every measure of every leg that it can be of."""
+    return tuple(
+        (measure, side) for measure in TargetMeasure for side in (tuple(Side) if measure.has_side else (None,))
+    )
+
+
+class ControlsCard(Card):
+    """No target is proposed: there is none until one is typed.
+
+    Signals
+    -------
+    target_set
+        Target, or None where nothing that fits is typed.
+    metronome_pressed
+        Its rate in steps per minute; 0: be silent.
+    full_screen_pressed, close_pressed
+        Of the patient's screen.
+    """
+
+    target_set = Signal(object)
+    metronome_pressed = Signal(int)
+    full_screen_pressed = Signal()
+    close_pressed = Signal()
+
+    def __init__(self, look: ThemeNotifier) -> None:
+        self._typed: dict[Choice, int] = {}
+        self._reasons: Mapping[Choice, str] = {}
+        self._is_ticking = False
+        words = {
+            TargetMeasure.KNEE_SWING_PEAK: tr("Knee in swing"),
+            TargetMeasure.FOOT_STRIKE: tr("Foot at contact"),
+            TargetMeasure.STANCE_RATIO: tr("Stance symmetry"),
+            TargetMeasure.CADENCE: tr("Cadence"),
+        }
+        self.measure = Segmented(look, tr("Measure"), [(key, words[key], "") for key in TargetMeasure])
+        self.side = Segmented(look, tr("Side"), [(Side.LEFT, tr("Left"), ""), (Side.RIGHT, tr("Right"), "")])
+        low, high = TargetMeasure.KNEE_SWING_PEAK.limits
+        self.target = NumberField(look, tr("Target"), low=low, high=high, unit="°")
+        self.rate = NumberField(look, tr("Metronome"), low=LEAST, high=MOST, unit=tr("/min"))
+        self.tick = Button(look, tr("Start metronome"), ButtonKind.SECONDARY, Icon.SOUND)
+        self.full = Button(look, tr("Full screen"), ButtonKind.QUIET, Icon.WHOLE, key="F11")
+        self.close_screen = Button(look, tr("Close"), ButtonKind.QUIET, Icon.CLOSE, key="F8")
+        self._reason = Notice(look, size=14)
+        self._choose, self._set = QBoxLayout(ACROSS), QBoxLayout(ACROSS)
+        super().__init__(look)
+        self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Maximum)
+        self.setAccessibleName(tr("Patient's screen"))
+        self._choose.addWidget(self.measure, 1)
+        self._choose.addWidget(self.side)
+        for field in (self.target, self.rate):
+            self._set.addWidget(field)
+        for button in (self.tick, self.full, self.close_screen):
+            self._set.addWidget(button, 0, Qt.AlignmentFlag.AlignBottom)
+        self._set.insertStretch(3, 1)
+        for row in (self._choose, self._set):
+            self.column.addLayout(row)
+        self.column.addWidget(self._reason)
+        self.measure.chosen.connect(self._on_chosen)
+        self.side.chosen.connect(self._on_chosen)
+        self.target.committed.connect(self._on_target_committed)
+        self.tick.clicked.connect(self._on_tick_clicked)
+        self.full.clicked.connect(self.full_screen_pressed)
+        self.close_screen.clicked.connect(self.close_pressed)
+        self._show()
+
+    @property
+    def controls(self) -> list[QWidget]:
+        """In the order of reading."""
+        fields = [self.target.line_edit, self.rate.line_edit]
+        return [*self.measure.segments, *self.side.segments, *fields, self.tick, self.full, self.close_screen]
+
+    @property
+    def choice(self) -> Choice:
+        measure = TargetMeasure(self.measure.choice)
+        return measure, Side(self.side.choice) if measure.has_side else None
+
+    @property
+    def reason(self) -> str:
+        """Why the chosen measure cannot be a target; empty where it can."""
+        return self._reasons.get(self.choice, "")
+
+    def focus(self) -> None:
+        """Put the focus where the target is typed."""
+        self.measure.focus()
+
+    def show_reasons(self, reasons: Mapping[Choice, str]) -> None:
+        """Say of each choice that cannot be a target why; a measure that no leg allows cannot be chosen at all."""
+        if reasons == self._reasons:
+            return
+        self._reasons = dict(reasons)
+        gated = {m for m in TargetMeasure if all(choice in reasons for choice in choices() if choice[0] is m)}
+        if gated != set(TargetMeasure):  # one has to be chosen, whatever it is worth
+            for measure in TargetMeasure:
+                self.measure.set_reason(measure, tr("cannot be read") if measure in gated else "")
+        self._show()
+        self._tell()
+
+    def show_metronome(self, beats_per_min: int) -> None:
+        self._is_ticking = bool(beats_per_min)
+        self.tick.setText(tr("Stop metronome") if self._is_ticking else tr("Start metronome"))
+        self.tick.setAccessibleName(self.tick.text())
+        self.tick.updateGeometry()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._choose.setDirection(DOWN if self.width() < self._look.theme.px(NARROW_BELOW) else ACROSS)
+
+    def _show(self) -> None:
+        """Show the field of the chosen measure, and which sides it can be of."""
+        measure = self.choice[0]
+        self.side.setVisible(measure.has_side)
+        if measure.has_side:
+            sides = {one: (measure, one) in self._reasons for one in Side}
+            if not all(sides.values()):
+                for one, is_gated in sides.items():
+                    self.side.set_reason(one, tr("cannot be read") if is_gated else "")
+            else:
+                for one in Side:
+                    self.side.set_reason(one, "")
+        self.target.low, self.target.high = measure.limits
+        units = {"deg": "°", "%": "%", "steps/min": tr("/min")}
+        self.target.set_unit(units[measure.unit])
+        self.target.set_value(self._typed.get(self.choice))
+        self.target.setEnabled(not self.reason)
+        self._reason.setVisible(bool(self.reason))
+        self._reason.tell(Icon.WITHHELD, tr("This cannot be a target now."), self.reason)
+
+    def _tell(self) -> None:
+        measure, side = self.choice
+        value = None if self.reason else self._typed.get(self.choice)
+        self.target_set.emit(None if value is None else Target(measure, side, value))
+
+    def _on_chosen(self) -> None:
+        self._show()
+        self._tell()
+
+    def _on_target_committed(self) -> None:
+        value = self.target.value
+        if value is None:
+            self._typed.pop(self.choice, None)
+        else:
+            self._typed[self.choice] = round(value)
+        self._tell()
+
+    def _on_tick_clicked(self) -> None:
+        if self._is_ticking:
+            self.metronome_pressed.emit(0)
+        elif self.rate.value is not None:
+            self.metronome_pressed.emit(round(self.rate.value))
+        else:
+            self.rate.set_wrong(tr("Type how many steps per minute."))
+
+    def _on_look_changed(self) -> None:
+        super()._on_look_changed()
+        px = self._look.theme.px
+        for row in (self._choose, self._set):
+            row.setSpacing(px(12))
+        for field in (self.target, self.rate):
+            field.setFixedWidth(px(FIELD_WIDTH))

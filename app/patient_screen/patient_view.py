@@ -1,0 +1,89 @@
+"""What the patient is shown at one moment, and its words. No praise: what was reached is said, nothing else."""
+
+from dataclasses import dataclass
+
+from app.wording import tr, tr_n
+from core.body import Side
+from core.targets import Target, TargetMeasure
+
+SHOWN_STRIDES = 10
+MINUS = "\N{MINUS SIGN}"
+NO_VALUE = "\N{EN DASH}"
+
+
+@dataclass(frozen=True, slots=True)
+class PatientView:
+    """`last` are the values of the last strides, SHOWN_STRIDES at most, the newest last.
+
+    `is_waiting`: what is aimed at cannot be measured now, so no value is shown, old ones neither.
+    """
+
+    target: Target | None = None
+    last: tuple[int, ...] = ()
+    is_waiting: bool = False
+    has_sound: bool = True
+
+    @property
+    def value(self) -> int | None:
+        """Of the last stride."""
+        return self.last[-1] if self.last and not self.is_waiting else None
+
+    @property
+    def in_words(self) -> str:
+        """All of it, for who cannot see it."""
+        if self.target is None:
+            return tr("Please wait")
+        said = [f"{title_of(self.target)}."]
+        said.append(tr("Target {value}.").format(value=figure(self.target.value, self.target.measure)))
+        if self.is_waiting:
+            return " ".join([*said, tr("Please wait")])
+        if self.value is not None:
+            said.append(tr("Now {value}.").format(value=figure(self.value, self.target.measure)))
+            said.append(f"{steps_words(len(self.last))}: {reached_words(self)}.")
+        return " ".join(said)
+
+
+def title_of(target: Target) -> str:
+    """What to do, in words for the patient."""
+    if target.measure is TargetMeasure.CADENCE:
+        return tr("Both legs: step more often")
+    left, right = {
+        TargetMeasure.KNEE_SWING_PEAK: (tr("Left knee: bend it as you swing"), tr("Right knee: bend it as you swing")),
+        TargetMeasure.FOOT_STRIKE: (tr("Left foot: toes up as you land"), tr("Right foot: toes up as you land")),
+        TargetMeasure.STANCE_RATIO: (tr("Left leg: stand on it longer"), tr("Right leg: stand on it longer")),
+    }[target.measure]
+    return left if target.side is Side.LEFT else right
+
+
+def unit_words(measure: TargetMeasure) -> str:
+    """What the bare figure of a measure is, where that is not said by its sign."""
+    return {
+        TargetMeasure.STANCE_RATIO: tr("of the time on the other leg"),
+        TargetMeasure.CADENCE: tr("steps per minute"),
+    }.get(measure, "")
+
+
+def figure(value: int, measure: TargetMeasure) -> str:
+    """A value as it is shown large: "54°", "96 %", "110"."""
+    number = str(value).replace("-", MINUS)
+    if measure in (TargetMeasure.KNEE_SWING_PEAK, TargetMeasure.FOOT_STRIKE):
+        return f"{number}°"
+    return f"{number}\N{NO-BREAK SPACE}%" if measure is TargetMeasure.STANCE_RATIO else number
+
+
+def steps_words(count: int) -> str:
+    if not count:
+        return tr("No step yet")
+    return tr_n("Last {count} step", "Last {count} steps", count).format(count=count)
+
+
+def reached_words(view: PatientView) -> str:
+    """How many of the last strides reached the target."""
+    assert view.target is not None
+    reached = sum(view.target.is_reached(value) for value in view.last)
+    target = figure(view.target.value, view.target.measure)
+    return tr("{count} reached {target}").format(count=reached, target=target)
+
+
+def tone_words(target: Target) -> str:
+    return tr("tone at {target}").format(target=figure(target.value, target.measure))

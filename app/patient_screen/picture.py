@@ -1,0 +1,210 @@
+"""The picture that the patient sees, drawn once for 1280 by 800 and scaled to whatever room there is.
+
+Fonts follow the room and not the size of everything: it is read from two metres, not from a desk.
+"""
+
+from dataclasses import replace
+from typing import NamedTuple
+
+from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtGui import QBrush, QColor, QFont, QFontMetricsF, QPainter, QPainterPath, QPen, QPolygonF
+
+from app.icons import Icon, paint_icon
+from app.patient_screen.patient_view import (
+    MINUS,
+    NO_VALUE,
+    SHOWN_STRIDES,
+    PatientView,
+    figure,
+    reached_words,
+    steps_words,
+    title_of,
+    tone_words,
+    unit_words,
+)
+from app.theme import ThemeNotifier
+from app.tokens import Theme
+from app.widgets.chip import CHIP, paint_chip
+from app.widgets.text import MEDIUM, SEMIBOLD
+from app.wording import tr
+from core.body import Side
+from core.targets import Target
+
+WIDTH, HEIGHT = 1280, 800
+BAR = QRectF(80, 400, 1120, 136)
+BELOW, ABOVE = 25, 15  # in the measure's unit: how far the bar reaches on either side of the target
+TICK = 10
+STEPS_LEFT, STEP_EVERY, STEP_WIDTH, STEP_BASE = 479, 73, 58, 752
+STEP_AT_TARGET, STEP_PER_UNIT, STEP_HEIGHTS = 81, 8, (16, 113)
+LEFT, RIGHT = 80, 1200
+MIDDLE, AT_LEFT, AT_RIGHT = (
+    Qt.AlignmentFlag.AlignCenter,
+    Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter,
+    Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter,
+)
+
+
+class _Inks(NamedTuple):
+    """What a leg's bar is drawn with; of both legs together in the ink of the text, for no hue is theirs."""
+
+    full: QColor
+    pale: QColor
+    soft: QColor
+
+
+def paint_patient_view(painter: QPainter, room: QRectF, view: PatientView, look: ThemeNotifier) -> None:
+    """Fill `room` with what the patient is shown."""
+    theme = replace(look.theme, scale=1.0)
+    painter.fillRect(room, QColor(theme.colours.surface))
+    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    scale = min(room.width() / WIDTH, room.height() / HEIGHT)
+    painter.save()
+    painter.translate(room.center())
+    painter.scale(scale, scale)
+    painter.translate(-WIDTH / 2, -HEIGHT / 2)
+    if view.target is None:
+        _text(painter, theme, QRectF(0, 0, WIDTH, HEIGHT), tr("Please wait"), 96, flags=MIDDLE)
+    else:
+        _paint(painter, view, view.target, theme)
+    painter.restore()
+
+
+def _paint(painter: QPainter, view: PatientView, target: Target, theme: Theme) -> None:
+    inks = _inks(target.side, theme)
+    _paint_heading(painter, view, target, theme)
+    if view.is_waiting:
+        _text(painter, theme, QRectF(LEFT, 170, 620, 180), tr("Please wait"), 80)
+    else:
+        shown = NO_VALUE if view.value is None else figure(view.value, target.measure)
+        _text(painter, theme, QRectF(LEFT, 150, 560, 216), shown, 240 if len(shown) <= 3 else 184, fits=True)
+    _paint_target(painter, target, theme)
+    _paint_bar(painter, view, target, theme, inks)
+    painter.fillRect(QRectF(LEFT, 612, RIGHT - LEFT, 1), QColor(theme.colours.line))
+    if not view.is_waiting:
+        _paint_last(painter, view, target, theme, inks)
+
+
+def _inks(side: Side | None, theme: Theme) -> _Inks:
+    c = theme.colours
+    if side is None:
+        return _Inks(QColor(c.ink), QColor(c.sunken), QColor(c.control))
+    return _Inks(theme.curve(side), theme.pale(side), theme.soft(side))
+
+
+def _paint_heading(painter: QPainter, view: PatientView, target: Target, theme: Theme) -> None:
+    left = LEFT
+    if target.side is not None:
+        painter.save()
+        painter.translate(LEFT, 64)
+        painter.scale(56 / CHIP, 56 / CHIP)
+        paint_chip(painter, QRectF(0, 0, CHIP, CHIP), target.side, theme)
+        painter.restore()
+        left += 80
+    tone, ink2 = tone_words(target), theme.colours.ink2
+    if not view.has_sound:
+        tone = tr("sound off")
+    width = QFontMetricsF(theme.font(22)).horizontalAdvance(tone)
+    _text(painter, theme, QRectF(RIGHT - width - 2, 64, width + 2, 56), tone, 22, "ink2", weight=MEDIUM, flags=AT_RIGHT)
+    icon = Icon.SOUND if view.has_sound else Icon.SOUND_OFF
+    paint_icon(painter, icon, QRectF(RIGHT - width - 52, 75, 34, 34), ink2)
+    room = QRectF(left, 64, RIGHT - width - 76 - left, 56)
+    _text(painter, theme, room, title_of(target), 40, fits=True)
+
+
+def _paint_target(painter: QPainter, target: Target, theme: Theme) -> None:
+    at = _x(target, target.value)
+    _text(painter, theme, QRectF(at - 180, 205, 360, 44), tr("Target"), 40, "ink2", weight=MEDIUM, flags=MIDDLE)
+    shown = figure(target.value, target.measure)
+    _text(painter, theme, QRectF(at - 180, 248, 360, 98), shown, 96, flags=MIDDLE, fits=True)
+    words = unit_words(target.measure)
+    if words:
+        _text(painter, theme, QRectF(at + 130, 280, RIGHT - at - 130, 66), words, 22, "ink2", flags=AT_LEFT, fits=True)
+
+
+def _paint_bar(painter: QPainter, view: PatientView, target: Target, theme: Theme, inks: _Inks) -> None:
+    c, at = theme.colours, _x(target, target.value)
+    frame = QPainterPath()
+    frame.addRoundedRect(BAR, 14, 14)
+    painter.save()
+    painter.setClipPath(frame)
+    painter.fillRect(BAR, QColor(c.track))
+    beyond = QRectF(at, BAR.top(), BAR.right() - at, BAR.height())
+    painter.fillRect(beyond, inks.pale)
+    _paint_hatch(painter, beyond, inks.soft)
+    if view.value is not None:
+        painter.fillRect(QRectF(BAR.topLeft(), QPointF(_x(target, view.value), BAR.bottom())), inks.full)
+    painter.restore()
+    painter.fillRect(QRectF(at - 6, BAR.top(), 12, BAR.height()), QColor(c.surface))  # parts the line from the fill
+    painter.fillRect(QRectF(at - 3, 374, 6, 186), QColor(c.ink))
+    painter.setPen(Qt.PenStyle.NoPen)
+    painter.setBrush(QColor(c.ink))
+    painter.drawPolygon(QPolygonF([QPointF(at - 17, 353), QPointF(at + 17, 353), QPointF(at, 377)]))
+    first = -(-(target.value - BELOW) // TICK) * TICK
+    for value in range(first, target.value + ABOVE + 1, TICK):
+        x, shown = _x(target, value), figure(value, target.measure)
+        if abs(x - at) < 24:
+            continue  # the line of the target stands there
+        width = QFontMetricsF(theme.font(22, MEDIUM)).horizontalAdvance(shown) + 2
+        left = min(max(x - width / 2, BAR.left()), BAR.right() - width)
+        _text(painter, theme, QRectF(left, 553, width, 32), shown, 22, "ink2", weight=MEDIUM, flags=MIDDLE)
+
+
+def _paint_hatch(painter: QPainter, box: QRectF, colour: QColor) -> None:
+    painter.save()
+    painter.setClipRect(box, Qt.ClipOperation.IntersectClip)
+    painter.setPen(QPen(colour, 2.5))
+    x = box.left() - box.height()
+    while x < box.right():
+        painter.drawLine(QPointF(x, box.bottom()), QPointF(x + box.height(), box.top()))
+        x += 20
+    painter.restore()
+
+
+def _paint_last(painter: QPainter, view: PatientView, target: Target, theme: Theme, inks: _Inks) -> None:
+    c = theme.colours
+    _text(painter, theme, QRectF(LEFT, 648, 380, 32), steps_words(len(view.last)), 22, weight=MEDIUM)
+    if view.last:
+        _text(painter, theme, QRectF(LEFT, 682, 380, 52), reached_words(view), 40, fits=True)
+    first = SHOWN_STRIDES - len(view.last)  # the newest stands at the right from the first step on
+    for number, value in enumerate(view.last, start=first):
+        is_reached = target.is_reached(value)
+        low, high = STEP_HEIGHTS
+        height = min(max(STEP_AT_TARGET + STEP_PER_UNIT * (value - target.value), low), high)
+        box = QRectF(STEPS_LEFT + STEP_EVERY * number, STEP_BASE - height, STEP_WIDTH, height)
+        painter.setPen(theme.pen(inks.full, 3))
+        painter.setBrush(QBrush(inks.full) if is_reached else Qt.BrushStyle.NoBrush)
+        painter.drawRoundedRect(box.adjusted(1.5, 1.5, -1.5, -1.5), 7, 7)
+        if is_reached:
+            paint_icon(painter, Icon.CHECK, QRectF(box.center().x() - 12, STEP_BASE - 34, 24, 24), c.surface)
+        over = QRectF(box.left() - 10, box.top() - 26, STEP_WIDTH + 20, 24)
+        shown, tone = str(value).replace("-", MINUS), "ink" if is_reached else "ink2"
+        _text(painter, theme, over, shown, 17, tone, weight=SEMIBOLD if is_reached else MEDIUM, flags=MIDDLE)
+
+
+def _x(target: Target, value: int) -> float:
+    """Where on the bar a value lies; beyond its ends at them."""
+    share = (value - target.value + BELOW) / (BELOW + ABOVE)
+    return BAR.left() + BAR.width() * min(max(share, 0.0), 1.0)
+
+
+def _text(
+    painter: QPainter,
+    theme: Theme,
+    box: QRectF,
+    text: str,
+    size: float,
+    tone: str = "ink",
+    *,
+    weight: QFont.Weight = SEMIBOLD,
+    flags: Qt.AlignmentFlag = AT_LEFT,
+    fits: bool = False,
+) -> None:
+    """Draw a line of text; `fits`: smaller where a longer language would not have the room."""
+    font = theme.font(size, weight)
+    if fits:
+        width = QFontMetricsF(font).horizontalAdvance(text)
+        if width > box.width():
+            font = theme.font(size * box.width() / width, weight)
+    painter.setFont(font)
+    painter.setPen(QColor(getattr(theme.colours, tone)))
+    painter.drawText(box, int(flags.value) | Qt.TextFlag.TextDontClip.value, text)

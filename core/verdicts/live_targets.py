@@ -1,0 +1,44 @@
+"""Whether a measure may be a target while somebody walks: by what the calibration tells before the walk."""
+
+from collections.abc import Collection, Mapping
+
+from core.body import Joint, Segment, Side, Site, knee_of
+from core.results import JointCalibration
+from core.targets import TargetMeasure
+from core.verdicts.gates import calibration_verdicts
+from core.verdicts.model import NOT_MEASURED, READ, TOE_OFF_GATE, Assessment, GateReason, Verdict, assess
+
+
+def assess_target(
+    measure: TargetMeasure,
+    side: Side | None,
+    worn: Collection[Site],
+    calibration: Mapping[Joint, JointCalibration],
+    prosthetic_sides: Collection[Side],
+) -> Assessment:
+    """What may be said of a measure of one leg; a target may be set where its figure may be told.
+
+    Parameters
+    ----------
+    worn
+        Sites with a sensor.
+    calibration
+        In force, of the joints that have one.
+    prosthetic_sides
+        Whose foot rolls on where a heel would rise: its stance is compared with nothing.
+    """
+    feet = {one.side for one in worn if one.segment is Segment.FOOT}
+    if measure is TargetMeasure.CADENCE:
+        return READ if feet else NOT_MEASURED
+    if side not in feet:
+        return NOT_MEASURED
+    if measure is TargetMeasure.STANCE_RATIO:
+        if feet != set(Side):
+            return NOT_MEASURED
+        return assess([GateReason(TOE_OFF_GATE, Verdict.WITHHELD)]) if prosthetic_sides else READ
+    if measure is TargetMeasure.FOOT_STRIKE:
+        return READ
+    knee = knee_of(side)
+    if knee not in calibration or not {knee.proximal, knee.distal} <= set(worn):
+        return NOT_MEASURED
+    return calibration_verdicts(calibration[knee]).height

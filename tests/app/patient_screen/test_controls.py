@@ -1,0 +1,97 @@
+"""The operator's controls: a target is typed and never proposed, what is gated cannot be chosen, all by keys."""
+
+import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtTest import QTest
+from pytestqt.qtbot import QtBot
+
+from app.patient_screen.controls import Choice, ControlsCard, choices
+from app.theme import ThemeNotifier
+from core.body import Side
+from core.targets import Target, TargetMeasure
+
+
+@pytest.fixture
+def card(qtbot: QtBot, look: ThemeNotifier) -> ControlsCard:
+    card = ControlsCard(look)
+    qtbot.addWidget(card)
+    card.resize(1016, 160)
+    card.show()
+    return card
+
+
+def typed(card: ControlsCard, text: str) -> None:
+    card.target.line_edit.clear()
+    QTest.keyClicks(card.target.line_edit, text)
+    QTest.keyClick(card.target.line_edit, Qt.Key.Key_Return)
+
+
+def test_a_target_is_what_was_typed_for_a_measure_of_a_leg(qtbot: QtBot, card: ControlsCard) -> None:
+    assert card.target.text == ""
+    with qtbot.waitSignal(card.target_set) as told:
+        typed(card, "55")
+    assert told.args == [Target(TargetMeasure.KNEE_SWING_PEAK, Side.LEFT, 55)]
+    with qtbot.waitSignal(card.target_set) as told:
+        card.side.choose(Side.RIGHT)
+    assert told.args == [None]  # of the other leg none was typed
+    assert card.target.text == ""
+    card.measure.choose(TargetMeasure.CADENCE)
+    assert not card.side.isVisible()
+    with qtbot.waitSignal(card.target_set) as told:
+        typed(card, "110")
+    assert told.args == [Target(TargetMeasure.CADENCE, None, 110)]
+    card.measure.choose(TargetMeasure.KNEE_SWING_PEAK)
+    with qtbot.waitSignal(card.target_set) as told:
+        card.side.choose(Side.LEFT)
+    assert told.args == [Target(TargetMeasure.KNEE_SWING_PEAK, Side.LEFT, 55)]
+
+
+def test_a_figure_that_makes_no_sense_sets_no_target(qtbot: QtBot, card: ControlsCard) -> None:
+    with qtbot.waitSignal(card.target_set) as told:
+        typed(card, "555")
+    assert told.args == [None]
+    assert card.target.is_wrong
+
+
+def test_what_is_gated_cannot_be_chosen_and_says_why(qtbot: QtBot, card: ControlsCard) -> None:
+    typed(card, "55")
+    why = "No zero was set, so heights say nothing."
+    with qtbot.waitSignal(card.target_set) as told:
+        card.show_reasons({(TargetMeasure.KNEE_SWING_PEAK, Side.LEFT): why})
+    assert card.side.choice == Side.RIGHT  # which is not gated
+    assert told.args == [None]
+    left, _right = card.side.segments
+    assert not left.isEnabled()
+    both: dict[Choice, str] = {(TargetMeasure.KNEE_SWING_PEAK, side): why for side in Side}
+    card.show_reasons(both)
+    knee, foot, *_ = card.measure.segments
+    assert not knee.isEnabled()
+    assert foot.isChecked()
+    assert card.reason == ""
+    card.show_reasons({})
+    assert knee.isEnabled()
+    assert left.isEnabled()
+
+
+def test_where_nothing_can_be_a_target_the_reason_stands_there(card: ControlsCard) -> None:
+    card.show_reasons(dict.fromkeys(choices(), "No foot sensor is worn."))
+    assert card.reason == "No foot sensor is worn."
+    assert not card.target.isEnabled()
+    card.show_reasons({})
+    assert card.reason == ""
+    assert card.target.isEnabled()
+
+
+def test_the_metronome_is_started_with_the_typed_rate_and_stopped(qtbot: QtBot, card: ControlsCard) -> None:
+    with qtbot.assertNotEmitted(card.metronome_pressed):
+        card.tick.click()
+    assert card.rate.is_wrong
+    QTest.keyClicks(card.rate.line_edit, "96")
+    with qtbot.waitSignal(card.metronome_pressed) as told:
+        QTest.keyClick(card.tick, Qt.Key.Key_Space)
+    assert told.args == [96]
+    card.show_metronome(96)
+    assert card.tick.text() == "Stop metronome"
+    with qtbot.waitSignal(card.metronome_pressed) as told:
+        card.tick.click()
+    assert told.args == [0]

@@ -1,0 +1,214 @@
+"""From the estimator's values to the patient's screen: which count, which sound, when it waits, what is kept."""
+
+import threading
+from collections.abc import Iterator
+from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+from PySide6.QtWidgets import QWidget
+from pytestqt.qtbot import QtBot
+
+from app import sounds
+from app.patient_screen.controls import ControlsCard
+from app.sounds import Sound
+from app.theme import ThemeNotifier
+from app.wizard.walking.patient_feedback import PatientFeedback, reasons_against
+from app.wizard.walking.readout import WalkingReadout
+from core.body import Joint, Side, Site
+from core.live.stride_values import StrideValue
+from core.results import ZeroKind
+from core.strap import Slip
+from core.targets import Target, TargetMeasure, TargetTally
+from tests.core.verdicts.built_walk import calibration
+
+KNEE = Target(TargetMeasure.KNEE_SWING_PEAK, Side.LEFT, 55)
+BEAT = Target(TargetMeasure.CADENCE, None, 110)
+SURE = {joint: calibration(joint) for joint in Joint}
+ALL = tuple(Site)
+WORN = {f"DEMO-{site}": site for site in Site}
+
+
+class Told:
+    """An estimator that tells what the test says, from a thread of its own as the real one does."""
+
+    def __init__(self) -> None:
+        self.state = WalkingReadout(now_s=1.0)
+        self.on_value: Any = None
+
+    def tell(self, *values: tuple[TargetMeasure, Side, float], **changes: Any) -> None:
+        new = tuple(StrideValue(measure, side, value, 1.0, 1.0) for measure, side, value in values)
+        every = (*self.state.stride_values, *new)[-64:]
+        total = self.state.values_told + len(new)
+        self.state = replace(self.state, stride_values=every, values_told=total, **changes)
+        if new and self.on_value is not None:
+            thread = threading.Thread(target=self.on_value)
+            thread.start()
+            thread.join()
+
+
+@pytest.fixture
+def heard(monkeypatch: pytest.MonkeyPatch) -> list[Sound]:
+    heard: list[Sound] = []
+    monkeypatch.setattr(sounds, "play", heard.append)
+    return heard
+
+
+@pytest.fixture
+def estimator() -> Told:
+    return Told()
+
+
+@pytest.fixture
+def feedback(qtbot: QtBot, look: ThemeNotifier, estimator: Told, heard: list[Sound]) -> Iterator[PatientFeedback]:
+    page = QWidget()
+    qtbot.addWidget(page)
+    card = ControlsCard(look)
+    card.setParent(page)
+    page.show()
+    sensors = SimpleNamespace(sensor_at={site: name for name, site in WORN.items()}, site_of=WORN)
+    evaluation = SimpleNamespace(calibration=SURE)
+    visit: Any = SimpleNamespace(sensors=sensors, evaluation=evaluation, prosthetic_sides=frozenset(), rests=WORN)
+    feedback = PatientFeedback(look, visit, card, page)
+    feedback.toggle()
+    told: Any = estimator
+    feedback.watch(told)
+    card.target_set.emit(KNEE)
+    yield feedback
+    feedback.watch(None)
+    feedback.close()
+
+
+def card_of(feedback: PatientFeedback) -> ControlsCard:
+    page = feedback.parent()
+    card = page.findChild(ControlsCard) if page is not None else None
+    assert isinstance(card, ControlsCard)
+    return card
+
+
+def knee(*values: float, side: Side = Side.LEFT) -> list[tuple[TargetMeasure, Side, float]]:
+    return [(TargetMeasure.KNEE_SWING_PEAK, side, value) for value in values]
+
+
+def test_each_stride_of_what_is_aimed_at_is_shown_and_sounds_where_it_reached(
+    qtbot: QtBot, feedback: PatientFeedback, estimator: Told, heard: list[Sound]
+) -> None:
+    estimator.tell(*knee(54.4))
+    qtbot.waitUntil(lambda: feedback.view.last == (54,))
+    assert heard == []
+    estimator.tell(*knee(54.6), *knee(70.0, side=Side.RIGHT), (TargetMeasure.FOOT_STRIKE, Side.LEFT, 60.0))
+    qtbot.waitUntil(lambda: feedback.view.last == (54, 55))
+    assert heard == [Sound.REACHED]
+    assert feedback.window is not None
+    assert feedback.window.view == feedback.view
+
+
+def test_the_last_ten_are_kept_and_strides_of_either_foot_count_for_the_cadence(
+    qtbot: QtBot, feedback: PatientFeedback, estimator: Told
+) -> None:
+    estimator.tell(*knee(*range(40, 52)))
+    qtbot.waitUntil(lambda: feedback.view.last == tuple(range(42, 52)))
+    card_of(feedback).target_set.emit(BEAT)
+    assert feedback.view.last == ()
+    estimator.tell((TargetMeasure.CADENCE, Side.LEFT, 109.0), (TargetMeasure.CADENCE, Side.RIGHT, 111.0))
+    qtbot.waitUntil(lambda: feedback.view.last == (109, 111))
+
+
+@pytest.mark.parametrize(
+    "gated",
+    [{"missing": (Site.LEFT_SHANK,)}, {"missing": (Site.LEFT_FOOT,)}, {"slips": (Slip(Site.LEFT_THIGH, 1.0, 0.3),)}],
+)
+def test_a_silent_sensor_or_a_slipped_strap_of_that_leg_lets_it_wait_without_a_value(
+    qtbot: QtBot, feedback: PatientFeedback, estimator: Told, heard: list[Sound], gated: dict[str, Any]
+) -> None:
+    estimator.tell(*knee(60.0))
+    qtbot.waitUntil(lambda: feedback.view.last == (60,))
+    estimator.tell(**gated)
+    feedback.judge(estimator.state)  # as thirty times a second
+    assert feedback.view.is_waiting
+    assert feedback.view.last == ()
+    estimator.tell(*knee(61.0))
+    qtbot.wait(20)
+    assert feedback.view.last == ()
+    assert heard == [Sound.REACHED]
+    estimator.tell(*knee(62.0), missing=(), slips=())
+    qtbot.waitUntil(lambda: feedback.view.last == (62,))
+    assert not feedback.view.is_waiting
+
+
+def test_what_befalls_the_other_leg_does_not_matter(feedback: PatientFeedback, estimator: Told) -> None:
+    estimator.tell(missing=(Site.RIGHT_SHANK,), slips=(Slip(Site.RIGHT_FOOT, 1.0, 0.3),))
+    feedback.judge(estimator.state)
+    assert not feedback.view.is_waiting
+
+
+def test_cadence_waits_only_where_no_foot_is_heard(feedback: PatientFeedback, estimator: Told) -> None:
+    card_of(feedback).target_set.emit(BEAT)
+    estimator.tell(missing=(Site.RIGHT_FOOT,))
+    feedback.judge(estimator.state)
+    assert not feedback.view.is_waiting
+    estimator.tell(missing=(Site.RIGHT_FOOT, Site.LEFT_FOOT))
+    feedback.judge(estimator.state)
+    assert feedback.view.is_waiting
+
+
+def test_a_walk_counts_its_own_strides_for_each_target(
+    qtbot: QtBot, feedback: PatientFeedback, estimator: Told
+) -> None:
+    estimator.tell(*knee(60.0))
+    qtbot.waitUntil(lambda: feedback.view.last == (60,))
+    feedback.begin_walk()
+    assert feedback.view.last == ()
+    estimator.tell(*knee(54.0, 55.0, 56.0))
+    qtbot.waitUntil(lambda: len(feedback.view.last) == 3)
+    card_of(feedback).target_set.emit(BEAT)
+    estimator.tell((TargetMeasure.CADENCE, Side.LEFT, 100.0))
+    qtbot.waitUntil(lambda: feedback.view.last == (100,))
+    assert feedback.end_walk() == (TargetTally(KNEE, 2, 3), TargetTally(BEAT, 0, 1))
+    assert feedback.end_walk() == ()
+
+
+def test_closed_it_neither_sounds_nor_counts(
+    qtbot: QtBot, feedback: PatientFeedback, estimator: Told, heard: list[Sound]
+) -> None:
+    feedback.begin_walk()
+    window = feedback.window
+    assert window is not None
+    with qtbot.waitSignal(window.closed):
+        window.close()
+    assert not window.isVisible()
+    estimator.tell(*knee(60.0))
+    qtbot.wait(20)
+    assert heard == []
+    assert feedback.end_walk() == ()
+    feedback.toggle()
+    assert feedback.window is not window
+    assert feedback.target == KNEE  # what was typed stays
+
+
+def test_the_patient_is_not_named_on_it(feedback: PatientFeedback) -> None:
+    assert feedback.window is not None
+    assert feedback.window.windowTitle() == "Patient's screen"
+
+
+def test_reasons_are_said_in_words_of_what_is_gated_only() -> None:
+    assert reasons_against(tuple(Site), ALL, SURE, frozenset()) == {}
+    told = {**SURE, Joint.LEFT_KNEE: replace(SURE[Joint.LEFT_KNEE], zero=ZeroKind.NONE)}
+    reasons = reasons_against(tuple(Site), ALL, told, frozenset({Side.RIGHT}))
+    assert reasons[TargetMeasure.KNEE_SWING_PEAK, Side.LEFT].startswith("No zero was set")
+    assert (TargetMeasure.KNEE_SWING_PEAK, Side.RIGHT) not in reasons
+    assert "prosthetic foot rolls on" in reasons[TargetMeasure.STANCE_RATIO, Side.LEFT]
+    assert reasons_against((), (), {}, frozenset())[TargetMeasure.CADENCE, None] == "No foot sensor is worn."
+    one_leg = tuple(site for site in Site if site.side is Side.LEFT)
+    reasons = reasons_against(one_leg, ALL, SURE, frozenset())
+    assert reasons[TargetMeasure.STANCE_RATIO, Side.LEFT] == "Both feet need a sensor."
+    assert reasons[TargetMeasure.FOOT_STRIKE, Side.RIGHT] == "This foot has no sensor."
+    assert (TargetMeasure.FOOT_STRIKE, Side.LEFT) not in reasons
+    without = tuple(site for site in Site if site is not Site.RIGHT_THIGH)
+    reasons = reasons_against(tuple(Site), without, SURE, frozenset())
+    assert [*reasons.values()] == ["Its sensors have not rested. Let the patient stand still first."]
+    assert (TargetMeasure.KNEE_SWING_PEAK, Side.RIGHT) in reasons
+    assert reasons_against(tuple(Site), ALL, {}, frozenset())[TargetMeasure.KNEE_SWING_PEAK, Side.LEFT].startswith(
+        "The knee's"
+    )
