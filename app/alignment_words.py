@@ -59,6 +59,14 @@ def angle_words(part: ProsthesisPart, angle_deg: float) -> str:
     return f"+{amount} {tr(DIRECTIONS[part][angle_deg < 0])}"
 
 
+def direction_words(part: ProsthesisPart) -> tuple[str, str]:
+    """Say which way an angle and a shift of a part are positive, as captions: "Angle, plantar +", "Shift, back +"."""
+    angle = tr("Angle")
+    if part in DIRECTIONS:
+        angle = tr("Angle, {direction} +").format(direction=tr(DIRECTIONS[part][0]))
+    return angle, tr("Shift, outwards +") if part.is_frontal else tr("Shift, back +")
+
+
 def turns_words(turns: float) -> str:
     """Say how far a screw was turned: "½ out", "1¼ in"."""
     return (tr("{amount} in") if turns < 0 else tr("{amount} out")).format(amount=_eighths(turns))

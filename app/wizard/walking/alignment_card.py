@@ -5,10 +5,10 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from PySide6.QtCore import QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QMouseEvent, QPainter, QPaintEvent
+from PySide6.QtGui import QMouseEvent, QPainter, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QScrollArea, QSizePolicy, QVBoxLayout, QWidget
 
-from app.alignment_words import angle_words, change_in_words, height_words, part_name, shift_words, turns_words
+from app.alignment_words import MINUS, change_in_words, direction_words, part_name, turns_words
 from app.theme import ThemeNotifier
 from app.tokens import CHIP_RADIUS, CONTROL_RADIUS
 from app.widgets.card import Card
@@ -25,7 +25,7 @@ from core.alignment import FIGURES, MOST_TEXT, ProsthesisPart
 from core.body import Side
 
 BADGE, PADDING, LINE, GAP = 28, 8, 18, 12
-LEAST_LIST = 120
+LEAST_LIST = 88
 
 
 class RowRole(StrEnum):
@@ -101,8 +101,14 @@ class AlignmentCard(Card):
             self._rows.append(row)
         for widget, told in zip(self._rows, rows, strict=True):
             widget.show_row(told)
-            if told.role is RowRole.SHOWN:
-                self._scroll.ensureWidgetVisible(widget)
+        self._show_the_shown()
+
+    def _show_the_shown(self) -> None:
+        """Scroll the list to the alignment that is shown."""
+        shown = [row for row in self._rows if row.told.role is RowRole.SHOWN]
+        if shown:
+            top = sum(row.height() + self._rows_column.spacing() for row in self._rows[: self._rows.index(shown[0])])
+            self._scroll.verticalScrollBar().setValue(top)
 
     def show_entry(self, title: str) -> None:
         """Show the next change as `entry` holds it; `title` says from where."""
@@ -110,15 +116,19 @@ class AlignmentCard(Card):
         self.next_title.setText(title)
         if self.parts.currentData() != entry.part:
             self.parts.setCurrentIndex(list(ProsthesisPart).index(entry.part))
-        words = {
-            "angle_deg": (tr("Angle"), angle_words(entry.part, entry.figure("angle_deg"))),
-            "turns": (tr("Turn of the screw"), turns_words(entry.figure("turns"))),
-            "shift_mm": (tr("Shift"), shift_words(entry.part, entry.figure("shift_mm"))),
-            "height_mm": (tr("Height"), height_words(entry.figure("height_mm"))),
+        angle_words, shift_words = direction_words(entry.part)
+        shown = {
+            "angle_deg": (angle_words, "°"),
+            "turns": (tr("Turn of the screw"), ""),
+            "shift_mm": (shift_words, tr(" mm")),
+            "height_mm": (tr("Height, longer +"), tr(" mm")),
         }
         for name, stepper in self.steppers.items():
-            caption, value = words[name]
-            stepper.show_value(caption, value if entry.figure(name) else "0")
+            caption, unit = shown[name]
+            value = entry.figure(name)
+            sign = "+" if value > 0 else MINUS if value < 0 else ""
+            said = turns_words(value) if name == "turns" and value else f"{sign}{abs(value):g}{unit}"
+            stepper.show_value(caption, said)
         self.words.set_text(entry.text)
         line = change_in_words(entry.parts)
         self.written.setText(tr("Written as: {change}").format(change=line) if line else tr("Nothing changed yet."))
@@ -153,6 +163,7 @@ class AlignmentCard(Card):
         for stepper in self.steppers.values():
             stepper.stepped.connect(self._on_stepped)
         self.words.edited.connect(self._on_words_edited)
+        self._scroll.verticalScrollBar().rangeChanged.connect(self._show_the_shown)
 
     def _on_part_chosen(self, index: int) -> None:
         self._entry.part = list(ProsthesisPart)[index]
@@ -222,6 +233,10 @@ class _Row(Themed):
             texts.append(PaintedText(words, box, theme.font(12), align=LEFT, wraps=True))
             top += height
         return texts
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._on_look_changed()  # its lines may wrap otherwise
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
         self.pressed.emit(self._number, bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier))

@@ -18,8 +18,9 @@ OF_PROSTHETIC = ("knee_stance_to_swing_deg", "knee_while_loading_deg", "ankle_ro
 OF_SOUND = ("knee_stance_to_swing_deg", "ankle_push_off_deg", "stance_percent")
 OF_BOTH = ("speed_m_s", "cadence_steps_min")
 LENGTH = "stride_length_m"
+PADDING = 12
 SCALE = 1.8  # errors, to either edge of a strip
-ROW, HEAD = 28, 30
+ROW, HEAD = 28, 22
 
 
 class BenchDifferences(Card):
@@ -29,11 +30,16 @@ class BenchDifferences(Card):
         self.title = Text(look, size=16, weight=SEMIBOLD)
         self.table = CellTable(look, tr("Differences"), row=ROW, head=HEAD)
         self.no_proof = Text(look, tr(NO_PROOF), size=12, tone="ink2", wraps=True)
-        super().__init__(look, padding=12)
+        super().__init__(look, padding=PADDING)
         self.column.addWidget(self.title)
         self.column.addWidget(self.table)
         self.column.addStretch(1)
         self.column.addWidget(self.no_proof)
+
+    @property
+    def needed(self) -> int:
+        """How wide it has to be, px of the screen."""
+        return self.table.minimumWidth() + self._look.theme.px(2 * PADDING + 2)
 
     def show_pair(self, found: Comparison | None, prosthetic: Side, told: str) -> None:
         """Show how the pair differs; None: one alignment was walked with, and nothing is beside it."""
@@ -54,7 +60,7 @@ class BenchDifferences(Card):
 
 
 def _heading(words: str, side: Side | None) -> TableRow:
-    return TableRow((TextCell(words, weight=SEMIBOLD, side=side), EMPTY, EMPTY), is_heading=True)
+    return TableRow((TextCell(words, weight=SEMIBOLD, side=side, span=3), EMPTY, EMPTY), is_heading=True)
 
 
 def _rows(found: Comparison, columns: tuple[str, ...], side: Side | None) -> list[TableRow]:

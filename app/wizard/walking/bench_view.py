@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QVBoxLayout, QWidget
 
 from app.icons import Icon
 from app.pages.compared_words import withheld_in_words
@@ -24,8 +24,9 @@ from app.wizard.walking.bench_differences import BenchDifferences
 from app.wording import tr
 from core.body import Side, ankle_of, knee_of
 
-LIST, DIFFERENCES = 296, 312
+LIST, DIFFERENCES = 284, 312
 ANY_WIDTH = 16_777_215  # Qt's own
+ACROSS, DOWN = QBoxLayout.Direction.LeftToRight, QBoxLayout.Direction.TopToBottom
 ALIGNMENTS, CURVES, CHANGES = "alignments", "curves", "changes"
 
 
@@ -94,6 +95,7 @@ class BenchView(Themed):
         self.alignments.show_entry(state.next_title)
         self.differences.show_pair(state.found, state.side, state.answer.first)
         self._show_curves(state)
+        self._arrange()
 
     def show_entry(self, title: str) -> None:
         self.alignments.show_entry(title)
@@ -131,7 +133,7 @@ class BenchView(Themed):
         self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.setProperty(NO_RING, True)
         self.setAccessibleName(tr("Bench"))
-        self._curves_column = QVBoxLayout(self._curves)
+        self._curves_column = QBoxLayout(DOWN, self._curves)
         self._curves_column.setContentsMargins(0, 0, 0, 0)
         words = QVBoxLayout()
         words.setSpacing(2)
@@ -153,6 +155,7 @@ class BenchView(Themed):
     def _arrange(self) -> None:
         px, choice = self._look.theme.px, self.tabs.choice
         self.tabs.setVisible(self._is_compact)
+        self._curves_column.setDirection(ACROSS if self._is_compact else DOWN)
         cards: tuple[tuple[str, QWidget, int], ...] = (
             (ALIGNMENTS, self.alignments, LIST),
             (CURVES, self._curves, 0),
@@ -161,8 +164,9 @@ class BenchView(Themed):
         for key, card, width in cards:
             card.setVisible(not self._is_compact or choice == key)
             is_fixed = width and not self._is_compact
-            card.setMinimumWidth(px(width) if is_fixed else 0)
-            card.setMaximumWidth(px(width) if is_fixed else ANY_WIDTH)
+            wanted = max(px(width), self.differences.needed) if card is self.differences else px(width)
+            card.setMinimumWidth(wanted if is_fixed else 0)
+            card.setMaximumWidth(wanted if is_fixed else ANY_WIDTH)
 
     def _on_look_changed(self) -> None:
         px = self._look.theme.px
