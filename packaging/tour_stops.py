@@ -239,7 +239,7 @@ BENCH: tuple[Stop, ...] = (  # three alignments of one prosthesis, by keys
     Stop("31-a-walked", offers("Keep A"), ("press Return",), lingers_s=1.0, patience_s=60.0),
     Stop(
         "32-a-kept",
-        offers("Walk with A again"),
+        offers("A again"),
         (
             *("to Part", "press p", "to Height", *pressed("plus", 3), "to Part", "press f"),
             *("to Angle", *pressed("plus", 4), "to Turn", *pressed("plus", 4), "to Shift", *pressed("plus", 4)),
@@ -248,7 +248,7 @@ BENCH: tuple[Stop, ...] = (  # three alignments of one prosthesis, by keys
     Stop("33-b-told", offers("Walk with B"), ("press space",), lingers_s=1.0),
     Stop("33a-b-walking", has_walked(STRIDES), ("press space",), patience_s=60.0),
     Stop("34-b-against-a", offers("Keep B"), ("press Return",), lingers_s=3.0, patience_s=60.0),
-    Stop("35-b-kept", offers("Walk with B again"), ("to Turn", *pressed("minus", 2), "press space"), lingers_s=1.0),
+    Stop("35-b-kept", offers("B again"), ("to Turn", *pressed("minus", 2), "press space"), lingers_s=1.0),
     Stop("35a-c-walking", has_walked(STRIDES), ("press space",), patience_s=60.0),
     Stop("36-c-against-b", offers("Keep C"), ("press 3", "press shift+1"), lingers_s=3.0, patience_s=60.0),
     Stop("37-c-against-a", offers("Return to A"), ("to Return to A", "press Return"), lingers_s=1.0),

@@ -15,17 +15,16 @@ def bench_bar(bench: Bench, asked: str | None, cannot_start: str, can_start: boo
     chain = bench.chain
     is_new = bool(bench.entry.parts)
     letter = chain.next_letter if is_new else chain.letters.get(chain.base, "")
-    walk = tr("Walk with {letter}") if is_new else tr("Walk with {letter} again")
+    walk = tr("Walk with {letter}") if is_new else tr("{letter} again")
     start = BarAction(walk.format(letter=letter), tr("Space"), Icon.PLAY, is_wished=False, is_enabled=can_start)
     others: tuple[BarAction, ...] = (start,)
     if chain.way_back(chain.first):
         back = tr("Return to {letter}").format(letter=chain.letters.get(chain.first, ""))
         others = (BarAction(back, "", Icon.REPEAT, is_wished=False), start)
-    every = BarAction(tr("All walks"))
+    every = BarAction(tr("Walks"))
     if asked is None:
         results = BarAction(tr("Results"), "", Icon.NEXT)
         return BarState(primary=results, others=others, quiet=(every,), note=cannot_start)
     keep = BarAction(tr("Keep {letter}").format(letter=chain.letters.get(asked, "")), tr("Enter"), Icon.CHECK)
-    note = tr("What is changed next is changed from {letter}.").format(letter=chain.letters.get(chain.base, ""))
     discard = BarAction(tr("Discard"), "D")
-    return BarState(primary=keep, others=others, quiet=(every, discard), note=cannot_start or note)
+    return BarState(primary=keep, others=others, quiet=(every, discard), note=cannot_start)

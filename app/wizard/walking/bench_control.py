@@ -38,6 +38,7 @@ class Bench(QObject):
         self.is_wished = True  # else the list of walks stands there
         self._returned_to = ""
         self._shown = self._beside = ""  # letters; empty: the latest, and what it was changed from
+        self._to_undo = ""  # in words, as long as the prosthesis is said to be put back
         self._undone = ("", "")  # what the prosthesis was in before it was said to be put back, and that
 
     @property
@@ -64,7 +65,8 @@ class Bench(QObject):
     def begun(self) -> None:
         """The next walk begins: what was told of it is its own now."""
         self.entry.load(())
-        self._returned_to = self._shown = self._beside = ""
+        self._returned_to = self._shown = self._beside = self._to_undo = ""
+        self._undone = ("", "")
 
     def discarded(self, change: AlignmentChange | None) -> None:
         """A walk does not count, but what was changed before it is still so: it is told again of the next."""
@@ -80,16 +82,16 @@ class Bench(QObject):
         if not back:
             return ""
         self._undone = (chain.base, self._returned_to)
-        self._returned_to = chain.first
+        self._returned_to, self._to_undo = chain.first, to_do_in_words(back)
         self.changed.emit()
         letter = chain.letters.get(chain.first, "")
-        return tr("Back to {letter}: {changes}").format(letter=letter, changes=to_do_in_words(back))
+        return tr("Back to {letter}: {changes}").format(letter=letter, changes=self._to_undo)
 
     def undo_return(self) -> bool:
         """Take back that it was put back; whether it was."""
         if not self._undone[0]:
             return False
-        self._returned_to, self._undone = self._undone[1], ("", "")
+        self._returned_to, self._undone, self._to_undo = self._undone[1], ("", ""), ""
         self.changed.emit()
         return True
 
@@ -137,6 +139,9 @@ class Bench(QObject):
         base = chain.letters.get(chain.base, "")
         if self.entry.parts:
             return tr("{letter}: changed from {base}").format(letter=chain.next_letter, base=base)
+        if self._to_undo:
+            said = tr("Next change, from {base}. To undo first: {changes}")
+            return said.format(base=base, changes=self._to_undo)
         return tr("Next change, from {base}").format(base=base)
 
     def _parts(self) -> tuple[Part, ...]:

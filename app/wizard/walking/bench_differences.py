@@ -20,7 +20,7 @@ OF_BOTH = ("speed_m_s", "cadence_steps_min")
 LENGTH = "stride_length_m"
 PADDING = 12
 SCALE = 1.8  # errors, to either edge of a strip
-ROW, HEAD = 28, 22
+ROW, HEAD = 26, 22
 
 
 class BenchDifferences(Card):

@@ -33,9 +33,7 @@ OF_C = AlignmentChange("Alignment B", (PartChange(PYLON, height_mm=-1.0),))
 
 def recording(number: int, letter: str, change: AlignmentChange | None = None, **told: Any) -> Recording:
     name = f"walk {number}"
-    return Recording(
-        name, RecordingKind.WALKING, name, {}, condition=f"Alignment {letter}", alignment=change, **told
-    )
+    return Recording(name, RecordingKind.WALKING, name, {}, condition=f"Alignment {letter}", alignment=change, **told)
 
 
 WALKED = (recording(1, "A"), recording(2, "B", OF_B), recording(3, "C", OF_C))
@@ -53,7 +51,7 @@ def told_of(one: Part, other: Part) -> tuple[Outcome, str, str]:
 
 def test_a_change_is_told_part_by_part_in_steps_up_to_its_limits() -> None:
     entry = ChangeEntry()
-    assert entry.parts == ()
+    assert not entry.parts
     entry.step("angle_deg", 3)
     entry.step("turns", -2)
     entry.part = PYLON
@@ -67,7 +65,7 @@ def test_a_change_is_told_part_by_part_in_steps_up_to_its_limits() -> None:
     other.load(entry.parts)
     assert other.parts == entry.parts
     other.load(())
-    assert other.parts == ()
+    assert not list(other.parts)
 
 
 def test_with_nothing_told_the_next_walk_is_the_same_alignment_again() -> None:
@@ -175,10 +173,12 @@ def test_each_alignment_stands_against_the_one_it_was_changed_from_until_another
 def test_to_return_it_says_what_to_undo_and_can_be_taken_back(bench: Bench) -> None:
     assert bench.return_to_first() == "Back to A: Pylon \N{MINUS SIGN}2 mm"
     assert bench.chain.base == "Alignment A"
+    assert bench.next_title == "Next change, from A. To undo first: Pylon \N{MINUS SIGN}2 mm"  # as long as it is so
     assert bench.return_to_first() == ""  # it is there
     assert bench.undo_return()
     assert bench.chain.base == "Alignment C"
-    assert not bench.undo_return()
+    assert bench.next_title == "Next change, from C"
+    assert bench.undo_return() is False
 
 
 def test_a_discarded_walks_change_is_told_again_of_the_next(bench: Bench) -> None:
@@ -191,22 +191,23 @@ def test_a_discarded_walks_change_is_told_again_of_the_next(bench: Bench) -> Non
 
 def test_the_bar_says_what_the_next_walk_is_walked_with(bench: Bench) -> None:
     again = bench_bar(bench, None, "", can_start=True)
-    assert [one.text for one in again.others] == ["Return to A", "Walk with C again"]
+    assert [one.text for one in again.others] == ["Return to A", "C again"]
     bench.entry.step("turns", 1)
     asked = bench_bar(bench, "Alignment C", "", can_start=True)
     assert [one.text for one in asked.others] == ["Return to A", "Walk with D"]
     assert asked.primary is not None
-    assert (asked.primary.text, asked.note) == ("Keep C", "What is changed next is changed from C.")
+    assert (asked.primary.text, asked.note) == ("Keep C", "")
+    assert [one.text for one in asked.quiet] == ["Walks", "Discard"]
 
 
 def test_no_bench_where_no_side_is_sound_or_nothing_was_walked(bench: Bench) -> None:
-    assert bench.is_offered
-    visit = cast(Any, bench)._visit
+    visit, offered = cast(Any, bench)._visit, [bench.is_offered]
     visit.prosthetic_sides = frozenset(Side)
-    assert not bench.is_offered
+    offered.append(bench.is_offered)
     visit.prosthetic_sides = frozenset({Side.LEFT})
     visit.recordings.walks = []
-    assert not bench.is_offered
+    offered.append(bench.is_offered)
+    assert offered == [True, False, False]
 
 
 @pytest.fixture
@@ -225,8 +226,16 @@ def test_the_page_shows_the_chain_the_curves_and_the_differences(page: WalkingPa
     assert not page.charts.isVisible()
     assert not page.next.isVisible()
     rows = page.bench.alignments.rows
-    assert [(row.letter, row.title) for row in rows] == [("A", "Starting point"), ("B", "A, changed"), ("C", "B, changed")]
-    assert [row.lines for row in rows] == [(), (("Pylon, height", "+3 mm"),), (("Pylon, height", "\N{MINUS SIGN}1 mm"),)]
+    assert [(row.letter, row.title) for row in rows] == [
+        ("A", "Starting point"),
+        ("B", "A, changed"),
+        ("C", "B, changed"),
+    ]
+    assert [row.lines for row in rows] == [
+        (),
+        (("Pylon, height", "+3 mm"),),
+        (("Pylon, height", "\N{MINUS SIGN}1 mm"),),
+    ]
     assert [[curve.letter for curve in frame.chart.curves] for frame in page.bench.frames] == [["B", "C"]] * 2
     bench.choose(1, is_beside=False)
     page.show_bench(bench.state())
@@ -243,7 +252,11 @@ def test_the_next_change_is_told_by_keys_and_reads_as_it_prints(page: WalkingPag
     card = page.bench.alignments
     page.bench.told.connect(lambda: page.bench.show_entry(bench.next_title))
     assert card.written.text() == "Nothing changed yet."
-    for name, key, times in (("turns", Qt.Key.Key_Plus, 4), ("angle_deg", Qt.Key.Key_Up, 5), ("angle_deg", Qt.Key.Key_Minus, 1)):
+    for name, key, times in (
+        ("turns", Qt.Key.Key_Plus, 4),
+        ("angle_deg", Qt.Key.Key_Up, 5),
+        ("angle_deg", Qt.Key.Key_Minus, 1),
+    ):
         for _ in range(times):
             QTest.keyClick(card.steppers[name], key)
     assert card.written.text() == "Written as: Foot, front screw ½ turn out, +2° plantar"
