@@ -61,7 +61,7 @@ class AlignmentCard(Card):
 
     def __init__(self, look: ThemeNotifier, entry: ChangeEntry) -> None:
         self._entry = entry
-        self._rows: list[_Row] = []
+        self._rows: list[_AlignmentRow] = []
         self._list = QWidget()
         self._rows_column = QVBoxLayout(self._list)
         self._scroll = QScrollArea()
@@ -95,7 +95,7 @@ class AlignmentCard(Card):
         while len(self._rows) > len(rows):
             self._rows.pop().deleteLater()
         while len(self._rows) < len(rows):
-            row = _Row(self._look, len(self._rows))
+            row = _AlignmentRow(self._look, len(self._rows))
             row.pressed.connect(self.chosen)
             self._rows_column.insertWidget(len(self._rows), row)
             self._rows.append(row)
@@ -179,7 +179,7 @@ class AlignmentCard(Card):
         self.told.emit()
 
 
-class _Row(Themed):
+class _AlignmentRow(Themed):
     """One alignment; pressed it is shown, with Shift it stands beside."""
 
     pressed = Signal(int, bool)

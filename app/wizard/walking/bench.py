@@ -61,7 +61,7 @@ class ChangeEntry:
 
 
 @dataclass(frozen=True, slots=True)
-class Chain:
+class AlignmentChain:
     """The conditions walked so far in order, what was changed before each, and `base`, which the prosthesis is in."""
 
     letters: Mapping[str, str]  # by condition
@@ -83,17 +83,17 @@ class Chain:
         return changed_between(self.changes, self.base, to)
 
 
-def chain_of(recordings: Sequence[Recording], returned_to: str) -> Chain:
+def chain_of(recordings: Sequence[Recording], returned_to: str) -> AlignmentChain:
     """The chain of the walks that count; `returned_to`: what the prosthesis was put back to since, empty where not."""
     of_walk = condition_letters(recordings)
     walks = [one for one in recordings if one.kind is RecordingKind.WALKING and one.is_kept]
     letters = {one.condition or one.name: of_walk[one.name] for one in walks}
     changes = alignments_of(recordings)
     latest = (walks[-1].condition or walks[-1].name) if walks else ""
-    return Chain(letters, changes, returned_to if returned_to in changes else latest)
+    return AlignmentChain(letters, changes, returned_to if returned_to in changes else latest)
 
 
-def next_walk(chain: Chain, entry: ChangeEntry, new_condition: str) -> tuple[str, AlignmentChange | None]:
+def next_walk(chain: AlignmentChain, entry: ChangeEntry, new_condition: str) -> tuple[str, AlignmentChange | None]:
     """What the next walk is called and what was changed before it: with nothing told, the same condition again."""
     if entry.parts:
         return new_condition, AlignmentChange(chain.base, entry.parts)

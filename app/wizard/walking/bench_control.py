@@ -9,7 +9,7 @@ from app.reports.comparison import Comparison, Contrast, Part, conditions_of
 from app.reports.patient_report.answer import Answer, Outcome
 from app.reports.patient_report.numbers_in_words import fixed
 from app.wizard.walking.alignment_card import AlignmentRow, RowRole
-from app.wizard.walking.bench import Chain, ChangeEntry, chain_of, next_walk
+from app.wizard.walking.bench import AlignmentChain, ChangeEntry, chain_of, next_walk
 from app.wizard.walking.bench_view import BenchState
 from app.wizard.walking.bench_words import SPEED, bench_answer
 from app.wording import tr
@@ -55,7 +55,7 @@ class Bench(QObject):
         return self.side is not None and has_walk
 
     @property
-    def chain(self) -> Chain:
+    def chain(self) -> AlignmentChain:
         return chain_of([one.details for one in self._visit.recordings.every], self._returned_to)
 
     def next_walk(self, new_condition: str) -> tuple[str, AlignmentChange | None]:

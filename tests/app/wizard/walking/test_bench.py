@@ -6,7 +6,7 @@ from typing import Any, cast
 
 import numpy as np
 import pytest
-from PySide6.QtCore import QObject, Qt
+from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
@@ -132,8 +132,8 @@ def test_few_strides_are_ten() -> None:
 
 
 @pytest.fixture
-def bench(qtbot: QtBot) -> Bench:
-    """Of a visit of three walks with the left leg prosthetic, of which the second bends the knee 10° more."""
+def visit() -> SimpleNamespace:
+    """What the bench asks of a visit: three walks, the left leg prosthetic; the second bends its knee 10° more."""
     legs = (leg(Side.LEFT), leg(Side.LEFT, knee_range_deg=70.0), leg(Side.LEFT, knee_range_deg=71.0))
     walks = tuple(
         judged_walk(walk(left=one, name=f"walk {k}", folder=f"walk {k}")) for k, one in enumerate(legs, start=1)
@@ -141,15 +141,16 @@ def bench(qtbot: QtBot) -> Bench:
     span = Calibration(tuple(one.name for one in walks), calibrations())
     analysis = Analysis(Method.ROBUST, is_simulated=True, calibrations=(span,), recordings=walks)
     every = [SimpleNamespace(details=one) for one in WALKED]
-    visit = SimpleNamespace(
+    return SimpleNamespace(
         prosthetic_sides=frozenset({Side.LEFT}),
         recordings=SimpleNamespace(every=every, walks=every),
         evaluation=SimpleNamespace(analysis=analysis, session=Session(WALKED)),
     )
-    parent = QObject()
-    bench = Bench(cast(Visit, visit), parent)
-    bench.keep_parent = parent  # type: ignore[attr-defined]  # else it goes with its parent
-    return bench
+
+
+@pytest.fixture
+def bench(visit: SimpleNamespace, look: ThemeNotifier) -> Bench:
+    return Bench(cast(Visit, visit), look)
 
 
 def shown(bench: Bench) -> tuple[str, str]:
@@ -200,8 +201,8 @@ def test_the_bar_says_what_the_next_walk_is_walked_with(bench: Bench) -> None:
     assert [one.text for one in asked.quiet] == ["Walks", "Discard"]
 
 
-def test_no_bench_where_no_side_is_sound_or_nothing_was_walked(bench: Bench) -> None:
-    visit, offered = cast(Any, bench)._visit, [bench.is_offered]
+def test_no_bench_where_no_side_is_sound_or_nothing_was_walked(bench: Bench, visit: SimpleNamespace) -> None:
+    offered = [bench.is_offered]
     visit.prosthetic_sides = frozenset(Side)
     offered.append(bench.is_offered)
     visit.prosthetic_sides = frozenset({Side.LEFT})
