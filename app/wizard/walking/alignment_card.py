@@ -70,6 +70,7 @@ class AlignmentCard(Card):
         self.steppers = {name: Stepper(look) for name in FIGURES}
         self.words = Field(look, tr("In words"), has_label=False, placeholder=tr("In words, optional"), most=MOST_TEXT)
         self.written = Text(look, size=12, tone="ink2", wraps=True)
+        self._grid = QGridLayout()
         self._chip: Chip | None = None
         self._head = QHBoxLayout()
         self._side_word = Text(look, tr("prosthetic"), size=12, tone="ink2")
@@ -110,6 +111,13 @@ class AlignmentCard(Card):
             top = sum(row.height() + self._rows_column.spacing() for row in self._rows[: self._rows.index(shown[0])])
             self._scroll.verticalScrollBar().setValue(top)
 
+    def set_compact(self, is_compact: bool) -> None:
+        """Put the steppers in one row where the card has the width of the window."""
+        columns = len(self.steppers) if is_compact else 2
+        for k, stepper in enumerate(self.steppers.values()):
+            self._grid.removeWidget(stepper)
+            self._grid.addWidget(stepper, k // columns, k % columns)
+
     def show_entry(self, title: str) -> None:
         """Show the next change as `entry` holds it; `title` says from where."""
         entry = self._entry
@@ -149,11 +157,9 @@ class AlignmentCard(Card):
         self.column.addWidget(self._scroll, 1)
         self.column.addWidget(self.next_title)
         self.column.addWidget(self.parts)
-        grid = QGridLayout()
-        for k, stepper in enumerate(self.steppers.values()):
-            grid.addWidget(stepper, k // 2, k % 2)
-        grid.setSpacing(8)
-        self.column.addLayout(grid)
+        self._grid.setSpacing(8)
+        self.set_compact(False)
+        self.column.addLayout(self._grid)
         self.column.addWidget(self.words)
         self.column.addWidget(self.written)
 

@@ -12,6 +12,7 @@ from app.wizard.walking.alignment_card import AlignmentRow, RowRole
 from app.wizard.walking.bench import AlignmentChain, ChangeEntry, chain_of, next_walk
 from app.wizard.walking.bench_view import BenchState
 from app.wizard.walking.bench_words import SPEED, bench_answer
+from app.wizard.walking.walk_labels import is_alignment, new_alignment
 from app.wording import tr
 from core.alignment import AlignmentChange
 from core.body import Side
@@ -49,18 +50,21 @@ class Bench(QObject):
 
     @property
     def is_offered(self) -> bool:
-        """Whether a walk with a condition was walked on a prosthesis."""
-        recordings = self._visit.recordings
-        has_walk = any(one.details.is_kept and one.details.condition for one in recordings.walks)
-        return self.side is not None and has_walk
+        """Whether the latest walk that counts was one with an alignment of a prosthesis.
+
+        After one that is called otherwise nobody knows which alignment the prosthesis is in.
+        """
+        kept = [one.details.condition for one in self._visit.recordings.walks if one.details.is_kept]
+        return self.side is not None and bool(kept) and is_alignment(kept[-1])
 
     @property
     def chain(self) -> AlignmentChain:
         return chain_of([one.details for one in self._visit.recordings.every], self._returned_to)
 
-    def next_walk(self, new_condition: str) -> tuple[str, AlignmentChange | None]:
+    def next_walk(self) -> tuple[str, AlignmentChange | None]:
         """What the next walk is called and what was changed before it."""
-        return next_walk(self.chain, self.entry, new_condition)
+        chain = self.chain
+        return next_walk(chain, self.entry, new_alignment(chain.next_letter, list(chain.changes)))
 
     def begun(self) -> None:
         """The next walk begins: what was told of it is its own now."""
@@ -151,10 +155,10 @@ class Bench(QObject):
         return conditions_of(evaluation.analysis, evaluation.session.recordings)
 
     def _answer(self, found: Comparison | None, side: Side, shown: Part | None) -> Answer:
+        if shown is None or (self._visit.evaluation.is_busy and not self._shown):
+            return Answer(Outcome.OPEN, tr("The walk is being analysed."), "")
         if found is not None:
             return bench_answer(found, side)
-        if shown is None:
-            return Answer(Outcome.OPEN, tr("The walk is being analysed."), "")
         first = tr("{letter} is the starting point. Change one thing, write it down, then walk.")
         return Answer(Outcome.OPEN, first.format(letter=shown.letter), tr("The change is written before its walk."))
 

@@ -102,6 +102,7 @@ class BenchView(Themed):
 
     def set_compact(self, is_compact: bool) -> None:
         self._is_compact = is_compact
+        self.alignments.set_compact(is_compact)
         self._on_look_changed()
         self._arrange()
 

@@ -324,7 +324,7 @@ class WalkingStep(Step):
         acquisition.ask(RecordingKind.WALKING)
         label, alignment = self._label, None
         if self._is_bench:
-            label, alignment = self._bench.next_walk(label_after(self._visit.patient.details, self._used))
+            label, alignment = self._bench.next_walk()
         recordings.begin(acquisition, RecordingKind.WALKING, label, alignment)
         self._bench.begun()
         if self._estimator is not None and recordings.ongoing is not None:

@@ -19,11 +19,13 @@ from app.wizard.walking.bench_bar import bench_bar
 from app.wizard.walking.bench_control import Bench
 from app.wizard.walking.bench_words import bench_answer
 from app.wizard.walking.page import WalkingPage
+from app.wizard.walking.walk_labels import new_alignment
 from app.wizard.walking.walk_list import WalkRow, WalkState
 from core.alignment import AlignmentChange, PartChange, ProsthesisPart
 from core.body import Side
 from core.results import Analysis, Calibration, Method
 from core.samples import Recording, RecordingKind, Session
+from tests.app.room import words_cut
 from tests.core.verdicts.built_walk import calibrations, judged_walk, leg, walk
 
 PYLON = ProsthesisPart.PYLON
@@ -144,7 +146,7 @@ def visit() -> SimpleNamespace:
     return SimpleNamespace(
         prosthetic_sides=frozenset({Side.LEFT}),
         recordings=SimpleNamespace(every=every, walks=every),
-        evaluation=SimpleNamespace(analysis=analysis, session=Session(WALKED)),
+        evaluation=SimpleNamespace(analysis=analysis, session=Session(WALKED), is_busy=False),
     )
 
 
@@ -208,7 +210,26 @@ def test_no_bench_where_no_side_is_sound_or_nothing_was_walked(bench: Bench, vis
     visit.prosthetic_sides = frozenset({Side.LEFT})
     visit.recordings.walks = []
     offered.append(bench.is_offered)
-    assert offered == [True, False, False]
+    visit.recordings.walks = [SimpleNamespace(details=replace(WALKED[0], condition="Barefoot"))]
+    offered.append(bench.is_offered)
+    assert offered == [True, False, False, False]
+
+
+def test_the_next_alignment_is_called_by_its_letter_and_never_as_one_before(bench: Bench) -> None:
+    bench.entry.step("turns", 1)
+    assert bench.next_walk()[0] == "Alignment D"
+    assert new_alignment("B", ["Alignment A", "Alignment B"]) == "Alignment C"
+
+
+def test_while_a_walk_is_analysed_nothing_is_said_of_the_ones_before(bench: Bench, visit: SimpleNamespace) -> None:
+    visit.evaluation.is_busy = True
+    state = bench.state()
+    assert state is not None
+    assert state.answer.first == "The walk is being analysed."
+    bench.choose(1, is_beside=False)  # somebody asks for them
+    state = bench.state()
+    assert state is not None
+    assert "10.0° more than with A" in state.answer.first
 
 
 @pytest.fixture
@@ -277,3 +298,19 @@ def test_in_a_small_window_each_has_a_tab(page: WalkingPage, tab: str, visible: 
     assert page.bench.tabs.choice == tab
     cards = [page.bench.alignments, page.bench.frames[0], page.bench.differences]
     assert [card.isVisible() for card in cards] == [k == visible for k in range(3)]
+
+
+@pytest.mark.usefixtures("pseudo_language")
+@pytest.mark.parametrize(("width", "height", "is_compact"), [(1064, 600, False), (896, 420, True)])
+def test_no_word_of_the_bench_is_cut_in_a_language_as_long_as_german(
+    qtbot: QtBot, look: ThemeNotifier, bench: Bench, width: int, height: int, is_compact: bool
+) -> None:
+    bench.entry.step("turns", -3)
+    page = WalkingPage(look, bench.entry)
+    qtbot.addWidget(page)
+    page.set_compact(is_compact)
+    page.resize(width, height)
+    page.show_walks((WalkRow("1", "A", "Alignment A", WalkState.KEPT, 12),))
+    page.show_bench(bench.state())
+    page.show()
+    assert words_cut(page) == []

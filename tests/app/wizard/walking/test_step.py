@@ -4,7 +4,8 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 import pytest
-from PySide6.QtCore import QTimer
+from PySide6.QtCore import Qt, QTimer
+from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
 from app.theme import ThemeNotifier
@@ -14,6 +15,7 @@ from app.wizard.visit import Visit
 from app.wizard.walking.readout import WalkingReadout
 from app.wizard.walking.step import WalkingStep
 from app.wizard.walking.walk_list import WalkState
+from core.alignment import AlignmentChange, PartChange, ProsthesisPart
 from core.body import Joint, Site
 from core.samples import Patient, RecordingKind
 from devices.replay import ReplaySource
@@ -96,14 +98,27 @@ def test_space_starts_and_stops_and_keeps(qtbot: QtBot, step: WalkingStep, visit
     with qtbot.waitSignal(visit.recordings.ended, timeout=10_000):
         step.on_intent(RUN)
     assert states(step) == [("A", "Alignment A", WalkState.ASKING)]
-    assert step.page.stopped.isVisible()
+    assert step.page.bench.isVisible()  # in the place of the question: the leg is prosthetic
     assert not step.cannot_leave
+    bar = step.bar()
+    assert bar.primary is not None
+    assert (bar.primary.text, [one.text for one in bar.others]) == ("Keep A", ["A again"])
+    for _ in range(2):
+        QTest.keyClick(step.page.bench.alignments.steppers["turns"], Qt.Key.Key_Plus)
+    assert [one.text for one in step.bar().others] == ["Walk with B"]
     with qtbot.waitSignal(visit.recordings.begun, timeout=10_000):
         step.on_intent(RUN)  # keeps it, and starts the next
     assert states(step) == [("A", "Alignment A", WalkState.KEPT), ("B", "Alignment B", WalkState.RECORDING)]
     with qtbot.waitSignal(visit.recordings.ended, timeout=10_000):
         step.on_intent(RUN)
+    turned = AlignmentChange("Alignment A", (PartChange(ProsthesisPart.FOOT_FRONT_SCREW, turns=0.25),))
+    assert [one.stored.details.alignment for one in visit.recordings.walks] == [None, turned]
+    assert not bar_says_change(step)
     qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=20_000)
+
+
+def bar_says_change(step: WalkingStep) -> bool:
+    return any(one.text.startswith("Walk with") for one in step.bar().others)
 
 
 def test_five_strides_find_the_ankles_axes_anew(
