@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from PySide6.QtCore import QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QMouseEvent, QPainter, QPaintEvent, QResizeEvent
+from PySide6.QtGui import QFontMetrics, QMouseEvent, QPainter, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QScrollArea, QSizePolicy, QVBoxLayout, QWidget
 
 from app.alignment_words import MINUS, change_in_words, direction_words, part_name, turns_words
@@ -92,7 +92,7 @@ class AlignmentCard(Card):
     def show_rows(self, rows: Sequence[AlignmentRow], side: Side) -> None:
         if self._chip is None:
             self._chip = Chip(self._look, side)
-            self._head.insertWidget(1, self._chip)
+            self._head.insertWidget(2, self._chip)
         while len(self._rows) > len(rows):
             self._rows.pop().deleteLater()
         while len(self._rows) < len(rows):
@@ -127,7 +127,7 @@ class AlignmentCard(Card):
         angle_words, shift_words = direction_words(entry.part)
         shown = {
             "angle_deg": (angle_words, "°"),
-            "turns": (tr("Turn of the screw"), ""),
+            "turns": (tr("Turns"), ""),
             "shift_mm": (shift_words, tr(" mm")),
             "height_mm": (tr("Height, longer +"), tr(" mm")),
         }
@@ -142,7 +142,8 @@ class AlignmentCard(Card):
         self.written.setText(tr("Written as: {change}").format(change=line) if line else tr("Nothing changed yet."))
 
     def _build(self) -> None:
-        self._head.addWidget(Text(self._look, tr("Alignments"), size=16, weight=SEMIBOLD), 1)
+        self._head.addWidget(Text(self._look, tr("Alignments"), size=16, weight=SEMIBOLD))
+        self._head.addStretch(1)
         self._head.addWidget(self._side_word)
         self._rows_column.setContentsMargins(0, 0, 0, 0)
         self._rows_column.setSpacing(4)
@@ -219,11 +220,12 @@ class _AlignmentRow(Themed):
         left, width = px(PADDING + BADGE + GAP), self.width()
         badge_tone = "inv_ink" if self.told.role is RowRole.SHOWN else "ink"
         role = {RowRole.SHOWN: tr("shown"), RowRole.BESIDE: tr("beside"), RowRole.NONE: ""}[self.told.role]
-        right = QRectF(width - px(70), px(PADDING), px(70 - PADDING), px(LINE))
+        aside = QFontMetrics(theme.font(12, MEDIUM)).horizontalAdvance(role) + px(PADDING) + 2
+        right = QRectF(width - aside, px(PADDING), aside - px(PADDING), px(LINE))
         texts = [
             PaintedText(self.told.letter, self._badge, theme.font(14, SEMIBOLD), badge_tone, CENTRE),
             PaintedText(
-                self.told.title, QRectF(left, px(PADDING), width - left - px(70), px(LINE)), theme.font(14, SEMIBOLD)
+                self.told.title, QRectF(left, px(PADDING), width - left - aside, px(LINE)), theme.font(14, SEMIBOLD)
             ),
             PaintedText(
                 self.told.note,

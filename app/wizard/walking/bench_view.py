@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from PySide6.QtCore import Qt, Signal
+from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QVBoxLayout, QWidget
 
 from app.icons import Icon
@@ -24,7 +25,8 @@ from app.wizard.walking.bench_differences import BenchDifferences
 from app.wording import tr
 from core.body import Side, ankle_of, knee_of
 
-LIST, DIFFERENCES = 284, 312
+LIST, CURVES_LEAST, DIFFERENCES = 284, 308, 312
+BETWEEN = 16
 ANY_WIDTH = 16_777_215  # Qt's own
 ACROSS, DOWN = QBoxLayout.Direction.LeftToRight, QBoxLayout.Direction.TopToBottom
 ALIGNMENTS, CURVES, CHANGES = "alignments", "curves", "changes"
@@ -44,7 +46,7 @@ class BenchState:
 
 
 class BenchView(Themed):
-    """Three cards, in a small window one at a time.
+    """Three cards; where they have not all room beside one another, one at a time.
 
     Signals
     -------
@@ -155,25 +157,32 @@ class BenchView(Themed):
 
     def _arrange(self) -> None:
         px, choice = self._look.theme.px, self.tabs.choice
-        self.tabs.setVisible(self._is_compact)
-        self._curves_column.setDirection(ACROSS if self._is_compact else DOWN)
+        list_width = max(px(LIST), self.alignments.minimumSizeHint().width())
+        curves = max([px(CURVES_LEAST), *(frame.minimumSizeHint().width() for frame in self.frames)])
+        changes = max(px(DIFFERENCES), self.differences.needed)
+        is_tabbed = self._is_compact or list_width + curves + changes + 2 * px(BETWEEN) > self.width()
+        self.tabs.setVisible(is_tabbed)
+        self._curves_column.setDirection(ACROSS if is_tabbed else DOWN)
         cards: tuple[tuple[str, QWidget, int], ...] = (
-            (ALIGNMENTS, self.alignments, LIST),
+            (ALIGNMENTS, self.alignments, list_width),
             (CURVES, self._curves, 0),
-            (CHANGES, self.differences, DIFFERENCES),
+            (CHANGES, self.differences, changes),
         )
         for key, card, width in cards:
-            card.setVisible(not self._is_compact or choice == key)
-            is_fixed = width and not self._is_compact
-            wanted = max(px(width), self.differences.needed) if card is self.differences else px(width)
-            card.setMinimumWidth(wanted if is_fixed else 0)
-            card.setMaximumWidth(wanted if is_fixed else ANY_WIDTH)
+            card.setVisible(not is_tabbed or choice == key)
+            is_fixed = width and not is_tabbed
+            card.setMinimumWidth(width if is_fixed else 0)
+            card.setMaximumWidth(width if is_fixed else ANY_WIDTH)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._arrange()
 
     def _on_look_changed(self) -> None:
         px = self._look.theme.px
         self.first.set_size(16 if self._is_compact else 20)
         self._column.setSpacing(px(12))
-        self._row.setSpacing(px(16))
+        self._row.setSpacing(px(BETWEEN))
         self._head.setSpacing(px(12))
         self._curves_column.setSpacing(px(12))
         self._arrange()

@@ -1,7 +1,7 @@
 """A figure that goes up and down in steps, by keys or by pressing its ends: no keyboard of digits is needed."""
 
 from PySide6.QtCore import QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QKeyEvent, QMouseEvent, QPainter, QPaintEvent
+from PySide6.QtGui import QFontMetrics, QKeyEvent, QMouseEvent, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from app.theme import ThemeNotifier
@@ -9,7 +9,8 @@ from app.widgets.painted_text import CENTRE, LEFT, PaintedText
 from app.widgets.text import MEDIUM, SEMIBOLD
 from app.wording import tr
 
-CAPTION, BOX, END = 18, 44, 36
+CAPTION, BOX, END = 18, 44, 32
+LEAST = 116
 UP = (Qt.Key.Key_Plus, Qt.Key.Key_Equal, Qt.Key.Key_Up, Qt.Key.Key_Right)
 DOWN = (Qt.Key.Key_Minus, Qt.Key.Key_Underscore, Qt.Key.Key_Down, Qt.Key.Key_Left)
 
@@ -29,11 +30,15 @@ class Stepper(QWidget):
         self.caption, self.value = caption, value
         self.setAccessibleName(f"{caption}: {value}")
         self.setAccessibleDescription(tr("Plus and minus change it."))
+        self.updateGeometry()
         self.update()
 
     def sizeHint(self) -> QSize:
-        px = self._look.theme.px
-        return QSize(px(116), px(CAPTION + BOX))
+        theme = self._look.theme
+        px = theme.px
+        caption = QFontMetrics(theme.font(12)).horizontalAdvance(self.caption)
+        value = QFontMetrics(theme.font(14, SEMIBOLD)).horizontalAdvance(self.value) + 2 * px(END)
+        return QSize(max(px(LEAST), caption + 2, value + 2), px(CAPTION + BOX))
 
     def minimumSizeHint(self) -> QSize:
         return self.sizeHint()

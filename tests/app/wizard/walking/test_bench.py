@@ -283,7 +283,7 @@ def test_the_next_change_is_told_by_keys_and_reads_as_it_prints(page: WalkingPag
             QTest.keyClick(card.steppers[name], key)
     assert card.written.text() == "Written as: Foot, front screw ½ turn out, +2° plantar"
     assert card.next_title.text() == "D: changed from C"
-    assert card.steppers["turns"].accessibleName() == "Turn of the screw: ½ out"
+    assert card.steppers["turns"].accessibleName() == "Turns: ½ out"
     card.parts.setCurrentIndex(list(ProsthesisPart).index(PYLON))
     QTest.keyClicks(card.words.line_edit, "clamp")
     assert bench.entry.parts[-1] == PartChange(PYLON, text="clamp")
