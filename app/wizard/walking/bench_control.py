@@ -99,6 +99,10 @@ class Bench(QObject):
         self.changed.emit()
         return True
 
+    def settle_return(self) -> None:
+        """Something else can be taken back now."""
+        self._undone = ("", "")
+
     @Slot(int, bool)
     def choose(self, number: int, is_beside: bool) -> None:
         """Show an alignment by its number from 0, or let it stand beside."""

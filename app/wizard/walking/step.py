@@ -264,6 +264,7 @@ class WalkingStep(Step):
 
     def _keep_at_bench(self, recording: "SessionRecording") -> None:
         """Keep it: what is changed next is changed from it. It can be taken back for a while."""
+        self._bench.settle_return()
         self._discarded, self._kept = None, recording.id
         self._keep(recording, is_kept=True)
         self.offered.emit(tr("{walk} kept.").format(walk=self._called(recording.details.name)))
@@ -343,7 +344,9 @@ class WalkingStep(Step):
         called = self._called(recording.details.name)
         self._visit.recordings.keep(recording, is_kept)
         if not is_kept:
+            self._bench.settle_return()
             self._bench.discarded(recording.details.alignment)
+            self._kept = None
             self._discarded = recording.id
             self.offered.emit(tr("{walk} discarded.").format(walk=called))
         self._show()

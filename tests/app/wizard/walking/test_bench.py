@@ -182,6 +182,10 @@ def test_to_return_it_says_what_to_undo_and_can_be_taken_back(bench: Bench) -> N
     assert bench.chain.base == "Alignment C"
     assert bench.next_title == "Next change, from C"
     assert bench.undo_return() is False
+    assert bench.return_to_first()
+    bench.settle_return()  # something else was done since
+    assert bench.undo_return() is False
+    assert bench.chain.base == "Alignment A"
 
 
 def test_a_discarded_walks_change_is_told_again_of_the_next(bench: Bench) -> None:
