@@ -6,10 +6,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from app.alignment_words import since_in_words
 from app.patient_words import when
-from app.storage.edited_fields import KEPT, PLACEMENT
+from app.storage.edited_fields import ALIGNMENT, KEPT, PLACEMENT
 from app.storage.three_way import OtherChange, Value
 from app.wording import capitalised, name_of, side_name, tr, tr_n
+from core.alignment import alignment_of_text
 from core.body import Joint, Side, Site
 
 MINUS = "\N{MINUS SIGN}"
@@ -46,6 +48,7 @@ def field_word(field: str) -> str:
         KEPT: tr("Does it count?"),
         "note": tr("Note"),
         "is_restrapped_before": tr("Sensors"),
+        ALIGNMENT: tr("Changed at the prosthesis"),
         PLACEMENT: tr("Which sensor was worn where"),
     }[name]
 
@@ -107,6 +110,8 @@ def _text(name: str, value: str) -> str:
         if affected in sides:
             return capitalised(tr("{side} affected").format(side=sides[affected]))
         return tr("Neither") if "none" in (affected, prosthetic) else tr("nothing said")
+    if name == ALIGNMENT:
+        return since_in_words(alignment_of_text(value))
     if name == PLACEMENT:
         worn = json.loads(value).items()
         return ", ".join(f"{name_of(Site(site))} {sensor}" for site, sensor in worn) or tr("nothing said")

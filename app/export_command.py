@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 FORMATS = ("xlsx", "c3d", "mot", "fhir", "bids-motion")  # as app.exports.exports has them, whose import takes long
 
-TYPED = ("device", "aids", "surface", "conditions")  # as app.storage.pseudonyms has it
+TYPED = ("device", "aids", "surface", "conditions", "changes")  # as app.storage.pseudonyms has it
 
 Report = Callable[[float, str], None]
 

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from core.alignment import AlignmentChange
 from core.body import Joint, Side, Site
 from core.findings import Finding
 
@@ -138,6 +139,7 @@ class Recording:
     `imu` says which site each block of samples was worn at; the sites share one clock up to a small lag.
     `left_out_s` holds, for each side, one time inside of each stride that a person has left out, ascending, seconds on
     the recording's clock: a time goes on naming the same stride when its events are found a little earlier or later.
+    `alignment` is what was changed at the prosthesis before the walk; None where nobody has said anything.
     """
 
     name: str
@@ -150,6 +152,7 @@ class Recording:
     note: str = ""
     is_restrapped_before: bool = False
     left_out_s: Mapping[Side, tuple[float, ...]] = field(default_factory=dict)
+    alignment: AlignmentChange | None = None
     unknown: Mapping[str, object] = field(default_factory=dict)
 
     def holds(self, *sites: Site) -> bool:

@@ -1,7 +1,7 @@
-"""Where does a tour stop, what must the screen say there, and what is done? One tour by keyboard, one by mouse."""
+"""Where does a tour stop, what must the screen say there, and what is done? By keyboard, by mouse, and at the bench."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 PATIENCE_S = 30.0
 
@@ -222,4 +222,41 @@ SECOND_BY_MOUSE: tuple[Stop, ...] = (
     Stop("26c-saved", says("Saved as"), ("click All patients",), lingers_s=1.0),
     Stop("27-home-again", offers("New session"), lingers_s=2.0),
 )
-TOURS = {"keyboard": (*KEYBOARD, *SECOND_BY_KEYS), "mouse": (*MOUSE, *SECOND_BY_MOUSE)}
+BENCH_UP_TO = next(k for k, stop in enumerate(KEYBOARD) if stop.name == "10a-choose")
+PROSTHETIC = ("to Neither", "press Right", "to Affected", "press Right")
+
+
+def pressed(key: str, times: int) -> tuple[str, ...]:
+    return (f"press {key}",) * times
+
+
+BENCH: tuple[Stop, ...] = (  # three alignments of one prosthesis, by keys
+    *(
+        replace(stop, does=(*stop.does, *PROSTHETIC)) if stop.name == "06-patient" else stop
+        for stop in KEYBOARD[:BENCH_UP_TO]
+    ),
+    *walk(1, ("press space",), "press space"),
+    Stop("31-a-walked", offers("Keep A"), ("press Return",), lingers_s=1.0, patience_s=60.0),
+    Stop(
+        "32-a-kept",
+        offers("A again"),
+        (
+            *("to Part", "press p", "to Height", *pressed("plus", 3), "to Part", "press f"),
+            *("to Angle", *pressed("plus", 4), "to Turn", *pressed("plus", 4), "to Shift", *pressed("plus", 4)),
+        ),
+    ),
+    Stop("33-b-told", offers("Walk with B"), ("press space",), lingers_s=1.0),
+    Stop("33a-b-walking", has_walked(STRIDES), ("press space",), patience_s=60.0),
+    Stop("34-b-against-a", offers("Keep B"), ("press Return",), lingers_s=3.0, patience_s=60.0),
+    Stop("35-b-kept", offers("B again"), ("to Turn", *pressed("minus", 2), "press space"), lingers_s=1.0),
+    Stop("35a-c-walking", has_walked(STRIDES), ("press space",), patience_s=60.0),
+    Stop("36-c-against-b", offers("Keep C"), ("press 3", "press shift+1"), lingers_s=3.0, patience_s=60.0),
+    Stop("37-c-against-a", offers("Return to A"), ("to Return to A", "press Return"), lingers_s=1.0),
+    Stop("38-back-to-a", says("Back to A"), ("press ctrl+z", "to Keep C", "press Return"), lingers_s=1.0),
+    Stop("39-c-kept", offers("Results"), ("to Results", "press Return"), lingers_s=1.0),
+    Stop("40-results", offers("Legs", "Data"), ("press ctrl+7",), lingers_s=1.0, patience_s=60.0),
+    Stop("41-report", at_step("ReportStep"), ("press ctrl+s",), lingers_s=1.0, patience_s=60.0),
+    Stop("42-where", offers("Save"), ("press ctrl+a", "type {home}/results", "press Return"), lingers_s=1.0),
+    Stop("43-saved", says("Saved as"), lingers_s=2.0),
+)
+TOURS = {"keyboard": (*KEYBOARD, *SECOND_BY_KEYS), "mouse": (*MOUSE, *SECOND_BY_MOUSE), "bench": BENCH}

@@ -9,6 +9,7 @@ from collections.abc import Collection
 from dataclasses import replace
 from uuid import UUID, uuid4
 
+from app.alignment_words import since_in_words
 from app.storage.pseudonyms import AGE, Pseudonyms, Typed
 from app.wording import later
 from core.results import Analysis, Calibration, JointCalibration
@@ -83,4 +84,6 @@ def what_leaves(session: Session) -> list[Row]:
 
 
 def _about(recording: Recording) -> str:
-    return ", ".join(filter(None, [recording.kind.replace("_", " "), recording.condition, recording.started]))
+    changed = since_in_words(recording.alignment)
+    said = [recording.kind.replace("_", " "), recording.condition, changed, recording.started]
+    return ", ".join(filter(None, said))

@@ -18,6 +18,7 @@ from openpyxl.cell.cell import ILLEGAL_CHARACTERS_RE
 from openpyxl.styles import Font
 from openpyxl.worksheet._write_only import WriteOnlyWorksheet
 
+from app.alignment_words import since_in_words
 from app.exports.figures import RESEARCH, SIMULATED, reason_of, software, unit_of, walk_figures
 from app.exports.pseudonymised import what_is_said
 from app.reports.gait_csv import gait_tables
@@ -68,6 +69,7 @@ def write_spreadsheet(session: Session, analysis: Analysis, path: Path) -> None:
 def _about(session: Session, analysis: Analysis) -> list[list[Value]]:
     rows: list[list[Value]] = [[SIMULATED, None]] if analysis.is_simulated else []
     rows += [list(row) for row in what_is_said(session)]
+    rows += [[f"{one.name}, prosthesis", since_in_words(one.alignment)] for one in session.recordings if one.alignment]
     rows += [
         ["method", str(analysis.method)],
         ["software", software()],

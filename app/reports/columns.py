@@ -17,7 +17,8 @@ from core.verdicts.quantities import EXCURSIONS_BY_COLUMN, FITTING, PARAMETERS, 
 
 COLUMNS = "columns.csv"
 HEADER = ("file", "column", "unit", "sign", "definition", "needs")
-UNITS = {"_m_s": "m/s", "percent": "%", "_deg": "deg", "_s": "s", "_m": "m"}  # by the end of a name, longer ends first
+# by the end of a name, longer ends first
+UNITS = {"_m_s": "m/s", "percent": "%", "_deg": "deg", "_s": "s", "_mm": "mm", "_m": "m"}
 FLEXION = {"knee": "flexion positive", "ankle": "dorsiflexion positive"}
 HEIGHT = "zero sign"
 NEEDS = {
@@ -240,6 +241,21 @@ KNOWN: Mapping[str, Mapping[str, ColumnMeaning]] = {
         "reached": _word("values that, rounded to a whole number, reached the target"),
         "strides": _word("values that were told"),
         "reached_percent": ColumnMeaning("share of the values told that reached the target"),
+    },
+    "alignments.csv": {
+        "walk": _word("the recording before which it was changed"),
+        "condition": _word("what the walk is called"),
+        "since": _word("the condition that it was changed from"),
+        "part": _word("foot, socket, knee unit or pylon, and which screw"),
+        "angle_deg": ColumnMeaning(
+            "by how much the part was tilted or turned, as somebody told it",
+            sign="positive: plantarflexion or eversion of the foot, toes out, flexion or abduction of the socket",
+        ),
+        "turns": ColumnMeaning("turns of the screw", sign="positive: out", unit="turns"),
+        "shift_mm": ColumnMeaning("shift of the part", sign="positive: back; of inner and outer screws outwards"),
+        "height_mm": ColumnMeaning("height of the part", sign="positive: longer or higher"),
+        "text": _word("what somebody has typed of it"),
+        "in_words": _word("the change in a line"),
     },
     **dict.fromkeys(("differences.csv", "visits.csv"), DIFFERENCES),
     **dict.fromkeys(("compared_cycles.csv", "visits_cycles.csv"), CYCLES),

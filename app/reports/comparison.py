@@ -17,8 +17,10 @@ import numpy as np
 from app.charts.cycles import is_mean_enough
 from app.charts.stride_chart import StrideCurve
 from app.recording_names import LETTERS, condition_letters
+from app.reports.alignments import alignments_of
 from app.reports.walk_figures import by_hand_in_words
 from app.wording import joined, later, tr
+from core.alignment import AlignmentChange
 from core.body import Joint, Side
 from core.chosen_strides import left_out_by_hand
 from core.gait.cycles import POINTS, MeanCycle, mean_cycle
@@ -139,6 +141,7 @@ class Part:
 
     `attachment` numbers how often the sensors had been strapped on anew before; equal numbers of one visit share it.
     `visit` numbers the visits of a comparison of several, and `day` is when that visit was, if that is known.
+    `alignment` is what was changed at the prosthesis before it, and since which condition.
     """
 
     letter: str
@@ -148,6 +151,7 @@ class Part:
     attachment: int = 0
     visit: int = 0
     day: date | None = None
+    alignment: AlignmentChange | None = None
 
     @property
     def sides(self) -> tuple[Side, ...]:
@@ -339,6 +343,15 @@ class Comparison:
     @property
     def others(self) -> tuple[Part, ...]:
         return tuple(part for k, part in enumerate(self.parts) if k != self.base)
+
+    def base_of(self, part: Part) -> Part:
+        """What a part is told against: the condition that its alignment was changed from, else that of all.
+
+        Where sensors were strapped on anew a condition may be there twice: the latest before the part counts.
+        """
+        since = part.alignment.since if part.alignment is not None and self.kind is Contrast.CONDITIONS else ""
+        before = self.parts[: self.parts.index(part)]
+        return next((other for other in reversed(before) if other.name == since), self.against)
 
     @property
     def sides(self) -> tuple[Side, ...]:
@@ -537,10 +550,17 @@ def conditions_of(analysis: Analysis, recordings: Sequence[Recording], prefix: s
     for walk in _walks(analysis):
         condition, at = told.get(walk.name, ("", 0))
         found.setdefault((condition or walk.name, at), []).append(walk)
-    letters = condition_letters(recordings)
+    letters, changed = condition_letters(recordings), alignments_of(recordings)
     others = iter(letter for letter in LETTERS if letter not in letters.values())  # of walks nobody has told of
     parts = [
-        Part(prefix + letter, name, tuple(walks), analysis.calibrated_for(walks[0]), at)
+        Part(
+            prefix + letter,
+            name,
+            tuple(walks),
+            analysis.calibrated_for(walks[0]),
+            at,
+            alignment=changed.get(name),
+        )
         for (name, at), walks in found.items()
         if (letter := letters[walks[0].name] if walks[0].name in letters else next(others, ""))
     ]

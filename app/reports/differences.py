@@ -6,7 +6,7 @@ report show some of them.
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from app.reports.comparison import (
@@ -127,6 +127,14 @@ def rows_of(comparison: Comparison) -> Iterator[Row]:
                     yield Row(part, against, side, column, found.value, found.other, WITHHELD, Verdict.WITHHELD)
             yield from _curves(comparison, part, side)
         yield from _of_both(comparison, part)
+
+
+def rows_along_chain(comparison: Comparison) -> Iterator[Row]:
+    """The same, then each part against the one that its alignment was changed from, where that is another."""
+    yield from rows_of(comparison)
+    for part in comparison.others:
+        if (base := comparison.base_of(part)) is not comparison.against:
+            yield from rows_of(replace(comparison, parts=(base, part), base=0))
 
 
 def write_differences(found: Iterable[Row], path: Path) -> None:

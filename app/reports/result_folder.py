@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path, PurePosixPath
 
+from app.reports.alignments import ALIGNMENTS, write_alignments
 from app.reports.columns import COLUMNS, write_columns
 from app.reports.comparison import Comparison, Contrast, conditions_of, first_and_second
 from app.reports.csv_report import write_angles, write_table
@@ -19,7 +20,7 @@ from app.reports.differences import (
     COMPARED_CYCLES,
     DIFFERENCES,
     SIDES,
-    rows_of,
+    rows_along_chain,
     write_compared_cycles,
     write_differences,
     write_sides,
@@ -46,7 +47,7 @@ TAKEN = tuple(
     (name,)
     for name in (
         *(SUMMARY, LOG, REPORT, OWN_SESSION),
-        *(PEAKS, FITTING_MEANS, DIFFERENCES, COMPARED_CYCLES, SIDES, TARGETS),
+        *(PEAKS, FITTING_MEANS, ALIGNMENTS, DIFFERENCES, COMPARED_CYCLES, SIDES, TARGETS),
         *(VISITS, VISITS_CYCLES, COLUMNS, METADATA),
     )
 )
@@ -77,7 +78,7 @@ def write_results(session: Session, analysis: Analysis, folder: Path) -> None:
         write_table(TARGET_COLUMNS, targets, folder / TARGETS)
     _write_comparisons(session, analysis, folder)
     describe_tables(analysis, folder)
-    write_summary(analysis, folder / SUMMARY)
+    write_summary(analysis, folder / SUMMARY, session.recordings)
 
 
 def describe_tables(analysis: Analysis, folder: Path) -> None:
@@ -94,10 +95,11 @@ def describe_tables(analysis: Analysis, folder: Path) -> None:
 
 
 def _write_comparisons(session: Session, analysis: Analysis, folder: Path) -> None:
-    """The conditions of the session, each against the first, and the legs of each."""
+    """The conditions of the session, each against the first and the one it was changed from, and the legs of each."""
     parts = conditions_of(analysis, session.recordings)
+    write_alignments(session.recordings, folder / ALIGNMENTS)
     if len(parts) > 1:
-        write_differences(rows_of(Comparison(Contrast.CONDITIONS, parts)), folder / DIFFERENCES)
+        write_differences(rows_along_chain(Comparison(Contrast.CONDITIONS, parts)), folder / DIFFERENCES)
         write_compared_cycles(parts, folder / COMPARED_CYCLES)
     write_sides(parts, first_and_second(analysis.affected_side), folder / SIDES)
 

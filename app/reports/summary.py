@@ -2,7 +2,7 @@
 
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -13,12 +13,13 @@ from app.reports.comparison import Part, compare_legs, first_and_second
 from app.reports.fitting_csv import fitting_of_side
 from app.reports.reference_bands import reference_curves
 from app.wording import sentence
+from core.alignment import alignment_table
 from core.body import Joint, Side
 from core.chosen_strides import left_out_by_hand
 from core.findings import Finding
 from core.gait.symmetry import curve_difference, gait_variable_score, symmetry_index_percent
 from core.results import Analysis, JointCalibration, RecordingAnalysis
-from core.samples import FloatArray, RecordingKind
+from core.samples import FloatArray, Recording, RecordingKind
 from core.verdicts.measurement_error import ComparisonKind, mean_of_strides, whisker
 from core.verdicts.model import Assessment, JointVerdicts, LegVerdicts, Verdicts
 from core.verdicts.quantities import (
@@ -47,15 +48,15 @@ SYMMETRIC = (
 )
 
 
-def write_summary(analysis: Analysis, path: Path) -> None:
-    """Write `summary.json`.
+def write_summary(analysis: Analysis, path: Path, recordings: Sequence[Recording] = ()) -> None:
+    """Write `summary.json`; `recordings` are the session's, whose alignments are told beside their walks.
 
     Raises
     ------
     OSError
         The file cannot be written.
     """
-    text = json.dumps(summarise(analysis), indent=2, ensure_ascii=False, allow_nan=False)
+    text = json.dumps(summarise(analysis, recordings), indent=2, ensure_ascii=False, allow_nan=False)
     # a file's name may hold bytes that are no text: what replaces them is an escape of JSON too
     path.write_text(text + "\n", encoding="utf-8", errors="backslashreplace", newline="\n")
 
@@ -72,8 +73,12 @@ def read_summary(path: Path) -> dict[str, Any] | None:
     return summary if is_ours else None
 
 
-def summarise(analysis: Analysis) -> dict[str, Any]:
-    """Give the content of `summary.json`; `joints` holds each joint's last calibration."""
+def summarise(analysis: Analysis, recordings: Sequence[Recording] = ()) -> dict[str, Any]:
+    """Give the content of `summary.json`; `joints` holds each joint's last calibration.
+
+    A walk before which a prosthesis was changed has `alignment`: since which condition, and each part's figures.
+    """
+    changed = {one.name: alignment_table(one.alignment) for one in recordings if one.alignment is not None}
     calibrations = [{"walks": list(span.walks), "joints": _joints(span.joints)} for span in analysis.calibrations]
     last = {joint: found for span in analysis.calibrations for joint, found in span.joints.items()}
     walks = [recording for recording in analysis.recordings if recording.kind is RecordingKind.WALKING]
@@ -82,7 +87,10 @@ def summarise(analysis: Analysis) -> dict[str, Any]:
         "simulated": analysis.is_simulated,
         "joints": _joints(last),
         "calibrations": calibrations,
-        "walks": {walk.name: _walk(analysis, walk) for walk in walks},
+        "walks": {
+            walk.name: _walk(analysis, walk) | ({"alignment": changed[walk.name]} if walk.name in changed else {})
+            for walk in walks
+        },
         "reference_group": _reference_group(),
         "findings": [_finding(finding) for finding in analysis.findings],
     }

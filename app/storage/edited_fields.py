@@ -9,6 +9,7 @@ from typing import Any
 
 from app.storage.stored import Limits
 from app.storage.three_way import Value, Values
+from core.alignment import alignment_of_text, alignment_text
 from core.body import Joint, Side
 from core.samples import Patient, Recording, RecordingKind, Session
 
@@ -16,6 +17,8 @@ PATIENT_CORRECTABLE = tuple(field.name for field in fields(Patient) if field.nam
 KEPT = "is_kept"
 PLACEMENT = "placement"
 """What a contest about who wears what is called; it is no field of a row that is edited."""
+ALIGNMENT = "alignment"
+"""What was changed at the prosthesis is one field: a chain whose parts came from two people would be nobody's."""
 SIDES = ("affected_side", "prosthetic_side")
 SESSION_CORRECTABLE = ("started", "operator", "surface", "notes", "software")
 RECORDING_CORRECTABLE = ("name", "kind", "condition", "started", "is_kept", "note", "is_restrapped_before")
@@ -57,6 +60,7 @@ def with_session_fields(told: Session, comment: str, limits: Limits, values: Val
 
 def recording_fields(told: Recording) -> dict[str, Value]:
     values: dict[str, Value] = {name: getattr(told, name) for name in RECORDING_CORRECTABLE}
+    values |= {ALIGNMENT: alignment_text(told.alignment)}
     return values | {f"left_out_s.{side}": tuple(sorted(told.left_out_s.get(side, ()))) for side in Side}
 
 
@@ -65,4 +69,5 @@ def with_recording_fields(told: Recording, values: Values) -> Recording:
     every: Mapping[str, Any] = recording_fields(told) | dict(values)
     left_out_s = {side: every[f"left_out_s.{side}"] for side in Side if every[f"left_out_s.{side}"]}
     own = {name: every[name] for name in RECORDING_CORRECTABLE if name != "kind"}
-    return replace(told, kind=RecordingKind(every["kind"]), left_out_s=left_out_s, **own)
+    alignment = alignment_of_text(every[ALIGNMENT])
+    return replace(told, kind=RecordingKind(every["kind"]), left_out_s=left_out_s, alignment=alignment, **own)

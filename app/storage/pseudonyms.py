@@ -5,8 +5,9 @@ one patient has the same ones: visits can still be put together and in order, an
 What may say a name is left out: notes, operator, software, keys and columns that mean nothing to us. Recordings get the
 names that we give, sensors and their clocks are numbered. In place of the year of birth stands the age at the visit,
 90 and older as one. What somebody typed freely, device, aids, surface and conditions, leaves only where it is asked
-for, each by itself; without their words conditions are numbered, so that equal ones are still equal. Sex, height, mass
-and sides stay. This is pseudonymous, not anonymous: gait itself can be recognised.
+for, each by itself; without their words conditions are numbered, so that equal ones are still equal. What was changed
+at a prosthesis stays, part by part with its figures; what was typed of it leaves only where it is asked for. Sex,
+height, mass and sides stay. This is pseudonymous, not anonymous: gait itself can be recognised.
 """
 
 import base64
@@ -18,6 +19,7 @@ from enum import StrEnum
 from uuid import UUID
 
 from app.storage.unit_of_work import DEMO
+from core.alignment import FIGURES, AlignmentChange, PartChange
 from core.samples import Patient, Recording, SensorInfo, Session
 from core.targets import tallies_of, with_tallies
 from devices.files.imports import folder_for, free_name
@@ -36,6 +38,7 @@ class Typed(StrEnum):
     AIDS = "aids"
     SURFACE = "surface"
     CONDITIONS = "conditions"
+    CHANGES = "changes"  # at a prosthesis
 
 
 class Pseudonyms:
@@ -79,7 +82,11 @@ class Pseudonyms:
         )
         for recording in session.recordings:
             own = self._recording(patient_id, recording, free_name(pseudonymised, recording.kind), sensors)
-            own = replace(own, condition=conditions.get(recording.condition, ""))
+            own = replace(
+                own,
+                condition=conditions.get(recording.condition, ""),
+                alignment=_alignment(recording.alignment, conditions, is_kept=Typed.CHANGES in kept),
+            )
             pseudonymised = replace(pseudonymised, recordings=(*pseudonymised.recordings, own))
         return pseudonymised
 
@@ -125,8 +132,23 @@ def _sensor(info: SensorInfo, names: Mapping[str, str], clocks: Mapping[str, str
     return replace(info, serial=names.get(info.serial, ""), clock=clocks.get(info.clock, ""), unknown={})
 
 
+def _alignment(told: AlignmentChange | None, conditions: Mapping[str, str], *, is_kept: bool) -> AlignmentChange | None:
+    """What was changed, with our word for the condition before. Without words what only they tell is left out."""
+    if told is None:
+        return None
+    said = (one if is_kept else _without_words(one) for one in told.parts)
+    parts = tuple(one for one in said if one is not None)
+    return AlignmentChange(conditions.get(told.since, ""), parts) if parts else None
+
+
+def _without_words(told: PartChange) -> PartChange | None:
+    """The figures alone; None where there are none."""
+    return replace(told, text="") if any(getattr(told, name) for name in FIGURES) else None
+
+
 def _conditions(session: Session, *, is_kept: bool) -> Mapping[str, str]:
     typed = [recording.condition for recording in session.recordings]
+    typed += [recording.alignment.since for recording in session.recordings if recording.alignment is not None]
     return {one: one for one in typed} if is_kept else _numbers("condition", typed)
 
 

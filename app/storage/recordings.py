@@ -26,6 +26,7 @@ from app.storage.stored import (
     UndecidedWalk,
 )
 from app.storage.unit_of_work import UnitOfWork
+from core.alignment import alignment_text
 from core.samples import Recording, RecordingKind
 
 
@@ -80,6 +81,7 @@ class Recordings:
                 state=RecordingState.OPEN,
                 station=self._unit.station,
                 left_out=left_out_in_row(told.left_out_s),
+                alignment=alignment_text(told.alignment),
                 **{name: getattr(told, name) for name in RECORDING_FIELDS},
             )
             session.add(row)
@@ -280,7 +282,8 @@ def recording_changes(visit: SessionRow, row: RecordingRow, told: Recording) -> 
     if told.name != row.name:
         _refuse_taken(visit, told.name)
     wanted = {name: getattr(told, name) for name in RECORDING_CORRECTABLE}
-    return differences(row, wanted | {"left_out": left_out_in_row(told.left_out_s)})
+    in_row = {"left_out": left_out_in_row(told.left_out_s), "alignment": alignment_text(told.alignment)}
+    return differences(row, wanted | in_row)
 
 
 def decide_row(unit: UnitOfWork, session: OrmSession, visit: SessionRow, row: RecordingRow, is_kept: bool) -> None:

@@ -6,6 +6,7 @@ pressed by Space and Enter, as everywhere; but while something runs Space stops 
 field: who stops a walk looks at the patient and not at the screen.
 """
 
+import sys
 from dataclasses import dataclass
 from enum import Enum, auto
 
@@ -33,6 +34,7 @@ class KeyAction(Enum):
     LEFT_LEG = auto()
     RIGHT_LEG = auto()
     LABEL = auto()  # number: 1 to 9
+    SECOND_LABEL = auto()  # the same with Shift
     IDENTIFY = auto()
     EARLIER = auto()
     LATER = auto()
@@ -71,6 +73,9 @@ _PLAIN: dict[int, KeyAction] = {
     _Key.Key_R: KeyAction.RIGHT_LEG,
     _Key.Key_I: KeyAction.IDENTIFY,
 }
+# digits with Shift by their place on the keyboard, as Linux and Windows tell it: what they write is each country's own
+_FIRST_DIGIT_AT = {"linux": 10, "win32": 2}
+_US_SHIFTED = "!@#$%^&*("
 _BRACKETS = {"[": KeyAction.EARLIER, "]": KeyAction.LATER}  # by what is written: many keyboards have them on AltGr
 _WITH_CTRL: dict[int, KeyAction] = {
     _Key.Key_Plus: KeyAction.LARGER,
@@ -193,10 +198,22 @@ def _plain_intent(event: QKeyEvent) -> Intent | None:
         return None
     if len(event.text()) == 1 and event.text() in "123456789":
         return Intent(KeyAction.LABEL, int(event.text()))
+    if number := _shifted_digit(event):
+        return Intent(KeyAction.SECOND_LABEL, number)
     if event.key() == _Key.Key_Escape:
         return Intent(KeyAction.LEAVE)
     action = _PLAIN.get(event.key())
     return Intent(action) if action is not None else None
+
+
+def _shifted_digit(event: QKeyEvent) -> int:
+    """Give the digit, 1 to 9, that is pressed with Shift; 0 where none is."""
+    if not event.modifiers() & Qt.KeyboardModifier.ShiftModifier:
+        return 0
+    first, at = _FIRST_DIGIT_AT.get(sys.platform), event.nativeScanCode()
+    if first is not None and at:
+        return at - first + 1 if 0 <= at - first < 9 else 0
+    return _US_SHIFTED.index(event.text()) + 1 if len(event.text()) == 1 and event.text() in _US_SHIFTED else 0
 
 
 def _modified_intent(event: QKeyEvent) -> Intent | None:

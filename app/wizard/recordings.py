@@ -37,6 +37,7 @@ from core.samples import Recording, RecordingKind
 if TYPE_CHECKING:
     from app.acquisition.acquisition import Acquisition
     from app.storage.opened import OpenedLibrary
+    from core.alignment import AlignmentChange
 
 
 READ_AGAIN_MS = 2000  # after the library did not answer
@@ -226,8 +227,14 @@ class SessionRecordings(QObject):
         self.session, self.every = session, recordings
         self.changed.emit()
 
-    def begin(self, acquisition: "Acquisition", kind: RecordingKind, condition: str = "") -> None:
-        """Record from now on; `begun` or `refused` follows.
+    def begin(
+        self,
+        acquisition: "Acquisition",
+        kind: RecordingKind,
+        condition: str = "",
+        alignment: "AlignmentChange | None" = None,
+    ) -> None:
+        """Record from now on; `begun` or `refused` follows. `alignment`: what was changed at a prosthesis before.
 
         Raises
         ------
@@ -245,6 +252,7 @@ class SessionRecordings(QObject):
             condition=condition,
             started=datetime.datetime.now().astimezone().isoformat(timespec="seconds"),
             is_restrapped_before=self._is_restrapped,
+            alignment=alignment,
         )
         self.ongoing = Ongoing(told, acquisition.now_s)
         if self._phase is not RecordingPhase.CLOSED:
@@ -365,6 +373,10 @@ class SessionRecordings(QObject):
             self._decide(recording, is_kept)
         else:  # also where it seems to be so already: what was said a moment before may still be on its way
             self.change(recording, lambda told: replace(told, is_kept=is_kept))
+
+    def ask_again(self, recording: SessionRecording) -> None:
+        """Ask once more on this screen whether a recording is kept; until that is answered it stays as it was said."""
+        self._put(replace(recording, is_decided=False))
 
     def said(self, recording: SessionRecording) -> Recording:
         """What is told of a recording, the last word of it on the screen."""

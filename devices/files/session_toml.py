@@ -15,6 +15,7 @@ from typing import Any
 
 import tomli_w
 
+from core.alignment import alignment_of_table, alignment_table
 from core.body import Joint, Side, Site
 from core.findings import Finding, Severity
 from core.samples import Patient, RateKind, Recording, RecordingKind, SensorInfo, Session
@@ -325,7 +326,9 @@ def _plans(tables: object) -> tuple[Plan, ...]:
         unknown = {key: value for key, value in unknown.items() if not (key == "rates_derived" and rates_derived)}
         left_out_s = _left_out(unknown.get("strides_left_out"))
         unknown = {key: value for key, value in unknown.items() if not (key == "strides_left_out" and left_out_s)}
-        recording = Recording(imu={}, left_out_s=left_out_s, unknown=unknown, **values)
+        alignment = alignment_of_table(unknown.get("alignment"))
+        unknown = {key: value for key, value in unknown.items() if not (key == "alignment" and alignment)}
+        recording = Recording(imu={}, left_out_s=left_out_s, alignment=alignment, unknown=unknown, **values)
         for other in (plan.recording for plan in plans):
             for key in ("name", "folder"):
                 if _normal(getattr(other, key), key) == _normal(getattr(recording, key), key):
@@ -393,6 +396,8 @@ def _render_plan(plan: Plan) -> dict[str, object]:
     left_out_s = plan.recording.left_out_s
     if any(left_out_s.values()):
         table["strides_left_out"] = {side.value: list(left_out_s[side]) for side in Side if left_out_s.get(side)}
+    if plan.recording.alignment is not None:
+        table["alignment"] = alignment_table(plan.recording.alignment)
     return table | dict(plan.recording.unknown)
 
 

@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 
+from app.alignment_words import NO_PROOF, change_in_words
 from app.charts.cycles import Band, is_mean_enough, is_spread_enough
 from app.charts.drawing import MM, Picture
 from app.charts.on_paper import compared_look, draw
@@ -45,6 +46,7 @@ from core.verdicts.measurement_error import ComparisonKind, sigma_of
 from core.verdicts.model import Verdict, worst
 from core.verdicts.quantities import EXCURSIONS_BY_COLUMN
 
+CHANGES_LENGTH = 300  # letters: three lines of the table
 PLOT_WIDTH = 53 * MM  # with the table of three parts, or a line more of words, this fills a Letter page
 
 
@@ -126,6 +128,7 @@ def comparison_page(comparison: Comparison, shown: Facts) -> list[Block]:
         heading(title),
         paragraph(_what_else_changed(comparison)),
         _parts_table(comparison),
+        *_changes(comparison),
         *([legend(band, columns=3)] if band else []),
         figures(pictures, columns=2),
         _table(comparison, shown, sides),
@@ -163,6 +166,26 @@ def _parts_table(comparison: Comparison) -> Block:
             ]
         )
     return table(columns, rows, is_dense=True)
+
+
+def _changes(comparison: Comparison) -> list[Block]:
+    """What was turned at the prosthesis before each condition, and that its walks may not show it."""
+    changed = [part for part in comparison.parts if part.alignment is not None]
+    if not changed:
+        return []
+    columns = [
+        Column("", is_number=False),
+        Column(tr("Changed from"), "35mm", is_number=False),
+        Column(tr("What was changed at the prosthesis"), "1fr", is_number=False),
+    ]
+    rows: list[Row] = []
+    for part in comparison.parts:
+        since, words = tr("starting point"), NOTHING
+        if part.alignment is not None:
+            since = typed(part.alignment.since, CONDITION_LENGTH)
+            words = typed(change_in_words(part.alignment), CHANGES_LENGTH)
+        rows.append([part.letter, since, words])
+    return [table(columns, rows, is_dense=True), note(tr(NO_PROOF))]
 
 
 def _panel(comparison: Comparison, shown: Facts, side: Side, kind: str) -> Picture:
@@ -214,14 +237,15 @@ def _band(comparison: Comparison, shown: Facts, kind: str, side: Side) -> Band |
 
 
 def _table(comparison: Comparison, shown: Facts, sides: Sequence[Side]) -> Block:
-    first, is_visits = comparison.against, comparison.kind is Contrast.VISITS
+    is_visits = comparison.kind is Contrast.VISITS
     columns = [Column(tr("Measure, °"), "1fr", is_number=False), *(Column(part.letter) for part in comparison.parts)]
     for part in comparison.others:
         if is_visits:
             columns += [Column(tr("Change 2 − 1")), Column(tr("Error")), Column(tr("In words"), is_number=False)]
         else:
-            against = tr("{this} against {first}").format(this=part.letter, first=first.letter)
-            columns += [Column(f"{part.letter} − {first.letter}"), Column(against, is_number=False)]
+            base = comparison.base_of(part)
+            against = tr("{this} against {first}").format(this=part.letter, first=base.letter)
+            columns += [Column(f"{part.letter} − {base.letter}"), Column(against, is_number=False)]
     rows: list[Row] = []
     for side in sides:
         count = tr("{count}\u00a0in\u00a0{part}")
@@ -247,17 +271,21 @@ def _row(comparison: Comparison, side: Side, measure: Measure) -> list[Cell | st
             shown = verdict_word(verdict)
         cells.append(Cell(shown, is_grey=not is_spread_enough(value.n)))
     for part in comparison.others:
-        compared = (
-            comparison.compare_walks(measure, part, comparison.against)
-            if measure.is_of_walk
-            else comparison.compare(measure, side, part)
-        )
+        compared = _compared(comparison, measure, side, part)
         found, is_told = compared.difference, compared.is_told
         words = Cell(judged_in_words(found), is_bold=found.exceeds) if is_told else _why_not(compared)
         decimals = measure.decimals
         error = [fixed(found.error, decimals) if is_told else NOTHING] if comparison.kind is Contrast.VISITS else []
         cells += [signed(found.difference, decimals) if is_told else NOTHING, *error, words]
     return cells
+
+
+def _compared(comparison: Comparison, measure: Measure, side: Side, part: Part) -> Compared:
+    """A measure of a part and of the one that it is told against."""
+    base = comparison.base_of(part)
+    if measure.is_of_walk:
+        return comparison.compare_walks(measure, part, base)
+    return comparison.compare(measure, side, part, base)
 
 
 def _measure(column: str) -> str:
@@ -303,10 +331,11 @@ def _why_not(compared: Compared) -> Cell | str:
 
 def _how_judged(comparison: Comparison) -> str:
     """What the error contains, with what was added for what lies between the walks."""
-    kinds = {comparison.error_kind(part) for part in comparison.others}
+    kinds = {comparison.error_kind(part, comparison.base_of(part)) for part in comparison.others}
     kind = max(kinds, key=list(ComparisonKind).index)
     knee, stance = (signed_error(sigma_of(name, kind)) for name in ("knee_range_deg", "stance_percent"))
-    told = [row.difference for row in comparison.rows if row.is_told and row.difference.error > 0]
+    rows = [_compared(comparison, row.measure, row.side, row.part) for row in comparison.rows]
+    told = [row.difference for row in rows if row.is_told and row.difference.error > 0]
     said = tr(
         "Measurement error: 1.96 times the standard deviation of the difference. It holds {sources}; what lies between "
         "the walks alone makes {knee}° of knee range and {stance} points of stance."

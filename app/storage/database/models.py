@@ -221,6 +221,8 @@ class RecordingRow(Versioned, Base):
 
     `left_out`: the strides that were left out by hand, as `values` writes them.
 
+    `alignment`: what was changed at the prosthesis before, as `core.alignment` writes it; empty where nothing was said.
+
     `station`: which station of a clinic recorded it; empty where a library has no stations.
     """
 
@@ -240,6 +242,7 @@ class RecordingRow(Versioned, Base):
     note: Mapped[str]
     is_restrapped_before: Mapped[bool]
     left_out: Mapped[str] = mapped_column(default="", server_default="")
+    alignment: Mapped[str] = mapped_column(default="", server_default="")
     is_simulated: Mapped[bool]
     state: Mapped[RecordingState] = mapped_column(_words(RecordingState, "state"), index=True)
     judged_by: Mapped[str] = mapped_column(default="", server_default="")

@@ -19,13 +19,15 @@ from app.storage.stored import (
     StoredResult,
     StoredSession,
 )
+from core.alignment import alignment_of_text
 from core.body import Side, Site
 from core.findings import Finding, Severity
 from core.samples import Patient, Recording, SensorInfo, Session
 
 PATIENT_FIELDS = tuple(field.name for field in fields(Patient))
 SENSOR_FIELDS = tuple(field.name for field in fields(SensorInfo))
-RECORDING_FIELDS = tuple(field.name for field in fields(Recording) if field.name not in ("imu", "left_out_s"))
+IN_OTHER_FORM = ("imu", "left_out_s", "alignment")
+RECORDING_FIELDS = tuple(field.name for field in fields(Recording) if field.name not in IN_OTHER_FORM)
 SESSION_FIELDS = ("started", "operator", "surface", "notes", "software", "is_simulated", "unknown")
 
 
@@ -70,7 +72,10 @@ def stored_recording(row: RecordingRow) -> StoredRecording:
         row.version,
         row.session_id,
         Recording(
-            imu={}, left_out_s=left_out_of(row.left_out), **{name: getattr(row, name) for name in RECORDING_FIELDS}
+            imu={},
+            left_out_s=left_out_of(row.left_out),
+            alignment=alignment_of_text(row.alignment),
+            **{name: getattr(row, name) for name in RECORDING_FIELDS},
         ),
         row.state,
         row.is_simulated,

@@ -10,6 +10,7 @@ from uuid import UUID
 import numpy as np
 from numpy.typing import NDArray
 
+from core.alignment import alignment_of_table, alignment_table
 from core.samples import FloatArray, ImuBlock, Recording, RecordingKind
 from devices.files.site_files import ACC, GYR, MAG, QUAT, TIME
 from devices.source import SourceInfo
@@ -19,6 +20,7 @@ ROWS = struct.Struct("<HHI")  # the source's number, the sensor's, and how many 
 FLOAT = np.dtype("<f8")
 BELONGING = "gaitwright-recording/1 "  # how the mark begins that says whose a recording is
 BELONGING_FIELDS = ("name", "kind", "folder", "condition", "started", "is_restrapped_before")
+ALIGNMENT = "alignment"  # among what that mark says, where something was changed
 OWN_COLUMNS = {
     (has_orientation, has_field): (TIME, *GYR, *ACC, *(QUAT if has_orientation else ()), *(MAG if has_field else ()))
     for has_orientation in (False, True)
@@ -71,6 +73,8 @@ class Belonging:
 
     def text(self) -> str:
         told = {name: getattr(self.details, name) for name in BELONGING_FIELDS}
+        if self.details.alignment is not None:  # left out otherwise: earlier versions read no other keys
+            told[ALIGNMENT] = alignment_table(self.details.alignment)
         return BELONGING + json.dumps({"session": str(self.session_id), **told})
 
     @classmethod
@@ -80,6 +84,7 @@ class Belonging:
             return None
         told: dict[str, Any] = json.loads(text.removeprefix(BELONGING))
         session_id = UUID(told.pop("session"))
+        told[ALIGNMENT] = alignment_of_table(told.get(ALIGNMENT))
         return cls(session_id, Recording(imu={}, **(told | {"kind": RecordingKind(told["kind"])})))
 
 

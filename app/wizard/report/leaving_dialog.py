@@ -65,6 +65,7 @@ class LeavingDialog(QDialog):
             ("aids", tr("Aids and footwear")),
             ("surface", tr("Surface")),
             ("conditions", tr("Conditions")),
+            ("changes", tr("Changes at a prosthesis")),
         ]
 
     def _build(self) -> None:

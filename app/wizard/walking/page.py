@@ -22,6 +22,8 @@ from app.widgets.focus_ring import NO_RING
 from app.widgets.notice import Notice
 from app.widgets.segmented import Segmented
 from app.widgets.themed import Themed
+from app.wizard.walking.bench import ChangeEntry
+from app.wizard.walking.bench_view import BenchState, BenchView
 from app.wizard.walking.cards import ACROSS, DOWN, FIGURE, EmptyCard, NextCard, StoppedCard, WalkFigures
 from app.wizard.walking.charts import WalkingCharts, last_angles_in_words
 from app.wizard.walking.readout import WalkingReadout
@@ -65,10 +67,11 @@ class WalkingPage(Themed):
 
     keeps_place_for_messages = True
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self, look: ThemeNotifier, entry: ChangeEntry | None = None) -> None:
         super().__init__()
         self._look = look
-        self._is_compact = False
+        self._is_compact = self._has_bench = False
+        self.bench = BenchView(look, entry or ChangeEntry())
         self.rows: tuple[WalkRow, ...] = ()
         self._asked: WalkRow | None = None
         self.live = WalkingReadout()
@@ -98,7 +101,7 @@ class WalkingPage(Themed):
     @property
     def tab_order(self) -> list[QWidget]:
         """The controls in the order of reading, those of this moment only."""
-        controls: list[QWidget] = [*self.patient_controls.controls, *self.tabs.segments]
+        controls: list[QWidget] = [*self.patient_controls.controls, *self.bench.tab_order, *self.tabs.segments]
         controls += [self.stopped.keep, self.stopped.discard]
         controls += [*self.walks.buttons, self.walks.restrapped]
         controls += [*self.next.chooser.buttons, self.next.chooser.own.line_edit]
@@ -141,6 +144,15 @@ class WalkingPage(Themed):
         if had_focus and not self._has_focus():
             self.focus()
 
+    def show_bench(self, state: BenchState | None) -> None:
+        """Show the bench in the place of walks and curves, between walks; None: they stand there."""
+        had_focus, self._has_bench = self._has_focus(), state is not None
+        if state is not None:
+            self.bench.show_state(state)
+        self._arrange()
+        if had_focus and not self._has_focus():
+            self.focus()
+
     def show_labels(self, labels: tuple[str, ...], choice: str) -> None:
         """Offer what the next walk may be called, and what it will be called as things stand."""
         self.next.chooser.show_labels(labels, choice)
@@ -174,6 +186,7 @@ class WalkingPage(Themed):
             self._is_compact = is_compact
             self.charts.set_compact(is_compact)
             self.walks.set_compact(is_compact)
+            self.bench.set_compact(is_compact)
             self._on_look_changed()
             self._arrange()
 
@@ -188,7 +201,7 @@ class WalkingPage(Themed):
     @property
     def _regions(self) -> tuple[QWidget, ...]:
         """What may have the focus and is no button; in a small window the walks stand in the place of the charts."""
-        return self.empty, self.charts, self.walks
+        return self.bench, self.empty, self.charts, self.walks
 
     def _build(self) -> None:
         for region in self._regions:
@@ -207,6 +220,7 @@ class WalkingPage(Themed):
         self.patient_controls.setVisible(False)
         for widget in (self.notice, self.patient_controls, self.tabs, self.stopped):
             self._column.addWidget(widget)
+        self._column.addWidget(self.bench, 1)
         self._column.addLayout(self._middle, 1)
         self._column.addWidget(self.next)
         self._scroll.setWidget(self._inside)
@@ -232,11 +246,14 @@ class WalkingPage(Themed):
         """Show what belongs to this moment."""
         was_on_region = QApplication.focusWidget() in self._regions
         is_recording, has_walks = self.is_recording, bool(self.rows)
+        is_bench = self._has_bench and not is_recording
         is_tabbed = self._is_compact and has_walks and not is_recording
         shows_curves = has_walks and (not self._is_compact or is_recording or self.tabs.choice == "curves")
         shows_walks = not self._is_compact or (not is_recording and not (is_tabbed and shows_curves))
-        self.notice.setVisible(self._has_message or (is_recording and not self._is_compact))
-        self.tabs.setVisible(is_tabbed)
+        shows_curves, shows_walks = shows_curves and not is_bench, shows_walks and not is_bench
+        self.bench.setVisible(is_bench)
+        self.notice.setVisible((self._has_message and not is_bench) or (is_recording and not self._is_compact))
+        self.tabs.setVisible(is_tabbed and not is_bench)
         self.stopped.setVisible(self._asked is not None and not is_recording and shows_walks)
         self.empty.setVisible(not has_walks)
         self.charts.setVisible(shows_curves)

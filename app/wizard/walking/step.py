@@ -25,6 +25,8 @@ from app.wizard.walk_messages import (
     recovered_message,
     slip_message,
 )
+from app.wizard.walking.bench_bar import bench_bar
+from app.wizard.walking.bench_control import Bench
 from app.wizard.walking.estimator import WalkingEstimator
 from app.wizard.walking.patient_feedback import PatientFeedback
 from app.wizard.walking.walk_labels import label_after, labels_for
@@ -63,6 +65,9 @@ class WalkingStep(Step):
         self._losses = Losses()
         self._is_troubled = False
         self._discarded: UUID | None = None
+        self._kept: UUID | None = None  # at the bench, and can be taken back
+        self._bench = Bench(visit, self)
+        self._bench.changed.connect(self._show)
         visit.recordings.begun.connect(self._on_begun)
         visit.recordings.ended.connect(self._on_ended)
         visit.recordings.changed.connect(self._show)
@@ -76,7 +81,9 @@ class WalkingStep(Step):
         if self._page is None:
             from app.wizard.walking.page import WalkingPage
 
-            page = self._page = WalkingPage(self._look)
+            page = self._page = WalkingPage(self._look, self._bench.entry)
+            page.bench.chosen.connect(self._bench.choose)
+            page.bench.told.connect(self._on_change_told)
             page.label_chosen.connect(self._on_label_chosen)
             page.keep_pressed.connect(self._on_keep_pressed)
             page.discard_pressed.connect(self._on_discard_pressed)
@@ -186,7 +193,10 @@ class WalkingStep(Step):
         self._ask_for_ankles(strides)
 
     def bar(self) -> BarState:
-        return replace(self._bar(), quiet=(BarAction(tr("Patient's screen"), "F8"),))
+        bar = self._bar()
+        if self._is_bench:  # which has no room for another; the key is there
+            return bar
+        return replace(bar, quiet=(*bar.quiet, BarAction(tr("Patient's screen"), "F8")))
 
     def _bar(self) -> BarState:
         recordings = self._visit.recordings
@@ -203,9 +213,16 @@ class WalkingStep(Step):
                 ),
                 has_back=False,
             )
-        start = BarAction(tr("Start walk"), tr("Space"), Icon.PLAY, is_enabled=self._can_start)
         if recordings.is_stopping:
-            return BarState(primary=start, note=tr("The walk is being read back."))
+            return BarState(primary=self._start_action, note=tr("The walk is being read back."))
+        if self._is_bench:
+            return self._bench_bar()
+        quiet = (BarAction(tr("Bench")),) if self._bench.is_offered else ()
+        return replace(self._bar_of_walks(), quiet=quiet)
+
+    def _bar_of_walks(self) -> BarState:
+        """What can be done between two walks where there is no bench."""
+        recordings, start = self._visit.recordings, self._start_action
         if self._asked is not None:
             both = BarAction(
                 tr("Keep, start next"), tr("Space"), Icon.PLAY, is_wished=False, is_enabled=self._can_start
@@ -219,6 +236,18 @@ class WalkingStep(Step):
             note = tr("Without a free motion, angles are poor or missing.")
         return BarState(primary=start, note=self._cannot_start or note)
 
+    @property
+    def _start_action(self) -> BarAction:
+        return BarAction(tr("Start walk"), tr("Space"), Icon.PLAY, is_enabled=self._can_start)
+
+    @property
+    def _is_bench(self) -> bool:
+        return self._bench.is_wished and self._bench.is_offered
+
+    def _bench_bar(self) -> BarState:
+        asked = None if self._asked is None else self._asked.details.condition
+        return bench_bar(self._bench, asked, self._cannot_start, self._can_start)
+
     def _saved(self) -> str:
         """Say that what comes in is saved, only while the journal has it so."""
         recordings = self._visit.recordings
@@ -228,6 +257,9 @@ class WalkingStep(Step):
 
     def on_primary(self) -> None:
         recordings = self._visit.recordings
+        if self._is_bench and self._asked is not None and not recordings.is_recording and not recordings.is_stopping:
+            self._keep_at_bench(self._asked)
+            return
         is_settled = not recordings.is_recording and not recordings.is_stopping and self._asked is None
         if is_settled and any(recording.details.is_kept for recording in recordings.walks):
             self.done.emit()
@@ -235,12 +267,33 @@ class WalkingStep(Step):
             self._run()
 
     def on_other(self, number: int) -> None:
-        if number == 0:
+        if self._is_bench and number < len(self._bench_bar().others) - 1:
+            if said := self._bench.return_to_first():
+                self._kept = self._discarded = None
+                self.offered.emit(said)
+        elif number in (0, 1):
             self._run()
 
     def on_quiet(self, number: int) -> None:
+        own = len(self._bar().quiet)
+        if number >= own:
+            self._toggle_patient_screen()
+        elif number == 0:
+            self._bench.is_wished = not self._bench.is_wished
+            self._show()
+        elif self._asked is not None:
+            self._keep(self._asked, is_kept=False)
+
+    def _toggle_patient_screen(self) -> None:
         if self._feedback is not None:
             self._feedback.toggle()
+
+    def _keep_at_bench(self, recording: "SessionRecording") -> None:
+        """Keep it: what is changed next is changed from it. It can be taken back for a while."""
+        self._bench.settle_return()
+        self._discarded, self._kept = None, recording.id
+        self._keep(recording, is_kept=True)
+        self.offered.emit(tr("{walk} kept.").format(walk=self._called(recording.details.name)))
 
     def on_intent(self, intent: Intent) -> bool:
         feedback = self._feedback
@@ -251,10 +304,14 @@ class WalkingStep(Step):
                 self._keep(self._asked, is_kept=True)
             case KeyAction.DISCARD if self._asked is not None:
                 self._keep(self._asked, is_kept=False)
+            case KeyAction.LABEL if self._is_bench and not self._visit.recordings.is_recording:
+                self._bench.choose(intent.number - 1, is_beside=False)
+            case KeyAction.SECOND_LABEL if self._is_bench and not self._visit.recordings.is_recording:
+                self._bench.choose(intent.number - 1, is_beside=True)
             case KeyAction.LABEL:
                 self.page.choose_digit(intent.number)
             case KeyAction.PATIENT_SCREEN:
-                self.on_quiet(0)
+                self._toggle_patient_screen()
             case KeyAction.FULL_SCREEN if feedback is not None:
                 feedback.toggle_full_screen()
             case KeyAction.LEAVE if feedback is not None and feedback.is_open:
@@ -264,6 +321,12 @@ class WalkingStep(Step):
         return True
 
     def undo(self) -> None:
+        if self._bench.undo_return():
+            return
+        if (kept := self._recording(self._kept)) is not None:
+            self._kept = None
+            self._visit.recordings.ask_again(kept)
+            return
         if (recording := self._recording(self._discarded)) is not None:
             self._keep(recording, is_kept=True)
         self._discarded = None
@@ -293,7 +356,11 @@ class WalkingStep(Step):
         self._shown = self._at_stop = None
         self._counted_before = {}
         acquisition.ask(RecordingKind.WALKING)
-        recordings.begin(acquisition, RecordingKind.WALKING, self._label)
+        label, alignment = self._label, None
+        if self._is_bench:
+            label, alignment = self._bench.next_walk()
+        recordings.begin(acquisition, RecordingKind.WALKING, label, alignment)
+        self._bench.begun()
         if self._estimator is not None and recordings.ongoing is not None:
             self._estimator.count_from(recordings.ongoing.began_s)
         if self._feedback is not None:
@@ -314,6 +381,9 @@ class WalkingStep(Step):
         called = self._called(recording.details.name)
         self._visit.recordings.keep(recording, is_kept)
         if not is_kept:
+            self._bench.settle_return()
+            self._bench.discarded(recording.details.alignment)
+            self._kept = None
             self._discarded = recording.id
             self.offered.emit(tr("{walk} discarded.").format(walk=called))
         self._show()
@@ -491,6 +561,7 @@ class WalkingStep(Step):
             name = names[ongoing.details.name]
             rows.append(WalkRow("", name.letter, name.words, WalkState.RECORDING))
         self._page.show_walks(tuple(rows), self._facts(asked) if asked is not None else "")
+        self._page.show_bench(self._bench.state() if self._is_bench and ongoing is None else None)
         self._page.show_labels(labels_for(self._visit.patient.details, conditions), self._label)
         self.changed.emit()
 
@@ -537,6 +608,12 @@ class WalkingStep(Step):
     @Slot(str)
     def _on_label_chosen(self, label: str) -> None:
         self._label = label
+        self.changed.emit()
+
+    @Slot()
+    def _on_change_told(self) -> None:
+        """Show what was told of the next change, without drawing anything else anew."""
+        self.page.bench.show_entry(self._bench.next_title)
         self.changed.emit()
 
     @Slot(str)

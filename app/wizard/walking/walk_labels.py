@@ -39,5 +39,17 @@ def label_after(patient: Patient, used: Sequence[str]) -> str:
     return tr("Barefoot") if "barefoot" in patient.aids else tr("Shoes")
 
 
+def is_alignment(label: str) -> bool:
+    """Whether a label is one of ours for an alignment."""
+    return label in _alignments(len(LETTERS))
+
+
+def new_alignment(letter: str, used: Sequence[str]) -> str:
+    """Give what an alignment is called that was not walked with before: by its letter, or the first label not used."""
+    wanted = tr("Alignment {letter}").format(letter=letter)
+    free = [label for label in _alignments(len(LETTERS)) if label not in used]
+    return wanted if wanted in free else next(iter(free), wanted)
+
+
 def _alignments(count: int) -> list[str]:
     return [tr("Alignment {letter}").format(letter=letter) for letter in LETTERS[:count]]

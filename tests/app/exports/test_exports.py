@@ -27,6 +27,7 @@ from app.storage.opened import OpenedLibrary
 from app.storage.pseudonyms import Pseudonyms, Typed, age_in_words
 from app.storage.slots import Cost
 from app.storage.stored import Action, LibraryError, Operator, Role
+from core.alignment import AlignmentChange, PartChange, ProsthesisPart
 from core.results import Analysis
 from core.samples import Session
 from devices.files.refusal import FileRefusedError
@@ -82,7 +83,9 @@ PLANTED = {
     Typed.AIDS: "Gehstock-Qx2",
     Typed.SURFACE: "Flurboden-Qx3",
     Typed.CONDITIONS: "Ausrichtung-Qx4",
+    Typed.CHANGES: "Keil-Qy1",
 }
+CHANGED = PartChange(ProsthesisPart.PYLON, height_mm=3.0, text=PLANTED[Typed.CHANGES])
 NEVER = ("Operateur-Qx5", "Notiz-Qx6", "Programm-Qx7", "Uhr-Qx8", "Geschlecht-Qx9", "birth", NAME)
 
 
@@ -96,7 +99,14 @@ def planted(visit: tuple[Session, Analysis]) -> tuple[Session, Analysis]:
         patient=replace(
             session.patient, device=PLANTED[Typed.DEVICE], aids=PLANTED[Typed.AIDS], sex=sex, unknown={"name": NAME}
         ),
-        recordings=tuple(replace(r, condition=PLANTED[Typed.CONDITIONS]) for r in session.recordings),
+        recordings=tuple(
+            replace(
+                r,
+                condition=PLANTED[Typed.CONDITIONS],
+                alignment=AlignmentChange(PLANTED[Typed.CONDITIONS], (CHANGED,)),
+            )
+            for r in session.recordings
+        ),
         sensors={site: replace(info, clock=clock) for site, info in session.sensors.items()},
         surface=PLANTED[Typed.SURFACE],
         operator=operator,
@@ -117,6 +127,14 @@ def test_what_is_typed_freely_leaves_only_where_it_is_ticked(
     for said in (everything_in(tmp_path), shown):
         assert [one for one, word in PLANTED.items() if word in said] == list(kept)
         assert not [word for word in NEVER if word in said]
+
+
+def test_what_was_turned_leaves_with_its_figures_and_not_with_the_words(planted: tuple[Session, Analysis]) -> None:
+    told = Pseudonyms(bytes(32)).session(uuid4(), planted[0]).recordings[0].alignment
+    assert told == AlignmentChange("condition 1", (PartChange(ProsthesisPart.PYLON, height_mm=3.0),))
+    words = AlignmentChange("", (PartChange(ProsthesisPart.OTHER, text="a wedge"),))
+    only_words = replace(planted[0], recordings=(replace(planted[0].recordings[0], alignment=words),))
+    assert Pseudonyms(bytes(32)).session(uuid4(), only_words).recordings[0].alignment is None
 
 
 def test_all_that_was_typed_leaves_with_identity(planted: tuple[Session, Analysis], tmp_path: Path) -> None:

@@ -1,6 +1,7 @@
 """Does columns.csv tell of every column of every table of a real analysis, and of no other?"""
 
 import csv
+import json
 from dataclasses import replace
 from pathlib import Path
 
@@ -9,6 +10,7 @@ import pytest
 from app.reports.columns import COLUMNS, KNOWN, column_of
 from app.reports.differences import comparisons_of, rows_of, write_compared_cycles, write_differences
 from app.reports.result_folder import TAKEN, VISITS, VISITS_CYCLES, describe_tables, write_results
+from core.alignment import AlignmentChange, PartChange, ProsthesisPart
 from core.analysis import analyse
 from core.results import Analysis
 from core.samples import Session
@@ -24,7 +26,16 @@ def visit() -> tuple[Session, Analysis]:
     session = simulate(WalkerSettings(seed=5, recordings=wanted)).session
     conditions = {"walk 1": "shoes", "walk 2": "barefoot"}
     note = with_tallies("", [TargetTally(Target(TargetMeasure.CADENCE, None, 110), 2, 4)])
-    recordings = tuple(replace(one, condition=conditions.get(one.name, ""), note=note) for one in session.recordings)
+    turned = AlignmentChange("shoes", (PartChange(ProsthesisPart.PYLON, turns=0.5, height_mm=3.0, text="=1"),))
+    recordings = tuple(
+        replace(
+            one,
+            condition=conditions.get(one.name, ""),
+            note=note,
+            alignment=turned if one.name == "walk 2" else None,
+        )
+        for one in session.recordings
+    )
     session = replace(session, recordings=recordings)
     return session, analyse(session)
 
@@ -57,7 +68,7 @@ def test_every_column_of_every_table_is_told_of_and_no_other(out: Path) -> None:
     files = {file for file, _ in told}
     assert files == {
         *("angles.csv", "events.csv", "strides.csv", "cycles.csv"),
-        *("peaks.csv", "differences.csv", "compared_cycles.csv", "sides.csv", "targets.csv"),
+        *("peaks.csv", "alignments.csv", "differences.csv", "compared_cycles.csv", "sides.csv", "targets.csv"),
         *("fitting.csv", "fitting_means.csv"),
     }
     assert (COLUMNS,) in TAKEN
@@ -80,6 +91,8 @@ def test_the_tables_of_an_earlier_visit_are_told_of_once_they_are_there(
 @pytest.mark.parametrize(
     ("file", "column", "unit", "sign", "needs"),
     [
+        ("alignments.csv", "turns", "turns", "positive: out", ""),
+        ("alignments.csv", "in_words", "", "", ""),
         ("angles.csv", "left_knee_deg", "deg", "flexion positive", "zero sign"),
         ("angles.csv", "right_ankle_published_deg", "deg", "dorsiflexion positive", "zero sign"),
         ("angles.csv", "left_knee_sd_deg", "deg", "", ""),
@@ -113,3 +126,23 @@ def test_a_column_that_nobody_described_is_an_error() -> None:
     with pytest.raises(KeyError):
         column_of("strides.csv", "left_knee_deg")
     assert column_of("compared_cycles.csv", "1A_left_knee_mean_deg").definition.endswith("of 1A")
+
+
+def test_what_was_turned_is_told_in_a_table_and_beside_its_walk(out: Path) -> None:
+    with (out / "alignments.csv").open(newline="", encoding="utf-8") as file:
+        (row,) = csv.DictReader(file)
+    assert (row["walk"], row["condition"], row["since"], row["part"]) == ("walk 2", "barefoot", "shoes", "pylon")
+    assert (row["angle_deg"], row["turns"], row["shift_mm"], row["height_mm"]) == ("", "0.5", "", "3")
+    assert row["text"] == "'=1"  # which no spreadsheet works out
+    assert row["in_words"] == "Pylon ½ turn out; pylon +3 mm; pylon: =1"
+    walks = json.loads((out / "summary.json").read_text(encoding="utf-8"))["walks"]
+    part = {"part": "pylon", "turns": 0.5, "height_mm": 3.0, "text": "=1"}
+    assert walks["walk 2"]["alignment"] == {"since": "shoes", "parts": [part]}
+    assert "alignment" not in walks["walk 1"]
+
+
+def test_where_nothing_was_changed_there_is_no_table_of_it(visit: tuple[Session, Analysis], tmp_path: Path) -> None:
+    session, analysis = visit
+    unchanged = replace(session, recordings=tuple(replace(one, alignment=None) for one in session.recordings))
+    write_results(unchanged, analysis, tmp_path)
+    assert not (tmp_path / "alignments.csv").exists()

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from app.reports.comparison import Comparison, Contrast, Part
-from app.reports.differences import rows_of, write_compared_cycles, write_differences, write_sides
+from app.reports.differences import rows_along_chain, rows_of, write_compared_cycles, write_differences, write_sides
+from core.alignment import AlignmentChange, PartChange, ProsthesisPart
 from core.body import Joint, Side
 from core.results import ZeroKind
 from tests.core.verdicts.built_walk import Told, calibrations, judged_walk, leg, walk
@@ -111,3 +112,20 @@ def test_legs_are_set_side_by_side_with_their_status(tmp_path: Path) -> None:
     assert (ankle["status"], ankle["verdict"]) == ("withheld", "withheld")
     assert ankle["difference"] == ankle["error"] == ankle["right_mean"] == ankle["symmetry_index_percent"] == ""
     assert time["verdict"] == "no_published_figure"
+
+
+def test_a_changed_alignment_is_told_against_the_one_it_was_changed_from_too(tmp_path: Path) -> None:
+    def changed_from(one: Part, since: str) -> Part:
+        return replace(one, alignment=AlignmentChange(since, (PartChange(ProsthesisPart.PYLON, height_mm=3.0),)))
+
+    first, second = part("A"), changed_from(part("B", left=leg(Side.LEFT, knee_range_deg=66.0)), "condition A")
+    third = changed_from(part("C", left=leg(Side.LEFT, knee_range_deg=70.0)), "condition B")
+    comparison = Comparison(Contrast.CONDITIONS, (first, second, third))
+    assert [comparison.base_of(one).letter for one in comparison.parts] == ["A", "A", "B"]
+    write_differences(rows_along_chain(comparison), tmp_path / "differences.csv")
+    rows = [row for row in table(tmp_path / "differences.csv") if row["parameter"] == "knee_range_deg"]
+    told = {(row["part"], row["against_part"]): row["difference"] for row in rows if row["side"] == "left"}
+    assert told == {("B", "A"): "6.00000", ("C", "A"): "10.00000", ("C", "B"): "4.00000"}
+    alone = Comparison(Contrast.CONDITIONS, (first, changed_from(part("B"), "gone")))
+    assert alone.base_of(alone.parts[1]) is alone.parts[0]
+    assert len(list(rows_along_chain(alone))) == len(list(rows_of(alone)))

@@ -15,6 +15,7 @@ from app.storage.kept_analyses import bare, find_analysis, inputs_of, is_same_qu
 from app.storage.library import DEMONSTRATOR, Library
 from app.storage.results import key_of
 from app.storage.stored import ResultKind
+from core.alignment import AlignmentChange, PartChange, ProsthesisPart
 from core.analysis import analyse
 from core.body import Joint, Side, Site
 from core.findings import Finding, Severity
@@ -125,8 +126,11 @@ def test_anything_that_an_analysis_is_given_makes_it_another_one(session: Sessio
         with_block(session, lambda block: replace(block, sensor="other", unknown={"t": np.ones(len(block))})),
     ]
     same.append(with_walk(session, lambda walk: replace(walk, left_out_s={Side.LEFT: (2.0,)})))
+    changed_part = AlignmentChange("AFO", (PartChange(ProsthesisPart.PYLON, height_mm=3.0),))
+    same.append(with_walk(session, lambda walk: replace(walk, alignment=changed_part)))
     assert {key_of(inputs_of(one)) for one in same} == {keys[0]}
-    assert [is_same_question(session, one) for one in same] == [True, True, False, True]  # other blocks may be others
+    are_same = [is_same_question(session, one) for one in same]
+    assert are_same == [True, True, False, True, True]  # other blocks may be others
     assert not any(is_same_question(session, one) for one in changed)
     assert all(str(bare(one).recordings[1].imu[SHANK]) == str(bare(session).recordings[1].imu[SHANK]) for one in same)
     assert all(bare(one).patient == Patient(affected_side="left") for one in same)

@@ -28,6 +28,7 @@ from app.storage.stored import (
     StoredRecording,
     StoredSession,
 )
+from core.alignment import AlignmentChange, PartChange, ProsthesisPart
 from core.body import Joint, Side, Site
 from core.findings import Finding, Severity
 from core.samples import Patient, RateKind, Recording, RecordingKind, SensorInfo, Session
@@ -343,11 +344,14 @@ def test_what_was_told_of_a_recording_is_corrected_and_taken_back(library: Libra
         kind=RecordingKind.FREE_MOTION,
         is_restrapped_before=True,
         left_out_s={Side.LEFT: (1 / 3, 7.25), Side.RIGHT: (4.0,)},
+        alignment=AlignmentChange(
+            "alignment A", (PartChange(ProsthesisPart.PYLON, height_mm=3.0, text="\N{SNOWMAN}"),)
+        ),
     )
     changed = library.recordings.change(walk, told)
     assert changed.details == told
     (correction,) = library.corrections.of_session(walk.session_id)
-    assert "left_out" in {change.field for change in correction.changes}
+    assert {"left_out", "alignment"} <= {change.field for change in correction.changes}
     assert "left_out" in library.audit.entries(f"session:{walk.session_id}")[-1].details
     library.corrections.undo(correction.id)
     found = library.recordings.find(walk.id)

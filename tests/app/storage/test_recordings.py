@@ -1,15 +1,29 @@
 """What is said of a recording is asked once, and taken back in the order in which it was said."""
 
+import json
 import time
 from dataclasses import replace
+from pathlib import Path
+from uuid import UUID
 
 import pytest
 
+from app.storage.clinic.rows import copy_rows
+from app.storage.database.engine import Database, sqlite_engine
+from app.storage.database.schema import bring_up_to_date
+from app.storage.journal.payloads import BELONGING, Belonging
 from app.storage.library import Library
 from app.storage.stored import StoredSession
+from core.alignment import AlignmentChange, PartChange, ProsthesisPart
 from core.samples import Patient, Recording, RecordingKind, Session
 
 WALK = Recording("walk 1", RecordingKind.WALKING, "walk_1", {}, condition="alignment A")
+
+TURNED = replace(
+    WALK,
+    condition="alignment B",
+    alignment=AlignmentChange("alignment A", (PartChange(ProsthesisPart.FOOT_FRONT_SCREW, turns=0.5, text="tight"),)),
+)
 
 
 @pytest.fixture
@@ -47,3 +61,41 @@ def test_whether_a_walk_is_kept_is_answered_once_for_all(library: Library, visit
     discarded = library.recordings.decide(kept, is_kept=False)
     assert not discarded.details.is_kept
     assert [change.field for change in library.corrections.of_session(visit.id)[0].changes] == ["is_kept"]
+
+
+def test_what_was_turned_is_in_the_row_and_in_its_history(library: Library, visit: StoredSession) -> None:
+    walk = library.recordings.start(visit.id, TURNED, is_simulated=False)
+    assert walk.details == TURNED
+    changed = library.recordings.change(walk, replace(TURNED, alignment=None))
+    assert changed.details.alignment is None
+    (correction,) = library.corrections.of_session(visit.id)
+    assert [change.field for change in correction.changes] == ["alignment"]
+    library.corrections.undo(correction.id)
+    found = library.recordings.find(walk.id)
+    assert found is not None
+    assert found.details == TURNED
+
+
+def test_what_was_turned_goes_with_the_rows_to_another_database(
+    library: Library, visit: StoredSession, tables: Database, tmp_path: Path
+) -> None:
+    library.recordings.start(visit.id, TURNED, is_simulated=False)
+    engine = sqlite_engine(tmp_path / "other.db", bytes(range(32)), try_s=0.1)
+    other = Database(engine, busy_s=1.0)
+    bring_up_to_date(other)
+    with tables.reading() as source, other.writing() as target:
+        copy_rows(source.connection(), target.connection())
+    with Library(other, bytes(range(32))) as there:
+        there.log_in("hk")
+        assert there.sessions.get(visit.id).recordings[0].details == TURNED
+    engine.dispose()
+
+
+def test_a_journal_says_what_was_turned_and_one_of_an_earlier_version_is_read() -> None:
+    told_at = UUID(int=1)
+    belonging = Belonging(told_at, TURNED)
+    assert Belonging.parsed(belonging.text()) == belonging
+    without = replace(WALK, note="")  # which a journal does not say
+    earlier = json.loads(Belonging(told_at, without).text().removeprefix(BELONGING))
+    assert "alignment" not in earlier  # which earlier versions could not read
+    assert Belonging.parsed(BELONGING + json.dumps(earlier)) == Belonging(told_at, without)

@@ -13,6 +13,7 @@ from app.storage.edited_fields import (
 )
 from app.storage.stored import Limits
 from app.storage.three_way import Values, rebased, three_way
+from core.alignment import AlignmentChange, PartChange, ProsthesisPart
 from core.body import Joint, Side
 from core.samples import Patient, Recording, RecordingKind, Session
 
@@ -94,6 +95,9 @@ def test_fields_and_back_are_the_same() -> None:
     limits = Limits(frozenset({Side.LEFT}), cannot_stand=True)
     values = session_fields(told, "words", limits)
     assert with_session_fields(Session(()), "", Limits(), values) == (told, "words", limits)
-    walk = Recording("walk 1", RecordingKind.WALKING, "", {}, left_out_s={Side.LEFT: (1.0, 2.0)}, note="slow")
+    turned = AlignmentChange("A", (PartChange(ProsthesisPart.KNEE_UNIT, turns=-0.5),))
+    walk = Recording(
+        "walk 1", RecordingKind.WALKING, "", {}, left_out_s={Side.LEFT: (1.0, 2.0)}, note="slow", alignment=turned
+    )
     blank = Recording("walk 1", RecordingKind.STANDING, "", {})
     assert with_recording_fields(blank, recording_fields(walk)) == walk

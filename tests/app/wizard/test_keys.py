@@ -57,6 +57,7 @@ MEANINGS = [
     (Key.Key_R, Held.ShiftModifier, Intent(KeyAction.RIGHT_LEG)),
     (Key.Key_1, Held.NoModifier, Intent(KeyAction.LABEL, 1)),
     (Key.Key_9, Held.KeypadModifier, Intent(KeyAction.LABEL, 9)),
+    (Key.Key_Exclam, Held.ShiftModifier, Intent(KeyAction.SECOND_LABEL, 1)),
     (Key.Key_I, Held.NoModifier, Intent(KeyAction.IDENTIFY)),
     (Key.Key_BracketLeft, Held.NoModifier, Intent(KeyAction.EARLIER)),
     (Key.Key_BracketRight, Held.NoModifier, Intent(KeyAction.LATER)),

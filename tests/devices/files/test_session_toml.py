@@ -5,6 +5,7 @@ import re
 import numpy as np
 import pytest
 
+from core.alignment import AlignmentChange, PartChange, ProsthesisPart
 from core.body import Joint, Site
 from core.samples import Patient, RateKind, SensorInfo
 from devices.files.refusal import FileRefusedError
@@ -139,3 +140,29 @@ def test_tables_without_end_within_each_other_are_refused(deep: str) -> None:
         parse(f"{deep}\n{TOML}" if deep.startswith("a") else f"{TOML}{deep}\n")
     shallow = "a = " + "[" * 40 + "]" * 40
     assert "a" in parse(f"{shallow}\n{TOML}")[0].unknown
+
+
+def test_what_was_changed_at_a_prosthesis_is_read_and_written_again() -> None:
+    changed = """\
+condition = "Alignment B"
+[recordings.alignment]
+since = "Alignment A"
+parts = [
+    { part = "foot_front_screw", angle_deg = 2, turns = 0.5 },
+    { part = "pylon", height_mm = 3.0, text = "new clamp" },
+]
+"""
+    session, plans = parse(TOML + changed)
+    front = PartChange(ProsthesisPart.FOOT_FRONT_SCREW, angle_deg=2.0, turns=0.5)
+    pylon = PartChange(ProsthesisPart.PYLON, height_mm=3.0, text="new clamp")
+    assert plans[0].recording.alignment == AlignmentChange("Alignment A", (front, pylon))
+    assert plans[0].recording.unknown == {}
+    assert parse(render(session, plans)) == (session, plans)
+
+
+@pytest.mark.parametrize("other", ['"neutral"', '{ since = "A", parts = [{ part = "hip", turns = 1 }] }'])
+def test_what_another_program_calls_alignment_is_unknown_and_stays(other: str) -> None:
+    session, plans = parse(f"{TOML}alignment = {other}\n")
+    assert plans[0].recording.alignment is None
+    assert list(plans[0].recording.unknown) == ["alignment"]
+    assert parse(render(session, plans)) == (session, plans)

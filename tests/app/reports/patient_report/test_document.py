@@ -14,6 +14,7 @@ import pytest
 from app.reports.patient_report.comparison_page import comparison_of
 from app.reports.patient_report.document import ReportPreview, make_report
 from app.reports.patient_report.request import AnalysedVisit, ReportRequest, default_walks
+from core.alignment import AlignmentChange, PartChange, ProsthesisPart
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
@@ -264,3 +265,25 @@ def test_a_look_again_is_as_if_it_were_the_first(alignments: AnalysedVisit) -> N
         assert pages == ReportPreview().pages(asked, 40.0)
         assert pages != before
         before = pages
+
+
+def test_the_page_of_conditions_says_what_was_turned_and_against_which(request_of_alignments: ReportRequest) -> None:
+    visit = request_of_alignments.visit
+    changes = {
+        "walk 2": AlignmentChange("alignment A", (PartChange(ProsthesisPart.FOOT_FRONT_SCREW, turns=0.5),)),
+        "walk 3": AlignmentChange("alignment B", (PartChange(ProsthesisPart.PYLON, height_mm=3.0),)),
+    }
+    turned = tuple(replace(one, alignment=changes.get(one.name)) for one in visit.session.recordings)
+    told = replace(
+        request_of_alignments, visit=AnalysedVisit(replace(visit.session, recordings=turned), visit.analysis)
+    )
+    without, page = (
+        re.sub("[\u2066-\u2069]", "", " ".join(texts(make_report(one))[-1].split()))
+        for one in (request_of_alignments, told)
+    )
+    assert "Foot, front screw ½ turn out" in page
+    assert "Pylon +3 mm" in page
+    assert "Jonkergouw" in page
+    assert "C against B" in page
+    assert "C against A" in without
+    assert not any(words in without for words in ("Jonkergouw", "turn out", "Changed from"))

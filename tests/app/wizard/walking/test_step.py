@@ -4,7 +4,8 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 import pytest
-from PySide6.QtCore import QTimer
+from PySide6.QtCore import Qt, QTimer
+from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
@@ -17,6 +18,7 @@ from app.wizard.visit import Visit
 from app.wizard.walking.readout import WalkingReadout
 from app.wizard.walking.step import WalkingStep
 from app.wizard.walking.walk_list import WalkState
+from core.alignment import AlignmentChange, PartChange, ProsthesisPart
 from core.body import Joint, Side, Site
 from core.samples import Patient, RecordingKind
 from core.targets import Target, TargetMeasure, tallies_of
@@ -100,13 +102,22 @@ def test_space_starts_and_stops_and_keeps(qtbot: QtBot, step: WalkingStep, visit
     with qtbot.waitSignal(visit.recordings.ended, timeout=10_000):
         step.on_intent(RUN)
     assert states(step) == [("A", "Alignment A", WalkState.ASKING)]
-    assert step.page.stopped.isVisible()
+    assert step.page.bench.isVisible()  # in the place of the question: the leg is prosthetic
     assert not step.cannot_leave
+    bar = step.bar()
+    assert bar.primary is not None
+    assert (bar.primary.text, [one.text for one in bar.others]) == ("Keep A", ["A again"])
+    for _ in range(2):
+        QTest.keyClick(step.page.bench.alignments.steppers["turns"], Qt.Key.Key_Plus)
+    assert [one.text for one in step.bar().others] == ["Walk with B"]
     with qtbot.waitSignal(visit.recordings.begun, timeout=10_000):
         step.on_intent(RUN)  # keeps it, and starts the next
     assert states(step) == [("A", "Alignment A", WalkState.KEPT), ("B", "Alignment B", WalkState.RECORDING)]
     with qtbot.waitSignal(visit.recordings.ended, timeout=10_000):
         step.on_intent(RUN)
+    turned = AlignmentChange("Alignment A", (PartChange(ProsthesisPart.FOOT_FRONT_SCREW, turns=0.25),))
+    assert [one.stored.details.alignment for one in visit.recordings.walks] == [None, turned]
+    assert not bar_says_change(step)
     qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=20_000)
 
 
@@ -140,6 +151,10 @@ def test_what_the_patient_reached_is_shown_and_kept_with_the_walk(
     walk(qtbot, step, visit, 4.0)  # without the screen: nothing is noted
     assert visit.recordings.walks[1].details.note == ""
     qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=20_000)
+
+
+def bar_says_change(step: WalkingStep) -> bool:
+    return any(one.text.startswith("Walk with") for one in step.bar().others)
 
 
 def test_five_strides_find_the_ankles_axes_anew(

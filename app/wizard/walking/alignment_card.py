@@ -1,0 +1,278 @@
+"""The alignments walked so far, each with what was changed, and the next change as it is told before its walk."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+
+from PySide6.QtCore import QRectF, QSize, Qt, Signal
+from PySide6.QtGui import QFontMetrics, QMouseEvent, QPainter, QPaintEvent, QResizeEvent
+from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QScrollArea, QSizePolicy, QVBoxLayout, QWidget
+
+from app.alignment_words import MINUS, change_in_words, direction_words, part_name, turns_words
+from app.theme import ThemeNotifier
+from app.tokens import CHIP_RADIUS, CONTROL_RADIUS
+from app.widgets.card import Card
+from app.widgets.chip import Chip
+from app.widgets.choice import Choice
+from app.widgets.field import Field
+from app.widgets.painted_text import CENTRE, LEFT, PaintedText, height_for
+from app.widgets.text import MEDIUM, SEMIBOLD, Text
+from app.widgets.themed import Themed
+from app.wizard.walking.bench import ChangeEntry
+from app.wizard.walking.stepper import Stepper
+from app.wording import tr
+from core.alignment import FIGURES, MOST_TEXT, ProsthesisPart
+from core.body import Side
+
+BADGE, PADDING, LINE, GAP = 28, 8, 18, 12
+LEAST_LIST = 88
+
+
+class RowRole(StrEnum):
+    """Which place an alignment has on the bench now."""
+
+    SHOWN = "shown"
+    BESIDE = "beside"
+    NONE = ""
+
+
+@dataclass(frozen=True, slots=True)
+class AlignmentRow:
+    """One alignment: its letter, what it is, strides and speed, and what was changed, part by part."""
+
+    letter: str
+    title: str
+    note: str
+    lines: tuple[tuple[str, str], ...]
+    role: RowRole
+
+
+class AlignmentCard(Card):
+    """Signals
+    -------
+    chosen
+        The number of an alignment from 0, and whether it is to stand beside the one shown.
+    told
+        Something of the next change was told: `entry` holds it.
+    """
+
+    chosen = Signal(int, bool)
+    told = Signal()
+
+    def __init__(self, look: ThemeNotifier, entry: ChangeEntry) -> None:
+        self._entry = entry
+        self._rows: list[_AlignmentRow] = []
+        self._list = QWidget()
+        self._rows_column = QVBoxLayout(self._list)
+        self._scroll = QScrollArea()
+        self.next_title = Text(look, size=14, weight=SEMIBOLD, wraps=True)
+        self.parts = Choice(look, tr("Part"))
+        self.steppers = {name: Stepper(look) for name in FIGURES}
+        self.words = Field(look, tr("In words"), has_label=False, placeholder=tr("In words, optional"), most=MOST_TEXT)
+        self.written = Text(look, size=12, tone="ink2", wraps=True)
+        self._grid = QGridLayout()
+        self._chip: Chip | None = None
+        self._head = QHBoxLayout()
+        self._side_word = Text(look, tr("prosthetic"), size=12, tone="ink2")
+        super().__init__(look)
+        for part in ProsthesisPart:
+            self.parts.addItem(part_name(part), part)
+        self._build()
+        self._connect()
+        self.show_entry("")
+
+    @property
+    def rows(self) -> tuple[AlignmentRow, ...]:
+        return tuple(row.told for row in self._rows)
+
+    @property
+    def tab_order(self) -> list[QWidget]:
+        return [self.parts, *self.steppers.values(), self.words.line_edit]
+
+    def show_rows(self, rows: Sequence[AlignmentRow], side: Side) -> None:
+        if self._chip is None:
+            self._chip = Chip(self._look, side)
+            self._head.insertWidget(2, self._chip)
+        while len(self._rows) > len(rows):
+            self._rows.pop().deleteLater()
+        while len(self._rows) < len(rows):
+            row = _AlignmentRow(self._look, len(self._rows))
+            row.pressed.connect(self.chosen)
+            self._rows_column.insertWidget(len(self._rows), row)
+            self._rows.append(row)
+        for widget, told in zip(self._rows, rows, strict=True):
+            widget.show_row(told)
+        self._show_the_shown()
+
+    def _show_the_shown(self) -> None:
+        """Scroll the list to the alignment that is shown."""
+        shown = [row for row in self._rows if row.told.role is RowRole.SHOWN]
+        if shown:
+            top = sum(row.height() + self._rows_column.spacing() for row in self._rows[: self._rows.index(shown[0])])
+            self._scroll.verticalScrollBar().setValue(top)
+
+    def set_compact(self, is_compact: bool) -> None:
+        """Put the steppers in one row where the card has the width of the window."""
+        columns = len(self.steppers) if is_compact else 2
+        for k, stepper in enumerate(self.steppers.values()):
+            self._grid.removeWidget(stepper)
+            self._grid.addWidget(stepper, k // columns, k % columns)
+
+    def show_entry(self, title: str) -> None:
+        """Show the next change as `entry` holds it; `title` says from where."""
+        entry = self._entry
+        self.next_title.setText(title)
+        if self.parts.currentData() != entry.part:
+            self.parts.setCurrentIndex(list(ProsthesisPart).index(entry.part))
+        angle_words, shift_words = direction_words(entry.part)
+        shown = {
+            "angle_deg": (angle_words, "°"),
+            "turns": (tr("Turns"), ""),
+            "shift_mm": (shift_words, tr(" mm")),
+            "height_mm": (tr("Height, longer +"), tr(" mm")),
+        }
+        for name, stepper in self.steppers.items():
+            caption, unit = shown[name]
+            value = entry.figure(name)
+            sign = "+" if value > 0 else MINUS if value < 0 else ""
+            said = turns_words(value) if name == "turns" and value else f"{sign}{abs(value):g}{unit}"
+            stepper.show_value(caption, said)
+        self.words.set_text(entry.text)
+        line = change_in_words(entry.parts)
+        self.written.setText(tr("Written as: {change}").format(change=line) if line else tr("Nothing changed yet."))
+
+    def _build(self) -> None:
+        self._head.addWidget(Text(self._look, tr("Alignments"), size=16, weight=SEMIBOLD))
+        self._head.addStretch(1)
+        self._head.addWidget(self._side_word)
+        self._rows_column.setContentsMargins(0, 0, 0, 0)
+        self._rows_column.setSpacing(4)
+        self._rows_column.addStretch(1)
+        self._scroll.setWidget(self._list)
+        self._scroll.setWidgetResizable(True)
+        self._scroll.setFrameShape(QFrame.Shape.NoFrame)
+        self._scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self._scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self._scroll.setMinimumHeight(self._look.theme.px(LEAST_LIST))
+        self.column.addLayout(self._head)
+        self.column.addWidget(self._scroll, 1)
+        self.column.addWidget(self.next_title)
+        self.column.addWidget(self.parts)
+        self._grid.setSpacing(8)
+        self.set_compact(False)
+        self.column.addLayout(self._grid)
+        self.column.addWidget(self.words)
+        self.column.addWidget(self.written)
+
+    def _connect(self) -> None:
+        self.parts.activated.connect(self._on_part_chosen)
+        self.parts.currentIndexChanged.connect(self._on_part_chosen)
+        for stepper in self.steppers.values():
+            stepper.stepped.connect(self._on_stepped)
+        self.words.edited.connect(self._on_words_edited)
+        self._scroll.verticalScrollBar().rangeChanged.connect(self._show_the_shown)
+
+    def _on_part_chosen(self, index: int) -> None:
+        self._entry.part = list(ProsthesisPart)[index]
+        self.told.emit()
+
+    def _on_stepped(self, by: int) -> None:
+        name = next(name for name, stepper in self.steppers.items() if stepper is self.sender())
+        self._entry.step(name, by)
+        self.told.emit()
+
+    def _on_words_edited(self, text: str) -> None:
+        self._entry.say(text)
+        self.told.emit()
+
+
+class _AlignmentRow(Themed):
+    """One alignment; pressed it is shown, with Shift it stands beside."""
+
+    pressed = Signal(int, bool)
+
+    def __init__(self, look: ThemeNotifier, number: int) -> None:
+        super().__init__()
+        self._look, self._number = look, number
+        self.told = AlignmentRow("", "", "", (), RowRole.NONE)
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        self.setCursor(Qt.CursorShape.PointingHandCursor)
+
+    def show_row(self, told: AlignmentRow) -> None:
+        self.told = told
+        lines = "; ".join(f"{name}: {words}" for name, words in told.lines)
+        role = {RowRole.SHOWN: tr("shown"), RowRole.BESIDE: tr("beside"), RowRole.NONE: ""}[told.role]
+        said = [f"{told.letter} {told.title}", told.note, lines, role]
+        self.setAccessibleName(", ".join(filter(None, said)))
+        self.setAccessibleDescription(tr("Key {key}").format(key=str(self._number + 1)))
+        self._on_look_changed()
+
+    def sizeHint(self) -> QSize:
+        px = self._look.theme.px
+        height = px(2 * PADDING + 2 * LINE) + sum(self._line_heights())
+        return QSize(px(200), height)
+
+    def minimumSizeHint(self) -> QSize:
+        return self.sizeHint()
+
+    def painted_texts(self) -> list[PaintedText]:
+        theme, px = self._look.theme, self._look.theme.px
+        left, width = px(PADDING + BADGE + GAP), self.width()
+        badge_tone = "inv_ink" if self.told.role is RowRole.SHOWN else "ink"
+        role = {RowRole.SHOWN: tr("shown"), RowRole.BESIDE: tr("beside"), RowRole.NONE: ""}[self.told.role]
+        aside = QFontMetrics(theme.font(12, MEDIUM)).horizontalAdvance(role) + px(PADDING) + 2
+        right = QRectF(width - aside, px(PADDING), aside - px(PADDING), px(LINE))
+        texts = [
+            PaintedText(self.told.letter, self._badge, theme.font(14, SEMIBOLD), badge_tone, CENTRE),
+            PaintedText(
+                self.told.title, QRectF(left, px(PADDING), width - left - aside, px(LINE)), theme.font(14, SEMIBOLD)
+            ),
+            PaintedText(
+                self.told.note,
+                QRectF(left, px(PADDING + LINE), width - left - px(PADDING), px(LINE)),
+                theme.font(12),
+                "ink2",
+            ),
+            PaintedText(role, right, theme.font(12, MEDIUM), "ink2", Qt.AlignmentFlag.AlignRight),
+        ]
+        top = px(PADDING + 2 * LINE)
+        for words, height in zip(self._line_words(), self._line_heights(), strict=True):
+            box = QRectF(left, top, width - left - px(PADDING), height)
+            texts.append(PaintedText(words, box, theme.font(12), align=LEFT, wraps=True))
+            top += height
+        return texts
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._on_look_changed()  # its lines may wrap otherwise
+
+    def mousePressEvent(self, event: QMouseEvent) -> None:
+        self.pressed.emit(self._number, bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier))
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        theme = self._look.theme
+        c, painter = theme.colours, QPainter(self)
+        is_shown = self.told.role is RowRole.SHOWN
+        if is_shown:
+            theme.paint_box(painter, QRectF(self.rect()), c.sunken, None, 0, CONTROL_RADIUS)
+        fill, line = (c.inv, None) if is_shown else (c.surface, c.ink)
+        theme.paint_box(painter, self._badge.adjusted(1, 1, -1, -1), fill, line, 1.75, CHIP_RADIUS)
+        for text in self.painted_texts():
+            text.paint(painter, c)
+
+    def _line_words(self) -> list[str]:
+        return [f"{name}: {words}" for name, words in self.told.lines]
+
+    def _line_heights(self) -> list[int]:
+        px, font = self._look.theme.px, self._look.theme.font(12)
+        width = max(self.width() - px(2 * PADDING + BADGE + GAP), px(140))
+        return [max(px(LINE), height_for(words, font, width)) for words in self._line_words()]
+
+    @property
+    def _badge(self) -> QRectF:
+        px = self._look.theme.px
+        return QRectF(px(PADDING), px(PADDING + 4), px(BADGE), px(BADGE))
+
+    def _on_look_changed(self) -> None:
+        self.setFixedHeight(self.sizeHint().height())
+        self.update()

@@ -1,0 +1,30 @@
+"""What can be done at the bench between two walks: walk on, keep, return to where it began, look at all walks."""
+
+from app.icons import Icon
+from app.widgets.action_bar import BarAction, BarState
+from app.wizard.walking.bench_control import Bench
+from app.wording import tr
+
+
+def bench_bar(bench: Bench, asked: str | None, cannot_start: str, can_start: bool) -> BarState:
+    """`asked`: the condition of the walk that waits to be kept; None where none does.
+
+    The last of the others starts a walk; one before it returns to the first alignment. The first of the quiet ones
+    shows all walks, the second discards the walk that waits.
+    """
+    chain = bench.chain
+    is_new = bool(bench.entry.parts)
+    letter = chain.next_letter if is_new else chain.letters.get(chain.base, "")
+    walk = tr("Walk with {letter}") if is_new else tr("{letter} again")
+    start = BarAction(walk.format(letter=letter), tr("Space"), Icon.PLAY, is_wished=False, is_enabled=can_start)
+    others: tuple[BarAction, ...] = (start,)
+    if chain.way_back(chain.first):
+        back = tr("Return to {letter}").format(letter=chain.letters.get(chain.first, ""))
+        others = (BarAction(back, "", Icon.REPEAT, is_wished=False), start)
+    every = BarAction(tr("Walks"))
+    if asked is None:
+        results = BarAction(tr("Results"), "", Icon.NEXT)
+        return BarState(primary=results, others=others, quiet=(every,), note=cannot_start)
+    keep = BarAction(tr("Keep {letter}").format(letter=chain.letters.get(asked, "")), tr("Enter"), Icon.CHECK)
+    discard = BarAction(tr("Discard"), "D")
+    return BarState(primary=keep, others=others, quiet=(every, discard), note=cannot_start)

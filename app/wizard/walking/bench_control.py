@@ -1,0 +1,182 @@
+"""What joins the bench to the visit: which alignments are shown, what the next walk is walked with, what leads back."""
+
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject, Signal, Slot
+
+from app.alignment_words import change_lines, to_do_in_words
+from app.reports.comparison import Comparison, Contrast, Part, conditions_of
+from app.reports.patient_report.answer import Answer, Outcome
+from app.reports.patient_report.numbers_in_words import fixed
+from app.wizard.walking.alignment_card import AlignmentRow, RowRole
+from app.wizard.walking.bench import AlignmentChain, ChangeEntry, chain_of, next_walk
+from app.wizard.walking.bench_view import BenchState
+from app.wizard.walking.bench_words import SPEED, bench_answer
+from app.wizard.walking.walk_labels import is_alignment, new_alignment
+from app.wording import tr
+from core.alignment import AlignmentChange
+from core.body import Side
+
+if TYPE_CHECKING:
+    from app.wizard.visit import Visit
+
+
+class Bench(QObject):
+    """Knows the visit and no page.
+
+    Signals
+    -------
+    changed
+        Something else is to be shown.
+    """
+
+    changed = Signal()
+
+    def __init__(self, visit: "Visit", parent: QObject) -> None:
+        super().__init__(parent)
+        self._visit = visit
+        self.entry = ChangeEntry()
+        self.is_wished = True  # else the list of walks stands there
+        self._returned_to = ""
+        self._shown = self._beside = ""  # letters; empty: the latest, and what it was changed from
+        self._to_undo = ""  # in words, as long as the prosthesis is said to be put back
+        self._undone = ("", "")  # what the prosthesis was in before it was said to be put back, and that
+
+    @property
+    def side(self) -> Side | None:
+        """The prosthetic one; None where there is none, or both are: no side is sound then."""
+        sides = self._visit.prosthetic_sides
+        return next(iter(sides)) if len(sides) == 1 else None
+
+    @property
+    def is_offered(self) -> bool:
+        """Whether the latest walk that counts was one with an alignment of a prosthesis.
+
+        After one that is called otherwise nobody knows which alignment the prosthesis is in.
+        """
+        kept = [one.details.condition for one in self._visit.recordings.walks if one.details.is_kept]
+        return self.side is not None and bool(kept) and is_alignment(kept[-1])
+
+    @property
+    def chain(self) -> AlignmentChain:
+        return chain_of([one.details for one in self._visit.recordings.every], self._returned_to)
+
+    def next_walk(self) -> tuple[str, AlignmentChange | None]:
+        """What the next walk is called and what was changed before it."""
+        chain = self.chain
+        return next_walk(chain, self.entry, new_alignment(chain.next_letter, list(chain.changes)))
+
+    def begun(self) -> None:
+        """The next walk begins: what was told of it is its own now."""
+        self.entry.load(())
+        self._returned_to = self._shown = self._beside = self._to_undo = ""
+        self._undone = ("", "")
+
+    def discarded(self, change: AlignmentChange | None) -> None:
+        """A walk does not count, but what was changed before it is still so: it is told again of the next."""
+        if change is not None and not self.entry.parts and change.since == self.chain.base:
+            self.entry.load(change.parts)
+        self._shown = self._beside = ""
+        self.changed.emit()
+
+    def return_to_first(self) -> str:
+        """Say that the prosthesis is put back to where it began; gives what is to be turned, empty where nothing is."""
+        chain = self.chain
+        back = chain.way_back(chain.first)
+        if not back:
+            return ""
+        self._undone = (chain.base, self._returned_to)
+        self._returned_to, self._to_undo = chain.first, to_do_in_words(back)
+        self.changed.emit()
+        letter = chain.letters.get(chain.first, "")
+        return tr("Back to {letter}: {changes}").format(letter=letter, changes=self._to_undo)
+
+    def undo_return(self) -> bool:
+        """Take back that it was put back; whether it was."""
+        if not self._undone[0]:
+            return False
+        self._returned_to, self._undone, self._to_undo = self._undone[1], ("", ""), ""
+        self.changed.emit()
+        return True
+
+    def settle_return(self) -> None:
+        """Something else can be taken back now."""
+        self._undone = ("", "")
+
+    @Slot(int, bool)
+    def choose(self, number: int, is_beside: bool) -> None:
+        """Show an alignment by its number from 0, or let it stand beside."""
+        parts = self._parts()
+        if not 0 <= number < len(parts):
+            return
+        if is_beside:
+            self._beside = parts[number].letter
+        else:
+            self._shown, self._beside = parts[number].letter, ""
+        self.changed.emit()
+
+    def state(self) -> BenchState | None:
+        """All that is shown; None where the bench means nothing."""
+        side, parts = self.side, self._parts()
+        if side is None:
+            return None
+        analysis = self._visit.evaluation.analysis
+        shown = next((part for part in parts if part.letter == self._shown), parts[-1] if parts else None)
+        is_simulated = analysis is not None and analysis.is_simulated
+        every = Comparison(Contrast.CONDITIONS, parts, is_simulated=is_simulated) if parts else None
+        beside = None
+        if shown is not None and every is not None:
+            beside = next((part for part in parts if part.letter == self._beside), every.base_of(shown))
+        found = None
+        if shown is not None and beside is not None and beside is not shown:
+            found = Comparison(Contrast.CONDITIONS, (beside, shown), is_simulated=is_simulated)
+        drawn = [part for part in (beside, shown) if part is not None] if found else [shown] if shown else []
+        return BenchState(
+            self._answer(found, side, shown),
+            self._rows(parts, shown, beside if found else None),
+            self.next_title,
+            side,
+            drawn,
+            found,
+            is_simulated,
+        )
+
+    @property
+    def next_title(self) -> str:
+        chain = self.chain
+        base = chain.letters.get(chain.base, "")
+        if self.entry.parts:
+            return tr("{letter}: changed from {base}").format(letter=chain.next_letter, base=base)
+        if self._to_undo:
+            said = tr("Next change, from {base}. To undo first: {changes}")
+            return said.format(base=base, changes=self._to_undo)
+        return tr("Next change, from {base}").format(base=base)
+
+    def _parts(self) -> tuple[Part, ...]:
+        evaluation = self._visit.evaluation
+        if evaluation.analysis is None or evaluation.session is None:
+            return ()
+        return conditions_of(evaluation.analysis, evaluation.session.recordings)
+
+    def _answer(self, found: Comparison | None, side: Side, shown: Part | None) -> Answer:
+        if shown is None or (self._visit.evaluation.is_busy and not self._shown):
+            return Answer(Outcome.OPEN, tr("The walk is being analysed."), "")
+        if found is not None:
+            return bench_answer(found, side)
+        first = tr("{letter} is the starting point. Change one thing, write it down, then walk.")
+        return Answer(Outcome.OPEN, first.format(letter=shown.letter), tr("The change is written before its walk."))
+
+    def _rows(self, parts: tuple[Part, ...], shown: Part | None, beside: Part | None) -> list[AlignmentRow]:
+        side, rows = self.side, []
+        for part in parts:
+            since = ""
+            if part.alignment is not None:
+                of_since = next((one.letter for one in parts if one.name == part.alignment.since), part.alignment.since)
+                since = tr("{base}, changed").format(base=of_since)
+            speed = part.of_both(SPEED)
+            strides = part.strides(side) if side is not None else 0
+            note = tr("{strides} strides · {speed} m/s").format(strides=strides, speed=fixed(speed, 2))
+            role = RowRole.SHOWN if part is shown else RowRole.BESIDE if part is beside else RowRole.NONE
+            title = since or (tr("Starting point") if part is parts[0] else part.name)
+            rows.append(AlignmentRow(part.letter, title, note, tuple(change_lines(part.alignment)), role))
+        return rows

@@ -1,0 +1,188 @@
+"""The prosthetist's bench: alignments, the prosthetic side's curves of two of them, and what differs."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtGui import QResizeEvent
+from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QVBoxLayout, QWidget
+
+from app.icons import Icon
+from app.pages.compared_words import withheld_in_words
+from app.plots.compared_chart import ComparedChart, ComparedFrame
+from app.reports.beside import changes_on_curves
+from app.reports.comparison import Comparison, Part
+from app.reports.patient_report.answer import Answer, Outcome
+from app.theme import ThemeNotifier
+from app.widgets.focus_ring import NO_RING
+from app.widgets.icons import IconMark
+from app.widgets.segmented import Segmented
+from app.widgets.text import SEMIBOLD, Text
+from app.widgets.themed import Themed
+from app.wizard.walking.alignment_card import AlignmentCard, AlignmentRow
+from app.wizard.walking.bench import ChangeEntry
+from app.wizard.walking.bench_differences import BenchDifferences
+from app.wording import tr
+from core.body import Side, ankle_of, knee_of
+
+LIST, CURVES_LEAST, DIFFERENCES = 284, 308, 312
+BETWEEN = 16
+ANY_WIDTH = 16_777_215  # Qt's own
+ACROSS, DOWN = QBoxLayout.Direction.LeftToRight, QBoxLayout.Direction.TopToBottom
+ALIGNMENTS, CURVES, CHANGES = "alignments", "curves", "changes"
+
+
+@dataclass(frozen=True, slots=True)
+class BenchState:
+    """All that the bench shows. `parts`: what is drawn, the earlier first; `found` None where one stands alone."""
+
+    answer: Answer
+    rows: Sequence[AlignmentRow]
+    next_title: str
+    side: Side
+    parts: Sequence[Part]
+    found: Comparison | None
+    is_simulated: bool
+
+
+class BenchView(Themed):
+    """Three cards; where they have not all room beside one another, one at a time.
+
+    Signals
+    -------
+    chosen, told
+        As of `AlignmentCard`.
+    """
+
+    chosen = Signal(int, bool)
+    told = Signal()
+
+    def __init__(self, look: ThemeNotifier, entry: ChangeEntry) -> None:
+        super().__init__()
+        self._look, self._is_compact = look, False
+        self._mark = IconMark(look, Icon.WARNING, size=24)
+        self.first = Text(look, size=20, weight=SEMIBOLD, wraps=True)
+        self.then = Text(look, tone="ink2", wraps=True)
+        self.tabs = Segmented(
+            look,
+            tr("What is shown"),
+            [(ALIGNMENTS, tr("Alignments"), ""), (CURVES, tr("Curves"), ""), (CHANGES, tr("Differences"), "")],
+        )
+        self.alignments = AlignmentCard(look, entry)
+        self.differences = BenchDifferences(look)
+        self._curves = QWidget()
+        self._frames: dict[tuple[Side, bool], ComparedFrame] = {}
+        self._build()
+        self.alignments.chosen.connect(self.chosen)
+        self.alignments.told.connect(self.told)
+        self.tabs.chosen.connect(self._arrange)
+        self._on_look_changed()
+        self._arrange()
+
+    @property
+    def tab_order(self) -> list[QWidget]:
+        return [*self.tabs.segments, *self.alignments.tab_order, self.differences.table]
+
+    @property
+    def frames(self) -> list[ComparedFrame]:
+        """Those of the prosthetic side: the knee's and the ankle's."""
+        return [frame for frame in self._frames.values() if not frame.isHidden()]
+
+    def show_state(self, state: BenchState) -> None:
+        self.first.setText(state.answer.first)
+        self.then.setText(state.answer.then)
+        self._mark.setVisible(state.answer.outcome is Outcome.DIFFERS)
+        self.setAccessibleDescription(f"{state.answer.first} {state.answer.then}")
+        self.alignments.show_rows(state.rows, state.side)
+        self.alignments.show_entry(state.next_title)
+        self.differences.show_pair(state.found, state.side, state.answer.first)
+        self._show_curves(state)
+        self._arrange()
+
+    def show_entry(self, title: str) -> None:
+        self.alignments.show_entry(title)
+
+    def set_compact(self, is_compact: bool) -> None:
+        self._is_compact = is_compact
+        self.alignments.set_compact(is_compact)
+        self._on_look_changed()
+        self._arrange()
+
+    def _show_curves(self, state: BenchState) -> None:
+        marks = changes_on_curves(state.found) if state.found is not None else []
+        has_one_zero = state.found is None or state.found.has_one_zero_throughout
+        for is_knee in (True, False):
+            for side in Side:
+                frame = self._frame(side, is_knee)
+                frame.setVisible(side is state.side)
+            joint = knee_of(state.side) if is_knee else ankle_of(state.side)
+            measured = [part for part in state.parts if joint in part.joints]
+            curves = [part.curve(joint, is_about_mean=not has_one_zero) for part in measured if part.is_drawn(joint)]
+            notes = [withheld_in_words(part, joint) for part in measured if not part.is_drawn(joint)]
+            frame = self._frame(state.side, is_knee)
+            frame.chart.deviations = tuple(
+                one for one in marks if one.is_knee is is_knee and one.first.joint is joint and has_one_zero
+            )
+            frame.show_curves(curves, " ".join(notes), state.is_simulated, is_about_mean=not has_one_zero)
+
+    def _frame(self, side: Side, is_knee: bool) -> ComparedFrame:
+        if (side, is_knee) not in self._frames:
+            frame = ComparedFrame(self._look, ComparedChart(self._look, is_knee=is_knee), side, is_knee)
+            self._frames[side, is_knee] = frame
+            self._curves_column.addWidget(frame, 1)
+        return self._frames[side, is_knee]
+
+    def _build(self) -> None:
+        self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.setProperty(NO_RING, True)
+        self.setAccessibleName(tr("Bench"))
+        self._curves_column = QBoxLayout(DOWN, self._curves)
+        self._curves_column.setContentsMargins(0, 0, 0, 0)
+        words = QVBoxLayout()
+        words.setSpacing(2)
+        words.addWidget(self.first)
+        words.addWidget(self.then)
+        self._head = QHBoxLayout()
+        self._head.addWidget(self._mark, 0, Qt.AlignmentFlag.AlignTop)
+        self._head.addLayout(words, 1)
+        self._row = QHBoxLayout()
+        self._row.addWidget(self.alignments)
+        self._row.addWidget(self._curves, 1)
+        self._row.addWidget(self.differences)
+        self._column = QVBoxLayout(self)
+        self._column.setContentsMargins(0, 0, 0, 0)
+        self._column.addLayout(self._head)
+        self._column.addWidget(self.tabs)
+        self._column.addLayout(self._row, 1)
+
+    def _arrange(self) -> None:
+        px, choice = self._look.theme.px, self.tabs.choice
+        list_width = max(px(LIST), self.alignments.minimumSizeHint().width())
+        curves = max([px(CURVES_LEAST), *(frame.minimumSizeHint().width() for frame in self.frames)])
+        changes = max(px(DIFFERENCES), self.differences.needed)
+        is_tabbed = self._is_compact or list_width + curves + changes + 2 * px(BETWEEN) > self.width()
+        self.tabs.setVisible(is_tabbed)
+        self._curves_column.setDirection(ACROSS if is_tabbed else DOWN)
+        cards: tuple[tuple[str, QWidget, int], ...] = (
+            (ALIGNMENTS, self.alignments, list_width),
+            (CURVES, self._curves, 0),
+            (CHANGES, self.differences, changes),
+        )
+        for key, card, width in cards:
+            card.setVisible(not is_tabbed or choice == key)
+            is_fixed = width and not is_tabbed
+            card.setMinimumWidth(width if is_fixed else 0)
+            card.setMaximumWidth(width if is_fixed else ANY_WIDTH)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._arrange()
+
+    def _on_look_changed(self) -> None:
+        px = self._look.theme.px
+        self.first.set_size(16 if self._is_compact else 20)
+        self._column.setSpacing(px(12))
+        self._row.setSpacing(px(BETWEEN))
+        self._head.setSpacing(px(12))
+        self._curves_column.setSpacing(px(12))
+        self._arrange()

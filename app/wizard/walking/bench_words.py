@@ -1,0 +1,94 @@
+"""What the bench says of two alignments: one sentence of the prosthetic side, and what must be known to read it."""
+
+import math
+
+from app.pages.compared_words import error_in_sentence, is_judged, unit_behind
+from app.reports.comparison import Compared, Comparison, Part
+from app.reports.patient_report.answer import Answer, Outcome
+from app.reports.patient_report.numbers_in_words import fixed
+from app.wording import tr
+from core.body import Side
+from core.norms import MIN_STRIDES_FOR_SD
+
+SPEED = "speed_m_s"
+
+
+def bench_answer(found: Comparison, prosthetic: Side) -> Answer:
+    """Tell what of the prosthetic side changed most errors from the other alignment, or that nothing did."""
+    shown, other = found.parts[1], found.against
+    few = [part for part in (shown, other) if part.strides(prosthetic) < MIN_STRIDES_FOR_SD]
+    if few:
+        counts = tr("{letter} has {count}").format(letter=few[0].letter, count=few[0].strides(prosthetic))
+        first = tr("{one} beside {other}: too few strides to judge a change.").format(
+            one=shown.letter, other=other.letter
+        )
+        wanted = tr("Provisional: {counts} strides of the prosthetic side, {wanted} give an error.")
+        return Answer(Outcome.OPEN, first, wanted.format(counts=counts, wanted=MIN_STRIDES_FOR_SD))
+    own = [row for row in found.rows if _is_told_of(row) and row.side is prosthetic]
+    if not own:
+        first = tr("Nothing of the prosthetic side can be compared between {one} and {other}.")
+        return Answer(Outcome.OPEN, first.format(one=shown.letter, other=other.letter), _beside(found, prosthetic))
+    worth = [row for row in own if row.difference.is_worth_a_sentence]
+    if worth:
+        most = max(worth, key=lambda row: row.difference.ratio)
+        error = tr("Larger than its error ({error}).").format(error=error_in_sentence(most))
+        return Answer(Outcome.DIFFERS, _sentence(most), f"{error} {_beside(found, prosthetic)}")
+    said = tr("No change of the prosthetic side from {other} to {one} is larger than its error.")
+    outcome = Outcome.NOTHING
+    if any(row.exceeds for row in own):
+        said = tr("No change of the prosthetic side from {other} to {one} is far larger than its error.")
+        outcome = Outcome.OPEN
+    return Answer(outcome, said.format(one=shown.letter, other=other.letter), _beside(found, prosthetic))
+
+
+def speeds_in_words(shown: Part, other: Part) -> str:
+    """Both speeds, since speed explains much; that they are not known, where one is not."""
+    values = [part.of_both(SPEED) for part in (other, shown)]
+    if not all(map(math.isfinite, values)):
+        return tr("Their speeds are not known.")
+    return tr("Speed {first} and {second} m/s.").format(first=fixed(values[0], 2), second=fixed(values[1], 2))
+
+
+def _is_told_of(row: Compared) -> bool:
+    """Whether a sentence may tell of it: judged, of one leg, and no height, which the standing zero is in."""
+    return is_judged(row) and not row.measure.is_of_walk and not row.measure.needs_height
+
+
+def _sentence(row: Compared) -> str:
+    """Subtracted before rounding; where rounded figures disagree with that, all have a decimal more."""
+    measure, change = row.measure, row.difference.difference
+    decimals = measure.decimals
+    value, other = row.value.mean, row.other.mean
+    if round(round(value, decimals) - round(other, decimals), decimals) != round(change, decimals):
+        decimals += 1
+    name = tr(measure.name)
+    name = name.rpartition(",")[0] if not measure.kind else name  # the unit is with the figure
+    pattern = (
+        tr("With {letter} the prosthetic side has {size} less than with {other}: {measure}, {value} against {before}.")
+        if change < 0
+        else tr(
+            "With {letter} the prosthetic side has {size} more than with {other}: {measure}, {value} against {before}."
+        )
+    )
+    unit = unit_behind(measure) or "\N{NO-BREAK SPACE}%"
+    return pattern.format(
+        letter=row.part.letter,
+        other=row.against.letter,
+        size=fixed(abs(change), decimals) + unit,
+        measure=name[:1].lower() + name[1:],
+        value=fixed(value, decimals) + unit,
+        before=fixed(other, decimals) + unit,
+    )
+
+
+def _beside(found: Comparison, prosthetic: Side) -> str:
+    """What the sound side does, whether the sensors stayed on, and the speeds."""
+    sound = [row for row in found.rows if _is_told_of(row) and row.side is not prosthetic]
+    beyond = [row for row in sound if row.exceeds]
+    said = tr("The sound side could not be compared.")
+    if beyond:
+        said = tr("The sound side changes beyond error, too.")
+    elif sound:
+        said = tr("The sound side does not change beyond error.")
+    straps = tr("Sensors stayed on.") if found.is_one_attachment else tr("Sensors were strapped on anew between.")
+    return " ".join([said, straps, speeds_in_words(found.parts[1], found.against)])

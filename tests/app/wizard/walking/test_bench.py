@@ -1,0 +1,320 @@
+"""The prosthetist's bench: the chain and the next change, what it says of two alignments, and its page by keys."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any, cast
+
+import numpy as np
+import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtTest import QTest
+from pytestqt.qtbot import QtBot
+
+from app.reports.comparison import Comparison, Contrast, Part
+from app.reports.patient_report.answer import Outcome
+from app.theme import ThemeNotifier
+from app.wizard.visit import Visit
+from app.wizard.walking.bench import ChangeEntry, chain_of, next_walk
+from app.wizard.walking.bench_bar import bench_bar
+from app.wizard.walking.bench_control import Bench
+from app.wizard.walking.bench_words import bench_answer
+from app.wizard.walking.page import WalkingPage
+from app.wizard.walking.walk_labels import new_alignment
+from app.wizard.walking.walk_list import WalkRow, WalkState
+from core.alignment import AlignmentChange, PartChange, ProsthesisPart
+from core.body import Side
+from core.results import Analysis, Calibration, Method
+from core.samples import Recording, RecordingKind, Session
+from tests.app.room import words_cut
+from tests.core.verdicts.built_walk import calibrations, judged_walk, leg, walk
+
+PYLON = ProsthesisPart.PYLON
+OF_B = AlignmentChange("Alignment A", (PartChange(PYLON, height_mm=3.0),))
+OF_C = AlignmentChange("Alignment B", (PartChange(PYLON, height_mm=-1.0),))
+
+
+def recording(number: int, letter: str, change: AlignmentChange | None = None, **told: Any) -> Recording:
+    name = f"walk {number}"
+    return Recording(name, RecordingKind.WALKING, name, {}, condition=f"Alignment {letter}", alignment=change, **told)
+
+
+WALKED = (recording(1, "A"), recording(2, "B", OF_B), recording(3, "C", OF_C))
+
+
+def part(letter: str, **changes: Any) -> Part:
+    found = calibrations()
+    return Part(letter, f"Alignment {letter}", (judged_walk(walk(**changes), found),), found)
+
+
+def told_of(one: Part, other: Part) -> tuple[Outcome, str, str]:
+    found = bench_answer(Comparison(Contrast.CONDITIONS, (other, one)), Side.LEFT)
+    return found.outcome, found.first, found.then
+
+
+def test_a_change_is_told_part_by_part_in_steps_up_to_its_limits() -> None:
+    entry = ChangeEntry()
+    assert not entry.parts
+    entry.step("angle_deg", 3)
+    entry.step("turns", -2)
+    entry.part = PYLON
+    entry.say(" new clamp ")
+    entry.step("height_mm", -1000)
+    front = PartChange(ProsthesisPart.FOOT_FRONT_SCREW, angle_deg=1.5, turns=-0.25)
+    pylon = PartChange(PYLON, height_mm=-100.0, text="new clamp")
+    assert entry.parts == (front, pylon)
+    assert (entry.figure("angle_deg"), entry.text) == (0.0, " new clamp ")
+    other = ChangeEntry()
+    other.load(entry.parts)
+    assert other.parts == entry.parts
+    other.load(())
+    assert not list(other.parts)
+
+
+def test_with_nothing_told_the_next_walk_is_the_same_alignment_again() -> None:
+    chain, entry = chain_of(WALKED[:2], ""), ChangeEntry()
+    assert (chain.base, chain.first, chain.next_letter) == ("Alignment B", "Alignment A", "C")
+    assert next_walk(chain, entry, "Alignment C") == ("Alignment B", OF_B)
+    entry.part = PYLON
+    entry.step("height_mm", -1)
+    assert next_walk(chain, entry, "Alignment C") == ("Alignment C", OF_C)
+
+
+def test_put_back_to_the_first_the_next_change_is_from_there() -> None:
+    chain, entry = chain_of(WALKED, "Alignment A"), ChangeEntry()
+    assert chain.base == "Alignment A"
+    assert chain.way_back("Alignment A") == ()
+    entry.step("turns", 1)
+    condition, change = next_walk(chain, entry, "Alignment D")
+    assert (condition, change.since if change else "") == ("Alignment D", "Alignment A")
+    latest = chain_of(WALKED, "gone")
+    assert latest.base == "Alignment C"
+    (back,) = latest.way_back("Alignment A") or ()
+    assert back.height_mm == -2.0
+
+
+def test_what_is_discarded_is_no_part_of_the_chain() -> None:
+    chain = chain_of((*WALKED[:2], replace(WALKED[2], is_kept=False)), "")
+    assert (chain.base, chain.next_letter) == ("Alignment B", "C")
+
+
+def test_the_sentence_tells_the_prosthetic_sides_change_with_both_values() -> None:
+    outcome, first, then = told_of(part("B", left=leg(Side.LEFT, knee_range_deg=70.0)), part("A"))
+    assert outcome is Outcome.DIFFERS
+    assert first.startswith("With B the prosthetic side has 10.0° more than with A: knee")
+    assert "70.0° against 60.0°" in first
+    assert then.startswith("Larger than its error (")
+    assert "The sound side does not change beyond error. Sensors stayed on. Speed 1.18 and 1.18 m/s." in then
+
+
+def test_where_only_the_sound_side_changes_no_sentence_is_of_the_prosthetic_one() -> None:
+    outcome, first, then = told_of(part("B", right=leg(Side.RIGHT, knee_range_deg=70.0)), part("A"))
+    assert outcome is Outcome.NOTHING
+    assert first == "No change of the prosthetic side from A to B is larger than its error."
+    assert "The sound side changes beyond error, too." in then
+
+
+def test_strapped_on_anew_between_the_error_is_the_larger_and_said_so() -> None:
+    """4° are beyond the error of one strapping and inside that of two."""
+    other = part("A")
+    changed = part("B", left=leg(Side.LEFT, knee_range_deg=65.0))
+    assert told_of(changed, other)[0] is Outcome.DIFFERS
+    outcome, _, then = told_of(replace(changed, attachment=1), other)
+    assert outcome is Outcome.NOTHING
+    assert "Sensors were strapped on anew between." in then
+
+
+def test_under_ten_strides_nothing_is_judged() -> None:
+    outcome, first, then = told_of(part("B", left=leg(Side.LEFT, 7, knee_range_deg=80.0)), part("A"))
+    assert (outcome, first) == (Outcome.OPEN, "B beside A: too few strides to judge a change.")
+    assert then == "Provisional: B has 7 strides of the prosthetic side, 10 give an error."
+
+
+def test_few_strides_are_ten() -> None:
+    assert told_of(part("B", left=leg(Side.LEFT, 10, knee_range_deg=80.0)), part("A"))[0] is Outcome.DIFFERS
+
+
+@pytest.fixture
+def visit() -> SimpleNamespace:
+    """What the bench asks of a visit: three walks, the left leg prosthetic; the second bends its knee 10° more."""
+    legs = (leg(Side.LEFT), leg(Side.LEFT, knee_range_deg=70.0), leg(Side.LEFT, knee_range_deg=71.0))
+    walks = tuple(
+        judged_walk(walk(left=one, name=f"walk {k}", folder=f"walk {k}")) for k, one in enumerate(legs, start=1)
+    )
+    span = Calibration(tuple(one.name for one in walks), calibrations())
+    analysis = Analysis(Method.ROBUST, is_simulated=True, calibrations=(span,), recordings=walks)
+    every = [SimpleNamespace(details=one) for one in WALKED]
+    return SimpleNamespace(
+        prosthetic_sides=frozenset({Side.LEFT}),
+        recordings=SimpleNamespace(every=every, walks=every),
+        evaluation=SimpleNamespace(analysis=analysis, session=Session(WALKED), is_busy=False),
+    )
+
+
+@pytest.fixture
+def bench(visit: SimpleNamespace, look: ThemeNotifier) -> Bench:
+    return Bench(cast(Visit, visit), look)
+
+
+def shown(bench: Bench) -> tuple[str, str]:
+    state = bench.state()
+    assert state is not None
+    return (state.found.parts[1].letter, state.found.against.letter) if state.found else (state.parts[0].letter, "")
+
+
+def test_each_alignment_stands_against_the_one_it_was_changed_from_until_another_is_chosen(bench: Bench) -> None:
+    assert shown(bench) == ("C", "B")
+    bench.choose(1, is_beside=False)
+    assert shown(bench) == ("B", "A")
+    bench.choose(2, is_beside=True)
+    assert shown(bench) == ("B", "C")
+    bench.choose(0, is_beside=False)
+    assert shown(bench) == ("A", "")
+    bench.choose(8, is_beside=False)
+    assert shown(bench) == ("A", "")
+
+
+def test_to_return_it_says_what_to_undo_and_can_be_taken_back(bench: Bench) -> None:
+    assert bench.return_to_first() == "Back to A: Pylon \N{MINUS SIGN}2 mm"
+    assert bench.chain.base == "Alignment A"
+    assert bench.next_title == "Next change, from A. To undo first: Pylon \N{MINUS SIGN}2 mm"  # as long as it is so
+    assert bench.return_to_first() == ""  # it is there
+    assert bench.undo_return()
+    assert bench.chain.base == "Alignment C"
+    assert bench.next_title == "Next change, from C"
+    assert bench.undo_return() is False
+    assert bench.return_to_first()
+    bench.settle_return()  # something else was done since
+    assert bench.undo_return() is False
+    assert bench.chain.base == "Alignment A"
+
+
+def test_a_discarded_walks_change_is_told_again_of_the_next(bench: Bench) -> None:
+    change = AlignmentChange("Alignment C", (PartChange(PYLON, turns=1.0),))
+    bench.discarded(change)
+    assert bench.entry.parts == change.parts
+    bench.begun()
+    assert bench.entry.parts == ()
+
+
+def test_the_bar_says_what_the_next_walk_is_walked_with(bench: Bench) -> None:
+    again = bench_bar(bench, None, "", can_start=True)
+    assert [one.text for one in again.others] == ["Return to A", "C again"]
+    bench.entry.step("turns", 1)
+    asked = bench_bar(bench, "Alignment C", "", can_start=True)
+    assert [one.text for one in asked.others] == ["Return to A", "Walk with D"]
+    assert asked.primary is not None
+    assert (asked.primary.text, asked.note) == ("Keep C", "")
+    assert [one.text for one in asked.quiet] == ["Walks", "Discard"]
+
+
+def test_no_bench_where_no_side_is_sound_or_nothing_was_walked(bench: Bench, visit: SimpleNamespace) -> None:
+    offered = [bench.is_offered]
+    visit.prosthetic_sides = frozenset(Side)
+    offered.append(bench.is_offered)
+    visit.prosthetic_sides = frozenset({Side.LEFT})
+    visit.recordings.walks = []
+    offered.append(bench.is_offered)
+    visit.recordings.walks = [SimpleNamespace(details=replace(WALKED[0], condition="Barefoot"))]
+    offered.append(bench.is_offered)
+    assert offered == [True, False, False, False]
+
+
+def test_the_next_alignment_is_called_by_its_letter_and_never_as_one_before(bench: Bench) -> None:
+    bench.entry.step("turns", 1)
+    assert bench.next_walk()[0] == "Alignment D"
+    assert new_alignment("B", ["Alignment A", "Alignment B"]) == "Alignment C"
+
+
+def test_while_a_walk_is_analysed_nothing_is_said_of_the_ones_before(bench: Bench, visit: SimpleNamespace) -> None:
+    visit.evaluation.is_busy = True
+    state = bench.state()
+    assert state is not None
+    assert state.answer.first == "The walk is being analysed."
+    bench.choose(1, is_beside=False)  # somebody asks for them
+    state = bench.state()
+    assert state is not None
+    assert "10.0° more than with A" in state.answer.first
+
+
+@pytest.fixture
+def page(qtbot: QtBot, look: ThemeNotifier, bench: Bench) -> WalkingPage:
+    page = WalkingPage(look, bench.entry)
+    qtbot.addWidget(page)
+    page.resize(1064, 600)
+    page.show_walks(tuple(WalkRow(str(k), one, f"Alignment {one}", WalkState.KEPT, 12) for k, one in enumerate("ABC")))
+    page.show_bench(bench.state())
+    page.show()
+    return page
+
+
+def test_the_page_shows_the_chain_the_curves_and_the_differences(page: WalkingPage, bench: Bench) -> None:
+    assert page.bench.isVisible()
+    assert not page.charts.isVisible()
+    assert not page.next.isVisible()
+    rows = page.bench.alignments.rows
+    assert [(row.letter, row.title) for row in rows] == [
+        ("A", "Starting point"),
+        ("B", "A, changed"),
+        ("C", "B, changed"),
+    ]
+    assert [row.lines for row in rows] == [
+        (),
+        (("Pylon, height", "+3 mm"),),
+        (("Pylon, height", "\N{MINUS SIGN}1 mm"),),
+    ]
+    assert [[curve.letter for curve in frame.chart.curves] for frame in page.bench.frames] == [["B", "C"]] * 2
+    bench.choose(1, is_beside=False)
+    page.show_bench(bench.state())
+    assert page.bench.differences.title.text() == "B \N{MINUS SIGN} A"
+    assert "10.0° more than with A" in page.bench.first.text()
+    (knee, _) = page.bench.frames
+    assert np.nanmax(knee.chart.curves[1].angle_deg) - np.nanmax(knee.chart.curves[0].angle_deg) == pytest.approx(10.0)
+    assert knee.chart.deviations
+    page.show_bench(None)
+    assert page.charts.isVisible()
+
+
+def test_the_next_change_is_told_by_keys_and_reads_as_it_prints(page: WalkingPage, bench: Bench) -> None:
+    card = page.bench.alignments
+    page.bench.told.connect(lambda: page.bench.show_entry(bench.next_title))
+    assert card.written.text() == "Nothing changed yet."
+    for name, key, times in (
+        ("turns", Qt.Key.Key_Plus, 4),
+        ("angle_deg", Qt.Key.Key_Up, 5),
+        ("angle_deg", Qt.Key.Key_Minus, 1),
+    ):
+        for _ in range(times):
+            QTest.keyClick(card.steppers[name], key)
+    assert card.written.text() == "Written as: Foot, front screw ½ turn out, +2° plantar"
+    assert card.next_title.text() == "D: changed from C"
+    assert card.steppers["turns"].accessibleName() == "Turns: ½ out"
+    card.parts.setCurrentIndex(list(ProsthesisPart).index(PYLON))
+    QTest.keyClicks(card.words.line_edit, "clamp")
+    assert bench.entry.parts[-1] == PartChange(PYLON, text="clamp")
+    assert card.steppers["turns"].value == "0"
+
+
+@pytest.mark.parametrize(("tab", "visible"), [("alignments", 0), ("curves", 1), ("changes", 2)])
+def test_in_a_small_window_each_has_a_tab(page: WalkingPage, tab: str, visible: int) -> None:
+    page.set_compact(True)
+    page.resize(896, 420)
+    page.bench.tabs.segments[visible].click()
+    assert page.bench.tabs.choice == tab
+    cards = [page.bench.alignments, page.bench.frames[0], page.bench.differences]
+    assert [card.isVisible() for card in cards] == [k == visible for k in range(3)]
+
+
+@pytest.mark.usefixtures("pseudo_language")
+@pytest.mark.parametrize(("width", "height", "is_compact"), [(1064, 600, False), (896, 420, True)])
+def test_no_word_of_the_bench_is_cut_in_a_language_as_long_as_german(
+    qtbot: QtBot, look: ThemeNotifier, bench: Bench, width: int, height: int, is_compact: bool
+) -> None:
+    bench.entry.step("turns", -3)
+    page = WalkingPage(look, bench.entry)
+    qtbot.addWidget(page)
+    page.set_compact(is_compact)
+    page.resize(width, height)
+    page.show_walks((WalkRow("1", "A", "Alignment A", WalkState.KEPT, 12),))
+    page.show_bench(bench.state())
+    page.show()
+    assert words_cut(page) == []
