@@ -120,14 +120,11 @@ def finished(work: Callable[[T], R], tasks: Iterator[T], workers: Workers) -> It
             for future in done:
                 group = running.pop(future)
                 result = _result(workers, future)
-                if isinstance(result, WorkerLostError):
-                    again.extend(_parts(group))
+                if isinstance(result, Exception):  # the worker was lost, or what it was given or gave could not travel
                     if len(group.tasks) == 1 and group.tries + 1 >= workers.most_tries:
-                        again.pop()
                         yield group.tasks[0], result
-                    continue
-                if isinstance(result, Exception):
-                    yield from ((task, result) for task in group.tasks)
+                    else:
+                        again.extend(_parts(group))
                     continue
                 count = len(result.results)
                 if count < len(group.tasks):
@@ -170,7 +167,7 @@ def _result(workers: Workers, future: "Future[GroupResult[R]]") -> GroupResult[R
 
 
 def _parts(group: TaskGroup[T]) -> tuple[TaskGroup[T], ...]:
-    """A group whose worker was lost goes again in halves: whichever task ends its worker is alone in the end."""
+    """A group that did not come back goes again in halves: whichever task is the reason is alone in the end."""
     tasks = group.tasks
     if len(tasks) == 1:
         return (TaskGroup(tasks, group.tries + 1),)

@@ -378,6 +378,13 @@ class Visit(QObject):
             self._is_partial = with_walk is not None
             self.evaluation.ask(replace(told, recordings=recordings))
 
+    def evaluate_if_stale(self) -> None:
+        """Find it out anew where other recordings count, or other samples of them, than when it was found out."""
+        recordings, evaluated = self.recordings.counted(), self.evaluation.session
+        is_stale = evaluated is None or not _are_same(evaluated.recordings, recordings)
+        if recordings and is_stale and not self.evaluation.is_busy:
+            self.evaluate()
+
     def read_earlier(self) -> None:
         """Evaluate the patient's latest visits before this one; `earlier_read` follows."""
         if self.session is None:
@@ -678,3 +685,11 @@ def _now() -> str:
 
 def _day(moment: str) -> str:
     return moment[:10]
+
+
+def _are_same(evaluated: Sequence[Recording], recordings: Sequence[Recording]) -> bool:
+    """Whether these are the recordings that were evaluated, with the very samples: amid a walk only a part was seen."""
+    return len(evaluated) == len(recordings) and all(
+        one.imu is other.imu and replace(one, imu={}) == replace(other, imu={})
+        for one, other in zip(evaluated, recordings, strict=True)
+    )

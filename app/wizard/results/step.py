@@ -30,14 +30,12 @@ from core.body import Joint
 from core.samples import RecordingKind
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from app.pages.result_page import ResultPage
     from app.pages.result_parts import ResultParts
     from app.wizard.recordings import SessionRecording
     from app.wizard.visit import Visit
     from core.results import Analysis
-    from core.samples import Recording, Session
+    from core.samples import Session
 
 
 FREE_MOTION = 3  # the step in which a joint is found anew
@@ -104,7 +102,7 @@ class ResultsStep(Step):
     def enter(self) -> None:
         if self._kept_walks:
             self._visit.end_stopwatch()
-        self._evaluate_if_stale()
+        self._visit.evaluate_if_stale()
         self._show()
 
     def bar(self) -> BarState:
@@ -148,13 +146,6 @@ class ResultsStep(Step):
     def leave(self) -> None:
         self._part = Shown.RESULTS
         self.page.behind.stop()
-
-    def _evaluate_if_stale(self) -> None:
-        evaluation = self._visit.evaluation
-        recordings = self._visit.recordings.counted()
-        is_stale = evaluation.session is None or not _are_same(evaluation.session.recordings, recordings)
-        if recordings and is_stale and not evaluation.is_busy:
-            self._visit.evaluate()
 
     def _show(self) -> None:
         page, evaluation = self.page, self._visit.evaluation
@@ -363,7 +354,7 @@ class ResultsStep(Step):
     def _on_recordings_changed(self) -> None:
         if self._is_in_sight():
             was_busy = self._visit.evaluation.is_busy
-            self._evaluate_if_stale()
+            self._visit.evaluate_if_stale()
             if self._part is Shown.CORRECTIONS:
                 self._show_corrections()
             elif self._visit.evaluation.is_busy and not was_busy:
@@ -376,7 +367,7 @@ class ResultsStep(Step):
 
     def _on_evaluated(self) -> None:
         if self._is_in_sight():
-            self._evaluate_if_stale()  # something may have been put right meanwhile
+            self._visit.evaluate_if_stale()  # something may have been put right meanwhile
         frame, analysis = self._frame, self._visit.evaluation.analysis
         if frame is None or analysis is None:
             return
@@ -395,14 +386,6 @@ class ResultsStep(Step):
 
     def _on_sentence_pressed(self) -> None:
         self.jumped.emit(4)
-
-
-def _are_same(evaluated: "Sequence[Recording]", recordings: "Sequence[Recording]") -> bool:
-    """Whether these are the recordings that were evaluated, with the very samples: amid a walk only a part was seen."""
-    return len(evaluated) == len(recordings) and all(
-        one.imu is other.imu and replace(one, imu={}) == replace(other, imu={})
-        for one, other in zip(evaluated, recordings, strict=True)
-    )
 
 
 class _ResultsFrame(PageStack):

@@ -152,6 +152,14 @@ class Bench(QObject):
             return said.format(base=base, changes=self._to_undo)
         return tr("Next change, from {base}").format(base=base)
 
+    @property
+    def _is_behind(self) -> bool:
+        """Whether a walk that counts is not among those that are shown."""
+        session = self._visit.evaluation.session
+        known = {recording.name for recording in session.recordings} if session is not None else set()
+        counting = {one.details.name for one in self._visit.recordings.walks if one.details.is_kept}
+        return self._visit.evaluation.is_busy or not counting <= known
+
     def _parts(self) -> tuple[Part, ...]:
         evaluation = self._visit.evaluation
         if evaluation.analysis is None or evaluation.session is None:
@@ -159,7 +167,7 @@ class Bench(QObject):
         return conditions_of(evaluation.analysis, evaluation.session.recordings)
 
     def _answer(self, found: Comparison | None, side: Side, shown: Part | None) -> Answer:
-        if shown is None or (self._visit.evaluation.is_busy and not self._shown):
+        if shown is None or (self._is_behind and not self._shown):
             return Answer(Outcome.OPEN, tr("The walk is being analysed."), "")
         if found is not None:
             return bench_answer(found, side)

@@ -427,6 +427,8 @@ class WalkingStep(Step):
     def _on_evaluated(self) -> None:
         if not self._is_in_sight:
             return
+        if not self._visit.recordings.is_recording:
+            self._visit.evaluate_if_stale()  # a walk may have ended while a part of it was looked at
         calibration = self._visit.evaluation.calibration
         known = set(self._shown.joints) if self._shown is not None else set()
         worn = set(self._visit.sensors.joints)

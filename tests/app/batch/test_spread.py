@@ -111,6 +111,27 @@ def test_a_cluster_that_is_gone_ends_all() -> None:
         list(finished(digest_of, tasks(3), gone))
 
 
+class Hiccups(SerialExecutor):
+    """Fails once with what nobody foresaw, before anything is done."""
+
+    has_failed = False
+
+    def submit(self, fn: Callable[..., object], /, *args: object, **kwargs: object) -> Future[object]:  # type: ignore[override]  # any function
+        if not self.has_failed:
+            self.has_failed = True
+            failed: Future[object] = Future()
+            failed.set_exception(OSError("the answer was lost on its way"))
+            return failed
+        return super().submit(fn, *args, **kwargs)
+
+
+def test_what_was_lost_on_its_way_is_done_again_and_given_up_after_some_tries() -> None:
+    found = dict(finished(digest_of, tasks(20), Workers(Hiccups(), lambda: 1, most_tries=2)))
+    assert {task.number: result for task, result in found.items()} == {n: digest_of(StandIn(n)) for n in range(20)}
+    ((_, lost),) = finished(digest_of, tasks(1), Workers(Hiccups(), lambda: 1, most_tries=1))
+    assert str(lost) == "the answer was lost on its way"
+
+
 @pytest.mark.endurance  # processes take seconds to start; what they are told is held above
 def test_processes_give_what_this_process_gives_and_a_killed_one_costs_its_own_task_only(tmp_path: Path) -> None:
     notes = str(tmp_path)
