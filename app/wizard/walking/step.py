@@ -15,15 +15,11 @@ from app.theme import ThemeNotifier
 from app.widgets.action_bar import BarAction, BarState, RecordingNote
 from app.widgets.rail_row import StepState
 from app.wizard.keys import Intent, KeyAction
-from app.wizard.losses import NOTHING, Losses, Message
+from app.wizard.losses import NOTHING
 from app.wizard.step import Step
 from app.wizard.walk_messages import (
     clock,
-    few_strides_message,
-    no_angles_message,
     no_foot_message,
-    recovered_message,
-    slip_message,
 )
 from app.wizard.walking.bench_bar import bench_bar
 from app.wizard.walking.bench_control import Bench
@@ -31,6 +27,7 @@ from app.wizard.walking.estimator import WalkingEstimator
 from app.wizard.walking.patient_feedback import PatientFeedback
 from app.wizard.walking.walk_labels import label_after, labels_for
 from app.wizard.walking.walk_list import WalkRow, WalkState
+from app.wizard.walking.walk_notice import WalkNotice, asked_walk, length_s, strides_of
 from app.wording import tr
 from core.body import Joint, Side
 from core.live.walking import STRIDES_FOR_ANKLE
@@ -62,8 +59,7 @@ class WalkingStep(Step):
         self._is_in_sight = self._is_ankle_asked = False
         self._ticks = 0
         self._was_silent = False  # all sensors
-        self._losses = Losses()
-        self._is_troubled = False
+        self._notice = WalkNotice(visit)
         self._discarded: UUID | None = None
         self._kept: UUID | None = None  # at the bench, and can be taken back
         self._bench = Bench(visit, self)
@@ -352,7 +348,7 @@ class WalkingStep(Step):
         acquisition, recordings = self._visit.sensors.acquisition, self._visit.recordings
         assert acquisition is not None
         self._is_ankle_asked = False
-        self._is_troubled = self._visit.controller.is_gone
+        self._notice.is_troubled = self._visit.controller.is_gone
         self._shown = self._at_stop = None
         self._counted_before = {}
         acquisition.ask(RecordingKind.WALKING)
@@ -449,64 +445,20 @@ class WalkingStep(Step):
     # what is to be said
 
     def _watch_sensors(self) -> None:
-        sensors = self._visit.sensors
-        acquisition = sensors.acquisition
-        if acquisition is None:
-            self.page.show_message(*self._message(0.0))
-            return
-        if sensors.are_silent != self._was_silent:
+        sensors, recordings = self._visit.sensors, self._visit.recordings
+        if sensors.acquisition is not None and sensors.are_silent != self._was_silent:
             self._was_silent = sensors.are_silent
             self.changed.emit()  # a walk can be started again, or no more
-        status = sensors.status
-        silent_s = {site: status[name].silent_s for name, site in sensors.site_of.items() if name in status}
-        news = self._losses.update(silent_s, acquisition.now_s)
-        if news and self._visit.recordings.is_recording:
+        news = self._notice.look()
+        if news and recordings.is_recording:
             sounds.play(Sound.LOSS)
             for site in news:
-                self._visit.recordings.mark(f"{site} silent")
-        message = self._message(acquisition.now_s)
-        if message == NOTHING and self._visit.recordings.is_recording:
+                recordings.mark(f"{site} silent")
+        message = self._notice.message(self._shown)
+        if message == NOTHING and recordings.is_recording and sensors.acquisition is not None:
             self.page.show_message(*no_foot_message(sensors.sensor_at), is_caution=False)
         else:
             self.page.show_message(*message)
-
-    def _message(self, now_s: float) -> Message:
-        """Give the gravest of what is to be said."""
-        recordings = self._visit.recordings
-        is_recording = recordings.is_recording
-        lost = self._losses.message(recordings.has_begun, self._visit.sensors.joints, now_s)
-        trouble = recordings.trouble_message() if self._is_troubled else NOTHING
-        for message in (trouble, recordings.standstill_message(self._visit.sensors.site_of), lost):
-            if message != NOTHING:
-                return message
-        if is_recording:
-            return self._message_of_ongoing()
-        asked = self._asked
-        if asked is not None and asked.stored.state is RecordingState.RECOVERED:
-            return recovered_message(self._called(asked.details.name), _length_s(asked))
-        return self._few_strides_message()
-
-    def _message_of_ongoing(self) -> Message:
-        ongoing, view, sensors = self._visit.recordings.ongoing, self._shown, self._visit.sensors
-        if ongoing is None or view is None:
-            return NOTHING
-        message = slip_message(view.slips, ongoing.began_s)
-        if message == NOTHING and not view.joints and sensors.joints:
-            return no_angles_message(sensors.sensor_at)
-        return message
-
-    def _few_strides_message(self) -> Message:
-        """Say what is short of a spread for the last walk's condition, if its walks are all too short together."""
-        walks = [recording for recording in self._visit.recordings.walks if recording.details.is_kept]
-        if not walks:
-            return NOTHING
-        condition = walks[-1].details.condition
-        counts: dict[Side, int] = {}
-        for recording in walks:
-            if recording.details.condition == condition:
-                for side, count in self._strides_of(recording).items():
-                    counts[side] = counts.get(side, 0) + count
-        return few_strides_message(counts)
 
     # what is shown
 
@@ -519,22 +471,10 @@ class WalkingStep(Step):
 
     @property
     def _asked(self) -> "SessionRecording | None":
-        """The walk that waits for somebody to say whether it is kept: the newest, or one that was recovered."""
-        undecided = [recording for recording in self._visit.recordings.walks if not recording.is_decided]
-        new = [recording for recording in undecided if recording.stored.state is not RecordingState.RECOVERED]
-        return new[-1] if new else undecided[0] if undecided else None
+        return asked_walk(self._visit.recordings)
 
     def _recording(self, identity: UUID | None) -> "SessionRecording | None":
         return next((recording for recording in self._visit.recordings.walks if recording.id == identity), None)
-
-    def _strides_of(self, recording: "SessionRecording") -> dict[Side, int]:
-        """As the analysis has counted them, or else as they were counted live: amid a walk it saw a part only."""
-        session = self._visit.evaluation.session
-        seen = {recording.name: recording for recording in session.recordings} if session is not None else {}
-        same = seen.get(recording.details.name)
-        if same is None or recording.read_back is None or same.imu is not recording.read_back.imu:
-            return dict(recording.strides or {})
-        return self._visit.evaluation.strides(recording.details.name)
 
     @Slot()
     def _show(self) -> None:
@@ -556,7 +496,7 @@ class WalkingStep(Step):
             if not recording.is_decided:
                 is_recovered = recording.stored.state is RecordingState.RECOVERED
                 state = WalkState.RECOVERED if is_recovered else WalkState.ASKING
-            strides = max(self._strides_of(recording).values(), default=None)
+            strides = max(strides_of(self._visit, recording).values(), default=None)
             name, is_old = names[recording.details.name], recording.id not in strapped_last
             rows.append(WalkRow(str(recording.id), name.letter, name.words, state, strides, is_old))
         if ongoing is not None:
@@ -568,7 +508,7 @@ class WalkingStep(Step):
         self.changed.emit()
 
     def _facts(self, recording: "SessionRecording") -> str:
-        strides = self._strides_of(recording)
+        strides = strides_of(self._visit, recording)
         said = []
         if strides:
             counts = ", ".join(f"{letter} {strides[side]}" for side, letter in _LETTERS.items() if side in strides)
@@ -578,7 +518,7 @@ class WalkingStep(Step):
         )
         if math.isfinite(cadence):
             said.append(tr("{cadence:.0f} steps/min").format(cadence=cadence))
-        said.append(clock(_length_s(recording)))
+        said.append(clock(length_s(recording)))
         return " · ".join(said)
 
     # what the page and the visit tell
@@ -605,7 +545,7 @@ class WalkingStep(Step):
 
     @Slot()
     def _on_troubled(self) -> None:
-        self._is_troubled = True  # the words change with what the counters tell
+        self._notice.is_troubled = True  # the words change with what the counters tell
 
     @Slot(str)
     def _on_label_chosen(self, label: str) -> None:
@@ -644,11 +584,3 @@ class WalkingStep(Step):
 
 
 _LETTERS = {Side.LEFT: "L", Side.RIGHT: "R"}
-
-
-def _length_s(recording: "SessionRecording") -> float:
-    """How long a recording lasts, as its sensors have it."""
-    if recording.read_back is None:
-        return 0.0
-    blocks = [block.time_s for block in recording.read_back.imu.values() if len(block)]
-    return max((float(time_s[-1] - time_s[0]) for time_s in blocks), default=0.0)

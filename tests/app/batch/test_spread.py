@@ -116,7 +116,7 @@ class Hiccups(SerialExecutor):
 
     has_failed = False
 
-    def submit(self, fn: Callable[..., object], /, *args: object, **kwargs: object) -> Future[object]:  # type: ignore[override]  # any function
+    def submit(self, fn: Callable[..., object], /, *args: object, **kwargs: object) -> Future[object]:  # type: ignore[override]  # it takes any function, too
         if not self.has_failed:
             self.has_failed = True
             failed: Future[object] = Future()
