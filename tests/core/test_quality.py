@@ -88,7 +88,9 @@ def error_deg(person: "Person", found: Analysis, name: str, joint: Joint = KNEE)
     return np.rad2deg(recording.joints[joint].angle_rad - truth)
 
 
-methods = pytest.mark.parametrize("method", list(Method))
+methods = pytest.mark.parametrize(
+    "method", [Method.ROBUST, pytest.param(Method.PUBLISHED, marks=pytest.mark.endurance)]
+)
 
 
 @methods

@@ -189,7 +189,7 @@ def test_a_folder_without_sessions_and_one_that_is_not_there_are_refused(
     assert again(tmp_path) == 2
     assert "there is no session folder here" in refusal(capsys)
     assert not (tmp_path / "out").exists()
-    assert main(["batch", str(tmp_path / "none"), "--out", str(tmp_path / "out")]) == 2
+    assert main(["batch", str(tmp_path / "none"), "--out", str(tmp_path / "out"), *BARE]) == 2
     assert "this folder is not there" in refusal(capsys)
 
 
