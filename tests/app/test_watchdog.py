@@ -129,7 +129,7 @@ def test_what_a_late_function_holds_is_not_kept_alive(
 
     def paint() -> None:
         _painter = _Ended(by)
-        work_for(0.15)
+        work_for(0.4)  # on a busy machine the watchdog looks late, too
 
     run(qtbot, paint)
     assert by == [threading.get_ident()]

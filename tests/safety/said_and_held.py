@@ -256,10 +256,10 @@ def _of_report(wizard: "Wizard", visit: "Visit", held: HeldLibrary) -> Iterator[
     step: Any = wizard.current
     if (said := SAVED_AS.search(note)) is not None and not any(step.saved.glob("*.pdf")):
         yield f"the bar says {said[0]!r}, there is no report in it"
-    if step._comment is not None and visit.session is not None:
+    if visit.session is not None:
         rows = held.ask("SELECT comment FROM sessions WHERE id = ?", visit.session.id.hex)
-        if rows and rows[0][0] != step._comment:
-            yield f"the report shows the comment {step._comment!r}, held is {rows[0][0]!r}"
+        if rows and rows[0][0] != step.comment:
+            yield f"the report shows the comment {step.comment!r}, held is {rows[0][0]!r}"
 
 
 def _of_banner(banner: "Banner", held: HeldLibrary) -> Iterator[str]:
