@@ -19,7 +19,7 @@ from app.wizard.walking.readout import WalkingReadout
 from app.wizard.walking.step import WalkingStep
 from app.wizard.walking.walk_list import WalkState
 from core.alignment import AlignmentChange, PartChange, ProsthesisPart
-from core.body import Joint, Side, Site
+from core.body import Joint, Site
 from core.samples import Patient, RecordingKind
 from core.targets import Target, TargetMeasure, tallies_of
 from devices.replay import ReplaySource
