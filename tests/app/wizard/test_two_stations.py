@@ -291,6 +291,7 @@ def test_taking_back_what_was_left_out_here_leaves_out_what_was_left_out_there(
     undos[0]()
     wanted = {Side.LEFT: (7.0,), Side.RIGHT: (4.0,)}
     settle(qtbot, ours, other, lambda: other.walk.left_out_s == wanted)
+    assert other.walk.left_out_s == wanted
 
 
 def test_sides_swapped_at_both_stations_are_swapped_once_and_taken_back_once(
