@@ -11,7 +11,7 @@ VERDICTS = {
     Verdict.WITHHELD: later("withheld"),
     Verdict.NOT_MEASURED: later("not measured"),
 }
-DECIMALS = {"deg": 1, "ms": 1, "m/s": 2, "%": 1, "s": 1}
+DECIMALS = {"deg": 1, "ms": 1, "m/s": 2, "%": 1, "s": 1, "m": 2}
 
 
 class GateWords(NamedTuple):
@@ -23,6 +23,9 @@ class GateWords(NamedTuple):
 
 _ONE_RECEIVER = later("Use one receiver for all sensors.")
 _LOOK_AT_SIGN = later("Look at the curve, then confirm or turn the sign.")
+_STRAP_PELVIS = later(
+    "Strap the pelvis sensor to the sacrum, not to a waistband, and walk 15 s with a turn or make lunges."
+)
 _FREE_MOTION = later("Tighten it and record free motion again.")
 
 # {value} and {limit} carry their units; where a gate has no figure the first sentence is without one
@@ -30,6 +33,15 @@ WORDS = {
     "pairing": GateWords(
         later("The two sensors do not move as neighbours (margin {value}, {limit} wanted)."),
         later("Check which sensor is where, or record free motion."),
+    ),
+    "hip_disagreement": GateWords(
+        later("Pelvis and thigh disagree about what the hip feels ({value} of it, under {limit} wanted)."),
+        _STRAP_PELVIS,
+    ),
+    "hip_centre": GateWords(later("The hip's centre lies {value} from a sensor (limit {limit})."), _STRAP_PELVIS),
+    "hips_apart": GateWords(
+        later("The left hip lies {value} to the left of the right one (limit {limit})."),
+        later("Check whether the thighs' sensors are swapped."),
     ),
     "sign": GateWords(
         later(

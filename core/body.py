@@ -15,15 +15,16 @@ class Side(StrEnum):
 
 
 class Segment(StrEnum):
-    """A segment of the leg."""
+    """A segment of the body: the pelvis, and those of the leg."""
 
     THIGH = "thigh"
     SHANK = "shank"
     FOOT = "foot"
+    PELVIS = "pelvis"
 
 
 class Site(StrEnum):
-    """Where a sensor sits. The values are the names used in files."""
+    """Where a sensor sits. The values are the names used in files. The pelvis is no part of a leg and has no side."""
 
     LEFT_THIGH = "left_thigh"
     LEFT_SHANK = "left_shank"
@@ -31,23 +32,31 @@ class Site(StrEnum):
     RIGHT_THIGH = "right_thigh"
     RIGHT_SHANK = "right_shank"
     RIGHT_FOOT = "right_foot"
+    PELVIS = "pelvis"
 
     @property
-    def side(self) -> Side:
+    def side(self) -> Side | None:
+        return None if self.value == "pelvis" else self.leg_side
+
+    @property
+    def leg_side(self) -> Side:
+        """The side of a site of the leg; ValueError of the pelvis."""
         return Side(self.value.split("_")[0])
 
     @property
     def segment(self) -> Segment:
-        return Segment(self.value.split("_")[1])
+        return Segment(self.value.split("_")[-1])
 
 
 class Joint(StrEnum):
-    """A joint between two neighbouring segments. Flexion (knee) and dorsiflexion (ankle) are positive on both legs."""
+    """A joint between two neighbouring segments. Flexion (knee, hip) and dorsiflexion are positive on both legs."""
 
     LEFT_KNEE = "left_knee"
     LEFT_ANKLE = "left_ankle"
     RIGHT_KNEE = "right_knee"
     RIGHT_ANKLE = "right_ankle"
+    LEFT_HIP = "left_hip"
+    RIGHT_HIP = "right_hip"
 
     @property
     def side(self) -> Side:
@@ -58,12 +67,23 @@ class Joint(StrEnum):
         return self.value.endswith("knee")
 
     @property
+    def is_hip(self) -> bool:
+        return self.value.endswith("hip")
+
+    @property
     def proximal(self) -> Site:
-        return Site(f"{self.side}_{'thigh' if self.is_knee else 'shank'}")
+        return Site.PELVIS if self.is_hip else Site(f"{self.side}_{'thigh' if self.is_knee else 'shank'}")
 
     @property
     def distal(self) -> Site:
-        return Site(f"{self.side}_{'shank' if self.is_knee else 'foot'}")
+        return Site(f"{self.side}_{'thigh' if self.is_hip else 'shank' if self.is_knee else 'foot'}")
+
+
+LEG_SEGMENTS = (Segment.THIGH, Segment.SHANK, Segment.FOOT)
+LEG_SITES: tuple[Site, ...] = tuple(
+    site for site in Site if site is not Site.PELVIS
+)  # the six that every session may have
+LEG_JOINTS: tuple[Joint, ...] = tuple(joint for joint in Joint if not joint.is_hip)  # the four that have an axis
 
 
 def knee_of(side: Side) -> Joint:
@@ -74,3 +94,8 @@ def knee_of(side: Side) -> Joint:
 def ankle_of(side: Side) -> Joint:
     """The ankle of one side."""
     return Joint(f"{side}_ankle")
+
+
+def hip_of(side: Side) -> Joint:
+    """The hip of one side."""
+    return Joint(f"{side}_hip")

@@ -4,7 +4,7 @@ from typing import Protocol
 
 import numpy as np
 
-from core.body import Joint, Segment, Site
+from core.body import LEG_JOINTS, Segment, Site
 from core.findings import Finding, Severity
 from core.identified import Identified
 from core.results import JointCalibration, Method, RecordingAnalysis, ZeroKind
@@ -29,7 +29,7 @@ def about_session(session: Session) -> list[Finding]:
     if session.is_simulated:
         findings.append(Finding("simulated", Severity.INFO, "session"))
     kinds = {recording.kind for recording in session.recordings if recording.is_kept}
-    is_joint_worn = any(r.holds(joint.proximal, joint.distal) for r in session.recordings for joint in Joint)
+    is_joint_worn = any(r.holds(joint.proximal, joint.distal) for r in session.recordings for joint in LEG_JOINTS)
     if RecordingKind.STANDING not in kinds and is_joint_worn:
         findings.append(Finding("no_standing", Severity.WARNING, "session"))
     for recording in session.recordings:
@@ -116,7 +116,7 @@ def about_missing_joints(
     """Joints whose two sensors were worn but that have no angle, and sessions without any joint."""
     findings = []
     kept = [r for r in session.recordings if r.is_kept and r.kind is not RecordingKind.STANDING]
-    for joint in Joint:
+    for joint in LEG_JOINTS:
         worn = [r.name for r in kept if r.holds(joint.proximal, joint.distal)]
         if worn and not any(joint in found.joints for found in recordings):
             spoilt = all(unusable & {(name, joint.proximal), (name, joint.distal)} for name in worn)

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.body import Joint, Site
+from core.body import LEG_JOINTS, Site
 from core.calibration.rest import rest_of
 from core.findings import Finding, Severity
 from core.handedness import Turn, reversed_sites, turn_about_vertical
@@ -298,7 +298,7 @@ def _moves_with_others(recording: Recording, site: Site, offset_s: float) -> boo
 
     Sensors that were switched on and off one after the other are such.
     """
-    for joint in Joint:
+    for joint in LEG_JOINTS:
         if site in (joint.proximal, joint.distal) and recording.holds(joint.proximal, joint.distal):
             other = joint.distal if site is joint.proximal else joint.proximal
             as_stamped, shifted = (_likeness(recording.imu[site], recording.imu[other], by) for by in (0.0, offset_s))
@@ -328,7 +328,7 @@ def _missing_sites(session: Session) -> list[Finding]:
     """A neighbour without which a worn sensor gives no joint."""
     worn = {site for recording in session.recordings if recording.is_kept for site in recording.imu}
     findings = []
-    for joint in Joint:
+    for joint in LEG_JOINTS:
         missing = {joint.proximal, joint.distal} - worn
         if len(missing) == 1:
             findings.append(Finding("missing_site", Severity.INFO, str(missing.pop()), {"joint": str(joint)}))

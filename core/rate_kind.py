@@ -6,7 +6,7 @@ alone is no evidence where tissue is loose, so what all joints tell is added up.
 
 import numpy as np
 
-from core.body import Joint, Site
+from core.body import LEG_JOINTS, Joint, Site
 from core.calibration.coincidence import fit_forces, joint_forces
 from core.calibration.identify import DECISION_SAMPLES, decide, moving_data
 from core.calibration.joint_axis import Candidates, heading_from_axes
@@ -46,7 +46,7 @@ def _undeclared(tracks: SensorTracks) -> list[tuple[Recording, Joint]]:
     declared = {site for site, info in tracks.session.sensors.items() if info.rate_kind is not None}
     moving = [recording for recording in tracks.span if recording.kind is not RecordingKind.STANDING]
     found = []
-    for joint in Joint:
+    for joint in LEG_JOINTS:
         sites = joint.proximal, joint.distal
         if declared.isdisjoint(sites):
             usable = [(recording, joint) for recording in moving if tracks.is_usable(recording, *sites)]

@@ -5,10 +5,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.body import Joint, Side, Site
+from core.body import LEG_JOINTS, Joint, Side, Site
 from core.samples import FloatArray
 from devices.walker_body import Leg, WalkerSettings
 from devices.walker_motion import JointAngles, LegMotion, TrueFootEvents, ankle_rotation, knee_rotation
+from devices.walker_pelvis import PelvisMotion
 from devices.walker_sensors import Mounting, SensorClock, angular_rate, interpolate
 
 FUNCTIONAL_EVERY = 5  # fine samples; the principal direction of a motion needs no more
@@ -101,6 +102,7 @@ class MovedRecording:
     mountings: Mapping[Site, Mounting]
     gyro_bias_rad_s: Mapping[Site, FloatArray]
     gains: Mapping[Joint, float]
+    pelvis: PelvisMotion | None = None
 
 
 def tell_truth(
@@ -121,7 +123,7 @@ def tell_truth(
     SessionTruth
         Angles in rad, clinical sign; axes and places in sensor axes.
     """
-    joints = [j for j in Joint if j.proximal in settings.sites and j.distal in settings.sites]
+    joints = [j for j in LEG_JOINTS if j.proximal in settings.sites and j.distal in settings.sites]
     functional = {joint: _functional_axes(joint, legs[joint.side], moved) for joint in joints}
     standing = {joint: _standing_angle(joint, moved) for joint in joints}
     recordings = {}

@@ -23,7 +23,7 @@ from app.widgets.choice import Choice
 from app.widgets.small_curve import SmallCurve
 from app.widgets.text import SEMIBOLD, Text
 from app.wording import joined, tr, tr_n
-from core.body import Side, Site
+from core.body import LEG_SITES, Side, Site
 from core.samples import RecordingKind
 
 if TYPE_CHECKING:
@@ -84,7 +84,7 @@ class DraftCards(QWidget):
     def what_is_wrong(self) -> str:
         """Why this cannot be imported yet; empty where it can."""
         placed = [site for site in self.sites.values() if site is not None]
-        twice = [site for site in Site if placed.count(site) > 1]
+        twice = [site for site in LEG_SITES if placed.count(site) > 1]
         if twice:
             return tr("{site} is chosen twice.").format(site=tr(SITE_WORDS[twice[0]]))
         if not placed:

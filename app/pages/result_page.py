@@ -16,6 +16,7 @@ from app.pages.differs_card import DiffersCard
 from app.pages.result_parts import PageRoom, ResultParts
 from app.plots.angle_chart import Curve
 from app.recording_names import with_shown_names
+from app.reports.agreed import agreed_with
 from app.reports.beside import changes_on_curves
 from app.reports.comparison import Comparison, Part, conditions_of
 from app.reports.patient_report.answer import Outcome, answer_of
@@ -37,7 +38,7 @@ from app.widgets.text import Text
 from app.widgets.themed import Themed
 from app.widgets.toggle import Toggle
 from app.wording import later, tr
-from core.body import Joint, Side, Site
+from core.body import LEG_JOINTS, LEG_SITES, Joint, Side
 from core.results import JointAngle, RecordingAnalysis
 from core.samples import FloatArray, RecordingKind
 
@@ -151,7 +152,7 @@ class ResultPage(Themed):
         session, analysis = visit.session, visit.analysis
         shown, called = self.recordings.currentData(), visit.shown_names
         is_prosthetic = session.patient.prosthetic_side in set(Side)
-        parts = conditions_of(analysis, session.recordings)
+        parts = conditions_of(analysis, session.recordings, agreed=agreed_with(session))
         self.compare.show_conditions(analysis, parts, is_prosthetic, age_and_height(session))
         self.beside.show_visit(visit)
         names = [recording.name for recording in analysis.recordings]
@@ -517,11 +518,13 @@ class ResultPage(Themed):
         if recording is not None and recording.kind is RecordingKind.WALKING:
             facts = Facts(visit, recording)
             found, strides, calibrated = data_quality(facts), strides_in_short(facts), facts.calibrated
-            joints = {joint: facts.verdicts.joint(joint).shape.verdict for joint in Joint if facts.is_measured(joint)}
+            joints = {
+                joint: facts.verdicts.joint(joint).shape.verdict for joint in LEG_JOINTS if facts.is_measured(joint)
+            }
         else:
             found, strides, joints = quality_without_walk(visit, recording.name if recording else ""), "", {}
             calibrated = visit.analysis.calibrated_for(recording) if recording is not None else {}
-        sites = [site for site in Site if any(site in one.imu for one in visit.session.recordings)]
+        sites = [site for site in LEG_SITES if any(site in one.imu for one in visit.session.recordings)]
         self.door.tell(door_words(found))
         self.quality.show_quality(found, joints, sites, strides, can_repeat=self._is_live)
         names = visit.shown_names

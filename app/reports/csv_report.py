@@ -9,7 +9,7 @@ import pyarrow as pa
 import pyarrow.csv
 
 from app.reports.status import WITHHELD, is_slipped, joint_status
-from core.body import Joint, Side
+from core.body import LEG_JOINTS, Joint, Side
 from core.gait.phases import PHASES
 from core.results import JointAngle, RecordingAnalysis
 from core.samples import FloatArray
@@ -61,7 +61,7 @@ def typed_cell(text: str) -> str:
 
 def _angle_blocks(recording: RecordingAnalysis) -> Iterator[pa.RecordBatch]:
     """Yield the table in blocks of rows, at least one, which may be empty."""
-    joints = [joint for joint in Joint if joint in recording.joints]
+    joints = [joint for joint in LEG_JOINTS if joint in recording.joints]
     for start in range(0, max(len(recording.time_s), 1), ROWS_PER_BLOCK):
         rows = slice(start, start + ROWS_PER_BLOCK)
         columns = {"time_s": pa.array(recording.time_s[rows])}
@@ -70,7 +70,23 @@ def _angle_blocks(recording: RecordingAnalysis) -> Iterator[pa.RecordBatch]:
         n = len(columns["time_s"])
         columns |= {f"{side}_phase": _phases(recording, side, rows, n) for side in Side}
         columns |= {f"{joint}_status": _status(recording, joint, rows) for joint in joints}
+        columns |= _of_pelvis(recording, rows)
         yield pa.RecordBatch.from_pydict(columns)
+
+
+def _of_pelvis(recording: RecordingAnalysis, rows: slice) -> dict[str, pa.Array]:
+    """Give the columns that a sensor on the pelvis adds; none without one."""
+    columns = {}
+    for joint, hip in sorted(recording.hips.items()):
+        columns[f"{joint}_deg"] = _degrees(hip.angle_rad[rows])
+        columns[f"{joint}_sd_deg"] = _degrees(hip.sd_rad[rows])
+        columns[f"{joint}_abduction_deg"] = _degrees(hip.abduction_rad[rows])
+        columns[f"{joint}_status"] = _status(recording, joint, rows)
+    if recording.pelvis is not None:
+        columns["pelvis_tilt_deg"] = _degrees(recording.pelvis.tilt_rad[rows])
+        columns["pelvis_obliquity_deg"] = _degrees(recording.pelvis.obliquity_rad[rows])
+        columns["pelvis_rotation_deg"] = _degrees(recording.pelvis.rotation_rad[rows])
+    return columns
 
 
 def _phases(recording: RecordingAnalysis, side: Side, rows: slice, n: int) -> pa.Array:

@@ -12,11 +12,19 @@ import numpy as np
 
 from app.reports.csv_report import write_table
 from app.reports.status import joint_status
-from core.body import Joint, Side, ankle_of, knee_of
+from core.body import LEG_JOINTS, Joint, Side, ankle_of, hip_of, knee_of
 from core.gait.cycles import POINTS
 from core.results import RecordingAnalysis
 from core.verdicts.model import Assessment, together
-from core.verdicts.quantities import EXCURSIONS_BY_COLUMN, PARAMETERS, WINDOWS, mean_curve, peak_percent, values_of
+from core.verdicts.quantities import (
+    EXCURSIONS_BY_COLUMN,
+    OF_HIPS,
+    PARAMETERS,
+    WINDOWS,
+    mean_curve,
+    peak_percent,
+    values_of,
+)
 
 EVENTS = ("initial_contact", "full_contact", "heel_rise", "toe_off")
 TIMES = ("start_s", "full_contact_s", "heel_rise_s", "toe_off_s", "end_s")
@@ -25,6 +33,8 @@ STRIDE_STATUS = (  # of the columns that each stands for
     *("timing_status", "between_status", "distance_status"),
     *("knee_shape_status", "knee_height_status", "ankle_shape_status", "ankle_height_status"),
 )
+
+HIP_STATUS = ("hip_shape_status", "hip_height_status", "pelvis_status")
 
 
 def write_gait(recording: RecordingAnalysis, folder: Path) -> None:
@@ -63,14 +73,19 @@ def _peak_status(recording: RecordingAnalysis, joint: Joint) -> str:
 
 def gait_tables(recording: RecordingAnalysis) -> dict[str, tuple[list[str], Iterator[list[str]]]]:
     """Give headings and rows of `events`, `strides` and `cycles`, every cell as it stands in the file."""
-    joints = [joint for joint in Joint if joint.side in recording.gait and joint in recording.gait[joint.side].cycles]
+    joints = [
+        joint for joint in LEG_JOINTS if joint.side in recording.gait and joint in recording.gait[joint.side].cycles
+    ]
     of_cycles = ["percent"]
     for joint in joints:
         of_cycles += [f"{joint}_{what}" for what in ("mean_deg", "stride_sd_deg", "n", "shape_deg", "status")]
     events = ([_cell(time_s), str(side), event] for time_s, side, event in events_of(recording))
     return {
         "events": (["time_s", "side", "event"], events),
-        "strides": (["side", *TIMES, *PARAMETERS, "used", "reason", *STRIDE_STATUS], _strides(recording)),
+        "strides": (
+            ["side", *TIMES, *PARAMETERS, "used", "reason", *STRIDE_STATUS, *_more_of_strides(recording)],
+            _strides(recording),
+        ),
         "cycles": (of_cycles, _cycles(recording, joints)),
     }
 
@@ -96,9 +111,23 @@ def _strides(recording: RecordingAnalysis) -> Iterator[list[str]]:
         columns = [getattr(strides, name) for name in TIMES]
         columns += [values_of(recording, side, name) for name in PARAMETERS]
         status = [str(found.verdict) for found in _assessments(recording, side)]
+        more = [values_of(recording, side, name) for name in OF_HIPS] if recording.pelvis is not None else []
+        of_more = [str(found.verdict) for found in _assessments_of_hips(recording, side)] if more else []
         for k, reason in enumerate(strides.reason):
             used = "false" if reason else "true"
-            yield [str(side), *(_cell(float(column[k])) for column in columns), used, str(reason), *status]
+            cells = [*(_cell(float(column[k])) for column in columns), used, str(reason), *status]
+            yield [str(side), *cells, *(_cell(float(column[k])) for column in more), *of_more]
+
+
+def _more_of_strides(recording: RecordingAnalysis) -> tuple[str, ...]:
+    """The columns that a sensor on the pelvis adds."""
+    return (*OF_HIPS, *HIP_STATUS) if recording.pelvis is not None else ()
+
+
+def _assessments_of_hips(recording: RecordingAnalysis, side: Side) -> list[Assessment]:
+    """Of each column of `HIP_STATUS`."""
+    hip = recording.verdicts.joint(hip_of(side))
+    return [hip.shape, together((hip.height, hip.sign)), recording.verdicts.pelvis]
 
 
 def _assessments(recording: RecordingAnalysis, side: Side) -> list[Assessment]:

@@ -31,7 +31,7 @@ from app.review.drawn_legs import HALF_WIDTHS_M, HIPS, SHANK, THIGH, DrawnLeg, d
 from app.review.may_be_read import Place, document, is_pose, name_of_view, pieces_of, places
 from app.review.phase_lane import lanes_of
 from app.review.rrd_file import remove_chance
-from core.body import Joint, Side, Site, ankle_of, knee_of
+from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site, ankle_of, knee_of
 from core.gait.phases import PHASES, Phase
 from core.results import Analysis, RecordingAnalysis
 from core.samples import FloatArray, ImuBlock, IntArray, RecordingKind, Session
@@ -290,11 +290,11 @@ def _series(entity: str, timeline: str, time_s: FloatArray, values: FloatArray) 
 
 
 def _sites(session: Session) -> list[Site]:
-    return [site for site in Site if any(r.is_kept and site in r.imu for r in session.recordings)]
+    return [site for site in LEG_SITES if any(r.is_kept and site in r.imu for r in session.recordings)]
 
 
 def _joints(analysis: Analysis) -> list[Joint]:
-    return [joint for joint in Joint if any(joint in recording.joints for recording in analysis.recordings)]
+    return [joint for joint in LEG_JOINTS if any(joint in recording.joints for recording in analysis.recordings)]
 
 
 def _sides_with_gait(analysis: Analysis) -> list[Side]:

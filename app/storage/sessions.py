@@ -36,7 +36,7 @@ from app.storage.stored import (
 )
 from app.storage.unit_of_work import UnitOfWork
 from app.wording import tr
-from core.body import Joint, Site
+from core.body import LEG_JOINTS, Joint, Site
 from core.samples import Session
 from devices.files.session_toml import SIGN, ZERO
 
@@ -79,7 +79,7 @@ class Sessions:
                         turned_sign=told.turned_sign.get(joint),
                         is_absent=_is_absent(joint, limits),
                     )
-                    for joint in Joint
+                    for joint in LEG_JOINTS
                 ],
                 **{name: getattr(told, name) for name in SESSION_FIELDS},
             )

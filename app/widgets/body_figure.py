@@ -13,7 +13,7 @@ from app.widgets.body_shapes import BARE_LEGS, LEGS, WHOLE, body_shapes
 from app.widgets.chip import LETTERS
 from app.widgets.text import SEMIBOLD
 from app.wording import name_of, tr
-from core.body import Joint, Side, Site
+from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site
 
 MIDDLE = WHOLE.center().x()
 SENSOR = (20.0, 13.0)  # at most, px: a sensor's box does not grow with the figure
@@ -120,8 +120,8 @@ class BodyFigure(QWidget):
         near = QRectF(0, 0, 2 * SEGMENT_SLACK, 2 * SEGMENT_SLACK)
         near.moveCenter(spot)
         outlines = body_shapes().outlines
-        hit = [site for site in Site if outlines[site].contains(spot)]
-        hit += [site for site in Site if outlines[site].intersects(near)]
+        hit = [site for site in LEG_SITES if outlines[site].contains(spot)]
+        hit += [site for site in LEG_SITES if outlines[site].intersects(near)]
         return hit[0] if hit else None
 
     def anchor(self, site: Site) -> QPointF:
@@ -208,7 +208,7 @@ class BodyFigure(QWidget):
         self.setAccessibleName(self._sentence())
         places = [
             tr("{site}: {state}").format(site=name_of(site), state=mark_words(self._worn[site]))
-            for site in Site
+            for site in LEG_SITES
             if site in self._worn
         ]
         if self._emphasised is not None:
@@ -246,18 +246,18 @@ def _paint_eyes(painter: QPainter, theme: Theme, place: QTransform) -> None:
 def _paint_segments(
     painter: QPainter, theme: Theme, place: QTransform, emphasised: Site | None, is_small: bool
 ) -> None:
-    for site in Site:
+    for site in LEG_SITES:
         is_emphasised = site is emphasised
         width = (2.0 if is_emphasised else 1.25) if is_small else (3.5 if is_emphasised else 2.0)
-        painter.setPen(theme.side_pen(site.side, width))
-        painter.setBrush(theme.soft(site.side) if is_emphasised else theme.pale(site.side))
+        painter.setPen(theme.side_pen(site.leg_side, width))
+        painter.setBrush(theme.soft(site.leg_side) if is_emphasised else theme.pale(site.leg_side))
         painter.drawPath(place.map(body_shapes().outlines[site]))
 
 
 def _paint_joints(painter: QPainter, theme: Theme, place: QTransform) -> None:
     painter.setPen(theme.pen(theme.colours.ink, 2))
     painter.setBrush(QColor(theme.colours.surface))
-    for joint in Joint:
+    for joint in LEG_JOINTS:
         painter.drawEllipse(place.map(body_shapes().points[joint]), 5 * theme.scale, 5 * theme.scale)
 
 

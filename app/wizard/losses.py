@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping, Sequence
 
 from app.wording import name_of, tr
-from core.body import Joint, Segment, Side, Site
+from core.body import LEG_SITES, Joint, Segment, Side, Site
 
 TOLD_AFTER_S = 2.0
 BACK_TOLD_S = 6.0
@@ -26,7 +26,7 @@ class Losses:
     @property
     def silent(self) -> tuple[Site, ...]:
         """Those that have been silent for long enough to be told."""
-        return tuple(site for site in Site if site in self._silent_s)
+        return tuple(site for site in LEG_SITES if site in self._silent_s)
 
     def update(self, silent_s: Mapping[Site, float], now_s: float) -> tuple[Site, ...]:
         """Take how long each worn sensor has been silent; returns those that are told from now on."""
@@ -56,7 +56,7 @@ class Losses:
                 said = tr("{sensor} are back after {seconds:.1f} s.")
             else:
                 said = tr("All sensors are back after {seconds:.1f} s.")
-            names = ", ".join(name_of(site) for site in Site if site in self._back)
+            names = ", ".join(name_of(site) for site in LEG_SITES if site in self._back)
             what = said.format(sensor=names, seconds=max(self._back.values()))
             return what, tr("The strides in between are left out.")
         return NOTHING
@@ -73,7 +73,7 @@ class Losses:
         said = tr("{sensor} has been silent for {seconds} s.") if is_one else have
         lost = [name_of(joint) for joint in joints if {joint.proximal, joint.distal} & self._silent_s.keys()]
         phases = {Side.LEFT: tr("left phases"), Side.RIGHT: tr("right phases")}
-        feet = [phases[site.side] for site in self.silent if site.segment is Segment.FOOT]
+        feet = [phases[site.leg_side] for site in self.silent if site.segment is Segment.FOOT]
         if is_recording:
             missing = ", ".join([*lost, *feet])
             they = tr("Recording goes on. Missing until they are back: {missing}.")

@@ -14,7 +14,7 @@ from app.storage.stored import Limits, RecordingState, ResultKind, StoredPatient
 from app.wizard.recordings import SessionRecording, counted
 from app.workers.background import Report
 from core.analysis import analyse
-from core.body import Joint
+from core.body import LEG_JOINTS
 from core.calibration.rest import rest_of
 from core.chosen_strides import leave_out
 from core.findings import Finding, Severity
@@ -118,7 +118,7 @@ def evaluated(session: StoredSession, recordings: Sequence[SessionRecording]) ->
 
 def with_limits(told: Session, limits: Limits) -> Session:
     """With what no sensor shows of the patient's body, to be said wherever the results are."""
-    rigid = [joint for joint in Joint if not joint.is_knee and joint.side in limits.without_ankle]
+    rigid = [joint for joint in LEG_JOINTS if not joint.is_knee and joint.side in limits.without_ankle]
     said = tuple(Finding("foot_against_shank", Severity.INFO, str(joint)) for joint in rigid)
     return replace(told, findings=(*told.findings, *said))
 

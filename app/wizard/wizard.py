@@ -34,7 +34,7 @@ from app.wizard.walking.step import WalkingStep
 from app.wording import tr
 from app.workers.library_controller import LibraryController
 from app.workers.preload import is_preloaded
-from core.body import Site
+from core.body import LEG_SITES, Site
 from core.samples import Patient
 
 if TYPE_CHECKING:
@@ -246,7 +246,6 @@ class Wizard(QWidget):
         self.shell.banner.hide()
         self._turn(step.page)
         self.shell.show_page(number, step.page)
-        self.shell.set_strip_mode(_STRIP[number])
         step.enter()
         self._show()
 
@@ -259,8 +258,11 @@ class Wizard(QWidget):
             state = StepState.CURRENT if number == self._current else step.state
             rows.append(RailRow(step.title, step.note, state))
         self.shell.rail.show_rows(tuple(rows))
+        folds = self._steps[self._current].folds_sensors
+        self.shell.set_strip_mode(StripMode.FOLDED if folds else _STRIP[self._current])
         self.shell.bar.show_state(self._bar())
         self._keys.set_running(self.is_recording)
+        self._keys.set_clicker(self._steps[self._current].takes_clicker)
         patient = self._visit.patient.details
         self.shell.header.show_session(
             patient.code or tr("New session"), about_and_device(patient), self._visit.is_simulated
@@ -277,7 +279,7 @@ class Wizard(QWidget):
         self.shell.header.show_elapsed(visit.elapsed_s)
         status, worn = visit.sensors.status, visit.sensors.sensor_at
         is_awaited = visit.sensors.is_left_to_motion and not worn
-        self.shell.strip.show_tiles({site: _tile(site, worn.get(site), status, is_awaited) for site in Site})
+        self.shell.strip.show_tiles({site: _tile(site, worn.get(site), status, is_awaited) for site in LEG_SITES})
 
     def _tell(self, what: str, then: str) -> None:
         if what:

@@ -29,6 +29,7 @@ class ClockTie(StrEnum):
 
     ONE_CLOCK = "one_clock"
     HOST_CLOCK = "host_clock"
+    PELVIS = "pelvis"
     UNKNOWN = "unknown"
 
 

@@ -14,7 +14,7 @@ from enum import StrEnum
 
 import numpy as np
 
-from core.body import Joint, Site
+from core.body import LEG_JOINTS, Joint, Site
 from core.calibration.certainty import AXIS_FLOOR_HINGE_RAD, AXIS_FLOOR_HUMAN_RAD
 from core.calibration.coincidence import BIAS_PRIOR_M_S2, CENTRE_PRIOR_M
 from core.calibration.joint_centre import IN_STEP_M, MIN_SCALE_M_S2, MIN_SD_HINGE_M, MIN_SD_HUMAN_M, SD_FACTOR_HUMAN
@@ -150,7 +150,7 @@ class Excitation:
         self._axis = _AxisInformation(closes_at.tilt_rad, closes_at.wobble)
         self._centre = _CentreInformation(closes_at.shift_m)
         self._used = 0
-        self._next_refit = MIN_SETS + list(Joint).index(joint)  # not all joints at the same moment
+        self._next_refit = MIN_SETS + LEG_JOINTS.index(joint)  # not all joints at the same moment
         self._heading_in_force = 0  # of the sets that tell the axis: where an orientation began anew, the longer part
         self._wanting: deque[float] = deque(maxlen=PROGRESS_OVER + 1)
         self._is_closed = False

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from core.body import Joint, Side, Site
+from core.body import LEG_JOINTS, Joint, Side, Site
 from core.live.excitation import HUMAN, PROSTHESIS, Excitation, ExcitationState
 from core.live.lag import LagState, LiveLag
 from core.live.orientation import NOTHING, OrientedSamples, joined
@@ -54,13 +54,13 @@ class LiveFreeMotion:
         without_ankle: frozenset[Side] = frozenset(),
     ) -> None:
         self._sensors = LiveSensors(sensors)
-        worn = [joint for joint in Joint if joint.proximal in sensors and joint.distal in sensors]
+        worn = [joint for joint in LEG_JOINTS if joint.proximal in sensors and joint.distal in sensors]
         asked = [joint for joint in worn if joint.is_knee or joint.side not in without_ankle]
         self._joints = {
             joint: _JointMotion(
                 Excitation(joint, PROSTHESIS if joint.side in prosthetic_sides else HUMAN),
                 LiveLag(sensors[joint.proximal].step_s, sensors[joint.distal].step_s),
-                list(Joint).index(joint) * LOOK_S / len(Joint),
+                LEG_JOINTS.index(joint) * LOOK_S / len(LEG_JOINTS),
             )
             for joint in asked
         }

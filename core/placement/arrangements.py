@@ -6,7 +6,7 @@ from itertools import combinations, permutations
 
 import numpy as np
 
-from core.body import Joint, Side, Site
+from core.body import LEG_JOINTS, Joint, Side, Site
 from core.placement.links import link
 from core.placement.smoothed_tracks import SmoothedTracks
 from core.samples import FloatArray, IntArray
@@ -122,7 +122,7 @@ class Arrangements:
 
 def joints_between(sites: tuple[Site, ...]) -> list[Joint]:
     """The joints whose two sites are both among `sites`."""
-    return [joint for joint in Joint if joint.proximal in sites and joint.distal in sites]
+    return [joint for joint in LEG_JOINTS if joint.proximal in sites and joint.distal in sites]
 
 
 @dataclass(frozen=True, slots=True)

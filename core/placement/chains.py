@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.body import Segment, Side, Site, ankle_of, knee_of
+from core.body import LEG_SEGMENTS, LEG_SITES, Segment, Side, Site, ankle_of, knee_of
 from core.pair import MOVING_WINDOW_S, OrientedTrack, moving_mean
 from core.placement.arrangements import Arrangement, Arrangements, Neighbours, Stature, neighbours_in_steps, statures
 from core.placement.smoothed_tracks import Tracks, smoothed_in_steps
@@ -23,7 +23,7 @@ USUAL_SITES = {
     3: (Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT),
     4: (Site.LEFT_THIGH, Site.LEFT_SHANK, Site.RIGHT_THIGH, Site.RIGHT_SHANK),
     5: (Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT, Site.RIGHT_THIGH, Site.RIGHT_SHANK),
-    6: tuple(Site),
+    6: LEG_SITES,
 }
 
 
@@ -87,7 +87,7 @@ class Chains:
         """Name every sensor's site, given the side of the leg that was lifted first."""
         named = {}
         for side, leg in zip((first_moved, first_moved.other), self.legs, strict=False):
-            for segment in Segment:
+            for segment in LEG_SEGMENTS:
                 sensor = getattr(leg, segment.value)
                 if sensor is not None:
                     named[sensor] = Site(f"{side}_{segment}")

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 
-from core.body import Joint, Side
+from core.body import LEG_JOINTS, Joint, Side
 
 
 class Verdict(StrEnum):
@@ -97,12 +97,20 @@ class LegVerdicts:
 class Verdicts:
     """Of one recording. `between` is what compares instants of both legs, which needs both clocks.
 
+    `pelvis` is of the pelvis against the vertical and against its own mean; its rotation needs no more.
+
     A joint or leg that is missing was not measured.
     """
 
     joints: Mapping[Joint, JointVerdicts] = field(default_factory=dict)
     legs: Mapping[Side, LegVerdicts] = field(default_factory=dict)
     between: Assessment = NOT_MEASURED
+    pelvis: Assessment = NOT_MEASURED
+
+    @property
+    def told_joints(self) -> tuple[Joint, ...]:
+        """The joints of the legs, measured or not, and the hips that were."""
+        return (*LEG_JOINTS, *(joint for joint in Joint if joint.is_hip and joint in self.joints))
 
     def joint(self, joint: Joint) -> JointVerdicts:
         return self.joints.get(joint, UNKNOWN_JOINT)
@@ -124,6 +132,7 @@ def pooled(many: Iterable[Verdicts]) -> Verdicts:
         joints={joint: _worst_joint([one.joints[joint] for one in some if joint in one.joints]) for joint in joints},
         legs={side: _worst_leg([one.legs[side] for one in some if side in one.legs]) for side in sides},
         between=together(one.between for one in some) if some else NOT_MEASURED,
+        pelvis=together(one.pelvis for one in some) if some else NOT_MEASURED,
     )
 
 

@@ -9,7 +9,7 @@ from typing import Protocol
 
 import numpy as np
 
-from core.body import Joint, Site
+from core.body import LEG_SITES, Joint, Site
 from core.samples import FloatArray, ImuBlock, Recording, RecordingKind
 from devices.emulators.csv_lines import LineVoice
 from devices.emulators.shimmer3 import ACC_CALIBRATION, GYR_CALIBRATION, Shimmer3Voice
@@ -135,7 +135,7 @@ class EmulatedSensor:
     def __init__(
         self, patient: EmulatedPatient, kind: str, number: int, rate_hz: int = 100, *, says_so: bool = True
     ) -> None:
-        self.site = list(Site)[number % len(Site)]
+        self.site = LEG_SITES[number % len(LEG_SITES)]
         self.sent: list[FloatArray] = []
         self.sent_ns: list[float] = []
         self._patient, self._kind, self._rate_hz = patient, kind, rate_hz

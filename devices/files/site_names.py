@@ -6,7 +6,7 @@ A guess for somebody to look at, never for a place where nobody does: names are 
 import re
 from itertools import pairwise
 
-from core.body import Segment, Side, Site
+from core.body import LEG_SITES, Segment, Side, Site
 
 SIDES = {
     Side.LEFT: {"left", "l", "lt", "links", "li"},
@@ -43,7 +43,7 @@ def site_of_name(name: str) -> Site | None:
     if len(sides) != 1 or len(segments) != 1 or OTHER & set(words):
         return None
     (side,), (segment,) = sides, segments
-    return next(site for site in Site if (site.side, site.segment) == (side, segment))
+    return next(site for site in LEG_SITES if (site.side, site.segment) == (side, segment))
 
 
 def without_site(name: str) -> str:

@@ -6,7 +6,7 @@ from typing import Any
 
 from app.reports.patient_report.request import AnalysedVisit
 from app.reports.reference_bands import NOBODY
-from core.body import Joint, Side
+from core.body import LEG_JOINTS, Joint, Side
 from core.gait.strides import Reason
 from core.norms import AgeAndHeight
 from core.results import Analysis, RecordingAnalysis
@@ -14,7 +14,7 @@ from core.samples import RecordingKind, Session
 from core.verdicts.gates import judged
 
 
-def recalibrated(analysis: Analysis, joints: Iterable[Joint] = tuple(Joint), **change: Any) -> Analysis:
+def recalibrated(analysis: Analysis, joints: Iterable[Joint] = LEG_JOINTS, **change: Any) -> Analysis:
     """With these fields of the calibrations of some joints changed."""
     some = set(joints)
     spans = tuple(

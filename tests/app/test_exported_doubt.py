@@ -26,7 +26,7 @@ from app.reports.patient_report.request import AnalysedVisit, ReportRequest
 from app.reports.result_folder import LOG, write_results
 from app.review.rerun_log import write_log
 from core.analysis import analyse
-from core.body import Side, Site
+from core.body import LEG_SITES, Side, Site
 from core.results import Analysis
 from core.samples import Recording, Session
 from devices.walker import Standing, Walk, WalkerSettings, simulate
@@ -84,7 +84,7 @@ def with_swapped_shanks(session: Session) -> Session:
 
 STOOD, WALKED = Standing(), Walk(WALK, strides=16)
 STIFF = replace(WALKED, change=GaitChange(knee_deg=-7.0), changed_side=Side.LEFT)  # of 14 deg, so that 7 are left
-LATE = {site: 0.1 for site in Site if site.side is Side.RIGHT}
+LATE = {site: 0.1 for site in LEG_SITES if site.side is Side.RIGHT}
 CASES = {
     "no zero": Case(
         WalkerSettings(seed=4, recordings=(WALKED,)),

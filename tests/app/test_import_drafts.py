@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from app.import_drafts import Origin, chains_of_motion, drafts_of, session_of
-from core.body import Side, Site
+from core.body import LEG_SITES, Side, Site
 from core.samples import ImuBlock, RecordingKind, SensorInfo
 from devices.files.refusal import FileRefusedError
 from devices.files.trial import ImportedSensor, ImportedTrial
@@ -40,7 +40,7 @@ def named(*names: str) -> dict[str, str]:
 
 def test_names_say_the_sites() -> None:
     (draft,) = drafts_of([("walk", trial(named(*SITES, "Lumbar")))])
-    assert [sensor.site for sensor in draft.sensors] == [*Site, None]
+    assert [sensor.site for sensor in draft.sensors] == [*LEG_SITES, None]
     assert {sensor.origin for sensor in draft.sensors[:6]} == {Origin.NAME}
     assert draft.sensors[6].origin is Origin.NOTHING
 
@@ -145,7 +145,7 @@ def test_the_motion_tells_the_sites_but_for_the_side(simulated: Mapping[str, Imp
     chains = chains_of_motion(draft, [sensor.key for sensor in draft.sensors])
     assert chains is not None
     assert chains.is_certain
-    first = Site(chains.legs[0].thigh[::-1]).side
+    first = Site(chains.legs[0].thigh[::-1]).leg_side
     assert {key: site.value[::-1] for key, site in chains.sites(first).items()} == {
         sensor.key: sensor.key for sensor in draft.sensors
     }

@@ -12,7 +12,7 @@ from string import Formatter
 import pytest
 
 from app.wording import NAMES, SENTENCES, name_of, place, sentence
-from core.body import Joint, Side, Site
+from core.body import LEG_JOINTS, LEG_SITES, Side
 from core.findings import Finding, Severity
 from core.gait.cycles import ANKLE_WINDOWS, KNEE_WINDOWS
 from core.gait.strides import Reason
@@ -106,9 +106,9 @@ def test_the_part_of_the_body_comes_before_the_recording() -> None:
 
 
 def test_every_part_is_named_side_first() -> None:
-    for site in Site:
-        assert name_of(site) == f"{site.side[0].upper()} {site.segment}"
-    for joint in Joint:
+    for site in LEG_SITES:
+        assert name_of(site) == f"{site.leg_side[0].upper()} {site.segment}"
+    for joint in LEG_JOINTS:
         assert name_of(joint) == joint.value.replace("_", " ")
 
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from core.analysis import analyse
-from core.body import Joint, Side, Site
+from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site
 from core.results import Analysis, JointCalibration, Method, ZeroKind
 from core.rotations import angle_between, joint_frame
 from core.samples import FloatArray, ImuBlock, Patient, RecordingKind, Session
@@ -49,10 +49,10 @@ def told(found: Analysis) -> set[tuple[str, str]]:
     "seed", [0, pytest.param(1, marks=pytest.mark.endurance), pytest.param(2, marks=pytest.mark.endurance)]
 )
 def test_a_person_of_hinges_is_measured_right(make_person: "Callable[..., Person]", seed: int, method: Method) -> None:
-    sites = tuple(site for site in Site if site.side is (Side.RIGHT if seed % 2 else Side.LEFT))
+    sites = tuple(site for site in LEG_SITES if site.side is (Side.RIGHT if seed % 2 else Side.LEFT))
     person = make_person(seed=seed)
     found = analyse(person.visit(sites), method)
-    for joint in Joint:
+    for joint in LEG_JOINTS:
         if joint.proximal not in sites:
             continue
         calibration = of(found, joint)
@@ -81,7 +81,7 @@ def test_flexion_is_positive_on_every_leg_whatever_was_recorded(
     make_person: "Callable[..., Person]", seed: int, kinds: tuple[RecordingKind, ...]
 ) -> None:
     person = make_person(seed=100 + seed)
-    sites = tuple(site for site in Site if site.side is (Side.LEFT if seed % 2 else Side.RIGHT))
+    sites = tuple(site for site in LEG_SITES if site.side is (Side.LEFT if seed % 2 else Side.RIGHT))
     found = analyse(person.visit(sites, kinds=kinds, duration_s=6.0))
     for joint, calibration in found.calibrations[-1].joints.items():
         assert calibration.clinical_sign * calibration.axis_distal @ person.axis(joint.distal, joint) > 0.99
@@ -193,14 +193,14 @@ def test_shifting_all_clocks_shifts_the_stamps_and_nothing_else(person: "Person"
 
 def swapped(session: Session) -> Session:
     """The same samples, said to be of the other leg."""
-    other = {site: Site(f"{'right' if site.side is Side.LEFT else 'left'}_{site.segment}") for site in Site}
+    other = {site: Site(f"{'right' if site.side is Side.LEFT else 'left'}_{site.segment}") for site in LEG_SITES}
     recordings = [replace(r, imu={other[s]: b for s, b in r.imu.items()}) for r in session.recordings]
     return replace(session, recordings=tuple(recordings))
 
 
 @pytest.mark.endurance
 def test_swapping_left_and_right_swaps_the_names_and_nothing_else(person: "Person") -> None:
-    visit = person.visit(tuple(Site), duration_s=6.0)
+    visit = person.visit(LEG_SITES, duration_s=6.0)
     plain, mirrored = analyse(visit), analyse(swapped(visit))
     for one, other in zip(plain.recordings, mirrored.recordings, strict=True):
         for joint, found in one.joints.items():

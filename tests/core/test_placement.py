@@ -13,7 +13,7 @@ from scipy.spatial.transform import Rotation
 
 from app.wording import sentence
 from core.analysis import analyse
-from core.body import Joint, Segment, Side, Site
+from core.body import LEG_JOINTS, LEG_SITES, Segment, Side, Site
 from core.findings import Severity
 from core.placement.chains import Chains, find_chains
 from core.placement.labels import about_labels, exchanged_sites
@@ -49,7 +49,7 @@ def jumps(test_data: FindData) -> Session:
     """A person who moves freely and jumps, 100 s, without standing."""
     with np.load(test_data("full_body_free_motion/legs_arms.npz")) as data:
         imu = {}
-        for site in Site:
+        for site in LEG_SITES:
             part = f"{BODY_PARTS[site.segment]}_{site.side}"
             gyr, acc = (np.asarray(data[f"{part}_{signal}"], dtype=float) for signal in ("gyr", "acc"))
             imu[site] = ImuBlock(part, np.asarray(data["t"], dtype=float), gyr, acc)
@@ -101,7 +101,7 @@ def groups(tracks: Tracks, standing: Mapping[str, FloatArray] | None = None) -> 
     return {frozenset(group) for group in exchanged_sites(tracks, standing or {})}
 
 
-def chains_of(session: Session, sites: tuple[Site, ...] = tuple(Site)) -> Chains:
+def chains_of(session: Session, sites: tuple[Site, ...] = LEG_SITES) -> Chains:
     tracks, standing = unlabelled(tracks_of(session))
     found = find_chains({site: tracks[site] for site in sites}, standing)
     assert found is not None
@@ -180,7 +180,7 @@ def test_two_feet_share_no_joint_to_be_doubted(test_data: FindData) -> None:
 @pytest.mark.parametrize("condition", ["rigid", "soft", "real", "soft, 3 s", "soft walk"])
 def test_chains_are_right_and_labels_not_doubted_with_late_and_biased_sensors(condition: str) -> None:
     session = session_of(condition, 1000)
-    for sites in (tuple(Site), (T, S, F), (T, S, RT, RS)):
+    for sites in (LEG_SITES, (T, S, F), (T, S, RT, RS)):
         found = chains_of(session, sites)
         assert is_right(found)
         assert found.is_certain
@@ -196,7 +196,7 @@ def test_two_hundred_patients_have_no_wrong_chain_and_no_doubted_label(condition
         assert doubted(session) == set(), seed
 
 
-@pytest.mark.parametrize("sites", [(T, S), (T, S, F), (T, S, RT, RS), (T, S, F, RT, RS), tuple(Site)])
+@pytest.mark.parametrize("sites", [(T, S), (T, S, F), (T, S, RT, RS), (T, S, F, RT, RS), LEG_SITES])
 def test_two_to_six_sensors_are_arranged(circling: Session, sites: tuple[Site, ...]) -> None:
     found = chains_of(circling, sites)
     assert is_right(found)
@@ -214,7 +214,7 @@ def test_two_to_six_sensors_are_arranged(circling: Session, sites: tuple[Site, .
 @pytest.mark.parametrize("seed", range(3))
 def test_names_order_and_mounting_of_the_sensors_change_nothing(circling: Session, seed: int) -> None:
     rng = np.random.default_rng(seed)
-    order = [list(Site)[k] for k in rng.permutation(6)]
+    order = [LEG_SITES[k] for k in rng.permutation(6)]
     plain = chains_of(circling)
     turns = Rotation.random(6, rng=rng)
     names = {site: f"sensor {k}" for k, site in enumerate(order)}
@@ -244,7 +244,7 @@ def test_the_leg_that_moved_first_names_both(first: Side) -> None:
     told = found.sites(first)
     is_left_first = first is Side.LEFT  # the patient's left leg is the first to move
     assert all((Site(sensor).side is site.side) == is_left_first for sensor, site in told.items())
-    assert set(told.values()) == set(Site)
+    assert set(told.values()) == set(LEG_SITES)
 
 
 def test_legs_that_move_together_do_not_tell_which_was_first(circling: Session) -> None:
@@ -288,7 +288,7 @@ def test_lying_without_standing_does_not_tell_which_end_is_up() -> None:
 
 def test_any_two_exchanged_labels_are_named(circling: Session) -> None:
     tracks, standing = unlabelled(tracks_of(circling))
-    for one, other in combinations(Site, 2):
+    for one, other in combinations(LEG_SITES, 2):
         stood = {**standing, one: standing[other], other: standing[one]}
         assert groups(exchange(tracks, one, other), stood) == {frozenset((one, other))}
 
@@ -333,7 +333,7 @@ def test_a_joint_lies_where_its_two_sensors_say() -> None:
     tracks, _ = unlabelled(tracks_of(made.session))
     together = at_once(smoothed_in_steps(tracks))
     assert together is not None
-    for joint in Joint:
+    for joint in LEG_JOINTS:
         one, two = (together.sensors[site] for site in (joint.proximal, joint.distal))
         found = link(one, two, together.index, together.window)
         truth = made.truth.recordings["free motion"].joints[joint]

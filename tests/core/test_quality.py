@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from core.analysis import analyse
-from core.body import Joint, Segment, Side, Site
+from core.body import LEG_SITES, Joint, Segment, Side, Site
 from core.findings import Severity
 from core.quality import look_at, lost_percent
 from core.results import Analysis, Method
@@ -35,7 +35,7 @@ KNEE = Joint.LEFT_KNEE
 Change = Callable[[ImuBlock], ImuBlock]
 
 
-def changed(session: Session, change: Change, sites: tuple[Site, ...] = tuple(Site), *names: str) -> Session:
+def changed(session: Session, change: Change, sites: tuple[Site, ...] = LEG_SITES, *names: str) -> Session:
     """The session with the blocks of some sites (and of some recordings only) spoiled."""
     recordings = []
     for r in session.recordings:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from core.analysis import analyse
-from core.body import Joint, Site
+from core.body import LEG_SITES, Joint, Site
 from core.findings import Severity
 from core.results import Analysis, Method, ZeroKind
 from core.rotations import angle_between
@@ -26,7 +26,7 @@ Change = Callable[[ImuBlock], ImuBlock]
 methods = pytest.mark.parametrize("method", list(Method))
 
 
-def changed(session: Session, change: Change, sites: tuple[Site, ...] = tuple(Site), *names: str) -> Session:
+def changed(session: Session, change: Change, sites: tuple[Site, ...] = LEG_SITES, *names: str) -> Session:
     recordings = []
     for r in session.recordings:
         imu = {s: change(b) if s in sites and (not names or r.name in names) else b for s, b in r.imu.items()}
@@ -143,7 +143,7 @@ def test_a_broken_free_motion_leaves_the_walk_s_angles(person: "Person", knee_vi
     def first(b: ImuBlock) -> ImuBlock:
         return replace(b, time_s=b.time_s[:5], gyr_rad_s=b.gyr_rad_s[:5], acc_m_s2=b.acc_m_s2[:5])
 
-    found = analyse(changed(knee_visit, first, tuple(Site), "free motion"), method)
+    found = analyse(changed(knee_visit, first, LEG_SITES, "free motion"), method)
     assert any(KNEE in r.joints for r in found.recordings if r.name == "walk")
 
 

@@ -7,7 +7,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from core.analysis import analyse
-from core.body import Joint, Side, Site
+from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site
 from core.gait.strides import Reason
 from core.measure import pairs_of
 from core.results import Method
@@ -52,14 +52,14 @@ def found_in(session: Session, simulated: SimulatedSession) -> list[Slip]:
     tracks = SensorTracks(session, session.recordings, frozenset(), RateKind.INSTANTANEOUS)
     walk = session.recordings[2]
     turns = {}
-    for joint in Joint:
+    for joint in LEG_JOINTS:
         truth = simulated.truth.recordings[WALK].joints[joint]
         (pair,) = pairs_of(tracks, walk, joint, tracks.blocks(walk)[0], 0.0)
         turns[joint] = turns_over(pair, truth.functional_proximal, truth.functional_distal)
     return slips(turns)
 
 
-@pytest.mark.parametrize("site", list(Site))
+@pytest.mark.parametrize("site", list(LEG_SITES))
 @pytest.mark.parametrize("angle_deg", [12.0, -20.0])
 def test_names_the_strap_that_slipped_and_when(soft: SimulatedSession, site: Site, angle_deg: float) -> None:
     (slip,) = found_in(slipped(soft.session, site, np.deg2rad(angle_deg)), soft)

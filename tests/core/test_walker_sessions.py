@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 from core.analysis import analyse
-from core.body import Joint, Side, Site
+from core.body import LEG_SITES, Joint, Side, Site
 from core.results import Analysis
 from core.samples import FloatArray, RateKind, SensorInfo, Session
 from devices.walker import FreeMotion, SimulatedSession, Standing, Tissue, Walk, WalkerSettings, simulate
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
-LEFT = tuple(site for site in Site if site.side is Side.LEFT)
+LEFT = tuple(site for site in LEG_SITES if site.side is Side.LEFT)
 KNEE, ANKLE = Joint.LEFT_KNEE, Joint.LEFT_ANKLE
 SHORT = (Standing(), FreeMotion(), Walk(strides=5))
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import correlate1d
 from scipy.signal import butter, sosfiltfilt
 
-from core.body import Joint, Segment, Side, Site
+from core.body import LEG_JOINTS, LEG_SITES, Joint, Segment, Side, Site
 from core.samples import BoolArray, FloatArray, ImuBlock, RecordingKind
 from devices.walker import (
     NO_ERRORS,
@@ -76,10 +76,11 @@ def fast_off_axis_rate(proximal: ImuBlock, distal: ImuBlock, truth: JointTruth) 
     return float(np.sqrt(np.mean(np.square(fast[0]) + np.square(fast[1]))))
 
 
+@pytest.mark.endurance
 def test_the_same_settings_give_the_same_samples() -> None:
     settings = WalkerSettings(seed=7, tissue=Tissue.REAL, loss_fraction=0.05, stamp_jitter_s=0.001)
     for a, b in zip(simulate(settings).session.recordings, simulate(settings).session.recordings, strict=True):
-        for site in Site:
+        for site in LEG_SITES:
             np.testing.assert_array_equal(a.imu[site].time_s, b.imu[site].time_s)
             np.testing.assert_array_equal(a.imu[site].gyr_rad_s, b.imu[site].gyr_rad_s)
             np.testing.assert_array_equal(a.imu[site].acc_m_s2, b.imu[site].acc_m_s2)
@@ -94,7 +95,7 @@ def test_another_seed_gives_another_patient() -> None:
 def test_faults_and_losses_leave_body_and_mounting_alone() -> None:
     plain = simulate(CLEAN)
     other = simulate(WalkerSettings(seed=2, loss_fraction=0.2, tissue=Tissue.SOFT, clock_late_s={Site.LEFT_FOOT: 0.02}))
-    for joint in Joint:
+    for joint in LEG_JOINTS:
         a, b = (s.truth.recordings["walk 1"].joints[joint] for s in (plain, other))
         np.testing.assert_array_equal(a.axis_distal, b.axis_distal)
         np.testing.assert_array_equal(a.centre_proximal_m, b.centre_proximal_m)
@@ -115,7 +116,7 @@ def test_a_rigid_knee_turns_about_its_axis_only_and_by_the_true_angle(
 
 
 @pytest.mark.parametrize("name", ["free motion", "walk 1"])
-@pytest.mark.parametrize("joint", list(Joint))
+@pytest.mark.parametrize("joint", list(LEG_JOINTS))
 def test_both_sensors_see_the_same_joint_centre(dense: SimulatedSession, name: str, joint: Joint) -> None:
     proximal, distal, truth = pair(dense, name, joint)
 
@@ -167,12 +168,13 @@ def test_soft_tissue_turns_sensors_off_the_axis_as_much_as_it_should(tissue: Tis
     found = [
         off_axis_rate(*pair(walk, "walk 1", joint))
         for walk in (simulate(replace(CLEAN, seed=s, tissue=tissue, recordings=(Walk(strides=5),))) for s in range(4))
-        for joint in Joint
+        for joint in LEG_JOINTS
     ]
     assert low < np.quantile(found, 0.1)
     assert np.quantile(found, 0.9) < high
 
 
+@pytest.mark.endurance
 def test_real_tissue_moves_above_3_hz_as_that_of_people_does() -> None:
     """0.5-0.7 rad/s on people; of six people after stroke 0.4-2.4; today's soft tissue 0.2-0.5."""
     walks = [simulate(replace(CLEAN, seed=s, tissue=Tissue.REAL, recordings=(Walk(),))) for s in range(3)]
@@ -180,7 +182,7 @@ def test_real_tissue_moves_above_3_hz_as_that_of_people_does() -> None:
         [
             fast_off_axis_rate(*pair(walk, "walk 1", joint))
             for walk in walks
-            for joint in Joint
+            for joint in LEG_JOINTS
             if joint.is_knee is is_knee
         ]
         for is_knee in (True, False)
@@ -191,6 +193,7 @@ def test_real_tissue_moves_above_3_hz_as_that_of_people_does() -> None:
     assert max(knees + ankles) < 1.2
 
 
+@pytest.mark.endurance
 def test_the_functional_axis_leans_with_the_knees_own_rotation() -> None:
     rigid = simulate(CLEAN).truth.recordings["walk 1"].joints[Joint.LEFT_KNEE]
     soft = simulate(replace(CLEAN, tissue=Tissue.SOFT)).truth.recordings["walk 1"].joints[Joint.LEFT_KNEE]
@@ -241,20 +244,20 @@ def spread(block: ImuBlock) -> FloatArray:
 def test_full_circling_turns_every_segment_about_several_axes() -> None:
     for seed in range(4):
         imu = free(Motion.FULL, seed).session.recordings[0].imu
-        for site in Site:
+        for site in LEG_SITES:
             assert spread(imu[site])[1] > 0.3, site
             assert 1.0 < np.linalg.norm(imu[site].gyr_rad_s, axis=1).max() < 8.0
 
 
 def test_weak_circling_is_slower() -> None:
     full, weak = (free(m).session.recordings[0].imu for m in (Motion.FULL, Motion.WEAK))
-    for site in Site:
+    for site in LEG_SITES:
         assert spread(weak[site])[-1] < 0.5 * spread(full[site])[-1]
 
 
 def test_sagittal_motion_turns_about_one_axis() -> None:
     imu = free(Motion.SAGITTAL).session.recordings[0].imu
-    for site in Site:
+    for site in LEG_SITES:
         assert spread(imu[site])[1] < 0.15 * spread(imu[site])[2]
 
 

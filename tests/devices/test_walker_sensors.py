@@ -7,12 +7,13 @@ import pytest
 from scipy.integrate import cumulative_trapezoid
 from scipy.spatial.transform import Rotation
 
-from core.body import Site
+from core.body import LEG_SITES, Side, Site
 from core.samples import FloatArray, ImuBlock, RateKind
 from devices.walker import NO_ERRORS, SensorErrors, Standing, Tissue, Walk, WalkerSettings, simulate
 from devices.walker_body import Leg, make_leg
-from devices.walker_gait import plan_walk, walk_leg
+from devices.walker_gait import walk_leg
 from devices.walker_motion import LegMotion
+from devices.walker_plan import plan_walk
 from devices.walker_sensors import (
     GRAVITY_M_S2,
     acceleration,
@@ -34,7 +35,7 @@ WALK_ONLY = (Walk(strides=3),)
 
 
 def walking_leg(settings: WalkerSettings) -> tuple[Leg, LegMotion]:
-    leg = make_leg(settings, Site.LEFT_SHANK.side)
+    leg = make_leg(settings, Side.LEFT)
     rng = np.random.default_rng(0)
     time_s = np.arange(-250, 6000) / 1000.0
     walk = Walk(strides=3)
@@ -130,7 +131,9 @@ def test_lost_samples_leave_gaps_and_the_rest_untouched() -> None:
     whole = simulate(WalkerSettings()).session.recordings[-1].imu[Site.LEFT_SHANK]
     with_loss = simulate(WalkerSettings(loss_fraction=0.1))
     lossy = with_loss.session.recordings[-1].imu[Site.LEFT_SHANK]
-    share = [1 - len(r.imu[s]) / (r.imu[s].time_s[-1] * 100 + 1) for r in with_loss.session.recordings for s in Site]
+    share = [
+        1 - len(r.imu[s]) / (r.imu[s].time_s[-1] * 100 + 1) for r in with_loss.session.recordings for s in LEG_SITES
+    ]
     assert 0.07 < np.mean(share) < 0.13
     longest = np.diff(lossy.time_s).max()
     assert longest > 0.025
@@ -187,7 +190,7 @@ def test_scale_errors_stretch_each_axis() -> None:
     stretched = simulate(WalkerSettings(errors=replace(NO_ERRORS, gyro_scale_sd=0.003))).session.recordings[-1]
     ideal = simulate(WalkerSettings(errors=NO_ERRORS)).session.recordings[-1]
     ratios = np.array(
-        [np.median(stretched.imu[s].gyr_rad_s[100:-100] / ideal.imu[s].gyr_rad_s[100:-100], axis=0) for s in Site]
+        [np.median(stretched.imu[s].gyr_rad_s[100:-100] / ideal.imu[s].gyr_rad_s[100:-100], axis=0) for s in LEG_SITES]
     )
     assert 0.0015 < np.std(ratios - 1.0) < 0.0045
 

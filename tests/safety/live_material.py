@@ -10,7 +10,7 @@ import numpy as np
 
 from app.storage.journal.decoding import DecodedJournal, decode
 from app.storage.journal.writer import JournalWriter
-from core.body import Site
+from core.body import LEG_SITES
 from core.samples import ImuBlock, IntArray, Recording, RecordingKind, SensorInfo, Session
 from devices.source import DecodedSensor
 from tests.safety.journal_material import KEY, NO_ROOM_ASKED
@@ -43,7 +43,7 @@ def numbered(sensor: str, count: int = LOOP, rate_hz: float = RATE_HZ) -> ImuBlo
 
 def numbered_session(name: str, sensors: int = 6, rate_hz: float = RATE_HZ) -> Session:
     """Standing, five seconds of it at 200 Hz, that a replay plays over and over."""
-    sites = list(Site)[:sensors]
+    sites = LEG_SITES[:sensors]
     imu = {site: numbered(f"{name}-{site}", rate_hz=rate_hz) for site in sites}
     standing = Recording("standing", RecordingKind.STANDING, "standing", imu)
     known = {site: SensorInfo(serial=imu[site].sensor, rate_hz=rate_hz) for site in sites}

@@ -39,7 +39,7 @@ from app.wizard.sensors.step import SensorsStep
 from app.wizard.visit import Visit
 from app.wizard.wizard import Wizard
 from app.workers.library_controller import LibraryController
-from core.body import Joint, Site
+from core.body import LEG_JOINTS, LEG_SITES, Joint, Site
 from core.results import Analysis, RecordingAnalysis
 from core.samples import FloatArray, ImuBlock, IntArray, RecordingKind
 from devices.emulators.csv_lines import COLUMNS as EMULATED_COLUMNS
@@ -48,7 +48,7 @@ from devices.emulators.transports import Emulation, PseudoTerminal
 from devices.host_clock import host_time_ns
 from devices.ports import MORE_PORTS
 
-SITES = len(Site)
+SITES = len(LEG_SITES)
 PATIENCE_S = 90.0
 # what a number is rounded to on its way: rate in rad/s, force in m/s2
 STEPS = {
@@ -57,6 +57,7 @@ STEPS = {
     "csv": (np.deg2rad(1e-3), 9.80665e-4),
     "xsens-mti": (1e-5, 1e-5),
     "shimmer3": (np.deg2rad(1 / 16.38), 1 / 417),
+    "movella-dot": (1e-9, 1e-9),  # as it is sent, in single precision
 }
 LOOKED_AT = 30  # samples
 DELAYS_S = np.arange(-0.005, 0.03, 0.0005).tolist()
@@ -110,7 +111,7 @@ def play(kind: str, rate_hz: int, folder: Path) -> None:
     for emulation in emulations:
         emulation.close()
     when_ns = np.arange(patient.clips[0].start_ns, host_time_ns(), 1e9 / FINE_HZ)
-    told = {f"truth {joint}": np.array([patient.angle_rad(joint, at_ns) for at_ns in when_ns]) for joint in Joint}
+    told = {f"truth {joint}": np.array([patient.angle_rad(joint, at_ns) for at_ns in when_ns]) for joint in LEG_JOINTS}
     told |= {f"sent {one.site}": np.array(one.sent) for one in sensors}
     told |= {f"sent_s {one.site}": np.array(one.sent_ns) / 1e9 for one in sensors}
     np.savez(folder / "measured.npz", allow_pickle=False, when_s=when_ns / 1e9, **told)
@@ -223,7 +224,7 @@ class WindowSession:
         assert acquisition is not None
         for reader in acquisition._readers:
             place = reader.source._channel.place  # type: ignore[attr-defined]  # every driver here reads a port
-            site = next(site for site in Site if place.endswith(f"-{site}"))
+            site = next(site for site in LEG_SITES if place.endswith(f"-{site}"))
             self.visit.sensors.assign(reader.source.info.sensors[0], site)
 
     def close(self) -> None:
@@ -243,38 +244,44 @@ def run(application: QApplication, kind: str, rate_hz: int, walks: int, shots: P
         os.environ[MORE_PORTS] = os.pathsep.join(played.places)
         session = WindowSession(application, folder, shots)
         stack.callback(session.close)
-        visit, wizard = session.visit, session.wizard
-        session.to_sensors("P-8", kind)
-        session.place()
-        session.linger(2.0)
-        look(session, shots, f"{kind}-sensors")
-        wizard.press_primary()
-        session.wait(lambda: wizard.step_number == 2, "standing step")
+        analysis = lead(session, kind, played.ask, walks)
+        return outcome_of(kind, session.visit, analysis, played.end(), folder / "library")
+
+
+def lead(session: WindowSession, kind: str, ask: Callable[[RecordingKind], float], walks: int) -> Analysis:
+    """Lead a session from its sensors to its results; `ask` lets the patient move, and says for how long."""
+    visit, wizard, shots = session.visit, session.wizard, session.shots
+    session.to_sensors("P-8", kind)
+    session.place()
+    session.linger(2.0)
+    look(session, shots, f"{kind}-sensors")
+    wizard.press_primary()
+    session.wait(lambda: wizard.step_number == 2, "standing step")
+    session.press(Qt.Key.Key_Space)
+    session.wait(lambda: visit.recordings.standing is not None and wizard.step_number == 3, "free motion step")
+    session.wait(lambda: visit.recordings.is_recording, "free motion")
+    while wizard.step_number == 3:
+        ends_s = time.monotonic() + ask(RecordingKind.FREE_MOTION)
+        session.wait(lambda: wizard.step_number != 3 or time.monotonic() > ends_s - 0.5, "walking step")  # noqa: B023  # it waits at once
+    session.wait(lambda: time.monotonic() > ends_s, "standing still")
+    for number in range(walks):
+        session.press(Qt.Key.Key_1)
         session.press(Qt.Key.Key_Space)
-        session.wait(lambda: visit.recordings.standing is not None and wizard.step_number == 3, "free motion step")
-        session.wait(lambda: visit.recordings.is_recording, "free motion")
-        while wizard.step_number == 3:
-            ends_s = time.monotonic() + played.ask(RecordingKind.FREE_MOTION)
-            session.wait(lambda: wizard.step_number != 3 or time.monotonic() > ends_s - 0.5, "walking step")  # noqa: B023  # it waits at once
-        session.wait(lambda: time.monotonic() > ends_s, "standing still")
-        for number in range(walks):
-            session.press(Qt.Key.Key_1)
-            session.press(Qt.Key.Key_Space)
-            session.wait(lambda: visit.recordings.is_recording and visit.recordings.has_begun, "walk")
-            left_s = played.ask(RecordingKind.WALKING)
-            session.linger(left_s + 0.3)
-            look(session, shots, f"{kind}-walk-{number + 1}")
-            session.press(Qt.Key.Key_Space)
-            session.wait(lambda number=number: len(visit.recordings.walks) == number + 1, "walk's end")  # type: ignore[misc]  # the default binds the loop's value
-            session.press(Qt.Key.Key_K)
-            session.linger(0.5)
-        session.press(Qt.Key.Key_Return)
-        session.wait(lambda: wizard.step_number == 5, "results")
-        session.wait(lambda: has_evaluated(visit, walks), "results' figures")
-        look(session, shots, f"{kind}-results")
-        analysis = visit.evaluation.analysis
-        assert analysis is not None
-        return outcome_of(kind, visit, analysis, played.end(), folder / "library")
+        session.wait(lambda: visit.recordings.is_recording and visit.recordings.has_begun, "walk")
+        left_s = ask(RecordingKind.WALKING)
+        session.linger(left_s + 0.3)
+        look(session, shots, f"{kind}-walk-{number + 1}")
+        session.press(Qt.Key.Key_Space)
+        session.wait(lambda number=number: len(visit.recordings.walks) == number + 1, "walk's end")  # type: ignore[misc]  # the default binds the loop's value
+        session.press(Qt.Key.Key_K)
+        session.linger(0.5)
+    session.press(Qt.Key.Key_Return)
+    session.wait(lambda: wizard.step_number == 5, "results")
+    session.wait(lambda: has_evaluated(visit, walks), "results' figures")
+    look(session, shots, f"{kind}-results")
+    analysis = visit.evaluation.analysis
+    assert analysis is not None
+    return analysis
 
 
 def has_evaluated(visit: Visit, walks: int) -> bool:
@@ -310,7 +317,7 @@ def true_zero(visit: Visit, told: Mapping[str, FloatArray], library: Path) -> di
     (site, *_) = Site
     first_s, last_s = opened_s(recording, library) + recording.read_back.imu[site].time_s[[0, -1]]
     is_then = (told["when_s"] >= first_s) & (told["when_s"] <= last_s)
-    return {joint: float(told[f"truth {joint}"][is_then].mean()) for joint in Joint}
+    return {joint: float(told[f"truth {joint}"][is_then].mean()) for joint in LEG_JOINTS}
 
 
 def opened_s(recording: SessionRecording, library: Path) -> float:
@@ -369,7 +376,7 @@ def errors_deg(
 ) -> dict[Joint, float]:
     """RMS error of each joint, its angles having been measured at `at_s` (n,) by the host's clock."""
     errors = {}
-    for joint in Joint:
+    for joint in LEG_JOINTS:
         true_rad = np.interp(at_s, told["when_s"], told[f"truth {joint}"]) - zero[joint]
         error = found.joints[joint].angle_rad - true_rad
         errors[joint] = float(np.degrees(np.sqrt(np.nanmean(error**2))))

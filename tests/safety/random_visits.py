@@ -205,9 +205,9 @@ class SensibleUser(Hands):
 
     def _place_by_digits(self, page: Any) -> None:
         """Each sensor's place by its figure; once in a while a wrong one, or one less."""
-        from core.body import Site
+        from core.body import LEG_SITES
 
-        places = {str(site): number for number, site in enumerate(Site, 1)}
+        places = {str(site): number for number, site in enumerate(LEG_SITES, 1)}
         for name, row in tuple(page.list.rows.items()):
             right = next((number for site, number in places.items() if site in name), 1)
             number = right if self._chance.random() < 0.97 else self._chance.randrange(1, 7)

@@ -35,7 +35,7 @@ from app.reports.patient_report.report_file import write_visits
 from app.reports.patient_report.request import AnalysedVisit, ReportRequest, default_walks
 from app.reports.result_folder import write_results
 from core.analysis import analyse
-from core.body import Joint, Side
+from core.body import LEG_JOINTS, Joint, Side
 from core.results import Analysis, ZeroKind
 from core.samples import RecordingKind, Session
 from devices.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
@@ -76,12 +76,12 @@ def sessions() -> Iterator[tuple[str, ReportRequest]]:
 
     yield "demonstration", of(base, analysis)
     yield "letter", of(base, analysis, paper="letter")
-    yield "no zero", of(base, recalibrated(analysis, tuple(Joint), zero=ZeroKind.NONE))
-    yield "axis with care", of(base, recalibrated(analysis, tuple(Joint), axis_sd_rad=math.radians(8.0)))
+    yield "no zero", of(base, recalibrated(analysis, LEG_JOINTS, zero=ZeroKind.NONE))
+    yield "axis with care", of(base, recalibrated(analysis, LEG_JOINTS, axis_sd_rad=math.radians(8.0)))
     yield "ankle withheld", of(base, recalibrated(analysis, [Joint.LEFT_ANKLE], axis_sd_rad=math.radians(11.0)))
     yield "knee withheld", of(base, recalibrated(analysis, [Joint.RIGHT_KNEE], is_same_joint=False, sign_margin=1.05))
     yield "sign unsure", of(base, recalibrated(analysis, [Joint.LEFT_KNEE], is_sign_certain=False))
-    yield "clocks unknown", of(base, recalibrated(analysis, tuple(Joint), lag_sd_s=None, is_clock_shared=False))
+    yield "clocks unknown", of(base, recalibrated(analysis, LEG_JOINTS, lag_sd_s=None, is_clock_shared=False))
     yield "two strides", of(base, with_few_strides(analysis, left=2, right=2))
     yield "five strides", of(base, with_few_strides(analysis, left=5, right=5))
     one_leg = _only(base, lambda site: site.side is Side.LEFT)

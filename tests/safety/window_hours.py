@@ -22,7 +22,7 @@ from PySide6.QtWidgets import QApplication
 
 from app.acquisition.acquisition import Acquisition
 from app.main_window import MainWindow
-from core.body import Site
+from core.body import LEG_SITES
 from core.samples import ImuBlock, RecordingKind
 from devices.replay import DEMONSTRATION_SESSION, ReplaySource
 from devices.walker import simulate
@@ -54,7 +54,7 @@ def lead(application: QApplication, window: MainWindow) -> "tuple[Wizard, Visit]
     wait(application, lambda: visit.sensors.acquisition is not None)
     linger(application, 4.0)
     assert visit.sensors.acquisition is not None
-    visit.sensors.assign_all(dict(zip(visit.sensors.acquisition.sensors, Site, strict=True)))
+    visit.sensors.assign_all(dict(zip(visit.sensors.acquisition.sensors, LEG_SITES, strict=True)))
     wizard.go_to(2)
     linger(application, 0.5)
     wizard.press_primary()

@@ -18,7 +18,7 @@ from PySide6.QtWidgets import QApplication
 
 from app.acquisition.acquisition import Acquisition
 from app.main_window import MainWindow
-from core.body import Site
+from core.body import LEG_SITES
 from devices.replay import ReplaySource
 from devices.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
 from tests.safety.window_material import grown, held, linger, opened_window, wait
@@ -44,7 +44,7 @@ def make_visit(application: QApplication, window: MainWindow) -> None:
     visit.sensors.search(visit.choices[0])
     wait(application, lambda: visit.sensors.acquisition is not None)
     assert visit.sensors.acquisition is not None
-    visit.sensors.assign_all(dict(zip(visit.sensors.acquisition.sensors, Site, strict=True)))
+    visit.sensors.assign_all(dict(zip(visit.sensors.acquisition.sensors, LEG_SITES, strict=True)))
     linger(application, LISTENS_S)
     for step in (2, 4, 5, 6):
         wizard.go_to(step)

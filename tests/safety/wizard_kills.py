@@ -31,7 +31,7 @@ from app.wizard.report.step import ReportStep
 from app.wizard.results.step import ResultsStep
 from app.wizard.sensors import sources
 from app.wizard.worn_sensors import SourceChoice
-from core.body import Joint, Side, Site
+from core.body import LEG_SITES, Joint, Side
 from core.samples import RecordingKind
 from devices.replay import ReplaySource
 from devices.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
@@ -72,10 +72,10 @@ class Guide:
         self.wizard.go_to(1)
         self._wait(lambda: self.visit.session is not None)
         self.visit.sensors.search(self.visit.choices[0])
-        self._wait(lambda: len(self.visit.sensors.status) == len(Site))
+        self._wait(lambda: len(self.visit.sensors.status) == len(LEG_SITES))
         assert self.visit.sensors.acquisition is not None
         self.acquisition = self.visit.sensors.acquisition
-        self.visit.sensors.assign_all(dict(zip(self.acquisition.sensors, Site, strict=True)))
+        self.visit.sensors.assign_all(dict(zip(self.acquisition.sensors, LEG_SITES, strict=True)))
         self.wizard.go_to(2)
         self._wait(lambda: self.visit.session is not None and bool(self.visit.session.placements))
         self._record(RecordingKind.STANDING, 6.0)

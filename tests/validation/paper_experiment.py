@@ -13,7 +13,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from core.analysis import analyse
-from core.body import Joint, Segment, Side, Site
+from core.body import LEG_JOINTS, LEG_SITES, Joint, Segment, Side, Site
 from core.samples import FloatArray, Session
 from devices.files.references.reading import read_reference
 from devices.walker import (
@@ -52,16 +52,16 @@ def experiment(seed: int, folder: Path, tissue: Tissue = Tissue.REAL, walks: int
     """Give the session and the optical system's file, which is written into `folder`."""
     wanted = settings(seed, tissue, walks)
     simulated = simulate(wanted)
-    clusters = {site: draw_ride(np.random.default_rng([seed, ON_SKIN, list(Site).index(site)])) for site in Site}
+    clusters = {site: draw_ride(np.random.default_rng([seed, ON_SKIN, list(Site).index(site)])) for site in LEG_SITES}
     rows = []
     for number, moved in enumerate(simulated.moved):
         if moved.name.startswith("walk"):
             at_s, angles = _seen(wanted, moved, number, clusters)
             shown_s = at_s * (1.0 + FASTER) + LATER_S * number
-            table = np.column_stack([shown_s, *(np.rad2deg(angles[joint]) for joint in Joint)])
+            table = np.column_stack([shown_s, *(np.rad2deg(angles[joint]) for joint in LEG_JOINTS)])
             rows += [",".join([moved.name, *(f"{value:.6f}" for value in row)]) for row in table]
     path = folder / "optics.csv"
-    path.write_text("\n".join([f"recording,time_s,{','.join(Joint)}", *rows, ""]), encoding="utf-8")
+    path.write_text("\n".join([f"recording,time_s,{','.join(LEG_JOINTS)}", *rows, ""]), encoding="utf-8")
     return simulated.session, path
 
 
@@ -94,7 +94,7 @@ def _seen(
     inside = (fine_s >= 0.0) & (fine_s <= fine_s[-1] - 0.3)
     at_s = np.arange(fine_s[inside][0], fine_s[inside][-1], 1.0 / OPTICS_HZ)
     angles: dict[Joint, FloatArray] = {}
-    for joint in Joint:
+    for joint in LEG_JOINTS:
         leg = make_leg(wanted, joint.side)
         poses = [_cluster(wanted, moved, number, site, clusters) for site in (joint.proximal, joint.distal)]
         relative = Rotation.from_matrix(np.swapaxes(poses[0], 1, 2) @ poses[1])
@@ -121,7 +121,7 @@ def _cluster(
     chance = strapped if is_rigid else np.random.default_rng([wanted.seed, OF_MARKERS, index, number])
     ride = own if is_rigid else clusters[site]
     at_joint = Mounting(np.eye(3), np.zeros(3))
-    rotation, _ = sensor_poses(moved.legs[site.side], site, at_joint, tissue, ride, chance)
+    rotation, _ = sensor_poses(moved.legs[site.leg_side], site, at_joint, tissue, ride, chance)
     return rotation
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from core.body import Joint
+from core.body import LEG_JOINTS, Joint
 from devices.files.references.reading import read_reference
 from devices.files.session_folder import write_session
 from devices.walker import Tissue, simulate
@@ -46,7 +46,7 @@ def test_the_papers_experiment_has_the_pattern_of_table_1(tmp_path: Path) -> Non
     session, optics = experiment(1, tmp_path, walks=2)
     write_session(session, tmp_path / "session")
     found = agreed(tmp_path / "session", [optics], tmp_path / "out")
-    m_deg = {joint: row_of(found, "over walks", joint)["m_rmse_deg"] for joint in Joint}
+    m_deg = {joint: row_of(found, "over walks", joint)["m_rmse_deg"] for joint in LEG_JOINTS}
     assert m_deg[Joint.LEFT_KNEE] < 1.0
     assert m_deg[Joint.LEFT_ANKLE] < 1.0
     assert 2.0 < m_deg[Joint.RIGHT_KNEE] < 5.0

@@ -15,7 +15,7 @@ from app.colours import PAPER
 from app.reports.agreement.printed import side_role
 from app.reports.agreement.study import AgreementStudy, AngleKind, ComparedWalk
 from app.wording import capitalised, tr
-from core.body import Joint
+from core.body import LEG_JOINTS, Joint
 from core.gait.phases import PHASES, Phase
 from core.samples import BoolArray, FloatArray, IntArray, Patient
 
@@ -58,7 +58,7 @@ def shown_walk(study: AgreementStudy, *, is_knee: bool) -> ComparedWalk | None:
 
 
 def _joints(walk: ComparedWalk, is_knee: bool) -> list[Joint]:
-    return [joint for joint in Joint if joint.is_knee == is_knee and (joint, AngleKind.RESULT) in walk.figures]
+    return [joint for joint in LEG_JOINTS if joint.is_knee == is_knee and (joint, AngleKind.RESULT) in walk.figures]
 
 
 def _figure(walk: ComparedWalk, patient: Patient, *, is_knee: bool, is_simulated: bool) -> Picture:

@@ -16,7 +16,7 @@ from core.agreement.clock import MIN_OVERLAP_S, Alignment, FoundOffset, Misfit, 
 from core.agreement.curves import ComparedTrial, TimedAngle, angle_at
 from core.agreement.events import EventAgreement, EventKey, Events, compare_events, compare_lengths, event_offset
 from core.agreement.figures import Agreement, AgreementOverWalks, agreement_of, over_walks
-from core.body import Joint, Side
+from core.body import LEG_JOINTS, Joint, Side
 from core.results import Analysis, JointAngle, RecordingAnalysis, ZeroKind
 from core.samples import FloatArray, IntArray, Recording, RecordingKind
 from devices.files.references.trial import EVENTS, ReferenceFile, ReferenceTrial
@@ -78,7 +78,9 @@ class AgreementStudy:
 
     @property
     def joints(self) -> tuple[Joint, ...]:
-        return tuple(joint for joint in Joint if any((joint, AngleKind.RESULT) in walk.figures for walk in self.walks))
+        return tuple(
+            joint for joint in LEG_JOINTS if any((joint, AngleKind.RESULT) in walk.figures for walk in self.walks)
+        )
 
     @property
     def with_angles(self) -> tuple[ComparedWalk, ...]:

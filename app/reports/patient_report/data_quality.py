@@ -8,7 +8,7 @@ from app.reports.patient_report.facts import Facts
 from app.reports.patient_report.quality import Cause
 from app.reports.patient_report.request import AnalysedVisit
 from app.wording import capitalised, joined, later, name_of, place, sentence, tr
-from core.body import Joint, Side
+from core.body import LEG_JOINTS, Joint, Side
 from core.findings import Finding, Severity
 from core.quality import MIN_LOSS_PERCENT
 from core.verdicts.model import Verdict, worst
@@ -138,7 +138,7 @@ def _noticed(visit: AnalysedVisit, recording: str, gates: set[str]) -> list[Find
 
 
 def _in_words(facts: Facts) -> tuple[str, str]:
-    joints = {joint: facts.verdicts.joint(joint).shape.verdict for joint in Joint if facts.is_measured(joint)}
+    joints = {joint: facts.verdicts.joint(joint).shape.verdict for joint in LEG_JOINTS if facts.is_measured(joint)}
     if not joints:
         return tr("No joint was measured in this walk."), ""
     out = [name_of(joint) for joint, verdict in joints.items() if verdict is Verdict.WITHHELD]

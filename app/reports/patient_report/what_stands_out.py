@@ -13,7 +13,7 @@ from app.reports.patient_report.panels import peak_name
 from app.reports.patient_report.peaks_table import HEIGHTS
 from app.reports.patient_report.plain_text import CONDITION_LENGTH, typed
 from app.wording import capitalised, later, name_of, tr
-from core.body import Joint, Side
+from core.body import LEG_JOINTS, Joint, Side
 from core.results import ZeroKind
 from core.verdicts.measurement_error import Z95, ComparisonKind, Difference, sigma_of
 from core.verdicts.model import Verdict
@@ -128,7 +128,7 @@ def nothing_found(facts: Facts, comparison: Comparison | None) -> list[str]:
         said.append(
             tr("No difference is so much larger than its error that it is told here; the tables mark what exceeds it.")
         )
-    elif judged and (has_angles or not any(map(facts.is_measured, Joint))):
+    elif judged and (has_angles or not any(map(facts.is_measured, LEG_JOINTS))):
         said.append(tr("No difference is larger than its error."))
     elif judged:
         said.append(tr("No angle can be compared. No difference of times or steps is larger than its error."))
@@ -233,7 +233,9 @@ def _leg_beside_leg(facts: Facts, column: str, found: Difference) -> str:
             raise ValueError(f"{column} has no sentence between the legs")
     joint = joint_of_column(column, first)
     return pattern.format(
-        joint=f"{role(facts, first)} {tr('knee') if column.startswith('knee') else tr('ankle')}" if joint else "",
+        joint=tr("{side} {joint}").format(side=role(facts, first), joint=tr("knee") if joint.is_knee else tr("ankle"))
+        if joint
+        else "",
         first=role(facts, first),
         second=role(facts, second),
         size=fixed(abs(found.difference), decimals) + unit,

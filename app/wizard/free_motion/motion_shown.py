@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 from app.widgets.body_figure import SensorMark
 from app.widgets.gauge import GaugeFace, GaugeState, gauge_face
 from app.wizard.free_motion.hints import absent_note, wanted_of
-from core.body import Joint, Site
+from core.body import LEG_JOINTS, Joint, Site
 from core.live.free_motion import FreeMotionState
 
 if TYPE_CHECKING:
@@ -19,7 +19,7 @@ def gauge_faces(visit: "Visit", motion: FreeMotionState, now: Joint | None) -> d
     """Give each joint's gauge; `now` is the one whose motion is asked for."""
     worn, prosthetic = visit.sensors.sensor_at, visit.prosthetic_sides
     faces = {}
-    for joint in Joint:
+    for joint in LEG_JOINTS:
         note = absent_note(joint, worn, visit.without_ankle) if worn else ""
         if note:
             faces[joint] = GaugeFace(GaugeState.ABSENT, note=note)

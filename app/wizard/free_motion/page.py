@@ -15,7 +15,7 @@ from app.widgets.gauge import Gauge, GaugeFace
 from app.widgets.hint import Hint, HintBand
 from app.widgets.notice import Notice
 from app.widgets.themed import Themed
-from core.body import Joint, Site
+from core.body import LEG_JOINTS, Joint, Site
 
 USUAL_S = 10.0
 FACING = (Joint.RIGHT_KNEE, Joint.LEFT_KNEE, Joint.RIGHT_ANKLE, Joint.LEFT_ANKLE)  # the patient faces you
@@ -50,7 +50,7 @@ class FreeMotionPage(Themed):
         self._is_compact = False
         self.question = _Question(look)
         self.band = HintBand(look)
-        self.gauges = {joint: Gauge(look, joint) for joint in Joint}
+        self.gauges = {joint: Gauge(look, joint) for joint in LEG_JOINTS}
         self.figure = BodyFigure(look, legs_only=True)
         self._grid = QGridLayout()
         self._place(is_from_behind=False)

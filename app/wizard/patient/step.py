@@ -15,7 +15,7 @@ from app.wizard.patient.cards import LastVisit
 from app.wizard.patient.page import PatientDraft, PatientPage
 from app.wizard.step import Step
 from app.wording import name_of, tr
-from core.body import Joint, Side
+from core.body import LEG_JOINTS, Side
 from core.samples import Patient, RecordingKind, Session
 
 if TYPE_CHECKING:
@@ -248,7 +248,7 @@ def _last_visit(session: "StoredSession") -> LastVisit:
 
 def _zero_in_words(told: Session) -> str:
     """Give the goniometer's values while standing: "left knee 15°, others 0°"."""
-    values = {joint: round(float(np.rad2deg(told.zero_rad.get(joint, 0.0)))) for joint in Joint}
+    values = {joint: round(float(np.rad2deg(told.zero_rad.get(joint, 0.0)))) for joint in LEG_JOINTS}
     bent = [
         tr("{joint} {angle}°").format(joint=name_of(joint), angle=str(angle).replace("-", "\N{MINUS SIGN}"))
         for joint, angle in values.items()
@@ -256,4 +256,4 @@ def _zero_in_words(told: Session) -> str:
     ]
     if not bent:
         return tr("all 0°")
-    return ", ".join(bent if len(bent) == len(Joint) else [*bent, tr("others 0°")])
+    return ", ".join(bent if len(bent) == len(LEG_JOINTS) else [*bent, tr("others 0°")])

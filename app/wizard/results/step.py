@@ -13,6 +13,7 @@ from app.icons import Icon
 from app.pages.correct_page import CorrectPage, JointLine, WalkLine
 from app.pages.sentence_page import SentencePage
 from app.recording_names import shown_names, where_shown
+from app.reports.agreed import agreed_with
 from app.reports.patient_report.dates import date_of
 from app.reports.visits import WalkedVisit, conditions_in_words, parts_of_visits, visits_by_condition
 from app.theme import ThemeNotifier
@@ -26,7 +27,7 @@ from app.wizard.results.stride_choice import StrideChoice
 from app.wizard.step import Step
 from app.wording import capitalised, name_of, place, tr
 from app.workers.behind_results import BehindResults
-from core.body import Joint
+from core.body import LEG_JOINTS, Joint
 from core.samples import RecordingKind
 
 if TYPE_CHECKING:
@@ -259,7 +260,7 @@ class ResultsStep(Step):
         page.show_walks(walks)
         found = visit.evaluation.calibration
         joints = []
-        for joint in (joint for joint in Joint if joint in found):
+        for joint in (joint for joint in LEG_JOINTS if joint in found):
             turned = visit.details.turned_sign.get(joint)
             note = tr("turned by hand") if turned == -1 else tr("confirmed by hand") if turned == 1 else ""
             if not note:
@@ -343,7 +344,7 @@ class ResultsStep(Step):
             return
         visits = [*found, (session, self._shown)]
         named = [
-            WalkedVisit(told.started[:10], analysis, told.recordings, date_of(told.started))
+            WalkedVisit(told.started[:10], analysis, told.recordings, date_of(told.started), agreed_with(told))
             for told, analysis in visits
         ]
         self.page.results().show_visits(visits_by_condition(named), conditions_in_words(named), parts_of_visits(named))

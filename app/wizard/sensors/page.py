@@ -31,7 +31,7 @@ from app.wizard.sensors.sensor_sentences import Said, said_of_dragged, said_of_s
 from app.wizard.sensors.session_chooser import SessionChooser
 from app.wizard.sensors.source_pages import NoSource, Searching, SourceOption
 from app.wording import tr
-from core.body import Site
+from core.body import LEG_SITES, Site
 from core.samples import FloatArray
 
 FLASH_MS = 700
@@ -122,7 +122,7 @@ class SensorsPage(Themed):
         worn = {sensor.site for sensor in self._sensors}
         if self._wanted_next is not None and self._wanted_next not in worn:
             return self._wanted_next
-        return next((site for site in Site if site not in worn), None)
+        return next((site for site in LEG_SITES if site not in worn), None)
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -254,9 +254,9 @@ class SensorsPage(Themed):
 
     def place_selected(self, number: int) -> bool:
         """Wear the selected sensor at place 1 to 6; returns whether there is such a place and a sensor."""
-        if not self.list.selection or not 1 <= number <= len(Site) or self._in_sight is not self._lists:
+        if not self.list.selection or not 1 <= number <= len(LEG_SITES) or self._in_sight is not self._lists:
             return False
-        self._assign(self.list.selection, list(Site)[number - 1])
+        self._assign(self.list.selection, LEG_SITES[number - 1])
         return True
 
     def identify_selected(self) -> bool:
@@ -278,7 +278,7 @@ class SensorsPage(Themed):
 
     @property
     def _tiles(self) -> list[QWidget]:
-        return [self.places.tiles[site] for site in Site]
+        return [self.places.tiles[site] for site in LEG_SITES]
 
     def _build(self) -> None:
         words = QVBoxLayout()
@@ -362,7 +362,7 @@ class SensorsPage(Themed):
     def _refresh(self) -> None:
         """Show the places and the one sentence that matters most."""
         worn = {sensor.site: sensor for sensor in self._sensors if sensor.site is not None}
-        self.places.show_places({site: self._place(site, worn.get(site)) for site in Site})
+        self.places.show_places({site: self._place(site, worn.get(site)) for site in LEG_SITES})
         self.notice.tell(*self._sentence(worn))
         self.nothing.tell(*self._told)
 

@@ -14,7 +14,7 @@ from app.widgets.themed import Themed
 from app.wizard.sensors.sensor_places import segment_name
 from app.wizard.sensors.sensor_row import CHEVRON, CHIP, ROW, SensorRow, SensorRowView
 from app.wording import tr
-from core.body import Site
+from core.body import LEG_SITES
 from core.samples import FloatArray
 
 HEADING = 26
@@ -132,7 +132,7 @@ class SensorList(Themed):
                 widest(theme.font(12), [tr("Battery")]),
             ),
             "worn": px(CHIP + 6 + CHEVRON + 6)
-            + max(widest(text, [tr("nowhere"), *(segment_name(site) for site in Site)]), px(50)),
+            + max(widest(text, [tr("nowhere"), *(segment_name(site) for site in LEG_SITES)]), px(50)),
             "identify": max(px(IDENTIFY), widest(theme.font(12), [tr("Identify")])),
         }
         if self._is_narrow:

@@ -30,7 +30,7 @@ from app.wizard.sensors.sensor_drag import DraggedButton
 from app.wizard.sensors.sensor_places import number_of, segment_name
 from app.wizard.sensors.sensor_trace import Trace
 from app.wording import name_of, tr
-from core.body import Site
+from core.body import LEG_SITES, Site
 
 ROW, ROW_AT_LEAST = 58, 46  # six of the latter fit into a window 720 high
 CHIP = 20
@@ -314,7 +314,7 @@ class _WornOn(PaintedButton):
         self.paint_veil(painter, QRectF(self.rect()), CHIP_RADIUS)
         if self._site is not None:
             chip = px(CHIP)
-            paint_chip(painter, QRectF(0, (self.height() - chip) / 2, chip, chip), self._site.side, theme)
+            paint_chip(painter, QRectF(0, (self.height() - chip) / 2, chip, chip), self._site.leg_side, theme)
         (word,) = self.painted_texts()
         word.paint(painter, c)
         side, end = px(CHEVRON), word.needed.right() + px(6)
@@ -374,7 +374,7 @@ class _PlaceMenu(QMenu):
         self.setAccessibleName(tr("Worn on"))
         self.setFont(look.theme.font(16, SEMIBOLD))  # what the width is reckoned from
         group = QActionGroup(self)
-        for one in (*Site, None):
+        for one in (*LEG_SITES, None):
             words = tr("Nowhere") if one is None else f"&{number_of(one)}  {name_of(one)}"
             action = QAction(words, self)
             action.setCheckable(True)

@@ -5,7 +5,7 @@ from collections.abc import Collection, Mapping, Sequence
 from app.icons import Icon
 from app.wizard.sensors.sensor_row import SensorRow
 from app.wording import name_of, tr
-from core.body import Segment, Side, Site
+from core.body import LEG_SITES, Segment, Side, Site
 
 NEARLY_EMPTY = 0.05  # of a battery: minutes
 
@@ -66,7 +66,7 @@ def said_of_sensors(
     if is_left_to_motion and not worn:
         what = tr("The free motion tells which sensor is where.")
         return Icon.INFO, what, tr("Strap one on each thigh, shank and foot, in any order."), False
-    if len(worn) == len(Site):
+    if len(worn) == len(LEG_SITES):
         return Icon.CHECK, tr("All six are worn and heard."), "", False
     if sensors and len(worn) == len(sensors):
         return Icon.INFO, tr("All sensors have their place."), "", False

@@ -29,7 +29,7 @@ from app.wizard.sensors.sources import SEARCH
 from app.wizard.step import Step
 from app.wizard.worn_sensors import SourceChoice
 from app.wording import name_of, tr, tr_n
-from core.body import Joint, Site
+from core.body import LEG_JOINTS, LEG_SITES, Site
 from core.samples import FloatArray, ImuBlock
 
 if TYPE_CHECKING:
@@ -193,7 +193,7 @@ class SensorsStep(Step):
             return BarState(primary=other, others=(demonstration,), note=reason)
         if (silent := self._silent_site) is not None:
             again = BarAction(tr("Reconnect {site}").format(site=name_of(silent)), tr("Enter"), Icon.REPEAT)
-            lost = tr(" and ").join(name_of(one) for one in Joint if silent in (one.proximal, one.distal))
+            lost = tr(" and ").join(name_of(one) for one in LEG_JOINTS if silent in (one.proximal, one.distal))
             without = BarAction(tr("Go on without {joints}").format(joints=lost), is_wished=False)
             return BarState(primary=again, others=(without,) if sensors.joints else ())
         if sensors.is_left_to_motion:
@@ -201,7 +201,7 @@ class SensorsStep(Step):
         if not sensors.joints:
             note = tr("Two sensors that share a joint are needed: thigh and shank, or shank and foot.")
             return BarState(primary=BarAction(go_on, tr("Enter"), is_enabled=False), note=note)
-        is_whole = len(sensors.site_of) == len(Site)
+        is_whole = len(sensors.site_of) == len(LEG_SITES)
         return BarState(primary=BarAction(go_on, tr("Enter"), is_wished=is_whole), note=sensors.price_of_missing())
 
     def on_primary(self) -> None:

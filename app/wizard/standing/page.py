@@ -19,7 +19,7 @@ from app.widgets.stillness import INSET, STEPS, CountRing, MovementBars, RingFac
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.themed import Themed
 from app.wording import name_of, tr
-from core.body import Joint, Side, Site
+from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site
 from core.calibration.rest import MAX_SPREAD_RAD_S
 from core.live.standing import WANTED_S
 
@@ -221,7 +221,7 @@ class _ZeroCard(Card):
         super().__init__(look, padding=20, spacing=12)
         self._is_compact = False
         self._view = StandStillView()
-        self._worn: frozenset[Joint] = frozenset(Joint)
+        self._worn: frozenset[Joint] = frozenset(LEG_JOINTS)
         self.fields: dict[Joint, NumberField] = {}
         self._column.addWidget(Text(look, tr("Zero angle"), size=20, weight=SEMIBOLD))
         explained = tr("0° if the joint is straight now. Type the goniometer value for a contracture.")
@@ -304,7 +304,7 @@ class _ZeroCard(Card):
         heading.addWidget(Text(self._look, sign, size=12, tone="ink2"), 0, Qt.AlignmentFlag.AlignBottom)
         self._grid.addLayout(heading, row, 0, 1, 2)
         for column, side in enumerate((Side.LEFT, Side.RIGHT)):
-            joint = next(joint for joint in Joint if joint.side is side and joint.is_knee == is_knee)
+            joint = next(joint for joint in LEG_JOINTS if joint.side is side and joint.is_knee == is_knee)
             low, high = range_deg
             one = _ZeroField(self._look, joint, label, low, high)
             one.told.connect(self.edited)
@@ -409,7 +409,7 @@ def way_round(view: StandStillView, is_short: bool = False) -> tuple[Icon | None
 
 
 def _moved(view: StandStillView, is_short: bool) -> str:
-    sides = {Site(sensor).side for sensor in view.moved if sensor in set(Site)}
+    sides = {Site(sensor).leg_side for sensor in view.moved if sensor in set(LEG_SITES)}
     legs = [_leg_moved(side) for side in sides]
     what = tr("Both legs moved.") if len(legs) > 1 else "".join(legs)
     again = tr("The count starts again by itself.") if view.phase is StandPhase.COUNTING else ""
@@ -426,7 +426,7 @@ def _all_still(count: int) -> str:
 
 
 def _names(sensors: Sequence[str]) -> str:
-    names = [name_of(Site(sensor)) if sensor in set(Site) else sensor for sensor in sensors]
+    names = [name_of(Site(sensor)) if sensor in set(LEG_SITES) else sensor for sensor in sensors]
     if len(names) > 2:  # more cannot be read in the time
         return tr("{count} sensors").format(count=len(names))
     return tr("{first} and {last}").format(first=names[0], last=names[1]) if len(names) == 2 else names[0]

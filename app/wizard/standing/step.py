@@ -18,7 +18,7 @@ from app.wizard.standing.estimator import StandingEstimator
 from app.wizard.standing.page import StandPhase, StandStillPage, StandStillView
 from app.wizard.step import Step
 from app.wording import tr
-from core.body import Joint
+from core.body import LEG_JOINTS, Joint
 from core.live.standing import WANTED_S
 from core.samples import RecordingKind
 
@@ -98,7 +98,7 @@ class StandStillStep(Step):
 
     def _show_zero(self) -> None:
         zero = self._shown_zero = dict(self._visit.details.zero_rad)
-        joints = list(Joint) if self._visit.sensors.is_left_to_motion else self._visit.sensors.joints
+        joints = list(LEG_JOINTS) if self._visit.sensors.is_left_to_motion else self._visit.sensors.joints
         self.page.show_zero({joint: math.degrees(zero.get(joint, 0.0)) for joint in joints})
 
     def leave(self) -> None:

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from core.body import Joint, Side
+from core.body import LEG_JOINTS, Joint, Side
 from core.samples import FloatArray
 from devices.files.references.numbers import check_ascending
 from devices.files.references.trial import EVENTS, ReferenceFile, ReferenceTrial
@@ -41,7 +41,7 @@ def read_plain_csv(path: Path) -> ReferenceFile:
         None of them, or a table that is not what it says it is.
     """
     _, names = header_of(path, path.name, comment=COMMENT, delimiters=DELIMITERS)
-    joints = {joint: name for joint in Joint for name in (str(joint), f"{joint}_deg") if name in names}
+    joints = {joint: name for joint in LEG_JOINTS for name in (str(joint), f"{joint}_deg") if name in names}
     if TIME in names and joints:
         return ReferenceFile(FORMAT, SOURCE, _angles(path, joints))
     if {TIME, SIDE, EVENT} <= set(names):

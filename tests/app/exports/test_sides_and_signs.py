@@ -18,7 +18,7 @@ import pytest
 from app.exports.exports import Format, export_from_folder
 from app.reports.result_folder import write_results
 from core.analysis import analyse
-from core.body import Joint, Side
+from core.body import LEG_JOINTS, Joint, Side
 from core.results import Analysis
 from core.samples import FloatArray, Session
 from devices.walker import FreeMotion, RecordingTruth, Standing, Walk, WalkerSettings, simulate
@@ -83,7 +83,7 @@ def check_columns(truth: RecordingTruth, time_s: FloatArray, columns: dict[str, 
     """Every column is the truth of the joint that its name means, and of no other, nor of its mirror image."""
     assert set(named) <= set(columns)
     for name, meant in named.items():
-        for joint in Joint:
+        for joint in LEG_JOINTS:
             for sign in (1.0, -1.0):
                 error_deg = columns[name] - sign * true_deg(truth, joint, time_s)
                 is_meant = joint is meant and sign > 0
@@ -121,7 +121,7 @@ def test_the_c3d_names_each_joint_as_motion_laboratories_do(exported: Path, trut
     assert (frames[1:3] == 0.0).all()  # ab-/adduction and rotation are not measured
     assert point["TYPE_GROUPS"]["value"] == ["ANGLES"]
     status = dict(text.split(": ", 1) for text in read["parameters"]["PROCESSING"]["STATUS"]["value"])
-    assert {joint: text.split(":")[0] for joint, text in status.items()} == dict.fromkeys(map(str, Joint), "read")
+    assert {joint: text.split(":")[0] for joint, text in status.items()} == dict.fromkeys(map(str, LEG_JOINTS), "read")
     assert point["ANGLES"]["value"] == labels
     assert point["ANGLE_UNITS"]["value"] == ["deg"]
     for label, words in zip(labels, point["DESCRIPTIONS"]["value"], strict=True):

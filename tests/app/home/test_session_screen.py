@@ -36,7 +36,7 @@ from app.widgets.table_cells import TextCell
 from app.workers.background import Report, Stopped, Work
 from app.workers.opening import Opened
 from core.analysis import analyse
-from core.body import Joint, Side
+from core.body import LEG_JOINTS, Joint, Side
 from core.findings import Finding, Severity
 from core.results import (
     Analysis,
@@ -100,10 +100,10 @@ def angle(joint: Joint, has_orientation: bool) -> JointAngle:
 
 def analysis(is_simulated: bool = False, has_orientation: bool = True) -> Analysis:
     recordings = tuple(
-        RecordingAnalysis(name, name, kind, TIME_S, {joint: angle(joint, has_orientation) for joint in Joint})
+        RecordingAnalysis(name, name, kind, TIME_S, {joint: angle(joint, has_orientation) for joint in LEG_JOINTS})
         for name, kind in (("free motion", RecordingKind.FREE_MOTION), ("walk 1", RecordingKind.WALKING))
     )
-    calibrated = Calibration(("walk 1",), {joint: calibration(joint) for joint in Joint})
+    calibrated = Calibration(("walk 1",), {joint: calibration(joint) for joint in LEG_JOINTS})
     return Analysis(Method.ROBUST, is_simulated, (calibrated,), recordings, SOME_FINDINGS)
 
 
@@ -180,7 +180,7 @@ def test_a_session_is_shown_with_its_patient_and_its_first_walk(window: SessionS
     assert window.header.code.text() == "P-0147"
     assert window.header.facts.text() == "1968, male · left prosthetic"
     assert results.recordings.currentText() == "walk 1"
-    for joint in Joint:
+    for joint in LEG_JOINTS:
         expected = np.rad2deg(angle(joint, True).angle_rad)
         np.testing.assert_allclose(drawn_deg(results, joint), expected)
 
@@ -303,7 +303,7 @@ def test_arrows_change_the_method(qtbot: QtBot, results: ResultPage) -> None:
 def test_gaps_stay_gaps_with_every_method(results: ResultPage) -> None:
     for method in (RESULT, PUBLISHED, ORIENTATION, BOTH):
         results.methods.choose(method)
-        for joint in Joint:
+        for joint in LEG_JOINTS:
             drawn = drawn_deg(results, joint)
             assert np.isnan(drawn[GAP]).all()
             assert np.isfinite(drawn[: GAP.start]).all()

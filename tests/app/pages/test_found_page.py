@@ -25,7 +25,7 @@ from app.widgets.text import Text
 from app.workers.background import Background
 from app.workers.diagnostics_controller import DiagnosticsController
 from core.analysis import analyse
-from core.body import Joint, Site
+from core.body import LEG_JOINTS, Joint, Site
 from core.diagnostics import JointDiagnostics, diagnostics_of
 from core.findings import Finding, Severity
 from core.results import Analysis
@@ -176,7 +176,7 @@ def cut_in(page: FoundPage, look: ThemeNotifier, found: JointDiagnostics, room: 
     width, height, scale = ROOMS[room]
     look.set_scale(scale)
     look.set_dark(True)
-    page.show_joints(list(Joint), KNEE)
+    page.show_joints(list(LEG_JOINTS), KNEE)
     page.set_room(width / scale, height / scale)
     page.show_found(found, [Finding("strap_slipped", Severity.WARNING, str(KNEE))], True)
     page.resize(width, height)

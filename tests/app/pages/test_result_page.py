@@ -19,7 +19,7 @@ from app.theme import ThemeNotifier, load_fonts
 from app.widgets.table import CellTable
 from app.widgets.table_cells import TextCell
 from core.analysis import analyse
-from core.body import Joint, Side
+from core.body import LEG_JOINTS, Joint, Side
 from core.norms import AgeAndHeight, NoBand
 from core.results import Analysis, SideGait, ZeroKind
 from core.samples import Session
@@ -367,7 +367,7 @@ def test_no_view_scrolls_in_the_windows_of_laptops(
     assert height() <= room[1]
 
 
-@pytest.mark.parametrize("joints", [tuple(Joint), (Joint.RIGHT_KNEE,)])
+@pytest.mark.parametrize("joints", [LEG_JOINTS, (Joint.RIGHT_KNEE,)])
 def test_without_a_zero_marks_stand_on_the_curves_as_they_are_drawn(
     page: ResultPage, analysis: Analysis, joints: tuple[Joint, ...]
 ) -> None:
@@ -382,9 +382,9 @@ def test_without_a_zero_marks_stand_on_the_curves_as_they_are_drawn(
 
 
 def test_where_heights_alone_are_withheld_no_joint_is_called_so(page: ResultPage, analysis: Analysis) -> None:
-    show(page, recalibrated(analysis, tuple(Joint), zero=ZeroKind.NONE))
+    show(page, recalibrated(analysis, LEG_JOINTS, zero=ZeroKind.NONE))
     assert page.door.words.startswith("Height of all joints: withheld.")
-    show(page, recalibrated(analysis, tuple(Joint), is_same_joint=False, sign_margin=1.05))
+    show(page, recalibrated(analysis, LEG_JOINTS, is_same_joint=False, sign_margin=1.05))
     assert page.door.words.startswith("All joints: withheld.")
 
 

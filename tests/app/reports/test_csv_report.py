@@ -10,7 +10,7 @@ import pytest
 
 from app.reports import csv_report
 from app.reports.csv_report import write_angles
-from core.body import Joint, Side
+from core.body import LEG_JOINTS, Joint, Side
 from core.results import JointAngle, RecordingAnalysis
 from core.samples import FloatArray, RecordingKind
 from core.verdicts.model import READ, Assessment, JointVerdicts, Verdict, Verdicts
@@ -50,7 +50,7 @@ def random_walk(n: int) -> RecordingAnalysis:
     angle_rad = np.cumsum(rng.normal(scale=0.05, size=n))
     angle_rad[rng.random(n) < 0.1] = np.nan
     angle = JointAngle(angle_rad, np.abs(angle_rad), -angle_rad, angle_rad / 3)
-    return recording(1000 + np.arange(n) / 100, dict.fromkeys(Joint, angle))
+    return recording(1000 + np.arange(n) / 100, dict.fromkeys(LEG_JOINTS, angle))
 
 
 def test_angles_read_as_agreed(tmp_path: Path) -> None:
@@ -93,10 +93,10 @@ def test_from_where_a_strap_slipped_the_rows_of_its_leg_are_withheld(
 ) -> None:
     monkeypatch.setattr(csv_report, "ROWS_PER_BLOCK", 30)
     walk = random_walk(100)
-    said = Verdicts(dict.fromkeys(Joint, JointVerdicts(READ, READ, READ)))
+    said = Verdicts(dict.fromkeys(LEG_JOINTS, JointVerdicts(READ, READ, READ)))
     slipped = replace(walk, verdicts=said, slipped_from_s={Side.RIGHT: float(walk.time_s[40])})
     write_angles(slipped, tmp_path / "angles.csv")
-    for joint in Joint:
+    for joint in LEG_JOINTS:
         good = 40 if joint.side is Side.RIGHT else 100
         assert told(tmp_path / "angles.csv", f"{joint}_status") == ["read"] * good + ["withheld"] * (100 - good)
     never = replace(slipped, slipped_from_s={Side.RIGHT: -np.inf})

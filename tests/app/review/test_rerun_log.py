@@ -25,7 +25,7 @@ from app.review.drawn_legs import draw_legs
 from app.review.may_be_read import document, name_of_view
 from app.review.rerun_log import write_log
 from core.analysis import analyse
-from core.body import Joint, Side, Site
+from core.body import LEG_JOINTS, Joint, Side, Site
 from core.gait.phases import PHASES
 from core.results import Analysis, JointAngle, Method, RecordingAnalysis
 from core.samples import FloatArray, ImuBlock, Patient, Recording, RecordingKind, Session
@@ -281,7 +281,7 @@ def entities(path: Path, timeline: str) -> set[str]:
     return {chunk.entity_path for chunk in RrdReader(path).stream() if timeline in chunk.timeline_names}
 
 
-@pytest.mark.parametrize("joint", Joint)
+@pytest.mark.parametrize("joint", LEG_JOINTS)
 def test_the_phases_lie_in_the_axes_of_each_curve_and_below_it(walk: tuple[Path, Analysis], joint: Joint) -> None:
     path, (recording,) = walk[0] / "session.rrd", walk[1].recordings
     lowest_deg = np.nanmin(np.rad2deg(recording.joints[joint].angle_rad))
@@ -340,7 +340,7 @@ def test_no_lane_where_the_times_or_the_curve_may_not_be_told(
 ) -> None:
     write_log(WALKED, doubtful(walk[1], **said), tmp_path / "session.rrd")
     found = entities(tmp_path / "session.rrd", "walking_1")
-    assert {joint for joint in Joint if f"/angles/{joint}/phases/swing" not in found} == gone
+    assert {joint for joint in LEG_JOINTS if f"/angles/{joint}/phases/swing" not in found} == gone
 
 
 def panel_of(session: Session, analysis: Analysis, path: Path) -> str:
@@ -356,7 +356,7 @@ def test_beside_the_legs_stands_the_answer_with_a_verdict_for_each_joint(walk: t
     facts = Facts(AnalysedVisit(WALKED, analysis), analysis.recordings[0])
     answer = answer_of(facts)
     assert text.startswith(f"### {answer.first}\n\n{answer.then}\n")
-    for joint in Joint:
+    for joint in LEG_JOINTS:
         verdict = verdict_word(verdict_of(facts.verdicts.joint(joint)))
         assert f"- **{joint.replace('_', ' ').capitalize()}: {verdict}.**" in text
     assert "grey." not in text

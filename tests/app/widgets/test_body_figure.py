@@ -8,7 +8,7 @@ from pytestqt.qtbot import QtBot
 from app.theme import ThemeNotifier
 from app.widgets.body_figure import BodyFigure, SensorMark, paint_legs
 from app.widgets.body_shapes import body_shapes, read_path
-from core.body import Joint, Side, Site
+from core.body import LEG_JOINTS, LEG_SITES, Side, Site
 
 
 @pytest.fixture
@@ -21,9 +21,9 @@ def figure(qtbot: QtBot) -> BodyFigure:
 
 def test_the_drawing_names_every_segment_joint_and_sensor() -> None:
     shapes = body_shapes()
-    assert {"body", "head", "pelvis", "left_arm", "right_arm", *Site} == set(shapes.outlines)
-    assert {*Joint, *(f"{site}_sensor" for site in Site), "left_eye", "right_eye"} == set(shapes.points)
-    for site in Site:
+    assert {"body", "head", "pelvis", "left_arm", "right_arm", *LEG_SITES} == set(shapes.outlines)
+    assert {*LEG_JOINTS, *(f"{site}_sensor" for site in LEG_SITES), "left_eye", "right_eye"} == set(shapes.points)
+    for site in LEG_SITES:
         assert shapes.outlines[site].contains(shapes.points[f"{site}_sensor"])
 
 
@@ -36,10 +36,10 @@ def test_a_path_that_cannot_be_read_is_refused() -> None:
 
 def test_the_patients_right_stands_at_the_left_and_changes_over_from_behind(figure: BodyFigure) -> None:
     middle = figure.width() / 2
-    for site in Site:
+    for site in LEG_SITES:
         assert (figure.anchor(site).x() > middle) == (site.side is Side.LEFT)
     figure.set_from_behind(True)
-    for site in Site:
+    for site in LEG_SITES:
         assert (figure.anchor(site).x() < middle) == (site.side is Side.LEFT)
     assert figure.accessibleName() == "Seen from behind"
 
@@ -47,10 +47,10 @@ def test_the_patients_right_stands_at_the_left_and_changes_over_from_behind(figu
 @pytest.mark.parametrize("is_legs_only", [False, True])
 def test_each_place_is_found_where_it_is_drawn(figure: BodyFigure, is_legs_only: bool) -> None:
     figure.set_legs_only(is_legs_only)
-    for site in Site:
+    for site in LEG_SITES:
         assert figure.site_at(figure.anchor(site)) is site
     assert figure.site_at(QPointF(figure.width() / 2, 40)) is None
-    for joint in Joint:
+    for joint in LEG_JOINTS:
         thigh_or_shank, below = figure.anchor(joint.proximal).y(), figure.anchor(joint.distal).y()
         assert thigh_or_shank < figure.joint_anchor(joint).y() < below
 

@@ -14,7 +14,7 @@ from app.widgets.sensor_strip import SensorStrip
 from app.widgets.sensor_tile import SensorTile, TileState, sentence
 from app.widgets.strip_button import StripButton
 from app.widgets.tile_widget import TileWidget
-from core.body import Site
+from core.body import LEG_SITES, Site
 from tests.app.room import settle, words_cut
 
 FOOT = Site.RIGHT_FOOT
@@ -32,7 +32,7 @@ def tile(
 
 
 def fine() -> dict[Site, SensorTile]:
-    return {site: tile(site) for site in Site}
+    return {site: tile(site) for site in LEG_SITES}
 
 
 STATES = [
@@ -111,7 +111,7 @@ def test_only_what_changed_is_painted(look: ThemeNotifier, qtbot: QtBot, monkeyp
     strip.show()
     strip.show_tiles(fine())
     settle()
-    assert set(painted) == set(Site)
+    assert set(painted) == set(LEG_SITES)
     painted.clear()
     changed = {FOOT: tile(silent_s=2.0), Site.LEFT_FOOT: tile(Site.LEFT_FOOT, lost_share=0.00041)}
     strip._show(fine() | changed)
@@ -170,7 +170,7 @@ def test_no_word_is_cut_in_any_state(
     strip.set_compact(is_compact)
     strip.resize(width, 72)
     for shown, _, _ in STATES:
-        strip._show({site: SensorTile(site, *_rest(shown)) for site in Site})
+        strip._show({site: SensorTile(site, *_rest(shown)) for site in LEG_SITES})
         strip._arrange()
         assert words_cut(strip) == []
 

@@ -23,7 +23,7 @@ from app.wizard.visit import Visit
 from app.wizard.wizard import Wizard
 from app.wizard.worn_sensors import SourceChoice
 from app.workers.library_controller import LibraryController
-from core.body import Site
+from core.body import LEG_SITES, Site
 from core.samples import Patient, Session
 from devices.replay import ReplaySource
 from devices.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
@@ -90,7 +90,7 @@ def wizard(qtbot: QtBot, qapp: QApplication, controller: LibraryController, tmp_
 
 @pytest.fixture
 def worn() -> dict[str, Site]:
-    return {f"DEMO-{site}": site for site in Site}
+    return {f"DEMO-{site}": site for site in LEG_SITES}
 
 
 @pytest.fixture

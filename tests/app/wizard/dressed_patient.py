@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 
 from core.analysis import analyse
-from core.body import Joint, Site
+from core.body import LEG_SITES, Joint, Site
 from core.calibration.rest import Rest, rest_of
 from core.live.sensors import LiveSensor
 from core.results import JointCalibration
@@ -43,7 +43,7 @@ def dressed_patient() -> Worn:
         Walk(strides=14, standing_after_s=3.0),
     )
     session = simulate(WalkerSettings(seed=3, tissue=Tissue.SOFT, recordings=recordings)).session
-    site_of = {f"0A{number:02d}": site for number, site in enumerate((*list(Site)[3:], *list(Site)[:3]))}
+    site_of = {f"0A{number:02d}": site for number, site in enumerate((*LEG_SITES[3:], *LEG_SITES[:3]))}
     standing, free_motion, walk = (_by_name(recording, site_of) for recording in session.recordings)
     rests = {name: rest for name, block in standing.items() if (rest := rest_of(block)) is not None}
     assert set(rests) == set(site_of)

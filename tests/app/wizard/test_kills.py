@@ -28,7 +28,7 @@ from app.wizard.visit import Visit
 from app.wizard.walking.step import WalkingStep
 from app.wizard.wizard import REPORT, RESULTS, WALKING, Wizard
 from app.workers.library_controller import LibraryController
-from core.body import Joint, Side, Site
+from core.body import LEG_SITES, Joint, Side
 from tests.app.wizard.conftest import PASSPHRASE
 from tests.safety.wizard_kills import COMMENT, CONDITION, SPEED, Point
 
@@ -130,7 +130,7 @@ def test_amid_a_walk(qtbot: QtBot, start_again: Start, untouched_library: Path, 
     assert walk.stored.state is RecordingState.RECOVERED
     assert place_of(wizard) == WALKING
     assert walk.read_back is not None
-    assert set(walk.read_back.imu) == set(Site)
+    assert set(walk.read_back.imu) == set(LEG_SITES)
     for block in walk.read_back.imu.values():
         assert float(block.time_s[-1] - block.time_s[0]) > told["heard_s"] - LOST_S * SPEED
     assert {name: count for name, count in samples_of(visit).items() if name != "walk 1"} == told["takes"]

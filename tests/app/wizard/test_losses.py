@@ -1,9 +1,9 @@
 """Silent sensors: told after two seconds, with what they cost, and once more when they are back."""
 
 from app.wizard.losses import NOTHING, Losses
-from core.body import Joint, Site
+from core.body import LEG_JOINTS, LEG_SITES, Site
 
-ALL = list(Joint)
+ALL = list(LEG_JOINTS)
 
 
 def test_a_short_silence_is_nobodys_business() -> None:
@@ -61,13 +61,13 @@ def test_two_are_told_together() -> None:
 
 def test_where_none_is_heard_the_receiver_is_told_of_and_their_return_is_told_together() -> None:
     losses = Losses()
-    losses.update(dict.fromkeys(Site, 3.0), 10.0)
+    losses.update(dict.fromkeys(LEG_SITES, 3.0), 10.0)
     then = "Check that the receiver is plugged in and near the patient, and the sensors are switched on."
     assert losses.message(False, ALL, 10.0) == ("No sensor has been heard for 3 s.", then)
     assert losses.message(True, ALL, 10.0)[1] == f"Recording goes on. {then}"
-    losses.update({**dict.fromkeys(Site, 0.02), Site.LEFT_FOOT: 3.5}, 10.5)
-    losses.update(dict.fromkeys(Site, 0.02), 11.0)
+    losses.update({**dict.fromkeys(LEG_SITES, 0.02), Site.LEFT_FOOT: 3.5}, 10.5)
+    losses.update(dict.fromkeys(LEG_SITES, 0.02), 11.0)
     assert losses.message(True, ALL, 11.0)[0] == "All sensors are back after 3.5 s."
-    losses.update({**dict.fromkeys(Site, 0.02), Site.LEFT_FOOT: 2.1}, 20.0)
-    losses.update(dict.fromkeys(Site, 0.02), 20.5)
+    losses.update({**dict.fromkeys(LEG_SITES, 0.02), Site.LEFT_FOOT: 2.1}, 20.0)
+    losses.update(dict.fromkeys(LEG_SITES, 0.02), 20.5)
     assert losses.message(True, ALL, 20.5)[0] == "L foot is back after 2.1 s."

@@ -26,7 +26,7 @@ from app.wizard.walking.step import WATCH_TICKS, WalkingStep
 from app.wizard.wizard import DEAF_S, FREE_MOTION, RESULTS, WALKING, Wizard
 from app.workers.background import Report
 from app.workers.library_controller import LibraryController
-from core.body import Site
+from core.body import LEG_SITES, Site
 from core.samples import Patient, Recording, RecordingKind, Session
 from tests.app.wizard.test_visit import begin, record
 
@@ -96,7 +96,7 @@ def test_a_walk_that_the_library_is_too_busy_for_is_read_back_later(
     looked_at.recordings.refused.connect(lambda *words: told.append(words))
     walk = record(qtbot, looked_at, RecordingKind.WALKING, 2.0)
     assert walk.read_back is not None
-    assert len(walk.read_back.imu) == len(Site)
+    assert len(walk.read_back.imu) == len(LEG_SITES)
     assert not looked_at.recordings.is_recording
     assert len(told) == 1
     assert "safe on the disk" in told[0][1]

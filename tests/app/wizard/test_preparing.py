@@ -9,7 +9,7 @@ from app.wizard import wizard as wizard_module
 from app.wizard.wizard import FREE_MOTION, PATIENT, REPORT, RESULTS, SENSORS, STAND_STILL, WALKING, Wizard
 from app.wizard.worn_sensors import SourceChoice
 from app.workers.preload import preload
-from core.body import Site
+from core.body import LEG_SITES
 from core.samples import Patient, Session
 from devices.replay import ReplaySource
 from tests.app.watchdog import Watchdog
@@ -64,7 +64,7 @@ def test_a_whole_session_never_holds_up_the_screen(
     qtbot.waitUntil(lambda: visit.session is not None, timeout=WAIT_MS)
     visit.sensors.search(visit.choices[0])
     qtbot.waitUntil(lambda: bool(visit.sensors.status), timeout=WAIT_MS)
-    visit.sensors.assign_all(dict(zip(visit.sensors.status, Site, strict=True)))
+    visit.sensors.assign_all(dict(zip(visit.sensors.status, LEG_SITES, strict=True)))
     qtbot.wait(LOOK_MS)
     wizard.go_to(STAND_STILL)
     qtbot.wait(LOOK_MS)

@@ -15,7 +15,7 @@ from app.storage.stored import LibraryFaultError, RecordingState
 from app.wizard.recordings import SessionRecording
 from app.wizard.visit import Visit
 from app.workers.library_controller import LibraryController
-from core.body import Side, Site
+from core.body import LEG_SITES, Side, Site
 from core.samples import RecordingKind
 from tests.app.wizard.test_visit import begin, record
 
@@ -68,7 +68,7 @@ def test_no_call_of_the_library_holds_up_a_recording(
     assert [recording.stored.state for recording in ended] == [RecordingState.CLOSED] * 2
     for recording in ended:
         assert recording.read_back is not None
-        assert set(recording.read_back.imu) == set(Site)
+        assert set(recording.read_back.imu) == set(LEG_SITES)
     assert visit.session is not None
     assert [recording.stored.placement for recording in ended] == [visit.session.placements[-1]] * 2
 

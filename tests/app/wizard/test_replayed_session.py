@@ -11,7 +11,7 @@ from pytestqt.qtbot import QtBot
 from app.wizard.sensors.step import SensorsStep
 from app.wizard.wizard import FREE_MOTION, RESULTS, SENSORS, STAND_STILL, WALKING, Wizard
 from core.analysis import analyse
-from core.body import Joint, Side, Site
+from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site
 from core.results import Analysis
 from core.samples import Patient, Recording, RecordingKind, Session
 from devices.files.session_folder import read_session, write_session
@@ -37,7 +37,7 @@ def lead_to_standing(qtbot: QtBot, wizard: Wizard, folder: Path) -> None:
     assert isinstance(sensors, SensorsStep)
     with qtbot.waitSignal(visit.sensors.opened, timeout=WAIT_MS):
         sensors.replay_folder(folder)
-    assert set(visit.sensors.sensor_at) == set(Site)
+    assert set(visit.sensors.sensor_at) == set(LEG_SITES)
     wizard.press_primary()
     assert wizard.step_number == STAND_STILL
 
@@ -85,7 +85,7 @@ def test_the_demonstrations_folder_gives_what_its_analysis_gives(qtbot: QtBot, w
     visit = wizard.visit
     assert visit is not None
     assert min(visit.evaluation.strides("walk 1").values()) >= 8
-    for joint in Joint:
+    for joint in LEG_JOINTS:
         assert range_deg(analysis, joint) == pytest.approx(range_deg(stored, joint), abs=3.0), joint
 
 

@@ -20,7 +20,7 @@ from app.wizard import shell as shell_module
 from app.wizard.free_motion.page import FreeMotionPage
 from app.wizard.shell import StripMode, WizardShell
 from app.wording import tr, use_language
-from core.body import Site
+from core.body import LEG_SITES, Site
 from tests.app.room import settle, words_cut
 
 RECORDING = ("Recording Alignment C", "Saved as it comes in. The space bar stops it, with a sound.")
@@ -44,7 +44,7 @@ def tile(site: Site, silent_s: float = 0.0, battery: float = 0.84, lost_share: f
 
 
 def fine() -> dict[Site, SensorTile]:
-    return {site: tile(site) for site in Site}
+    return {site: tile(site) for site in LEG_SITES}
 
 
 def stop_early() -> BarState:

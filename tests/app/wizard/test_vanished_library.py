@@ -23,7 +23,7 @@ from app.wizard.walking.step import WalkingStep
 from app.wizard.wizard import WALKING, Wizard
 from app.wizard.worn_sensors import SourceChoice
 from app.workers.library_controller import LibraryController
-from core.body import Site
+from core.body import LEG_SITES, Site
 from core.samples import RecordingKind
 from devices.replay import ReplaySource
 from tests.app.wizard.conftest import PASSPHRASE, SPEED
@@ -59,7 +59,9 @@ def is_whole(recording: SessionRecording, seconds: float) -> bool:
     assert recording.read_back is not None
     blocks = recording.read_back.imu.values()
     steps_s = [float((block.time_s[1:] - block.time_s[:-1]).max()) for block in blocks]
-    return len(steps_s) == len(Site) and max(steps_s) < 0.05 and all(block.time_s[-1] >= seconds for block in blocks)
+    return (
+        len(steps_s) == len(LEG_SITES) and max(steps_s) < 0.05 and all(block.time_s[-1] >= seconds for block in blocks)
+    )
 
 
 def test_renamed_amid_a_walk_it_goes_on_and_is_read_back_whole(

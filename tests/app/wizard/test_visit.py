@@ -18,7 +18,7 @@ from app.wizard.standing.step import StandStillStep
 from app.wizard.visit import Visit
 from app.workers.library_controller import LibraryController
 from core.analysis import analyse
-from core.body import Joint, Side, Site
+from core.body import LEG_JOINTS, Joint, Side, Site
 from core.samples import Patient, RecordingKind
 from tests.app.wizard.conftest import PASSPHRASE, SPEED
 
@@ -59,7 +59,7 @@ def test_whole_session_is_evaluated_and_stored(
     record(qtbot, visit, RecordingKind.STANDING, 4.0)
     with qtbot.waitSignal(visit.evaluation.done, timeout=20_000):
         record(qtbot, visit, RecordingKind.FREE_MOTION, 14.0)
-    assert set(visit.evaluation.calibration) == set(Joint)
+    assert set(visit.evaluation.calibration) == set(LEG_JOINTS)
     with qtbot.waitSignal(visit.evaluation.done, timeout=20_000):
         walk = record(qtbot, visit, RecordingKind.WALKING, 18.0, "barefoot")
     assert walk.details.condition == "barefoot"

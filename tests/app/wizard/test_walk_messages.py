@@ -8,12 +8,12 @@ from app.wizard.losses import NOTHING
 from app.wizard.visit import Visit
 from app.wizard.walk_messages import clock, few_strides_message, no_angles_message, no_foot_message
 from app.wizard.walking.step import WalkingStep
-from core.body import Side, Site
+from core.body import LEG_SITES, Side, Site
 from core.samples import RecordingKind
 from tests.app.wizard.test_visit import begin, record
 
 FEET = frozenset((Site.LEFT_FOOT, Site.RIGHT_FOOT))
-ALL = frozenset(Site)
+ALL = frozenset(LEG_SITES)
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from core.analysis import analyse
-from core.body import Joint, Segment, Site
+from core.body import LEG_SITES, Joint, Segment
 from core.calibration.clinical_sign import (
     MIN_RANGE_RAD,
     ClinicalSign,
@@ -137,7 +137,7 @@ def test_a_foot_that_hardly_rolls_still_says_which_way_its_ankle_bends() -> None
     made = simulate(
         WalkerSettings(seed=1, tissue=Tissue.SOFT, recordings=(Walk(strides=8, manner=Manner.FLAT, speed_m_s=0.5),))
     )
-    sites = {site for site in Site if site.segment is not Segment.THIGH}
+    sites = {site for site in LEG_SITES if site.segment is not Segment.THIGH}
     (walk,) = made.session.recordings
     worn = replace(walk, imu={site: block for site, block in walk.imu.items() if site in sites})
     analysis = analyse(replace(made.session, recordings=(worn,)))

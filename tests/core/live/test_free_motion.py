@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from core.body import Joint, Side, Site
+from core.body import LEG_SITES, Joint, Side, Site
 from core.calibration.rest import rest_of
 from core.live.free_motion import FreeMotionState, LiveFreeMotion
 from core.live.lag import LagVerdict
@@ -16,7 +16,7 @@ from core.samples import ImuBlock
 from devices.walker import FreeMotion as FreeMotionRecording
 from devices.walker import Motion, SimulatedSession, Standing, Tissue, WalkerSettings, simulate
 
-LEFT = tuple(site for site in Site if site.side is Side.LEFT)
+LEFT = tuple(site for site in LEG_SITES if site.side is Side.LEFT)
 
 
 def made(sites: tuple[Site, ...] = LEFT, motion: Motion = Motion.FULL, late_s: float = 0.0) -> SimulatedSession:

@@ -9,7 +9,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from core.analysis import analyse
-from core.body import Joint, Side, Site
+from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site
 from core.calibration.rest import rest_of
 from core.gait.live import FootEvent, LiveEvent
 from core.live.sensors import LiveSensor
@@ -91,7 +91,7 @@ def states(
 
 def test_live_angles_follow_the_offline_ones(states: list[WalkingState], analysis: Analysis) -> None:
     walk = next(recording for recording in analysis.recordings if recording.name == WALK)
-    for joint in Joint:
+    for joint in LEG_JOINTS:
         time_s, angle = joined(states, joint)
         difference = angle - np.interp(time_s, walk.time_s, walk.joints[joint].angle_rad)
         known = np.isfinite(difference) & (time_s > 3.0)  # the filters settle
@@ -113,7 +113,7 @@ def test_events_and_cadence_are_those_of_the_walk(states: list[WalkingState], an
     assert states[-1].feet[Side.LEFT].strides >= 20
 
 
-LEFT = tuple(site for site in Site if site.side is Side.LEFT)
+LEFT = tuple(site for site in LEG_SITES if site.side is Side.LEFT)
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from core.angles.twist import off_axis_rate, twist
-from core.body import Joint
+from core.body import LEG_JOINTS, Joint
 from core.pair import Pair
 from core.published.angles import (
     angle_from_accelerations,
@@ -44,7 +44,7 @@ def built(make_person: "Callable[..., Person]", request: pytest.FixtureRequest) 
 def bend(built: Built, request: pytest.FixtureRequest) -> FloatArray:
     """Minus flexion from the x axis of the proximal frame: alpha as the geometry of the poses has it."""
     person, pair, j1, j2, _, _ = built
-    joint = next(joint for joint in Joint if np.allclose(person.axis(joint.proximal, joint), j1))
+    joint = next(joint for joint in LEG_JOINTS if np.allclose(person.axis(joint.proximal, joint), j1))
     mounts = [person.mounting(site) for site in (joint.proximal, joint.distal)]
     x1, x2 = mounts[0].apply(joint_frame(j1)[0]), mounts[1].apply(joint_frame(j2)[0])
     axis = mounts[0].apply(j1)

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from core.body import Joint, Side, ankle_of, knee_of
+from core.body import LEG_JOINTS, Joint, Side, ankle_of, knee_of
 from core.gait.clocks import ClockTie, LegClocks
 from core.gait.spatiotemporal import parameters_of
 from core.gait.strides import Reason, Strides
@@ -54,7 +54,7 @@ def calibration(joint: Joint, **changes: Any) -> JointCalibration:
 
 def calibrations(changed: Joint | None = None, **changes: Any) -> dict[Joint, JointCalibration]:
     """All four joints; one of them changed."""
-    return {joint: calibration(joint, **(changes if joint is changed else {})) for joint in Joint}
+    return {joint: calibration(joint, **(changes if joint is changed else {})) for joint in LEG_JOINTS}
 
 
 def each(value: float | FloatArray, n: int) -> FloatArray:
@@ -94,6 +94,7 @@ def leg(
         end_s=ends,
         length_m=each(length_m, n),
         clearance_m=each(0.1, n),
+        climb_m=np.zeros(n),
         turn_rad=np.zeros(n),
         bout=np.zeros(n, dtype=np.int64),
         reason=(Reason.USED,) * (n - left_out) + (Reason.TURN,) * left_out,
@@ -122,7 +123,7 @@ def walk(*, left: SideGait | None = None, right: SideGait | None = None, **chang
         "walk_1",
         RecordingKind.WALKING,
         np.zeros(1),
-        dict.fromkeys(Joint, angle),
+        dict.fromkeys(LEG_JOINTS, angle),
         gait,
         clocks=SURE_CLOCKS,
     )

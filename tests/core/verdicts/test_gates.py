@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from core.body import Joint, Side, Site
+from core.body import LEG_JOINTS, Joint, Side, Site
 from core.gait.clocks import ClockTie
 from core.gait.strides import Reason
 from core.results import Analysis, Calibration, Method, RecordingAnalysis, ZeroKind
@@ -38,7 +38,7 @@ def hits(verdict: str, gate: str, of: str, *parts: str) -> dict[str, tuple[str, 
 def test_a_walk_of_which_all_is_sure_can_be_read_throughout() -> None:
     found = gates_of(walk())
     assert not_read(found) == {}
-    assert set(found.joints) == set(Joint)
+    assert set(found.joints) == set(LEG_JOINTS)
     assert set(found.legs) == set(Side)
 
 

@@ -5,15 +5,15 @@ from typing import Any
 
 import pytest
 
-from core.body import Joint, Side, Site
+from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site
 from core.results import ZeroKind
 from core.targets import TargetMeasure
 from core.verdicts.live_targets import assess_target
 from core.verdicts.model import Verdict
 from tests.core.verdicts.built_walk import calibration
 
-ALL = tuple(Site)
-SURE = {joint: calibration(joint) for joint in Joint}
+ALL = LEG_SITES
+SURE = {joint: calibration(joint) for joint in LEG_JOINTS}
 
 
 @pytest.mark.parametrize("measure", TargetMeasure)

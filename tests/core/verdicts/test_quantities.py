@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from core.body import Joint, Side
+from core.body import LEG_JOINTS, Joint, Side
 from core.results import RecordingAnalysis, ZeroKind
 from core.verdicts.model import NOT_MEASURED, READ, Assessment, JointVerdicts, LegVerdicts, Verdict, Verdicts
 from core.verdicts.quantities import (
@@ -50,7 +50,7 @@ def verdicts(joints: dict[Joint, dict[str, Assessment]] | None = None, **changes
     """Everything can be read but what is changed: a joint's parts, a leg's parts of the left, or `between`."""
     found = {
         joint: JointVerdicts(**({"shape": READ, "height": READ, "sign": READ} | (joints or {}).get(joint, {})))
-        for joint in Joint
+        for joint in LEG_JOINTS
     }
     left = LegVerdicts(changes.pop("timing", READ), changes.pop("distance", READ))
     return Verdicts(found, {Side.LEFT: left, Side.RIGHT: LegVerdicts(READ, READ)}, changes.pop("between", READ))

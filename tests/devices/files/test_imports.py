@@ -39,7 +39,7 @@ def test_a_map_names_sites() -> None:
         ("", "does not say which file"),
         ("left_thigh", "does not say which file"),
         ("left_thigh=", "does not say which file"),
-        ("pelvis=a", '"pelvis" is not a site'),
+        ("sternum=a", '"sternum" is not a site'),
         ("left_thigh=a,left_thigh=b", "left_thigh is there twice"),
     ],
 )

@@ -13,7 +13,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as npst
 
-from core.body import Joint, Side, Site
+from core.body import LEG_JOINTS, LEG_SITES, Side, Site
 from core.findings import Severity
 from core.samples import ImuBlock, Patient, RateKind, Recording, RecordingKind, SensorInfo, Session
 from devices.files import session_folder, site_files
@@ -199,7 +199,7 @@ room = 4
 shoe = 42.5
 [sensors.left_thigh]
 colour = "red"
-[sensors.pelvis]
+[sensors.sternum]
 serial = "P"
 [zero]
 left_hip = 3.0
@@ -227,7 +227,7 @@ def test_unknown_keys_are_told_and_survive(make_session: MakeSession, tmp_path: 
             ("unknown_key", "session", "room"),
             ("unknown_key", "patient", "shoe"),
             ("unknown_key", "left_thigh", "colour"),
-            ("unknown_key", "sensors", "pelvis"),
+            ("unknown_key", "sensors", "sternum"),
             ("unknown_key", "zero", "left_hip"),
             ("unknown_key", "sign", "left_hip"),
             ("unknown_key", "walk 1", "speed"),
@@ -459,8 +459,8 @@ def sessions(draw: st.DrawFn) -> Session:
         recordings=recordings,
         patient=Patient(code=draw(some_text), birth_year=draw(st.none() | st.integers(1900, 2020))),
         sensors={Site.LEFT_THIGH: SensorInfo(serial=draw(some_text), rate_kind=draw(st.sampled_from(RateKind)))},
-        zero_rad=draw(st.dictionaries(st.sampled_from(Joint), st.floats(-3, 3))),
-        turned_sign=draw(st.dictionaries(st.sampled_from(Joint), st.sampled_from([1, -1]))),
+        zero_rad=draw(st.dictionaries(st.sampled_from(LEG_JOINTS), st.floats(-3, 3))),
+        turned_sign=draw(st.dictionaries(st.sampled_from(LEG_JOINTS), st.sampled_from([1, -1]))),
         notes=draw(some_text),
         software="gaitwright 0",
         is_simulated=draw(st.booleans()),
@@ -561,7 +561,7 @@ def test_nothing_is_written_outside_of_the_folder(tmp_path: Path, folder: str) -
 
 
 def test_a_large_session_is_read_site_by_site(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    imu = {site: simple_block(4 + i, site) for i, site in enumerate(Site)}
+    imu = {site: simple_block(4 + i, site) for i, site in enumerate(LEG_SITES)}
     write_session(Session((walk(imu),)), tmp_path / "session")
     monkeypatch.setattr(session_folder, "HELD_BYTES", 10)
     reads: list[Path] = []
@@ -574,7 +574,7 @@ def test_a_large_session_is_read_site_by_site(tmp_path: Path, monkeypatch: pytes
     monkeypatch.setattr(site_files.SiteFile, "read", counting)
     found = read_session(tmp_path / "session").recordings[0]
     assert len(reads) == 6
-    assert list(found.imu) == list(Site)
+    assert list(found.imu) == list(LEG_SITES)
     assert found.holds(Site.LEFT_FOOT)
     assert Site.LEFT_FOOT in found.imu
     assert len(reads) == 6  # asking which sites there are reads nothing

@@ -11,7 +11,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from core.body import Site
+from core.body import LEG_SITES, Site
 from core.samples import RateKind
 from devices.files.imports import ImportedFiles
 from devices.files.orientation_rates import derive_rates
@@ -145,7 +145,7 @@ def test_a_real_walk_is_imported(test_data: FindData) -> None:
         if bone in sites:
             placement[Site(f"{'left' if side == 'l' else 'right'}_{sites[bone]}")] = sensor.attrib["name"]
     imported = import_with(mtmanager_trial, sorted(folder.glob("OpenSenseExample_*")), placement, "walk 1")
-    assert set(imported.imu) == set(Site)
+    assert set(imported.imu) == set(LEG_SITES)
     assert imported.imu[Site.LEFT_THIGH].sensor == "00B421EE"
     lengths = {len(block) for block in imported.imu.values()}
     assert min(lengths) == 2432
@@ -157,7 +157,7 @@ def test_a_real_walk_is_imported(test_data: FindData) -> None:
         assert imported.sensors[site].rate_kind is RateKind.INSTANTANEOUS
     told = [(finding.key, finding.where) for finding in imported.findings]
     assert told.count(("file_left_out", "walk 1")) == 3
-    assert all(("rate_from_orientation", f"walk 1, {site}") in told for site in Site)
+    assert all(("rate_from_orientation", f"walk 1, {site}") in told for site in LEG_SITES)
 
 
 def test_the_kind_of_rate_is_read_from_the_orientation(test_data: FindData) -> None:

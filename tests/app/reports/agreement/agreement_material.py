@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from core.body import Joint
+from core.body import LEG_JOINTS, Joint
 from devices.walker import FreeMotion, SessionTruth, Standing, Walk, WalkerSettings, simulate
 
 SETTINGS = WalkerSettings(
@@ -23,7 +23,7 @@ def made() -> tuple[object, SessionTruth]:
 def rows_of(
     truth: SessionTruth,
     walk: str,
-    joints: Sequence[Joint] = tuple(Joint),
+    joints: Sequence[Joint] = LEG_JOINTS,
     later_s: float = 7.3,
     turned: Sequence[Joint] = (),
     hz: float = 120.0,
@@ -40,6 +40,6 @@ def rows_of(
     return [",".join(f"{value:.6f}" for value in row) for row in rows]
 
 
-def write_reference(path: Path, rows: Sequence[str], joints: Sequence[Joint] = tuple(Joint), first: str = "") -> Path:
+def write_reference(path: Path, rows: Sequence[str], joints: Sequence[Joint] = LEG_JOINTS, first: str = "") -> Path:
     path.write_text("\n".join([f"{first}time_s,{','.join(joints)}", *rows, ""]), encoding="utf-8")
     return path

@@ -14,7 +14,7 @@ from app.reports.agreement.printed import printed
 from app.reports.agreement.study import AgreementStudy, AngleKind, study_of
 from app.reports.agreement.tables import agreement_table, curve_table, summary_of
 from core.analysis import analyse
-from core.body import Joint, Side
+from core.body import LEG_JOINTS, Joint, Side
 from core.results import Analysis, RecordingAnalysis, ZeroKind
 from core.samples import Patient, Session
 from core.verdicts.model import Assessment, JointVerdicts, Verdict
@@ -50,7 +50,7 @@ def test_the_figures_are_those_of_the_truth(
     _, truth, analysis = simulated
     for walk in study.walks:
         (own,) = [one for one in analysis.recordings if one.name == walk.recording.name]
-        for joint in Joint:
+        for joint in LEG_JOINTS:
             told = truth.recordings[walk.recording.name].joints[joint]
             inside = (own.time_s > told.time_s[0] + 0.21) & (own.time_s < told.time_s[-1] - 0.21)
             error = own.joints[joint].angle_rad - np.interp(own.time_s, told.time_s, told.angle_rad)
@@ -181,7 +181,7 @@ def test_our_own_exports_agree_with_us(
     write(walk, True, path)
     (found,) = study_of(analysis, [("export", read_reference(path))]).walks
     assert found.recording is walk
-    for joint in Joint:
+    for joint in LEG_JOINTS:
         assert np.rad2deg(found.figures[joint, AngleKind.RESULT].z_rad) < 0.02
     if write is write_c3d:
         assert {event for _, event in found.events} == set(EVENTS)

@@ -11,7 +11,7 @@ import pytest
 
 from app.reports.patient_report.document import make_report, report_data
 from app.reports.patient_report.request import AnalysedVisit, ReportRequest
-from core.body import Joint, Side, Site
+from core.body import LEG_JOINTS, Joint, Side, Site
 from core.findings import Finding, Severity
 from core.gait.strides import Reason
 from core.results import Analysis, SideGait, ZeroKind
@@ -40,7 +40,7 @@ def gait_of(request: ReportRequest) -> Mapping[Side, SideGait]:
 
 def with_joints(request: ReportRequest, *joints: Joint, **change: object) -> ReportRequest:
     """Change some joints' calibrations alike; none named: all."""
-    return with_analysis(request, recalibrated(request.visit.analysis, joints or tuple(Joint), **change))
+    return with_analysis(request, recalibrated(request.visit.analysis, joints or LEG_JOINTS, **change))
 
 
 def with_strides(request: ReportRequest, count: int) -> ReportRequest:

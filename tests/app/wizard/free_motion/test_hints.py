@@ -22,7 +22,7 @@ from app.wizard.free_motion.hints import (
     recorded_hint,
     unplaced_hint,
 )
-from core.body import Joint, Side, Site
+from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site
 from core.live.excitation import ExcitationState, Missing, Movement
 from core.live.free_motion import FreeMotionState
 
@@ -53,7 +53,7 @@ def motion(joints: Mapping[Joint, ExcitationState]) -> FreeMotionState:
 
 
 def every_hint() -> Iterator[str]:
-    for site in Site:
+    for site in LEG_SITES:
         for movement in Movement:
             yield hint_for(Missing(site, movement)).sentence
     yield first_hint().sentence
@@ -129,7 +129,7 @@ def test_at_the_end_it_says_whether_the_motion_is_enough_or_all_only_as_good_as_
     [
         ((Joint.LEFT_KNEE, Joint.RIGHT_KNEE), ""),
         ((Joint.LEFT_KNEE, Joint.LEFT_ANKLE), " It finds the ankle's axis."),
-        (tuple(Joint), " It finds the ankles' axes."),
+        (LEG_JOINTS, " It finds the ankles' axes."),
     ],
 )
 def test_walking_is_said_to_find_the_axes_of_ankles_that_wear_sensors(joints: tuple[Joint, ...], finds: str) -> None:
@@ -137,8 +137,8 @@ def test_walking_is_said_to_find_the_axes_of_ankles_that_wear_sensors(joints: tu
 
 
 def test_a_joint_that_is_no_hinge_is_said_in_place_of_enough_motion() -> None:
-    all_four = dict.fromkeys(Joint, ENOUGH)
-    one, both = all_four | {Joint.LEFT_KNEE: LOOSE}, dict.fromkeys(Joint, LOOSE)
+    all_four = dict.fromkeys(LEG_JOINTS, ENOUGH)
+    one, both = all_four | {Joint.LEFT_KNEE: LOOSE}, dict.fromkeys(LEG_JOINTS, LOOSE)
     said = last_hint(motion(one), PROSTHETIC)
     assert said.sentence == "Left knee: no hinge"
     assert said.how == "The angle is the part about the main axis. Walking comes next, by itself."
@@ -152,13 +152,13 @@ def test_the_rail_says_which_joints_have_enough_motion_and_an_ankle_by_its_centr
     far, none = state(11, 34), frozenset[Side]()
     some = motion({Joint.LEFT_KNEE: ENOUGH, Joint.RIGHT_KNEE: far, Joint.LEFT_ANKLE: ENOUGH, Joint.RIGHT_ANKLE: ENOUGH})
     assert enough_for(some, none) == "enough motion for 1 of 2 knees, 2 of 2 ankle centres"
-    assert enough_for(motion(dict.fromkeys(Joint, ENOUGH)), none) == "enough motion"
+    assert enough_for(motion(dict.fromkeys(LEG_JOINTS, ENOUGH)), none) == "enough motion"
     assert enough_for(motion({Joint.LEFT_KNEE: far}), none) == "enough motion for 0 of 1 knee"
     assert enough_for(motion({Joint.LEFT_ANKLE: far}), none) == "enough motion for 0 of 1 ankle centre"
 
 
 def test_a_joint_that_is_no_hinge_is_named_and_not_counted() -> None:
-    loose = motion(dict.fromkeys(Joint, ENOUGH) | {Joint.LEFT_KNEE: LOOSE})
+    loose = motion(dict.fromkeys(LEG_JOINTS, ENOUGH) | {Joint.LEFT_KNEE: LOOSE})
     said = "enough motion for 1 of 2 knees, 2 of 2 ankle centres; left knee: no hinge"
     assert enough_for(loose, PROSTHETIC) == said
     assert enough_for(loose, frozenset()) == "enough motion"
@@ -224,7 +224,7 @@ def test_of_a_prosthesis_more_is_wanted() -> None:
 
 
 def test_a_joint_without_gauge_says_why() -> None:
-    worn = set(Site) - {Site.RIGHT_FOOT}
+    worn = set(LEG_SITES) - {Site.RIGHT_FOOT}
     assert absent_note(Joint.RIGHT_ANKLE, worn, ()) == "R foot without sensor: no right ankle angle."
     assert absent_note(Joint.RIGHT_KNEE, worn, ()) == ""
     assert absent_note(Joint.LEFT_ANKLE, worn, {Side.LEFT}).startswith("Foot without ankle joint: nothing to find.")

@@ -18,7 +18,7 @@ from app.wizard.free_motion.page import FreeMotionPage
 from app.wizard.free_motion.step import FreeMotionStep
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.visit import Visit, opposite
-from core.body import Joint, Side, Site
+from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site
 from core.live.free_motion import FreeMotionState
 from core.samples import RecordingKind
 from devices.replay import ReplaySource
@@ -70,7 +70,7 @@ def test_it_records_at_once_and_goes_on_by_itself_when_all_gauges_are_closed(
     step.enter()
     assert step.page.band.hint.sentence == "Move any leg"
     ticks(qtbot, step, lambda: knows(step))
-    closed = {joint: state(0.8, 6.0, None, is_closed=True) for joint in Joint}
+    closed = {joint: state(0.8, 6.0, None, is_closed=True) for joint in LEG_JOINTS}
     tell(step, worn, FreeMotionState(closed))
     with qtbot.waitSignal(step.done, timeout=10_000):
         ticks(qtbot, step, lambda: states(step.page) == {GaugeState.ENOUGH, GaugeState.CENTRE})
@@ -80,7 +80,7 @@ def test_it_records_at_once_and_goes_on_by_itself_when_all_gauges_are_closed(
     moved = visit.recordings.free_motion
     assert moved is not None
     assert moved.read_back is not None
-    assert set(moved.read_back.imu) == set(Site)
+    assert set(moved.read_back.imu) == set(LEG_SITES)
     assert (step.state, step.note) == (StepState.DONE, "enough motion")
 
 
@@ -90,7 +90,7 @@ def test_a_plateau_is_said_and_left_to_the_therapist(
     step.enter()
     qtbot.waitUntil(lambda: visit.recordings.is_recording)
     ticks(qtbot, step, lambda: step._estimator is not None)
-    joints = {joint: state(0.8, 6.0, None, is_closed=True) for joint in Joint}
+    joints = {joint: state(0.8, 6.0, None, is_closed=True) for joint in LEG_JOINTS}
     joints[Joint.LEFT_KNEE] = state(3.8, 6.0, is_plateau=True)
     tell(step, worn, FreeMotionState(joints))
     ticks(qtbot, step, lambda: step.page.band.hint.sentence == "As good as it gets")
@@ -118,7 +118,7 @@ def test_a_replay_that_has_ended_is_said_and_is_recorded_again_from_its_beginnin
 ) -> None:
     step.enter()
     ticks(qtbot, step, lambda: step._estimator is not None)
-    open_joints = motion({joint: state(3.8, 6.0) for joint in Joint})
+    open_joints = motion({joint: state(3.8, 6.0) for joint in LEG_JOINTS})
     tell(step, worn, open_joints)
     ticks(qtbot, step, lambda: step.page.band.hint.sentence == "The replay has ended")
     bar = step.bar()
@@ -177,7 +177,7 @@ def test_a_leg_that_is_repeated_later_leaves_the_other_legs_recording_in_force(
     assert repeated is not None
     assert repeated.read_back is not None
     assert {site.side for site in repeated.read_back.imu} == {Side.RIGHT}
-    qtbot.waitUntil(lambda: visit.session is not None and set(visit.session.details.sensors) == set(Site))
+    qtbot.waitUntil(lambda: visit.session is not None and set(visit.session.details.sensors) == set(LEG_SITES))
 
 
 def test_leaving_before_a_leg_has_moved_is_said_and_does_not_count(
@@ -204,7 +204,7 @@ def test_leaving_before_its_end_keeps_what_has_moved_unless_another_is_in_force(
     kept, note = visit.recordings.free_motion, step.note
     assert kept is not None
     assert kept.read_back is not None
-    assert len(kept.read_back.imu) == len(Site)
+    assert len(kept.read_back.imu) == len(LEG_SITES)
     assert note.startswith("enough motion for ")
     assert note.endswith("of 2 ankle centres")
     assert told.args[0] == f"Free motion was left before its end and is kept: {note}."
@@ -229,7 +229,7 @@ def test_a_knee_that_is_no_hinge_is_not_counted_as_enough_but_named(
     visit.patient.edit(replace(visit.patient.details, prosthetic_side="left"))
     step.enter()
     ticks(qtbot, step, lambda: knows(step))
-    closed = {joint: state(0.4, 4.0, None, is_closed=True) for joint in Joint}
+    closed = {joint: state(0.4, 4.0, None, is_closed=True) for joint in LEG_JOINTS}
     loose = replace(closed[Joint.LEFT_KNEE], axis_sd_with_floor_rad=math.radians(6.0))
     tell(step, worn, motion(closed | {Joint.LEFT_KNEE: state(3.8, 9.0)}))
     left = step.page.gauges[Joint.LEFT_KNEE]

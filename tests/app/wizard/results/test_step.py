@@ -26,7 +26,7 @@ from app.wizard.results.step import ResultsStep
 from app.wizard.resuming import current_course_key
 from app.wizard.visit import Visit
 from app.workers.library_controller import LibraryController
-from core.body import Joint, Side
+from core.body import LEG_JOINTS, Joint, Side
 from core.chosen_strides import left_out_by_hand
 from core.results import RecordingAnalysis
 from core.samples import FloatArray, RecordingKind, Session
@@ -352,7 +352,7 @@ def test_the_agreement_with_an_optical_system_is_saved_audited_and_left_again(
     analysis = visit.evaluation.analysis
     assert analysis is not None
     walk = walk_of(visit)
-    joints = [joint for joint in Joint if joint in walk.joints]
+    joints = [joint for joint in LEG_JOINTS if joint in walk.joints]
     columns = [np.rad2deg(walk.joints[joint].angle_rad) for joint in joints]
     rows = [
         ",".join(f"{value:.5f}" for value in row)

@@ -16,7 +16,7 @@ from app.wizard.sensors.sensor_drag import DRAGGED
 from app.wizard.sensors.sensor_row import SensorRow
 from app.wizard.sensors.sensor_trace import _lines
 from app.wizard.sensors.source_pages import SourceOption
-from core.body import Side, Site
+from core.body import LEG_SITES, Side, Site
 from tests.app.room import settle
 
 NAMES = ("0A09", "0A31", "0A2C", "0A17", "0A1B", "0A22")
@@ -77,10 +77,10 @@ def drop(page: SensorsPage, sensor: str, at: QPoint) -> None:
 def test_a_sensor_is_dropped_on_a_tile_or_on_the_figure(
     page: SensorsPage, assigned: list[tuple[str, Site | None]]
 ) -> None:
-    for number, site in enumerate(Site):
+    for number, site in enumerate(LEG_SITES):
         drop(page, NAMES[number], page.places.tiles[site].geometry().center())
         drop(page, NAMES[number], page.places.figure.anchor(site).toPoint() + page.places.figure.pos())
-    assert assigned == [(NAMES[number], site) for number, site in enumerate(Site) for _ in range(2)]
+    assert assigned == [(NAMES[number], site) for number, site in enumerate(LEG_SITES) for _ in range(2)]
 
 
 def test_a_drop_beside_the_figure_is_none(page: SensorsPage, assigned: list[tuple[str, Site | None]]) -> None:
@@ -210,15 +210,15 @@ def test_shaking_assigns_nothing_unless_that_way_is_chosen(
 
 
 def test_a_foot_taken_off_costs_the_ankle_at_once(page: SensorsPage) -> None:
-    page.show_sensors(rows(*Site))
+    page.show_sensors(rows(*LEG_SITES))
     assert page.notice.text == "All six are worn and heard."
     page.list.assigned.emit("0A22", None)
-    page.show_sensors(rows(*list(Site)[:5]))
+    page.show_sensors(rows(*LEG_SITES[:5]))
     assert page.notice.text.startswith("No right foot sensor: no right ankle angles.")
 
 
 def test_a_foot_that_no_sensor_is_left_for_costs_the_ankle(page: SensorsPage) -> None:
-    page.show_sensors(rows(*Site)[:5])
+    page.show_sensors(rows(*LEG_SITES)[:5])
     assert page.notice.text.startswith("No right foot sensor")
 
 
@@ -232,7 +232,7 @@ def test_a_foot_that_no_sensor_is_left_for_costs_the_ankle(page: SensorsPage) ->
     ],
 )
 def test_what_wants_a_look_is_said(page: SensorsPage, changes: dict[str, object], words: str) -> None:
-    page.show_sensors(rows(*Site, s0A22=changes))
+    page.show_sensors(rows(*LEG_SITES, s0A22=changes))
     assert page.notice.text.startswith(words)
     assert page.list.rows["0A22"].sensor.wants_look
     assert page.places.figure.accessibleDescription().count("worn") == 5
@@ -276,7 +276,7 @@ def test_rows_keep_the_focus_while_they_are_shown_anew(page: SensorsPage) -> Non
 
 
 def test_a_silent_sensor_is_looked_for_and_a_heard_one_lit(page: SensorsPage, qtbot: QtBot) -> None:
-    page.show_sensors(rows(*Site, s0A22={"silent_s": 4.0}))
+    page.show_sensors(rows(*LEG_SITES, s0A22={"silent_s": 4.0}))
     with qtbot.waitSignal(page.reconnect_pressed, timeout=1000):
         page.list.rows["0A22"].identify.click()
     with qtbot.waitSignal(page.identify_pressed, timeout=1000):
@@ -308,14 +308,14 @@ def test_nothing_lies_over_another_or_outside(
     page._look.set_scale(scale)
     page.resize(round(size[0] * scale), round(size[1] * scale))
     page.set_compact(is_compact)
-    page.show_sensors(rows(*Site, s0A22={"silent_s": 3.0}, s0A2C={"battery": 0.1}))
+    page.show_sensors(rows(*LEG_SITES, s0A22={"silent_s": 3.0}, s0A2C={"battery": 0.1}))
     for _ in range(10):  # from layout to layout up to the area that scrolls
         QApplication.processEvents()
     tiles = [tile.geometry() for tile in page.places.tiles.values()]
     for number, tile in enumerate(tiles):
         assert page.places.rect().contains(tile)
         assert not any(tile.intersects(other) for other in tiles[number + 1 :])
-        assert not any(tile.contains(page.places.figure.anchor(site).toPoint()) for site in Site)
+        assert not any(tile.contains(page.places.figure.anchor(site).toPoint()) for site in LEG_SITES)
     for control in page.tab_order:
         if control.isVisible():
             assert control.accessibleName(), control

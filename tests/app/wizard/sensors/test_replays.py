@@ -16,7 +16,7 @@ from app.wizard.sensors.replays import Replays, replay_of
 from app.wizard.sensors.step import REPLAY, SensorsStep
 from app.wizard.visit import Visit
 from app.workers.library_controller import LibraryController
-from core.body import Site
+from core.body import LEG_SITES
 from core.samples import Patient, RecordingKind, SensorInfo, Session
 from devices.files.session_folder import write_session
 from tests.safety.live_material import numbered, numbered_session
@@ -57,7 +57,7 @@ def test_a_folder_becomes_the_sensors_with_their_places(
     assert step.page.stored.isVisible()
     with qtbot.waitSignal(visit.sensors.opened, timeout=10_000):
         step.replay_folder(folder)
-    assert visit.sensors.site_of == {f"S-{site}": site for site in Site}, "as the folder tells it"
+    assert visit.sensors.site_of == {f"S-{site}": site for site in LEG_SITES}, "as the folder tells it"
     assert visit.is_simulated, "it was not measured now"
     assert step.page.list.isVisible()
     assert step.page.sources.currentText() == "Replay of last_week: 6 found"
@@ -85,7 +85,7 @@ def test_a_session_of_the_library_is_chosen_by_code_and_date(
     assert (bar.primary.text, bar.primary.is_enabled) == ("Replay it", True)
     with qtbot.waitSignal(visit.sensors.opened, timeout=10_000):
         step.on_primary()
-    assert visit.sensors.site_of == {f"S-{site}": site for site in Site}
+    assert visit.sensors.site_of == {f"S-{site}": site for site in LEG_SITES}
     assert visit.sensors.choice is not None
     assert visit.sensors.choice.name == "Replay of P-7, 24 Oct 2026"
     replays = Replays(controller, visit)

@@ -21,9 +21,9 @@ from app.wizard.standing.page import (
     verdict,
     way_round,
 )
-from core.body import Joint, Site
+from core.body import LEG_JOINTS, LEG_SITES, Joint, Site
 
-STILL: dict[str, float] = dict.fromkeys(Site, 0.4)
+STILL: dict[str, float] = dict.fromkeys(LEG_SITES, 0.4)
 
 
 def counting(still_s: float = 1.2, **more: object) -> StandStillView:
@@ -33,7 +33,7 @@ def counting(still_s: float = 1.2, **more: object) -> StandStillView:
 @pytest.fixture
 def page(qtbot: QtBot, look: ThemeNotifier) -> StandStillPage:
     page = StandStillPage(look)
-    page.show_zero(dict.fromkeys(Joint, 0.0))
+    page.show_zero(dict.fromkeys(LEG_JOINTS, 0.0))
     qtbot.addWidget(page)
     page.resize(1064, 600)
     with qtbot.waitActive(page):
@@ -80,7 +80,7 @@ def test_both_legs_and_many_sensors_are_said_in_a_few_words() -> None:
     _, what, then, _ = verdict(counting(0.0, moved=(Site.LEFT_THIGH, Site.RIGHT_FOOT)))
     assert what == "L thigh and R foot move"
     assert then.startswith("Both legs moved.")
-    assert verdict(counting(0.0, moved=tuple(Site)))[1] == "6 sensors move"
+    assert verdict(counting(0.0, moved=LEG_SITES))[1] == "6 sensors move"
 
 
 def test_a_silent_sensor_comes_before_one_that_moves() -> None:
@@ -91,7 +91,7 @@ def test_a_silent_sensor_comes_before_one_that_moves() -> None:
 
 
 def test_fewer_sensors_are_counted_as_they_are() -> None:
-    four: dict[str, float] = {site: 0.2 for site in Site if site.segment != "foot"}
+    four: dict[str, float] = {site: 0.2 for site in LEG_SITES if site.segment != "foot"}
     assert verdict(StandStillView(movement_deg_s=four))[1] == "All four are still"
 
 
@@ -162,7 +162,7 @@ def test_an_angle_being_typed_is_told_when_the_page_goes(qtbot: QtBot, page: Sta
 
 
 def test_a_joint_without_its_sensors_has_no_angle_and_says_so(page: StandStillPage) -> None:
-    page.show_zero({joint: 0.0 for joint in Joint if joint is not Joint.RIGHT_ANKLE})
+    page.show_zero({joint: 0.0 for joint in LEG_JOINTS if joint is not Joint.RIGHT_ANKLE})
     assert [joint for joint, field in page.zero.fields.items() if not field.isEnabled()] == [Joint.RIGHT_ANKLE]
     assert page.zero.fields[Joint.RIGHT_ANKLE].text == ""
     assert "right ankle" in page.zero.why

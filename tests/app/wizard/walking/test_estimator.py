@@ -9,7 +9,7 @@ import pytest
 
 from app.wizard.walking.estimator import KEPT_S, WalkingEstimator
 from app.wizard.walking.readout import WalkingReadout
-from core.body import Joint, Side, Site
+from core.body import LEG_JOINTS, Joint, Side, Site
 from core.gait.phases import Phase
 from core.results import AxisSource
 from core.samples import ImuBlock
@@ -39,7 +39,7 @@ def usual(dressed: Worn) -> list[WalkingReadout]:
 
 def test_curves_hold_the_last_seconds_of_every_joint(dressed: Worn, usual: list[WalkingReadout]) -> None:
     last = usual[-1]
-    assert set(last.joints) == set(Joint)
+    assert set(last.joints) == set(LEG_JOINTS)
     now_s = max(float(block.time_s[-1]) for block in dressed.walk.values())
     assert last.now_s == now_s
     for curve in last.joints.values():
@@ -83,7 +83,7 @@ def test_a_walk_counts_its_own_strides(dressed: Worn, usual: list[WalkingReadout
 @pytest.mark.parametrize("block_s", [60.0, pytest.param(0.017, marks=pytest.mark.endurance)])
 def test_the_size_of_the_blocks_changes_nothing(dressed: Worn, usual: list[WalkingReadout], block_s: float) -> None:
     one, two = usual[-1], fed(estimator_of(dressed), dict(dressed.walk), block_s)[-1]
-    for joint in Joint:
+    for joint in LEG_JOINTS:
         np.testing.assert_array_equal(two.joints[joint].time_s, one.joints[joint].time_s)
         np.testing.assert_allclose(two.joints[joint].angle_rad, one.joints[joint].angle_rad, rtol=0, atol=1e-9)
     assert two.lanes == one.lanes

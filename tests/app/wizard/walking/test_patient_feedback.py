@@ -16,7 +16,7 @@ from app.sounds import Sound
 from app.theme import ThemeNotifier
 from app.wizard.walking.patient_feedback import PatientFeedback, reasons_against
 from app.wizard.walking.readout import WalkingReadout
-from core.body import Joint, Side, Site
+from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site
 from core.live.stride_values import StrideValue
 from core.results import ZeroKind
 from core.strap import Slip
@@ -25,9 +25,9 @@ from tests.core.verdicts.built_walk import calibration
 
 KNEE = Target(TargetMeasure.KNEE_SWING_PEAK, Side.LEFT, 55)
 BEAT = Target(TargetMeasure.CADENCE, None, 110)
-SURE = {joint: calibration(joint) for joint in Joint}
-ALL = tuple(Site)
-WORN = {f"DEMO-{site}": site for site in Site}
+SURE = {joint: calibration(joint) for joint in LEG_JOINTS}
+ALL = LEG_SITES
+WORN = {f"DEMO-{site}": site for site in LEG_SITES}
 
 
 class Told:
@@ -193,22 +193,22 @@ def test_the_patient_is_not_named_on_it(feedback: PatientFeedback) -> None:
 
 
 def test_reasons_are_said_in_words_of_what_is_gated_only() -> None:
-    assert reasons_against(tuple(Site), ALL, SURE, frozenset()) == {}
+    assert reasons_against(LEG_SITES, ALL, SURE, frozenset()) == {}
     told = {**SURE, Joint.LEFT_KNEE: replace(SURE[Joint.LEFT_KNEE], zero=ZeroKind.NONE)}
-    reasons = reasons_against(tuple(Site), ALL, told, frozenset({Side.RIGHT}))
+    reasons = reasons_against(LEG_SITES, ALL, told, frozenset({Side.RIGHT}))
     assert reasons[TargetMeasure.KNEE_SWING_PEAK, Side.LEFT].startswith("No zero was set")
     assert (TargetMeasure.KNEE_SWING_PEAK, Side.RIGHT) not in reasons
     assert "prosthetic foot rolls on" in reasons[TargetMeasure.STANCE_RATIO, Side.LEFT]
     assert reasons_against((), (), {}, frozenset())[TargetMeasure.CADENCE, None] == "No foot sensor is worn."
-    one_leg = tuple(site for site in Site if site.side is Side.LEFT)
+    one_leg = tuple(site for site in LEG_SITES if site.side is Side.LEFT)
     reasons = reasons_against(one_leg, ALL, SURE, frozenset())
     assert reasons[TargetMeasure.STANCE_RATIO, Side.LEFT] == "Both feet need a sensor."
     assert reasons[TargetMeasure.FOOT_STRIKE, Side.RIGHT] == "This foot has no sensor."
     assert (TargetMeasure.FOOT_STRIKE, Side.LEFT) not in reasons
-    without = tuple(site for site in Site if site is not Site.RIGHT_THIGH)
-    reasons = reasons_against(tuple(Site), without, SURE, frozenset())
+    without = tuple(site for site in LEG_SITES if site is not Site.RIGHT_THIGH)
+    reasons = reasons_against(LEG_SITES, without, SURE, frozenset())
     assert [*reasons.values()] == ["Its sensors have not rested. Let the patient stand still first."]
     assert (TargetMeasure.KNEE_SWING_PEAK, Side.RIGHT) in reasons
-    assert reasons_against(tuple(Site), ALL, {}, frozenset())[TargetMeasure.KNEE_SWING_PEAK, Side.LEFT].startswith(
+    assert reasons_against(LEG_SITES, ALL, {}, frozenset())[TargetMeasure.KNEE_SWING_PEAK, Side.LEFT].startswith(
         "The knee's"
     )

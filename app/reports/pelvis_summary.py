@@ -1,0 +1,61 @@
+"""What does a sensor on the pelvis add to `summary.json`? Without one, nothing."""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from core.body import Side
+from core.hip.results import HipIdentification
+from core.results import RecordingAnalysis
+from core.verdicts.quantities import OF_HIPS, side_mean
+
+
+def hip_figures(recording: RecordingAnalysis, side: Side) -> dict[str, Any]:
+    """Give the means of one leg's hip and of the pelvis over its strides; nothing without a pelvis."""
+    if recording.pelvis is None:
+        return {}
+    figures: dict[str, Any] = {}
+    for name in OF_HIPS:
+        found = side_mean(recording, side, name)
+        figures[f"{name}_mean"], figures[f"{name}_sd"] = _number(found.found.mean), _number(found.found.sd)
+        figures[f"{name}_status"] = str(found.assessment.verdict)
+    return figures
+
+
+def summarise_pelvis(recording: RecordingAnalysis) -> dict[str, Any]:
+    """Give the hips' identification, the clock of both legs, turns, and the pelvis's lean; nothing without a pelvis."""
+    told: dict[str, Any] = {}
+    if recording.leg_clock is not None:
+        clock = recording.leg_clock
+        told["leg_clock_offset_s"], told["leg_clock_sd_s"] = _number(clock.offset_s), _number(clock.sd_s)
+        told["leg_clock_status"] = str(clock.status)
+    if recording.pelvis is not None:
+        tilt, is_told = recording.pelvis.tilt_rad, recording.verdicts.pelvis.is_told
+        known = tilt[np.isfinite(tilt)]
+        told["pelvis_lean_deg"] = _number(math.degrees(float(known.mean()))) if is_told and len(known) else None
+        told["hips"] = {str(joint): _identification(hip.identification) for joint, hip in recording.hips.items()}
+        told["turns"] = [
+            {"start_s": turn.start_s, "end_s": turn.end_s, "angle_deg": math.degrees(turn.angle_rad)}
+            for turn in recording.turns
+        ]
+    return told
+
+
+def _identification(found: HipIdentification) -> dict[str, Any]:
+    return {
+        "centre_proximal_m": [float(part) for part in found.centre_proximal_m],
+        "centre_distal_m": [float(part) for part in found.centre_distal_m],
+        "sign_margin": _number(found.margin),
+        "disagreement": _number(found.disagreement),
+        "heading_sd_deg": _number(math.degrees(found.heading_sd_rad)),
+        "is_3d": bool(found.is_3d),
+        "moving_s": _number(found.moving_s),
+        "lag_s": _number(found.lag_s),
+        "centres_apart_m": _number(found.centres_apart_m),
+        "from": {"standing": found.standing_from},
+    }
+
+
+def _number(value: float | None) -> float | None:
+    return float(value) if value is not None and math.isfinite(value) else None

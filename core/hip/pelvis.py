@@ -1,0 +1,137 @@
+"""The pelvis over a walk: how it turns against its mean, where the body turns round, and figures of each stride."""
+
+import numpy as np
+from scipy.ndimage import gaussian_filter1d
+
+from core.body import Side
+from core.gait.strides import Strides
+from core.hip.results import HipAngle, PelvisAngles, PelvisTurn
+from core.pair import moving_mean
+from core.samples import FloatArray
+from core.tracks import nominal_step_s
+
+TURN_RAD_S = np.deg2rad(15.0)  # about the vertical, below
+TURN_HZ = 1.0
+MIN_TURN_RAD = np.deg2rad(45.0)  # a step turns the pelvis by 12 deg
+HALF_POWER = 0.1325  # seconds of a Gaussian that halves the power at 1 Hz
+
+
+def turns_of(time_s: FloatArray, heading_rad: FloatArray) -> tuple[PelvisTurn, ...]:
+    """Turns of the body: the rate about the vertical, below 1 Hz, stays over 15 deg/s for 45 deg and more.
+
+    Parameters
+    ----------
+    time_s : (n,)
+        Ascending.
+    heading_rad : (n,)
+        Of the pelvis, to the left, without jumps; NaN where unknown.
+
+    Returns
+    -------
+    tuple of PelvisTurn
+        In order of time, angles in rad, to the left positive.
+    """
+    heard = np.flatnonzero(np.isfinite(heading_rad))
+    if len(heard) < 3:
+        return ()
+    step_s = nominal_step_s(time_s)
+    even = np.interp(time_s, time_s[heard], heading_rad[heard])
+    smooth = gaussian_filter1d(even, HALF_POWER / TURN_HZ / step_s, mode="nearest")
+    rate = np.gradient(smooth, time_s)
+    turns: list[PelvisTurn] = []
+    for sign in (1.0, -1.0):
+        edges = np.flatnonzero(np.diff(np.concatenate([[0], (sign * rate > TURN_RAD_S).astype(np.int8), [0]])))
+        for first, end in zip(edges[::2], edges[1::2], strict=True):
+            angle = float(smooth[end - 1] - smooth[first])
+            if abs(angle) >= MIN_TURN_RAD:
+                turns.append(PelvisTurn(float(time_s[first]), float(time_s[end - 1]), angle))
+    return tuple(sorted(turns, key=lambda turn: turn.start_s))
+
+
+def rotation_of(
+    time_s: FloatArray, heading_rad: FloatArray, turns: tuple[PelvisTurn, ...], stride_s: float
+) -> FloatArray:
+    """Heading of the pelvis against its mean over two strides (n,), rad to the left; NaN within a stride of a turn.
+
+    Parameters
+    ----------
+    time_s, heading_rad : (n,)
+    stride_s
+        The usual stride time, NaN without strides: then all is NaN.
+
+    Returns
+    -------
+    (n,)
+        rad.
+    """
+    rotation = np.full(len(time_s), np.nan)
+    heard = np.flatnonzero(np.isfinite(heading_rad))
+    if not np.isfinite(stride_s) or len(heard) < 3:
+        return rotation
+    step_s = nominal_step_s(time_s)
+    even = np.interp(time_s, time_s[heard], heading_rad[heard])
+    rotation = even - moving_mean(even, max(1, round(2.0 * stride_s / step_s)))
+    rotation[~np.isfinite(heading_rad)] = np.nan
+    for turn in turns:
+        rotation[(time_s > turn.start_s - stride_s) & (time_s < turn.end_s + stride_s)] = np.nan
+    rotation[(time_s < time_s[0] + stride_s) | (time_s > time_s[-1] - stride_s)] = np.nan
+    return rotation
+
+
+def hip_parameters(strides: Strides, time_s: FloatArray, hip: HipAngle) -> dict[str, FloatArray]:
+    """Range, greatest flexion and greatest extension of one hip in each stride of its leg, (k,) each.
+
+    Parameters
+    ----------
+    time_s : (n,)
+        The recording's clock.
+
+    Returns
+    -------
+    dict
+        rad from standing, named as in strides.csv; extension is positive behind; NaN where a sample is missing.
+    """
+    most, least = (_of_strides(strides, time_s, hip.angle_rad, of) for of in (np.max, np.min))
+    return {
+        "hip_range_rad": most - least,
+        "hip_flexion_peak_rad": most,
+        "hip_extension_peak_rad": -least,
+    }
+
+
+def pelvis_parameters(strides: Strides, time_s: FloatArray, pelvis: PelvisAngles, side: Side) -> dict[str, FloatArray]:
+    """Ranges of obliquity and rotation over each stride of one leg, and how far the pelvis drops in its swing, (k,).
+
+    Parameters
+    ----------
+    time_s : (n,)
+        The recording's clock.
+
+    Returns
+    -------
+    dict
+        rad; the drop from standing, positive where the swinging side is the lower one.
+    """
+    obliquity, rotation = pelvis.obliquity_rad, pelvis.rotation_rad
+    lowered = -obliquity if side is Side.LEFT else obliquity
+    swing = _during(strides.toe_off_s, strides.end_s, time_s, lowered, np.max)
+    return {
+        "pelvis_obliquity_range_rad": _of_strides(strides, time_s, obliquity, np.ptp),
+        "pelvis_drop_rad": swing,
+        "pelvis_rotation_range_rad": _of_strides(strides, time_s, rotation, np.ptp),
+    }
+
+
+def _of_strides(strides: Strides, time_s: FloatArray, values: FloatArray, of: object) -> FloatArray:
+    return _during(strides.start_s, strides.end_s, time_s, values, of)
+
+
+def _during(from_s: FloatArray, to_s: FloatArray, time_s: FloatArray, values: FloatArray, of: object) -> FloatArray:
+    """A figure of the samples (n,) in each interval (k,); NaN where one of them is missing."""
+    assert callable(of)
+    found = np.full(len(from_s), np.nan)
+    for k, (start_s, end_s) in enumerate(zip(from_s, to_s, strict=True)):
+        here = values[slice(*np.searchsorted(time_s, [start_s, end_s]))] if np.isfinite(start_s + end_s) else values[:0]
+        if len(here) and np.isfinite(here).all():
+            found[k] = float(of(here))
+    return found
