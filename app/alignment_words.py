@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 
-from app.wording import capitalised, later, tr
+from app.wording import capitalised, later, tr, within_sentence
 from core.alignment import AlignmentChange, NetChange, PartChange, ProsthesisPart, net_of
 
 MINUS = "\N{MINUS SIGN}"
@@ -139,7 +139,7 @@ def _line(changes: Iterable[NetChange], *, has_angle_beside_turns: bool) -> str:
         has_angle = bool(change.angle_deg) and (has_angle_beside_turns or not change.turns)
         own = [_turn(change.turns)] if change.turns else []
         own += [angle_words(change.part, change.angle_deg)] if has_angle else []
-        name, body = _within(part_name(change.part)), _within(_body(change.part))
+        name, body = within_sentence(part_name(change.part)), within_sentence(_body(change.part))
         if own:
             said.append(f"{name} {', '.join(own)}")
         if change.shift_mm:
@@ -167,8 +167,3 @@ def _body(part: ProsthesisPart) -> str:
     if part.startswith("foot_"):
         return tr(OF_FOOT)
     return tr(OF_SOCKET) if part.startswith("socket_") else part_name(part)
-
-
-def _within(name: str) -> str:
-    """A name within a sentence."""
-    return name[:1].lower() + name[1:]

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from core.body import Joint, Side, Site
+from core.body import LEG_JOINTS, Joint, Segment, Side, Site
 from core.samples import FloatArray, ImuBlock, Patient, Recording, RecordingKind, SensorInfo, Session
 from devices.walker_body import (
     COARSE,
@@ -29,9 +29,22 @@ from devices.walker_body import (
     Walk,
     WalkerSettings,
     make_leg,
+    set_up,
 )
-from devices.walker_gait import plan_standing, plan_walk, walk_leg
+from devices.walker_gait import walk_leg
 from devices.walker_motion import Z_AXIS, LegMotion, move_freely, rotation_about, sway_of
+from devices.walker_pelvis import (
+    REAL_THIGH_WOBBLE,
+    PelvisMotion,
+    is_lunging,
+    lunge,
+    pelvis_poses,
+    thigh_on_tissue,
+    turned_pelvis,
+    with_pelvis,
+)
+from devices.walker_plan import plan_standing, plan_walk
+from devices.walker_prosthesis import AS_BUILT, ProsthesisSetting
 from devices.walker_sensors import (
     SEGMENT_ROW,
     Mounting,
@@ -57,6 +70,7 @@ from devices.walker_truth import (
 from devices.walker_variation import NO_CHANGES, StepChanges, draw_changes, draw_gain, follow_joint
 
 __all__ = [
+    "AS_BUILT",
     "COARSE",
     "DEMONSTRATION",
     "NO_CHANGE",
@@ -69,6 +83,7 @@ __all__ = [
     "JointTruth",
     "Manner",
     "Motion",
+    "ProsthesisSetting",
     "RecordingTruth",
     "SensorErrors",
     "SessionTruth",
@@ -133,8 +148,8 @@ def simulate(settings: WalkerSettings) -> SimulatedSession:
         if wanted.is_restrapped_before:
             strapping = number
             mountings, rides = _mount(settings, strapping), {}
-        soft = [joint for joint in Joint if not _is_bare(legs, joint.distal)]
-        gains = {joint: draw_gain(settings, joint, strapping) if joint in soft else 0.0 for joint in Joint}
+        soft = [joint for joint in LEG_JOINTS if not _is_bare(legs, joint.distal)]
+        gains = {joint: draw_gain(settings, joint, strapping) if joint in soft else 0.0 for joint in LEG_JOINTS}
         worn = StrappedSensors(strapping, mountings, gains)
         recording, take, faults = _take(settings, number, legs, worn, faults, rides)
         recordings.append(recording)
@@ -187,21 +202,31 @@ def _take(
     `rides` holds how each sensor rode when these straps were first moved so, and is filled where this is the first.
     """
     wanted = settings.recordings[number]
-    motions, duration_s = _move(settings, number, worn.strapping, legs)
+    motions, pelvis, duration_s = _move(settings, number, worn.strapping, legs)
     imu: dict[Site, ImuBlock] = {}
     clocks: dict[Site, SensorClock] = {}
     biases: dict[Site, FloatArray] = {}
     after: dict[Site, SensorFaults] = {}
+    fine_s = motions[Side.LEFT].time_s
     for site in settings.sites:
-        leg = motions[site.side]
-        tissue = Tissue.RIGID if _is_bare(legs, site) else settings.tissue
-        chance = _rng(settings, 4, _index(site), number)
-        ride = rides.setdefault((site, type(wanted)), draw_ride(chance))
-        following = _following(legs[site.side], leg, site, worn.gains)
-        poses = sensor_poses(leg, site, worn.mountings[site], tissue, ride, chance, following)
+        if site is Site.PELVIS:
+            poses = _pelvis_poses(settings, number, motions, pelvis, worn)
+        else:
+            leg = motions[site.leg_side]
+            tissue = Tissue.RIGID if _is_bare(legs, site) else settings.tissue
+            chance = _rng(settings, 4, _index(site), number)
+            ride = rides.setdefault((site, type(wanted)), draw_ride(chance))
+            following, wobble = _following(legs[site.leg_side], leg, site, worn.gains), 1.0
+            if pelvis is not None and tissue is Tissue.REAL and site.segment is Segment.THIGH:
+                turned = thigh_on_tissue(
+                    leg, legs[site.leg_side].outward, _rng(settings, 10, _index(site), worn.strapping)
+                )
+                following = turned if following is None else turned @ following
+                wobble = REAL_THIGH_WOBBLE
+            poses = sensor_poses(leg, site, worn.mountings[site], tissue, ride, chance, following, wobble)
         clocks[site] = make_clock(settings, site, duration_s, _rng(settings, 5, _index(site), number))
         noise = _rng(settings, 8, _index(site), number)
-        imu[site], bias = record(settings, site, clocks[site], leg.time_s, poses, faults[site], noise)
+        imu[site], bias = record(settings, site, clocks[site], fine_s, poses, faults[site], noise)
         biases[site] = bias.mean(axis=0)
         after[site] = replace(faults[site], gyr_bias_rad_s=bias[-1])
     kinds = {Standing: RecordingKind.STANDING, FreeMotion: RecordingKind.FREE_MOTION, Walk: RecordingKind.WALKING}
@@ -214,14 +239,32 @@ def _take(
     )
     return (
         recording,
-        MovedRecording(wanted.name, isinstance(wanted, Standing), motions, clocks, worn.mountings, biases, worn.gains),
+        MovedRecording(
+            wanted.name, isinstance(wanted, Standing), motions, clocks, worn.mountings, biases, worn.gains, pelvis
+        ),
         after,
     )
 
 
+def _pelvis_poses(
+    settings: WalkerSettings,
+    number: int,
+    motions: Mapping[Side, LegMotion],
+    pelvis: PelvisMotion | None,
+    worn: StrappedSensors,
+) -> tuple[FloatArray, FloatArray]:
+    assert pelvis is not None
+    contacts_s = np.sort(np.concatenate([motion.events.initial_contact_s for motion in motions.values()]))
+    strap, chance = (
+        _rng(settings, 10, _index(Site.PELVIS), worn.strapping),
+        _rng(settings, 4, _index(Site.PELVIS), number),
+    )
+    return pelvis_poses(pelvis, contacts_s, worn.mountings[Site.PELVIS], settings.tissue, strap, chance)
+
+
 def _is_bare(legs: Mapping[Side, Leg], site: Site) -> bool:
     """Whether a site is on a prosthesis, where there is no tissue."""
-    return legs[site.side].is_prosthetic and SEGMENT_ROW[site.segment] > 0
+    return legs[site.leg_side].is_prosthetic and SEGMENT_ROW[site.segment] > 0
 
 
 def _following(leg: Leg, motion: LegMotion, site: Site, gains: Mapping[Joint, float]) -> FloatArray | None:
@@ -234,12 +277,19 @@ def _following(leg: Leg, motion: LegMotion, site: Site, gains: Mapping[Joint, fl
 
 def _move(
     settings: WalkerSettings, number: int, strapping: int, legs: Mapping[Side, Leg]
-) -> tuple[dict[Side, LegMotion], float]:
-    """Both legs' poses on the fine clock, in a compass direction of the recording's own, and its duration."""
+) -> tuple[dict[Side, LegMotion], PelvisMotion | None, float]:
+    """Both legs' poses on the fine clock, in a compass direction of the recording's own, and its duration.
+
+    The pelvis is None where no sensor is on it: then each leg's hip goes its own way.
+    """
     wanted = settings.recordings[number]
+    pelvis = None
     rng = _rng(settings, 6, number)
     per_leg = {side: _rng(settings, 7, number, i) for i, side in enumerate(Side)}
-    if isinstance(wanted, FreeMotion):
+    if isinstance(wanted, FreeMotion) and is_lunging(wanted):
+        duration_s = wanted.duration_s
+        pelvis, motions = lunge(legs, wanted, _fine_clock(settings, duration_s), _rng(settings, 9, number))
+    elif isinstance(wanted, FreeMotion):
         duration_s = wanted.duration_s * (2 if wanted.is_in_turn else 1)
         time_s = _fine_clock(settings, duration_s)
         starts = {Side.LEFT: 0.0, Side.RIGHT: wanted.duration_s if wanted.is_in_turn else 0.0}
@@ -248,7 +298,10 @@ def _move(
         changes = draw_changes(settings, number, strapping, wanted) if isinstance(wanted, Walk) else NO_CHANGES
         motions, duration_s = _stand_or_walk(settings, wanted, changes, legs, rng, per_leg)
     compass = rotation_about(Z_AXIS, rng.uniform(0.0, 2.0 * np.pi, 1))[0]
-    return {side: _turned(motion, compass) for side, motion in motions.items()}, duration_s
+    if Site.PELVIS in settings.sites and pelvis is None:
+        pelvis, motions = with_pelvis(motions, _rng(settings, 9, number))
+    turned = None if pelvis is None else turned_pelvis(pelvis, compass)
+    return {side: _turned(motion, compass) for side, motion in motions.items()}, turned, duration_s
 
 
 def _stand_or_walk(
@@ -268,6 +321,7 @@ def _stand_or_walk(
         plan = plan_walk(wanted, time_s, first, settings.prosthetic_side, rng, changes)
         time_s = time_s[time_s <= plan.duration_s + MARGIN_S]
         plan = replace(plan, hip_path_m=plan.hip_path_m[: len(time_s)])
+        legs = {side: set_up(leg, wanted.prosthesis) for side, leg in legs.items()}
     else:
         time_s = _fine_clock(settings, wanted.duration_s)
         plan = plan_standing(time_s, wanted.duration_s)

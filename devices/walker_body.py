@@ -1,13 +1,14 @@
 """Settings of the simulated patient, and the body that a seed gives."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 
 import numpy as np
 
-from core.body import Segment, Side, Site
+from core.body import LEG_SITES, Segment, Side, Site
 from core.samples import FloatArray, RateKind
+from devices.walker_prosthesis import AS_BUILT, ProsthesisSetting
 
 
 class Tissue(StrEnum):
@@ -26,7 +27,8 @@ class Tissue(StrEnum):
 class Motion(StrEnum):
     """How a leg is moved to identify its joints.
 
-    SIDE_LYING: knee and ankle bend, the thigh hardly moves, the knee axis stands near vertical.
+    SIDE_LYING: knee and ankle bend, the thigh hardly moves, the knee axis stands near vertical. LUNGES: left and right
+    in turn, the body turning round between them.
     """
 
     FULL = "full"
@@ -34,6 +36,7 @@ class Motion(StrEnum):
     SAGITTAL = "sagittal"
     KNEE_ONLY = "knee_only"
     SIDE_LYING = "side_lying"
+    LUNGES = "lunges"
 
 
 class Manner(StrEnum):
@@ -139,6 +142,8 @@ class Walk:
     drift, is_drift_random
         How gait changes from the first to the last stride: evenly, or as a random walk that ends by `drift` (a standard
         deviation) away.
+    prosthesis
+        What was set at the prosthesis before this walk; of who wears none it means nothing.
     """
 
     name: str = "walk 1"
@@ -154,6 +159,7 @@ class Walk:
     changed_side: Side | None = None
     drift: GaitChange = NO_CHANGE
     is_drift_random: bool = False
+    prosthesis: ProsthesisSetting = AS_BUILT
 
 
 @dataclass(frozen=True, slots=True)
@@ -223,7 +229,7 @@ class WalkerSettings:
 
     seed: int = 0
     recordings: tuple[Standing | FreeMotion | Walk, ...] = (Standing(), FreeMotion(), Walk())
-    sites: tuple[Site, ...] = tuple(Site)
+    sites: tuple[Site, ...] = LEG_SITES
     tissue: Tissue = Tissue.RIGID
     prosthetic_side: Side | None = None
     stiff_knee_side: Side | None = None
@@ -260,6 +266,7 @@ class Leg:
     toe_out_rad: float
     knee_rotation_per_flexion: float
     is_prosthetic: bool
+    prosthesis: ProsthesisSetting = AS_BUILT
 
     @property
     def outward(self) -> float:
@@ -274,7 +281,15 @@ SENSOR_PLACES_M = {  # from the proximal joint, y outward: side of the thigh, fr
     Segment.THIGH: np.array([0.02, 0.07, -0.22]),
     Segment.SHANK: np.array([0.04, 0.03, -0.20]),
     Segment.FOOT: np.array([0.09, 0.0, -0.03]),
+    Segment.PELVIS: np.array([-0.15, 0.0, 0.08]),  # on the sacrum, from the middle between both hips
 }
+
+
+def set_up(leg: Leg, setting: ProsthesisSetting) -> Leg:
+    """The leg with its prosthesis set so; the same leg where it is none."""
+    if not leg.is_prosthetic or setting == AS_BUILT:
+        return leg
+    return replace(leg, prosthesis=setting, shank_m=leg.shank_m + 1e-3 * setting.height_mm)
 
 
 def make_leg(settings: WalkerSettings, side: Side) -> Leg:

@@ -6,16 +6,14 @@ In swing the ankle's curve and the hip's path are bridged from toe-off to the ne
 Each hip has a path of its own: a pelvis would have to give by some centimetres, which no sensor on the legs can tell.
 """
 
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from scipy.interpolate import BPoly, PchipInterpolator
 
-from core.body import Side
 from core.samples import FloatArray, IntArray
-from devices.walker_body import HEEL_M, TOE_M, Leg, Walk
-from devices.walker_manners import Gait, gait_at, gaits_of_walk
+from devices.walker_body import HEEL_M, TOE_M, Leg
+from devices.walker_manners import Gait
 from devices.walker_motion import (
     Y_AXIS,
     Z_AXIS,
@@ -29,15 +27,14 @@ from devices.walker_motion import (
     smooth,
     smooth_step,
 )
-from devices.walker_variation import NO_CHANGES, FootChanges, StepChanges
+from devices.walker_plan import HIP_AHEAD_OF_ANKLE_M, Bend, StepPlan, WalkPlan
+from devices.walker_prosthesis import AS_BUILT, LEAST_FLAT_S
 
-HIP_AHEAD_OF_ANKLE_M = 0.03  # standing, over the middle of the foot
 MARGIN_S = 0.03  # the rolling goes on this long beyond both ends of stance, so that swing can join on smoothly
 PITCH_WIDTH_S = 0.012  # an impact takes some 20 ms to turn a foot
 # the foot is driven forward and up by so much at initial contact: about 40 m/s2 there, 27 at the shank, 14 at the thigh
 STIFF_GIVE_RAD, STIFF_FLAT_RAD = np.deg2rad(2.0), np.deg2rad(0.3)
 SHOCK_M, SHOCK_PITCH_RAD = 0.0015, np.deg2rad(0.25)
-TURN_RADIUS_M = 0.8
 
 # Knee flexion, deg, over stance and swing (each 0-1) of a stride at comfortable speed: the two-peaked curve of every
 # textbook (loading peak at 14 % of the stride, swing peak at 73 %), drawn by hand
@@ -53,165 +50,11 @@ KNEE_STANCE = (
     (1.0, 31.0),
 )
 KNEE_SWING = ((0.11, 46.5), (0.31, 62.5), (0.48, 56.0), (0.62, 40.0), (0.76, 19.0), (0.88, 4.5), (0.95, 1.5))
+KNEE_TURNS = 0.31  # of swing, where its peak is
 KNEE_PEAK_DEG = 59.0  # of the swing, over where the curves are scaled from
 ANKLE_AT_TOE_OFF = 0.89  # of what is added to the ankle's range: swing goes on beyond toe-off
 INVERSION_DEG = ((0.0, 2.0), (0.2, -3.5), (0.7, -1.0), (1.0, 4.0), (1.5, 2.5))  # over stance 0-1 and swing 1-2
 ROTATION_DEG = ((0.0, -1.0), (0.3, 3.0), (0.8, -2.0), (1.0, -3.0), (1.5, 1.0))
-
-
-@dataclass(frozen=True, slots=True)
-class StepPlan:
-    """The stances of one foot: the first and the last are standing, so contact and toe-off are infinite at the ends.
-
-    All (i,). `ankle_m` is where along the path the ankle stands. `knee_deg` and `ankle_deg` are added to the peaks of
-    the swing that follows and of the toe-off that ends the stance.
-    """
-
-    contact_s: FloatArray
-    full_contact_s: FloatArray
-    heel_rise_s: FloatArray
-    toe_off_s: FloatArray
-    ankle_m: FloatArray
-    knee_deg: FloatArray
-    ankle_deg: FloatArray
-
-
-@dataclass(frozen=True, slots=True)
-class Bend:
-    """Where the path turns: its middle along the path, how far (positive to the left), and the length of its arc."""
-
-    middle_m: float
-    turn_rad: float
-    arc_m: float
-
-
-@dataclass(frozen=True, slots=True)
-class WalkPlan:
-    """Both feet's steps, when the hips speed up and slow down along the path, and where the path turns."""
-
-    gaits: Mapping[Side, Gait]
-    duration_s: float
-    hip_path_m: FloatArray
-    steps: dict[Side, StepPlan]
-    bends: tuple[Bend, ...] = ()
-
-
-def plan_walk(
-    walk: Walk,
-    time_s: FloatArray,
-    first: Side,
-    prosthetic_side: Side | None,
-    rng: np.random.Generator,
-    changes: StepChanges = NO_CHANGES,
-) -> WalkPlan:
-    """Footsteps on the fine clock `time_s` (n,), seconds from the start of the recording.
-
-    Parameters
-    ----------
-    time_s : (n,)
-        Fine clock, from the start of the recording.
-
-    Returns
-    -------
-    WalkPlan
-        Times in seconds, places in metres.
-    """
-    gaits = gaits_of_walk(walk)
-    gait = gaits[first]
-    stride_s, swing_s = gait.stride_s, (1.0 - gait.stance) * gait.stride_s
-    first_off = walk.standing_before_s + 0.3 * stride_s
-    time, length = changes.of_steps(2 * walk.strides)
-    steps_s = 0.5 * stride_s * rng.normal(1.0, 0.012, 2 * walk.strides) * time
-    contact = first_off + swing_s + np.concatenate([[0.0], np.cumsum(steps_s[1:])])
-    at_speed = contact[0] + 0.12 * stride_s
-    slowing = contact[-2]
-    stopped = slowing + 2.0 * gait.midstance * stride_s
-    speed = (
-        walk.speed_m_s
-        * np.interp(time_s, contact, length / time)
-        * (
-            smooth_step((time_s - at_speed) / (0.65 * stride_s) + 1.0)
-            - smooth_step((time_s - slowing) / (stopped - slowing))
-        )
-    )
-    hip_path = np.cumsum(speed) * (time_s[1] - time_s[0])
-    placed_s = contact + gait.midstance * stride_s
-    ankle = np.interp(placed_s, time_s, hip_path)
-    ankle[-2:] = hip_path[-1]
-    ankle[:-2] += rng.normal(0.0, 0.01 * gait.stride_m, len(ankle) - 2)
-    other = Side.RIGHT if first is Side.LEFT else Side.LEFT
-    stride_time = 0.5 * (time + np.concatenate([time[:1], time[:-1]]))
-    plans = {
-        side: plan_foot(
-            gaits[side],
-            side is prosthetic_side,
-            contact[k::2],
-            np.concatenate([[hip_path[0]], ankle[k::2]]) - HIP_AHEAD_OF_ANKLE_M,
-            stride_time[k::2],
-            changes.of_foot(side, walk.strides),
-        )
-        for k, side in enumerate((first, other))
-    }
-    bend = Bend(0.5 * float(hip_path.max()), walk.turn_rad, max(abs(walk.turn_rad) * TURN_RADIUS_M, 0.1))
-    return WalkPlan(gaits, float(stopped + walk.standing_after_s + 0.4 * stride_s), hip_path, plans, (bend,))
-
-
-def plan_foot(
-    gait: Gait,
-    is_prosthetic: bool,
-    contact_s: FloatArray,
-    ankle_m: FloatArray,
-    stride_time: FloatArray,
-    changes: FootChanges,
-) -> StepPlan:
-    """The stances of one foot from when it lands and where its ankle then stands.
-
-    Parameters
-    ----------
-    contact_s : (k,)
-        Ascending.
-    ankle_m : (k + 1,)
-        Along the path, the place of standing first.
-    stride_time : (k,)
-        Each stride's time over the usual one.
-
-    Returns
-    -------
-    StepPlan
-        Of k + 1 stances.
-    """
-    full_contact, heel_rise = (0.14, 0.30) if is_prosthetic else (gait.full_contact, gait.heel_rise)
-    swing_s = (1.0 - gait.stance - 0.01 * changes.stance_percent) * gait.stride_s * stride_time
-    starts = np.concatenate([[-np.inf], contact_s])
-    ends = np.concatenate([contact_s - swing_s, [np.inf]])
-    return StepPlan(
-        contact_s=starts,
-        full_contact_s=starts + full_contact * gait.stride_s,
-        heel_rise_s=ends - (gait.stance - heel_rise) * gait.stride_s,
-        toe_off_s=ends,
-        ankle_m=ankle_m,
-        knee_deg=np.append(changes.knee_deg, 0.0),
-        ankle_deg=np.append(changes.ankle_deg, 0.0),
-    )
-
-
-def plan_standing(time_s: FloatArray, duration_s: float) -> WalkPlan:
-    """Both feet side by side, no step.
-
-    Parameters
-    ----------
-    time_s : (n,)
-        Fine clock, from the start of the recording.
-
-    Returns
-    -------
-    WalkPlan
-        Without steps.
-    """
-    gait = gait_at(1.19)
-    place_m = np.array([-HIP_AHEAD_OF_ANKLE_M])
-    foot = plan_foot(gait, False, np.empty(0), place_m, np.empty(0), NO_CHANGES.of_foot(Side.LEFT, 0))
-    return WalkPlan(dict.fromkeys(Side, gait), duration_s, np.zeros_like(time_s), dict.fromkeys(Side, foot))
 
 
 def walk_leg(leg: Leg, plan: WalkPlan, time_s: FloatArray, sway_m: FloatArray, rng: np.random.Generator) -> LegMotion:
@@ -229,6 +72,7 @@ def walk_leg(leg: Leg, plan: WalkPlan, time_s: FloatArray, sway_m: FloatArray, r
     LegMotion
         Earth axes, z up, metres.
     """
+    plan = _as_set(leg, plan, time_s)
     steps, gait = plan.steps[leg.side], plan.gaits[leg.side]
     step_s = time_s[1] - time_s[0]
     stance = _stance_at(steps, time_s)
@@ -237,7 +81,7 @@ def walk_leg(leg: Leg, plan: WalkPlan, time_s: FloatArray, sway_m: FloatArray, r
         for off, on in zip(steps.toe_off_s[:-1], steps.contact_s[1:], strict=True)
     ]
     shock = _shock(steps, time_s) * gait.shock
-    knee = smooth(_knee_curve(leg, steps, gait, time_s, rng), step_s, 0.03)
+    knee = smooth(leg.prosthesis.stopped(_knee_curve(leg, steps, gait, time_s, rng)), step_s, 0.03)
     if gait.is_ankle_stiff:
         pitch, steps = _roll_as_one(leg, plan, knee, time_s)
     else:
@@ -251,7 +95,7 @@ def walk_leg(leg: Leg, plan: WalkPlan, time_s: FloatArray, sway_m: FloatArray, r
         _bridge(ahead, swing, step_s)
     lean = _shank_lean(leg, ahead, knee)
     ankle = pitch + lean
-    lifted = np.deg2rad(2.0) if leg.is_prosthetic else gait.lifted_rad
+    lifted = np.deg2rad(2.0) - leg.prosthesis.plantar_rad if leg.is_prosthetic else gait.lifted_rad
     if gait.is_ankle_stiff:
         lifted = _standing_lean(leg)
     for swing in swings:
@@ -280,6 +124,33 @@ def walk_leg(leg: Leg, plan: WalkPlan, time_s: FloatArray, sway_m: FloatArray, r
     return LegMotion(time_s, angles, rotations, origins, events, place)
 
 
+def _as_set(leg: Leg, plan: WalkPlan, time_s: FloatArray) -> WalkPlan:
+    """The plan as the prosthesis is set: where it stands, when it is flat and when its heel rises."""
+    setting = leg.prosthesis
+    if setting == AS_BUILT:
+        return plan
+    steps, gait = plan.steps[leg.side], plan.gaits[leg.side]
+    ankle_m = steps.ankle_m - 1e-3 * setting.back_mm
+    full_contact_s = steps.full_contact_s.copy()
+    built = replace(leg, prosthesis=replace(setting, plantar_deg=0.0))
+    for i in range(1, len(full_contact_s)):
+        ahead_m = float(np.interp(steps.contact_s[i], time_s, plan.hip_path_m)) - ankle_m[i]
+        less = _contact_pitch(leg, gait, ahead_m) / _contact_pitch(built, gait, ahead_m)
+        full_contact_s[i] = steps.contact_s[i] + less * (full_contact_s[i] - steps.contact_s[i])
+    sooner_s = setting.sooner_s(leg.thigh_m + leg.shank_m, gait.speed_m_s)
+    later_s = 0.75 * (steps.toe_off_s[:-1] - steps.heel_rise_s[:-1])  # at most: something is left to rise in
+    heel_rise_s = steps.heel_rise_s.copy()
+    heel_rise_s[:-1] = np.maximum(heel_rise_s[:-1] + np.minimum(later_s, -sooner_s), full_contact_s[:-1] + LEAST_FLAT_S)
+    mine = replace(
+        steps,
+        ankle_m=ankle_m,
+        full_contact_s=full_contact_s,
+        heel_rise_s=heel_rise_s,
+        knee_deg=steps.knee_deg + setting.swing_flexion_deg,
+    )
+    return replace(plan, steps={**plan.steps, leg.side: mine})
+
+
 def _stance_at(steps: StepPlan, time_s: FloatArray) -> IntArray:
     """Which foothold counts at each instant: the next one from the middle of each swing on."""
     return np.searchsorted(0.5 * (steps.toe_off_s[:-1] + steps.contact_s[1:]), time_s)
@@ -300,7 +171,7 @@ def _knee_curve(leg: Leg, steps: StepPlan, gait: Gait, time_s: FloatArray, rng: 
     rows: list[tuple[float, float]] = []
     last = len(steps.contact_s) - 1
     for i in range(last + 1):
-        loading = gait.knee_loading * leg.knee_gain * rng.normal(1.0, 0.05)
+        loading = gait.knee_loading * leg.prosthesis.stance_flexion * leg.knee_gain * rng.normal(1.0, 0.05)
         swing = gait.knee_swing * leg.knee_gain * rng.normal(1.0, 0.015) + steps.knee_deg[i] / KNEE_PEAK_DEG
         on, off = steps.contact_s[i], steps.toe_off_s[i]
         if i == 0:
@@ -317,7 +188,11 @@ def _knee_curve(leg: Leg, steps: StepPlan, gait: Gait, time_s: FloatArray, rng: 
             rows.append((on + 0.6 * stance_s, rest))
         else:
             rows += [
-                (off + u * (steps.contact_s[i + 1] - off), max(3.5 + (deg - 3.5) * swing, 0.5)) for u, deg in KNEE_SWING
+                (
+                    off + leg.prosthesis.extending(u, KNEE_TURNS) * (steps.contact_s[i + 1] - off),
+                    max(3.5 + (deg - 3.5) * swing, 0.5),
+                )
+                for u, deg in KNEE_SWING
             ]
     return np.deg2rad(_knots(time_s, rows if last else [], rest))
 
@@ -349,9 +224,10 @@ def _contact_pitch(leg: Leg, gait: Gait, hip_ahead_m: float) -> float:
     """The pitch over that of mid-stance that lands the heel with the ankle at about zero; the last step nearly flat."""
     if gait.contact_pitch_rad < 0.0:  # on the toes
         return gait.contact_pitch_rad
-    wanted = np.deg2rad(-3.0 if leg.is_prosthetic else 1.0)
+    wanted = np.deg2rad(-3.0 if leg.is_prosthetic else 1.0) - leg.prosthesis.plantar_rad
     lean = _shank_lean(leg, np.array([hip_ahead_m]), np.deg2rad(np.array([4.0])))
-    return float(np.clip(wanted - lean[0], np.deg2rad(2.0), gait.contact_pitch_rad))
+    most = gait.contact_pitch_rad + max(0.0, -leg.prosthesis.plantar_rad)
+    return float(np.clip(wanted - lean[0], np.deg2rad(2.0), most))
 
 
 def _toe_off_pitch(leg: Leg, gait: Gait, hip_ahead_m: float, knee_deg: float, ankle_deg: float) -> float:
@@ -360,7 +236,8 @@ def _toe_off_pitch(leg: Leg, gait: Gait, hip_ahead_m: float, knee_deg: float, an
     if np.isfinite(gait.toe_off_pitch_rad):
         return gait.toe_off_pitch_rad - more_rad
     knee = np.deg2rad(np.array([3.5 + 27.5 * leg.knee_gain * gait.knee_swing + 27.5 * knee_deg / KNEE_PEAK_DEG]))
-    wanted = np.deg2rad(-2.0) if leg.is_prosthetic else gait.toe_off_ankle_rad * leg.ankle_gain - more_rad
+    built = np.deg2rad(-2.0) - leg.prosthesis.plantar_rad
+    wanted = built if leg.is_prosthetic else gait.toe_off_ankle_rad * leg.ankle_gain - more_rad
     pitch = np.array([-0.5])
     for _ in range(8):  # the rolling foot carries the ankle forward: a contraction by a fifth each time
         pitch = wanted - _shank_lean(leg, hip_ahead_m - _roll(pitch)[0], knee)

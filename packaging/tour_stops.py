@@ -43,6 +43,8 @@ class Stop:
         begins with Stop has the focus), "click Stop", "drag 0A09 to L thigh".
     lingers_s
         Before the pictures, for what moves.
+    leaves
+        Files of the tour's own folder, by a pattern, and words that one of them must hold then.
     """
 
     name: str
@@ -50,6 +52,7 @@ class Stop:
     does: tuple[str, ...] = ()
     lingers_s: float = 0.5
     patience_s: float = PATIENCE_S
+    leaves: tuple[tuple[str, str], ...] = ()
 
 
 def at(screen: str) -> Callable[[Seen], bool]:
@@ -243,12 +246,18 @@ BENCH: tuple[Stop, ...] = (  # three alignments of one prosthesis, by keys
         (
             *("to Part", "press p", "to Height", *pressed("plus", 3), "to Part", "press f"),
             *("to Angle", *pressed("plus", 4), "to Turn", *pressed("plus", 4), "to Shift", *pressed("plus", 4)),
+            *("to Part", "press k", "to Turn", *pressed("plus", 12)),
         ),
     ),
     Stop("33-b-told", offers("Walk with B"), ("press space",), lingers_s=1.0),
     Stop("33a-b-walking", has_walked(STRIDES), ("press space",), patience_s=60.0),
     Stop("34-b-against-a", offers("Keep B"), ("press Return",), lingers_s=3.0, patience_s=60.0),
-    Stop("35-b-kept", offers("B again"), ("to Turn", *pressed("minus", 2), "press space"), lingers_s=1.0),
+    Stop(
+        "35-b-kept",
+        offers("B again"),
+        ("to Part", "press k", "to Angle", *pressed("plus", 8), "press space"),
+        lingers_s=1.0,
+    ),
     Stop("35a-c-walking", has_walked(STRIDES), ("press space",), patience_s=60.0),
     Stop("36-c-against-b", offers("Keep C"), ("press 3", "press shift+1"), lingers_s=3.0, patience_s=60.0),
     Stop("37-c-against-a", offers("Return to A"), ("to Return to A", "press Return"), lingers_s=1.0),
@@ -257,6 +266,17 @@ BENCH: tuple[Stop, ...] = (  # three alignments of one prosthesis, by keys
     Stop("40-results", offers("Legs", "Data"), ("press ctrl+7",), lingers_s=1.0, patience_s=60.0),
     Stop("41-report", at_step("ReportStep"), ("press ctrl+s",), lingers_s=1.0, patience_s=60.0),
     Stop("42-where", offers("Save"), ("press ctrl+a", "type {home}/results", "press Return"), lingers_s=1.0),
-    Stop("43-saved", says("Saved as"), lingers_s=2.0),
+    Stop(
+        "43-saved",
+        says("Saved as"),
+        lingers_s=2.0,
+        leaves=(
+            ("results*/**/alignments.csv", "Alignment B,Alignment A,foot_front_screw,2,0.5,4,"),
+            ("results*/**/alignments.csv", "Alignment B,Alignment A,knee_unit,,1.5,,"),
+            ("results*/**/alignments.csv", "Alignment C,Alignment B,knee_unit,4,,,"),
+            ("results*/**/summary.json", "foot_front_screw"),
+            ("results*/**/differences.csv", "foot_heel_rise_deg"),
+        ),
+    ),
 )
 TOURS = {"keyboard": (*KEYBOARD, *SECOND_BY_KEYS), "mouse": (*MOUSE, *SECOND_BY_MOUSE), "bench": BENCH}

@@ -17,9 +17,11 @@ from app.acquisition.heartbeat import Heartbeat, Standstill
 from app.acquisition.preview import LiveEstimator, Preview
 from app.acquisition.reader import Reader
 from app.storage.journal.writer import JournalSummary, JournalWriter
+from core.alignment import NetChange
 from core.samples import ImuBlock, RecordingKind
 from devices.host_clock import host_time_ns
 from devices.live import LiveSource, SourceRefusedError
+from devices.prosthesis_user import ProsthesisUser
 
 __all__ = ["Acquisition", "LiveEstimator", "SensorStatus"]
 
@@ -164,6 +166,12 @@ class Acquisition:
         """
         told = [reader.source.ask(kind) for reader in self._readers]
         return max((length_s for length_s in told if length_s is not None), default=None)
+
+    def set_up(self, changes: Sequence[NetChange]) -> None:
+        """Tell the simulated user of a prosthesis what was changed at it; at a real one somebody has turned it."""
+        for reader in self._readers:
+            if isinstance(reader.source, ProsthesisUser):
+                reader.source.set_up(changes)
 
     def identify(self, sensor: str) -> bool:
         """Light a sensor's LED; False where it has none."""

@@ -9,6 +9,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from app.reports.agreed import agreed_with
 from app.reports.comparison import (
     MEASURES,
     Comparison,
@@ -22,7 +23,7 @@ from app.reports.comparison import (
 from app.reports.csv_report import typed_cell, write_table
 from app.reports.status import status_of
 from app.reports.visits import by_condition
-from core.body import Joint, Side
+from core.body import LEG_JOINTS, Joint, Side
 from core.gait.cycles import POINTS
 from core.gait.spatiotemporal import MeanAndSd
 from core.gait.symmetry import curve_difference, symmetry_index_percent
@@ -31,7 +32,7 @@ from core.results import Analysis
 from core.samples import Session
 from core.verdicts.measurement_error import Difference, Judgement
 from core.verdicts.model import Verdict, together
-from core.verdicts.quantities import OF_BOTH, QUANTITIES, QuantityClass, assessment_of_both, joint_of
+from core.verdicts.quantities import CLASSES, FITTING, OF_BOTH, QUANTITIES, QuantityClass, assessment_of_both, joint_of
 
 DIFFERENCES = "differences.csv"
 COMPARED_CYCLES = "compared_cycles.csv"
@@ -44,10 +45,13 @@ HEADER = (
     *(f"against_{what}" for what in OF_PART),
     *("side", "parameter", "n", "mean", "sd", "against_n", "against_mean", "against_sd"),
     *JUDGED,
-    *("left_out_by_hand", "against_left_out_by_hand"),
+    *("left_out_by_hand", "against_left_out_by_hand", "chosen_before"),
 )
 
 OF_WALKS = {measure.column: measure for measure in MEASURES if measure.is_of_walk}
+
+COMPARED = (*QUANTITIES, *FITTING)  # of hips and pelvis no error of a difference is known
+SIGNED = ("foot_pitch_at_contact_deg",)  # whose nought is no less of it: a share of it says nothing
 
 WITHHELD = Difference(math.nan, math.nan, Judgement.WITHHELD)
 
@@ -79,7 +83,7 @@ def comparisons_of(visits: Sequence[tuple[Session, Analysis]]) -> list[Compariso
     of_visits = []
     for number, (session, analysis) in enumerate(visits, start=1):
         prefix = str(number) if len(visits) > 1 else ""
-        of_visits.append(conditions_of(analysis, session.recordings, prefix))
+        of_visits.append(conditions_of(analysis, session.recordings, prefix, agreed_with(session)))
     are_simulated = [analysis.is_simulated for _, analysis in visits]
     found = [
         Comparison(Contrast.CONDITIONS, parts, is_simulated=is_simulated)
@@ -106,7 +110,7 @@ def without_common_condition(visits: Sequence[tuple[Session, Analysis]]) -> list
 
 def _by_condition(visits: Sequence[tuple[Session, Analysis]]) -> list[Mapping[str, Part]]:
     return [
-        by_condition(analysis, session.recordings, str(number))
+        by_condition(analysis, session.recordings, str(number), agreed_with(session))
         for number, (session, analysis) in enumerate(visits, start=1)
     ]
 
@@ -116,7 +120,7 @@ def rows_of(comparison: Comparison) -> Iterator[Row]:
     against = comparison.against
     for part in comparison.others:
         for side in Side:
-            for column in QUANTITIES:
+            for column in COMPARED:
                 found = comparison.compare(Measure.of(column), side, part)
                 if found.reservation is Reservation.NOT_MEASURED:
                     continue
@@ -156,7 +160,7 @@ def write_compared_cycles(parts: Sequence[Part], path: Path) -> None:
     OSError
         The file cannot be written.
     """
-    curves = [(part, joint) for joint in Joint for part in parts if joint in part.joints]
+    curves = [(part, joint) for joint in LEG_JOINTS for part in parts if joint in part.joints]
     cells = [list(_curve(part, joint)) for part, joint in curves]
     heads = [f"{part.letter}_{joint}_{of}" for part, joint in curves for of in OF_CURVE]
     lines = [[str(percent), *(cell for curve in cells for cell in curve[percent])] for percent in range(POINTS)]
@@ -186,12 +190,13 @@ def write_sides(parts: Sequence[Part], sides: tuple[Side, Side], path: Path) -> 
     lines = []
     for part in parts:
         left_out = [str(part.left_out_by_hand(side)) for side in sides]
-        for column in QUANTITIES:
+        for column in COMPARED:
             one, other = (part.value(side, column) for side in sides)
             if not all(_is_measured(part, side, column) for side in sides):
                 continue
             status = together(part.assessment(side, column) for side in sides).verdict
-            has_index = QUANTITIES[column] is not QuantityClass.HEIGHT and min(one.n, other.n) >= MIN_STRIDES_FOR_MEAN
+            is_size = CLASSES[column] is not QuantityClass.HEIGHT and column not in SIGNED
+            has_index = is_size and min(one.n, other.n) >= MIN_STRIDES_FOR_MEAN
             symmetry = symmetry_index_percent(one.mean, other.mean) if has_index else math.nan
             cells = [*_named(part), column, *_mean(one), *_mean(other)]
             judged = _judged(compare_legs(part, column, sides), status)
@@ -241,7 +246,9 @@ def _cells(row: Row) -> list[str]:
     side = "both" if row.side is None else str(row.side)
     judged = _judged(row.difference, row.status)
     by_hand = [str(part.left_out_by_hand(row.side)) for part in (row.part, row.against)]
-    return [*parts, side, row.parameter, *_mean(row.value), *_mean(row.other), *judged, *by_hand]
+    is_chosen = row.part.agreed.is_chosen(row.parameter, Side if row.side is None else (row.side,))
+    figures = [*_mean(row.value), *_mean(row.other), *judged, *by_hand]
+    return [*parts, side, row.parameter, *figures, str(is_chosen).lower()]
 
 
 def _named(part: Part) -> list[str]:

@@ -2,8 +2,9 @@
 
 import logging
 import threading
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Signal
@@ -12,7 +13,7 @@ from app.storage.stored import PlacedSensor
 from app.widgets.sensor_tile import SILENT_FROM_S
 from app.wording import filled, name_of, tr
 from app.workers.background import Background, Report, Work
-from core.body import Joint, Site
+from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site
 from core.samples import SensorInfo
 from devices.live import SourceRefusedError
 
@@ -30,7 +31,8 @@ class SourceChoice:
     What `is_simulated` or replayed was not measured on this patient: the library keeps it apart from real recordings.
     `worn` gives the site by the sensor's name where the source tells it, as a stored session does. Of `lines` it has to
     be told what they mean; they are heard through another choice then. `asks` says whom on the network `make` will ask
-    what, where it asks anybody, and what to do to have it ask: that is said before.
+    what, where it asks anybody, and what to do to have it ask: that is said before. `make_prosthetic` is called instead
+    for a patient with a prosthesis on one side.
     """
 
     key: str
@@ -40,6 +42,13 @@ class SourceChoice:
     worn: Mapping[str, Site] = field(default_factory=dict)
     lines: "tuple[LinesAt, ...]" = ()
     asks: tuple[str, str] = ("", "")
+    make_prosthetic: "Callable[[Side], Acquisition] | None" = None
+
+    def for_sides(self, prosthetic: Collection[Side]) -> "SourceChoice":
+        """For a patient with prostheses on these sides."""
+        if self.make_prosthetic is None or len(prosthetic) != 1:
+            return self
+        return replace(self, make=partial(self.make_prosthetic, *prosthetic))
 
 
 class WornSensors(QObject):
@@ -90,7 +99,7 @@ class WornSensors(QObject):
     def joints(self) -> list[Joint]:
         """Those that have a sensor on both sides."""
         worn = self.sensor_at
-        return [joint for joint in Joint if joint.proximal in worn and joint.distal in worn]
+        return [joint for joint in LEG_JOINTS if joint.proximal in worn and joint.distal in worn]
 
     def search(self, choice: SourceChoice) -> None:
         """Open a source beside the screen; `opened` or `refused` follows. What was open before is closed."""
@@ -153,11 +162,11 @@ class WornSensors(QObject):
     def price_of_missing(self) -> str:
         """What is not measured for want of sensors, in a sentence; empty where all six are worn."""
         worn = self.sensor_at
-        lost = [name_of(joint) for joint in Joint if joint not in self.joints]
+        lost = [name_of(joint) for joint in LEG_JOINTS if joint not in self.joints]
         if not lost or not worn:
             return ""
         return tr("Without {sites}: no {joints} angles.").format(
-            sites=", ".join(name_of(site) for site in Site if site not in worn), joints=", ".join(lost)
+            sites=", ".join(name_of(site) for site in LEG_SITES if site not in worn), joints=", ".join(lost)
         )
 
     def _close(self) -> None:

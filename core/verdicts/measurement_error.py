@@ -1,7 +1,6 @@
 """By how much two means have to differ before more than chance, drift, clocks and straps is behind it.
 
-Of one mean u^2 = se^2 + d^2 + c^2: its standard error with the strides' correlation, half of what the walk's halves
-or thirds differ by, and what the lag's uncertainty makes of it. Of a difference U^2 = u1^2 + u2^2 + v^2 + 2 sigma^2
+How sure one mean is, u, tells `core.verdicts.stride_means`. Of a difference U^2 = u1^2 + u2^2 + v^2 + 2 sigma^2
 and the error is 1.96 U, the minimal detectable change at 95 %; v is what another speed alone may make of it, and sigma
 adds what lies between the two means, by the kind of comparison.
 """
@@ -12,16 +11,12 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import NamedTuple
 
-import numpy as np
-
 from core.gait.cycles import EXCURSIONS
 from core.norms import MIN_STRIDES_FOR_MEAN, MIN_STRIDES_FOR_SD
-from core.samples import FloatArray
 from core.verdicts.model import Assessment
+from core.verdicts.stride_means import MeanOfStrides
 
 Z95 = 1.96
-MIN_CORRELATION = 0.3  # of neighbouring strides; 0 to 0.6 were seen in real walks, and short walks show too little
-MAX_CORRELATION = 0.9  # beyond, the walk drifts, which the halves tell
 ANGLE_PER_LAG_DEG_S = 400.0  # what a joint turns in swing: so much of its angle is at stake per second of lag
 SENTENCE_FACTOR = 1.5  # Bonferroni for some 16 judged measures: a sentence on page one needs so much more
 
@@ -195,7 +190,7 @@ SIGMAS: Mapping[ComparisonKind, Mapping[QuantityKind, Sigma]] = {
         QuantityKind.SEGMENT_SHAPE: Sigma(1.0, _OF_KNEE, is_borrowed=True),
         QuantityKind.SEGMENT_HEIGHT: Sigma(1.2, _OF_KNEE, is_borrowed=True),
         QuantityKind.FOOT_PITCH: Sigma(1.3, _OF_FOOT, is_borrowed=True),  # hypot of both
-        QuantityKind.FOOT_FLAT: Sigma(1.0, _GUESS, is_borrowed=True),  # two events of two kinds, each less sure
+        QuantityKind.FOOT_FLAT: Sigma(1.2, _GUESS, is_borrowed=True),  # two events of two kinds, each less sure
         QuantityKind.KNEE_TIMING: Sigma(0.5, _OF_STANCE, is_borrowed=True),
     },
     ComparisonKind.LEGS: {
@@ -217,33 +212,6 @@ _BETWEEN: Mapping[ComparisonKind, tuple[ErrorSource, ...]] = {
 }
 _HEIGHTS = (QuantityKind.KNEE_HEIGHT, QuantityKind.ANKLE_HEIGHT, QuantityKind.SEGMENT_HEIGHT)
 _OWN_LEG = (QuantityKind.STANCE, QuantityKind.TIME, QuantityKind.LENGTH)  # between legs the events' bias counts
-
-
-@dataclass(frozen=True, slots=True)
-class MeanOfStrides:
-    """A mean over strides and what is known of its uncertainty; NaN where it is not known.
-
-    Attributes
-    ----------
-    standard_error
-        With the correlation of neighbouring strides.
-    drift
-        Half of what the halves, or the thirds that lie farthest apart, differ by beyond chance.
-    clock_error
-        What the uncertainty of the lag between the joint's sensors makes of it.
-    """
-
-    mean: float
-    sd: float
-    n: int
-    standard_error: float
-    drift: float
-    clock_error: float = 0.0
-
-    @property
-    def uncertainty(self) -> float:
-        """One standard deviation of the mean, u."""
-        return math.sqrt(self.standard_error**2 + self.drift**2 + self.clock_error**2)
 
 
 class Judgement(StrEnum):
@@ -283,59 +251,6 @@ class Difference:
     def ratio(self) -> float:
         """How many errors it is large; 0 where it is not judged."""
         return abs(self.difference) / self.error if self.error > 0 and self.is_told else 0.0
-
-
-def mean_of_strides(values: FloatArray, clock_error: float = 0.0) -> MeanOfStrides:
-    """The mean of the finite values among (k,), in order of time, and its uncertainty.
-
-    Parameters
-    ----------
-    values : (k,)
-        In any unit, NaN where not known.
-    clock_error
-        What the uncertainty of the lag makes of the mean, in that unit.
-
-    Returns
-    -------
-    MeanOfStrides
-        In that unit.
-    """
-    known = values[np.isfinite(values)]
-    n = len(known)
-    mean = float(np.mean(known)) if n else math.nan
-    if n < 2:
-        return MeanOfStrides(mean, math.nan, n, math.nan, math.nan)
-    sd = float(np.std(known, ddof=1))
-    r = min(max(MIN_CORRELATION, _lag_one_correlation(known)), MAX_CORRELATION)
-    standard_error = sd / math.sqrt(n) * math.sqrt((1 + r) / (1 - r))
-    return MeanOfStrides(
-        mean=mean,
-        sd=sd,
-        n=n,
-        standard_error=standard_error,
-        drift=_drift(known, math.sqrt(sd / math.sqrt(n) * standard_error)),
-        clock_error=clock_error,
-    )
-
-
-def _drift(values: FloatArray, by_chance: float) -> float:
-    """Half of what halves or thirds differ by beyond chance.
-
-    By chance alone the squared half difference of halves is 1 squared error of the whole, that of the thirds farthest
-    apart 2.5. That strides are correlated may itself be drift, so `by_chance` holds the correlation half: it lies
-    between the error of uncorrelated strides and that of correlated ones.
-    """
-    beyond = 0.0
-    for parts, share in ((2, 1.0), (3, 2.5)):
-        means = [part.mean() for part in np.array_split(values, parts) if len(part)]
-        beyond = max(beyond, 0.25 * float(np.ptp(means)) ** 2 - share * by_chance**2)
-    return math.sqrt(beyond)
-
-
-def _lag_one_correlation(values: FloatArray) -> float:
-    apart = values - values.mean()
-    total = float(apart @ apart)
-    return float(apart[1:] @ apart[:-1]) / total if total > 0 else 0.0
 
 
 def sigma_of(name: str, kind: ComparisonKind) -> Sigma | None:

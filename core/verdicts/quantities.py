@@ -7,7 +7,7 @@ from enum import StrEnum
 
 import numpy as np
 
-from core.body import Joint, Side, ankle_of, knee_of
+from core.body import Joint, Side, ankle_of, hip_of, knee_of
 from core.gait.cycles import ANKLE_WINDOWS, EXCURSIONS, KNEE_WINDOWS, POINTS, MeanCycle, find_peak, mean_cycle
 from core.gait.spatiotemporal import BothFeet, MeanAndSd, both_feet, mean_and_sd
 from core.gait.strides import strides_of
@@ -70,7 +70,15 @@ FITTING: Mapping[str, QuantityClass] = {  # the columns of fitting.csv; what the
         for instant in ("initial_contact", "mid_stance", "toe_off")
     },
 }
-CLASSES: Mapping[str, QuantityClass] = {**QUANTITIES, **FITTING}
+OF_HIPS: Mapping[str, QuantityClass] = {  # what strides.csv has more where a sensor is worn on the pelvis
+    "hip_range_deg": QuantityClass.SHAPE,
+    "hip_flexion_peak_deg": QuantityClass.HEIGHT,
+    "hip_extension_peak_deg": QuantityClass.HEIGHT,
+    "pelvis_obliquity_range_deg": QuantityClass.SHAPE,
+    "pelvis_drop_deg": QuantityClass.HEIGHT,
+    "pelvis_rotation_range_deg": QuantityClass.SHAPE,
+}
+CLASSES: Mapping[str, QuantityClass] = {**QUANTITIES, **FITTING, **OF_HIPS}
 SEGMENTS = ("shank", "thigh")
 OF_BOTH = ("cadence_steps_min", "double_support_percent", "speed_m_s")
 WINDOWS = {f"{window.name}_deg": window for window in (*KNEE_WINDOWS, *ANKLE_WINDOWS)}
@@ -89,13 +97,16 @@ def joint_of(name: str, side: Side) -> Joint | None:
 
     Thigh and shank lean about the knee's axis, so what holds of the knee holds of them.
     """
-    found = {"knee": knee_of, "ankle": ankle_of, "shank": knee_of, "thigh": knee_of}.get(name.split("_")[0])
+    of_kind = {"hip": hip_of, "knee": knee_of, "ankle": ankle_of, "shank": knee_of, "thigh": knee_of}
+    found = of_kind.get(name.split("_")[0])
     return found(side) if found is not None else None
 
 
 def assessment_of(verdicts: Verdicts, side: Side, name: str) -> Assessment:
     """What may be said of one column of strides.csv, peaks.csv or fitting.csv."""
     joint, wanted = joint_of(name, side), CLASSES[name]
+    if name.startswith("pelvis"):  # over strides, which the foot's events bound
+        return together((verdicts.pelvis, verdicts.leg(side).timing))
     if joint is not None:
         found = verdicts.joint(joint)
         if name.startswith(SEGMENTS):  # read at events of the foot

@@ -15,7 +15,7 @@ from functools import partial
 import numpy as np
 
 from core.analysis import analyse
-from core.body import Joint, Segment, Site
+from core.body import LEG_JOINTS, LEG_SITES, Joint, Segment
 from core.calibration.zero import standing_twist, wrapped_to_zero
 from core.measure import Geometry, measure
 from core.results import Analysis, JointCalibration, Method, ZeroKind
@@ -51,7 +51,7 @@ class Condition:
 LONG, SHORT = (Standing(), FreeMotion(), Walk()), (Standing(), FreeMotion(duration_s=3.0), Walk())
 SIGNS = {"pairing wrong": 0.0, "sign wrong": 0.0}
 BAD_SENSORS = SensorErrors(gyro_bias_sd_rad_s=np.deg2rad(1.5), acc_bias_sd_m_s2=0.1)
-LATE = {site: 0.03 for site in Site if site.segment is Segment.SHANK}
+LATE = {site: 0.03 for site in LEG_SITES if site.segment is Segment.SHANK}
 
 CONDITIONS = {
     "rigid": Condition(WalkerSettings(), {**SIGNS, "knee axis": 0.25, "knee Z": 0.13, "ankle Z": 0.45}),
@@ -100,7 +100,7 @@ def score(name: str, seed: int) -> Errors:
         truths = simulated.truth.recordings[recording.name].joints
         calibration = analysis.calibrations[-1].joints
         is_walk = recording.kind is RecordingKind.WALKING and recording.name != "lying"
-        for joint in Joint:
+        for joint in LEG_JOINTS:
             if joint not in recording.joints:
                 errors["missing"].append(1.0)
                 continue

@@ -109,6 +109,7 @@ def true_events(truth: FootTruth) -> FootEvents:
         full_contact_s=told.full_contact_s,
         length_m=truth.stride_lengths_m,
         height_m=nothing,
+        climb_m=np.zeros_like(nothing),
         turn_rad=np.zeros_like(nothing),
         is_certain=certain,
         is_measured=certain,

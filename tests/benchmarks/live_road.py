@@ -28,7 +28,7 @@ from app.wizard.sensors.estimator import PlacingEstimator
 from app.wizard.standing.estimator import StandingEstimator
 from app.wizard.walking.estimator import WalkingEstimator
 from core.analysis import analyse
-from core.body import Side, Site
+from core.body import LEG_SITES, Side
 from core.live.sensors import LiveSensor
 from core.samples import FloatArray, ImuBlock, RecordingKind
 from devices.replay import ReplaySource
@@ -145,7 +145,7 @@ def run(seconds: float) -> None:
     wanted = (Standing(duration_s=10.0), FreeMotion(duration_s=seconds), Walk(strides=round(seconds / STRIDE_S)))
     session = simulate(replace(DEMONSTRATION, rate_hz=RATE_HZ, recordings=wanted)).session
     calibration = analyse(session).calibrations[-1].joints
-    site_of = {session.recordings[0].imu[site].sensor: site for site in Site}
+    site_of = {session.recordings[0].imu[site].sensor: site for site in LEG_SITES}
     acquisition = Acquisition([ReplaySource(session)])
     acquisition.start()
     try:

@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from core.body import Segment, Side, Site
+from core.body import LEG_SITES, Segment, Side, Site
 from core.placement.chains import Chains, find_chains
 from core.placement.labels import about_labels
 from core.placement.smoothed_tracks import Tracks
@@ -72,7 +72,7 @@ SWAPS = (
 def session_of(condition: str, seed: int) -> Session:
     """One patient of a condition, every clock late by a chance of its own."""
     rng = np.random.default_rng([SEED_OF_LATENESS, seed])
-    late_s = {site: float(rng.uniform(-MAX_LATE_S, MAX_LATE_S)) for site in Site}
+    late_s = {site: float(rng.uniform(-MAX_LATE_S, MAX_LATE_S)) for site in LEG_SITES}
     return simulate(replace(CONDITIONS[condition], seed=seed, clock_late_s=late_s)).session
 
 

@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 
 from core.analysis import analyse
-from core.body import Joint, Side, Site
+from core.body import LEG_SITES, Joint, Side, Site
 from core.chosen_strides import leave_out
 from core.findings import Finding
 from core.quality import look_at
@@ -15,7 +15,7 @@ from core.results import Method
 from core.samples import BoolArray, FloatArray, ImuBlock, RateKind, RecordingKind, Session
 from devices.walker import FreeMotion, Manner, Motion, Standing, Tissue, Walk, WalkerSettings, simulate
 
-LEFT = tuple(site for site in Site if site.side is Side.LEFT)
+LEFT = tuple(site for site in LEG_SITES if site.side is Side.LEFT)
 THIGH, SHANK, FOOT = LEFT
 KNEE = Joint.LEFT_KNEE
 BRIEF = (Standing(), FreeMotion(duration_s=5.0), Walk(strides=5))

@@ -22,7 +22,7 @@ from typing import TypeVar
 import numpy as np
 
 from core.analysis import analyse
-from core.body import Segment, Side, Site
+from core.body import LEG_SITES, Segment, Side, Site
 from core.samples import ImuBlock, RateKind, Recording, RecordingKind, Session
 from devices.files.session_folder import read_session
 from devices.walker import (
@@ -45,8 +45,8 @@ Value = TypeVar("Value")
 MAX_FALSE_PERCENT = 2.0
 KINDS: tuple[str, ...] = ("seed", "must", "real")  # what a row of the results is about
 MANNERS = (*(Manner.ORDINARY,) * 6, Manner.SHUFFLING, Manner.FLAT, Manner.STIFF, Manner.DRAGGING, Manner.TOE_FIRST)
-LEFT = tuple(site for site in Site if site.side is Side.LEFT)
-WORN = (*(tuple(Site),) * 5, LEFT, tuple(s for s in Site if s.segment is not Segment.THIGH))
+LEFT = tuple(site for site in LEG_SITES if site.side is Side.LEFT)
+WORN = (*(LEG_SITES,) * 5, LEFT, tuple(s for s in LEG_SITES if s.segment is not Segment.THIGH))
 # true of any session here: what kind of joint was found, and whether a method's angle or a centre can be told
 ALWAYS = {"simulated", "is_a_hinge", "not_a_hinge", "centre_unknown", "published_differs"}
 
@@ -158,7 +158,7 @@ def real_sessions(data: Path) -> Iterator[tuple[str, Session]]:
     names = {Segment.THIGH: "upper_leg", Segment.SHANK: "lower_leg", Segment.FOOT: "foot"}
     with np.load(data / "full_body_free_motion/legs_arms.npz") as held:
         imu = {}
-        for site in Site:
+        for site in LEG_SITES:
             name = f"{names[site.segment]}_{site.side}"
             imu[site] = ImuBlock(str(site), held["t"], held[f"{name}_gyr"], held[f"{name}_acc"])
     yield "full body", Session((Recording("motion", RecordingKind.FREE_MOTION, "motion", imu),))

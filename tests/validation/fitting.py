@@ -1,15 +1,15 @@
-"""How true are the measures for fitting on simulated patients, and how large a change of them is found?
+"""How true are the measures for fitting on simulated patients?
 
-    python -m tests.validation.fitting [--people 20] [--sessions 0] [--first 0] [--tissue soft] [--optics]
+    python -m tests.validation.fitting [--people 20] [--first 0] [--tissue soft] [--prosthetic left] [--optics]
 
-The first table: bias of a walk's mean and the 90th percentile of its size, each leg of each person one. With
-`--sessions` a second: walks that differ by 1.7 times a measure's error, and walks that do not differ at all.
+Bias of a walk's mean and the 90th percentile of its size, each leg of each person one. Which changes of them are found
+tells `fitting_power`.
 """
 
 import argparse
 import os
 from collections import defaultdict
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -19,12 +19,9 @@ from core.analysis import analyse
 from core.body import Side
 from core.results import RecordingAnalysis
 from core.samples import FloatArray
-from core.verdicts.measurement_error import ComparisonKind, Difference, Judgement, compare, mean_of_strides
-from core.verdicts.quantities import FITTING, assessment_of, values_of
+from core.verdicts.quantities import FITTING, values_of
 from devices.walker import (
-    PEOPLE,
     FreeMotion,
-    GaitChange,
     SimulatedSession,
     Standing,
     Tissue,
@@ -93,57 +90,9 @@ def accuracy(people: int, first: int, tissue: Tissue, prosthetic: Side | None = 
             yield f"| {name} | 0 of {len(values)} | - | - |"
 
 
-CHANGES: Mapping[str, tuple[Callable[[float], GaitChange], str]] = {  # and the measure that is to show it
-    "knee stop, peak in swing": (lambda x: GaitChange(knee_deg=x), "knee_swing_peak_deg"),
-    "foot angle at toe-off": (lambda x: GaitChange(ankle_deg=x), "foot_heel_rise_deg"),
-    "stance, foot flat": (lambda x: GaitChange(stance_percent=x), "foot_flat_percent"),
-}
-
-
-def told(seed: int, tissue: Tissue, change: GaitChange) -> dict[str, Difference]:
-    """Walk 2 less walk 1 of the left leg, sensors left on, people's variation; by measure."""
-    walks = (Walk("walk 1", strides=23), Walk("walk 2", strides=23, change=change, changed_side=Side.LEFT))
-    recordings = (Standing(), FreeMotion(), *walks)
-    made = simulate(WalkerSettings(seed=seed, tissue=tissue, recordings=recordings, variation=PEOPLE))
-    one, other = analyse(made.session).recordings[-2:]
-    found = {}
-    for name in (*FITTING, "knee_swing_peak_deg", "knee_while_loading_deg"):
-        mean, before = (
-            mean_of_strides(values_of(walk, Side.LEFT, name)[walk.gait[Side.LEFT].strides.is_used])
-            for walk in (other, one)
-        )
-        said = tuple(assessment_of(walk.verdicts, Side.LEFT, name) for walk in (other, one))
-        speeds = [np.nanmean(values_of(walk, Side.LEFT, "speed_m_s")) for walk in (other, one)]
-        apart = float(speeds[0] - speeds[1])
-        found[name] = compare(name, ComparisonKind.ATTACHED, mean, before, said, speed_apart_m_s=apart)
-    return found
-
-
-def power(sessions: int, first: int, tissue: Tissue) -> Iterator[str]:
-    """What is told where nothing changed, then how often changes of 1.7 times the usual error are found."""
-    seeds = range(first, first + sessions)
-    null = [told(seed, tissue, GaitChange()) for seed in seeds]
-    judged = (Judgement.EXCEEDS_ERROR, Judgement.INSIDE_ERROR)
-    for name in null[0]:
-        some = [one[name] for one in null if one[name].judgement in judged]
-        error = float(np.median([one.error for one in some])) if some else float("nan")
-        yield f"| none | {name} | E {error:.2f} | told in {sum(one.exceeds for one in some)} of {len(some)} |"
-    for title, (change, name) in CHANGES.items():
-        error = float(np.median([one[name].error for one in null]))
-        size = 1.7 * error
-        middle = told(first, tissue, change(size))[name].difference - null[0][name].difference
-        size *= size / middle if abs(middle) > 0.1 * size else 1.0  # the walker's change moves the measure by another
-        some = [told(seed, tissue, change(size))[name] for seed in seeds]
-        moved = float(np.median([one.difference for one in some]))
-        found = sum(one.exceeds for one in some)
-        said = f"moved {moved:.2f}, 1.7 E {1.7 * error:.2f} | found in {found} of {len(some)}"
-        yield f"| {title}: {size:.2f} | {name} | {said} |"
-
-
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--people", type=int, default=20)
-    parser.add_argument("--sessions", type=int, default=0)
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--tissue", type=Tissue, nargs="+", default=list(Tissue))
     parser.add_argument("--prosthetic", type=Side, default=None)
@@ -159,9 +108,6 @@ def main() -> None:
         if wanted.people:
             print(f"{tissue}: measure, legs, bias, p90", flush=True)
             print(*accuracy(wanted.people, wanted.first, tissue, wanted.prosthetic), sep="\n", flush=True)
-        if wanted.sessions:
-            print(f"{tissue}: change, measure, size, told", flush=True)
-            print(*power(wanted.sessions, wanted.first, tissue), sep="\n", flush=True)
 
 
 if __name__ == "__main__":

@@ -4,7 +4,7 @@ Nothing of the core is used to compute them: poses and events of the walker are 
 its definition says.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 import numpy as np
 
@@ -34,7 +34,10 @@ def true_strides(made: SimulatedSession, walk: str, side: Side) -> list[tuple[fl
         start, end = events.initial_contact_s[k : k + 2]
         full = float(events.full_contact_s[k])
         rise, off = (float(t[(t > start) & (t < end)][0]) for t in (events.heel_rise_s, events.toe_off_s))
-        found.append((float(start), _measures(leg.time_s, knee, lean, pitch - flat, (start, full, rise, off, end))))
+        measures = _measures(leg.time_s, knee, lean, pitch - flat, (start, full, rise, off, end))
+        measures |= _ankle_measures(leg, float(start), float(end))
+        measures |= _of_steps(take.legs, side, k, (float(start), float(off), float(end)))
+        found.append((float(start), measures))
     return found
 
 
@@ -64,6 +67,8 @@ def _measures(
     measures = {
         "knee_while_loading_deg": float(knee[share(0.05, 0.3)].max()) - at(knee)(start),
         "knee_loading_peak_deg": float(knee[share(0.05, 0.3)].max()),
+        "knee_swing_peak_deg": float(knee[peak]),
+        "knee_stance_to_swing_deg": float(knee[peak]) - float(knee[share(0.25, 0.6)].min()),
         "knee_swing_peak_percent": 100.0 * (float(time_s[peak]) - start) / length,
         "knee_terminal_extension_deg": least,
         "knee_extended_before_contact_percent": 100.0 * (end - float(arrived)) / length,
@@ -79,6 +84,35 @@ def _measures(
         for name, instant in (("initial_contact", start), ("mid_stance", middle), ("toe_off", off)):
             measures[f"{segment}_at_{name}_deg"] = at(leaning)(instant)
     return measures
+
+
+def _ankle_measures(leg: LegMotion, start: float, end: float) -> dict[str, float]:
+    ankle = np.rad2deg(leg.angles.ankle)
+
+    def share(first: float, last: float) -> FloatArray:
+        span = np.searchsorted(leg.time_s, (start + first * (end - start), start + last * (end - start)))
+        return ankle[slice(*span)]
+
+    over_foot = float(share(0.2, 0.6).max())
+    return {
+        "ankle_heel_rocker_deg": float(share(0.0, 0.2)[0] - share(0.0, 0.2).min()),
+        "ankle_rocker_deg": over_foot - float(share(0.0, 0.2).min()),
+        "ankle_push_off_deg": over_foot - float(share(0.5, 0.8).min()),
+    }
+
+
+def _of_steps(
+    legs: Mapping[Side, LegMotion], side: Side, k: int, instants: tuple[float, float, float]
+) -> dict[str, float]:
+    start, off, end = instants
+    other = next(leg for one, leg in legs.items() if one is not side).events.initial_contact_s
+    place = legs[side].footholds_m[k + 1 : k + 3]  # the first is where it stood
+    between = other[(other > start) & (other < end)]
+    return {
+        "stance_percent": 100.0 * (off - start) / (end - start),
+        "stride_length_m": float(np.hypot(*(place[1] - place[0]))),
+        "step_time_s": end - float(between[-1]) if len(between) else float("nan"),
+    }
 
 
 def _heading(leg: LegMotion) -> float:

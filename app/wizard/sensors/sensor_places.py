@@ -26,7 +26,7 @@ from app.widgets.text import MEDIUM, SEMIBOLD
 from app.widgets.themed import Themed
 from app.wizard.sensors.sensor_drag import DRAGGED, DraggedButton, sensor_in
 from app.wording import name_of, tr
-from core.body import Segment, Side, Site
+from core.body import LEG_SEGMENTS, LEG_SITES, Segment, Side, Site
 
 TILE = (112, 50)
 LINE = 17  # more, where name and note need a line each
@@ -78,7 +78,7 @@ class SensorPlaces(Themed):
         self.figure = BodyFigure(look)
         self.figure.setParent(self)
         self._lines = _Lines(look, self)
-        self.tiles = {site: _Tile(look, site, self) for site in Site}
+        self.tiles = {site: _Tile(look, site, self) for site in LEG_SITES}
         for tile in self.tiles.values():
             tile.clicked.connect(self._on_tile_clicked)
 
@@ -205,7 +205,7 @@ class SensorPlaces(Themed):
             is_right = (side is Side.LEFT) != self.figure.is_from_behind
             x = self.width() - self._edge() - width if is_right else self._edge()
             bottom = lowest
-            for segment in reversed(Segment):
+            for segment in reversed(LEG_SEGMENTS):
                 site = Site(f"{side}_{segment}")
                 wanted = round(self.figure.anchor(site).y()) - (0 if segment is Segment.FOOT else height // 2)
                 top = min(wanted, bottom - height)
@@ -312,9 +312,9 @@ class _Tile(DraggedButton):
         if place.is_flashing:  # the legs' hues do not stand out on dark; the letter does
             painter.setPen(QColor(ink))
             painter.setFont(theme.font(14, SEMIBOLD))
-            painter.drawText(where, Qt.AlignmentFlag.AlignCenter, LETTERS[self.site.side])
+            painter.drawText(where, Qt.AlignmentFlag.AlignCenter, LETTERS[self.site.leg_side])
         else:
-            paint_chip(painter, where, self.site.side, theme)
+            paint_chip(painter, where, self.site.leg_side, theme)
         for text in self.painted_texts():
             text.paint(painter, c)
 

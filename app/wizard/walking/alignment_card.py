@@ -25,7 +25,7 @@ from core.alignment import FIGURES, MOST_TEXT, ProsthesisPart
 from core.body import Side
 
 BADGE, PADDING, LINE, GAP = 28, 8, 18, 12
-LEAST_LIST = 88
+LEAST_LIST, LEAST_LIST_COMPACT = 88, 56
 
 
 class RowRole(StrEnum):
@@ -72,7 +72,9 @@ class AlignmentCard(Card):
         self.written = Text(look, size=12, tone="ink2", wraps=True)
         self._grid = QGridLayout()
         self._chip: Chip | None = None
-        self._head = QHBoxLayout()
+        self._head_row = QWidget()
+        self._head = QHBoxLayout(self._head_row)
+        self._head.setContentsMargins(0, 0, 0, 0)
         self._side_word = Text(look, tr("prosthetic"), size=12, tone="ink2")
         super().__init__(look)
         for part in ProsthesisPart:
@@ -112,11 +114,25 @@ class AlignmentCard(Card):
             self._scroll.verticalScrollBar().setValue(top)
 
     def set_compact(self, is_compact: bool) -> None:
-        """Put the steppers in one row where the card has the width of the window."""
-        columns = len(self.steppers) if is_compact else 2
-        for k, stepper in enumerate(self.steppers.values()):
-            self._grid.removeWidget(stepper)
-            self._grid.addWidget(stepper, k // columns, k % columns)
+        """Tell the change in two rows where the card has the width of the window, and little height."""
+        self._head_row.setVisible(not is_compact)  # the tab says it, and the sentence above whose it is
+        self._scroll.setMinimumHeight(self._look.theme.px(LEAST_LIST_COMPACT if is_compact else LEAST_LIST))
+        steppers = [*self.steppers.values()]
+        bottom = Qt.AlignmentFlag.AlignBottom
+        for widget in (self.parts, *steppers, self.words, self.written):
+            self._grid.removeWidget(widget)
+        if is_compact:
+            self._grid.addWidget(self.parts, 0, 0, bottom)
+            for k, stepper in enumerate(steppers):
+                self._grid.addWidget(stepper, 0, k + 1)
+            self._grid.addWidget(self.words, 1, 0, 1, 2)
+            self._grid.addWidget(self.written, 1, 2, 1, 3)
+        else:
+            self._grid.addWidget(self.parts, 0, 0, 1, 2)
+            for k, stepper in enumerate(steppers):
+                self._grid.addWidget(stepper, 1 + k // 2, k % 2)
+            self._grid.addWidget(self.words, 3, 0, 1, 2)
+            self._grid.addWidget(self.written, 4, 0, 1, 2)
 
     def show_entry(self, title: str) -> None:
         """Show the next change as `entry` holds it; `title` says from where."""
@@ -153,16 +169,12 @@ class AlignmentCard(Card):
         self._scroll.setFrameShape(QFrame.Shape.NoFrame)
         self._scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self._scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        self._scroll.setMinimumHeight(self._look.theme.px(LEAST_LIST))
-        self.column.addLayout(self._head)
+        self.column.addWidget(self._head_row)
         self.column.addWidget(self._scroll, 1)
         self.column.addWidget(self.next_title)
-        self.column.addWidget(self.parts)
         self._grid.setSpacing(8)
         self.set_compact(False)
         self.column.addLayout(self._grid)
-        self.column.addWidget(self.words)
-        self.column.addWidget(self.written)
 
     def _connect(self) -> None:
         self.parts.activated.connect(self._on_part_chosen)

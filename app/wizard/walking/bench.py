@@ -78,6 +78,10 @@ class AlignmentChain:
         last = max(self.letters.values(), default="")
         return LETTERS[LETTERS.index(last) + 1 :][:1] if last else LETTERS[0]
 
+    def set_so(self, condition: str, change: AlignmentChange | None) -> tuple[NetChange, ...]:
+        """By what the prosthesis differs from the first alignment in a walk that was changed so before."""
+        return changed_between({**self.changes, condition: change}, self.first or condition, condition) or ()
+
     def way_back(self, to: str) -> tuple[NetChange, ...] | None:
         """What leads from `base` to another condition; None where no chain ties them."""
         return changed_between(self.changes, self.base, to)

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject, Signal, Slot
 
 from app.alignment_words import change_lines, to_do_in_words
+from app.reports.agreed import agreed_with
 from app.reports.comparison import Comparison, Contrast, Part, conditions_of
 from app.reports.patient_report.answer import Answer, Outcome
 from app.reports.patient_report.numbers_in_words import fixed
@@ -164,7 +165,8 @@ class Bench(QObject):
         evaluation = self._visit.evaluation
         if evaluation.analysis is None or evaluation.session is None:
             return ()
-        return conditions_of(evaluation.analysis, evaluation.session.recordings)
+        session = evaluation.session
+        return conditions_of(evaluation.analysis, session.recordings, agreed=agreed_with(session))
 
     def _answer(self, found: Comparison | None, side: Side, shown: Part | None) -> Answer:
         if shown is None or (self._is_behind and not self._shown):

@@ -3,7 +3,7 @@
 from app.alignment_words import NO_PROOF
 from app.icons import Icon
 from app.pages.compared_words import change_in_words, is_judged, why_not_told
-from app.reports.comparison import Compared, Comparison
+from app.reports.comparison import FITTED, Compared, Comparison
 from app.reports.patient_report.numbers_in_words import DAGGER, judged_in_words
 from app.theme import ThemeNotifier
 from app.widgets.card import Card
@@ -21,6 +21,7 @@ LENGTH = "stride_length_m"
 PADDING = 12
 SCALE = 1.8  # errors, to either edge of a strip
 ROW, HEAD = 26, 22
+MOST_FITTED = 3  # there is room for no more
 
 
 class BenchDifferences(Card):
@@ -52,6 +53,7 @@ class BenchDifferences(Card):
         head = TextCell(tr("grey: error"), align=CENTRE, size=12, tone="ink2")
         columns = [TableColumn(share=3), TableColumn(share=1), TableColumn(head, share=2)]
         rows = [_heading(tr("Prosthetic side"), prosthetic), *_rows(found, OF_PROSTHETIC, prosthetic)]
+        rows += map(_row, _fitted_beyond_error(found, prosthetic))
         sound = next(side for side in Side if side is not prosthetic)
         if sound in found.sides:
             rows += [_heading(tr("Sound side reacts"), sound), *_rows(found, OF_SOUND, sound)]
@@ -67,6 +69,13 @@ def _rows(found: Comparison, columns: tuple[str, ...], side: Side | None) -> lis
     """Of one leg, or of both where `side` is None."""
     of_side = [row for row in found.rows if row.measure.is_of_walk or row.side is side]
     return [_row(row) for column in columns for row in of_side if row.measure.column == column]
+
+
+def _fitted_beyond_error(found: Comparison, prosthetic: Side) -> list[Compared]:
+    """Those of the measures for fitting that changed by most errors."""
+    rows = [found.compare(measure, prosthetic, found.parts[1], found.against) for measure in FITTED]
+    beyond = sorted((row for row in rows if row.exceeds), key=lambda row: -row.difference.ratio)
+    return beyond[:MOST_FITTED]
 
 
 def _row(row: Compared) -> TableRow:

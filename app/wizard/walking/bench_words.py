@@ -6,7 +6,7 @@ from app.pages.compared_words import error_in_sentence, is_judged, unit_behind
 from app.reports.comparison import Compared, Comparison, Part
 from app.reports.patient_report.answer import Answer, Outcome
 from app.reports.patient_report.numbers_in_words import fixed
-from app.wording import tr
+from app.wording import tr, within_sentence
 from core.body import Side
 from core.norms import MIN_STRIDES_FOR_SD
 
@@ -75,7 +75,7 @@ def _sentence(row: Compared) -> str:
         letter=row.part.letter,
         other=row.against.letter,
         size=fixed(abs(change), decimals) + unit,
-        measure=name[:1].lower() + name[1:],
+        measure=within_sentence(name),
         value=fixed(value, decimals) + unit,
         before=fixed(other, decimals) + unit,
     )

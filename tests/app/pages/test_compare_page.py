@@ -10,7 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QApplication
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QAbstractButton, QApplication
 from pytestqt.qtbot import QtBot
 
 from app.icons import Icon
@@ -34,6 +35,7 @@ from app.theme import ThemeNotifier, load_fonts
 from app.widgets.table_cells import TextCell
 from app.widgets.text import SEMIBOLD
 from app.widgets.trend_cell import TrendCell
+from core.alignment import AlignmentChange, PartChange, ProsthesisPart
 from core.analysis import analyse
 from core.body import Joint, Side
 from core.results import Analysis, ZeroKind
@@ -263,7 +265,7 @@ def test_every_number_of_the_legs_is_in_its_file(page: ResultPage, parts: tuple[
     seen = set()
     for part in parts:
         compare.bases.setCurrentIndex(compare.bases.findData(part.letter))
-        told = [float(row["difference"]) for row in written if row["part"] == part.letter]
+        told = [float(row["difference"]) for row in written if row["part"] == part.letter and row["difference"]]
         drawn = [dot.value for group in compare.card.plot.groups for row in group.rows for dot in row.dots]
         assert len(drawn) == len(compare.card.plot.groups) > 0
         assert all(any(abs(value - other) < DIGITS for other in told) for value in drawn)
@@ -784,3 +786,67 @@ def test_where_room_is_short_every_view_can_be_left_again(page: ResultPage, room
         assert page.compare.view.isVisible()
     page.set_room(1064, 672)
     assert page.compare.view.isVisible()
+
+
+@pytest.fixture
+def three(page: ResultPage, session: Session, analysis: Analysis) -> ResultPage:
+    """Three conditions, the last of which was changed from the first."""
+    changed = AlignmentChange("A", (PartChange(ProsthesisPart.PYLON, height_mm=3.0),))
+    told = {"walk 1": ("A", None), "walk 2": ("B", None), "walk 3": ("C", changed)}
+    recordings = tuple(
+        replace(one, condition=told[one.name][0], alignment=told[one.name][1]) if one.name in told else one
+        for one in session.recordings
+    )
+    page.show_visit(AnalysedVisit(replace(session, recordings=recordings), analysis))
+    return page
+
+
+def pair(page: ResultPage) -> tuple[str, str]:
+    """What is shown, and what it stands against."""
+    found = page.compare.comparison
+    assert found is not None
+    assert len(found.parts) == 2
+    return found.others[0].letter, found.against.letter
+
+
+def test_any_two_walks_are_compared_by_keys(qtbot: QtBot, three: ResultPage) -> None:
+    page = three
+    assert len(page.compare.chips.chosen) == 3
+    page.activateWindow()
+    qtbot.waitUntil(page.isActiveWindow)
+    QTest.keyClick(page, Qt.Key.Key_3)
+    assert pair(page) == ("C", "A")  # which it was changed from
+    QTest.keyClick(page, Qt.Key.Key_2, Qt.KeyboardModifier.ShiftModifier)
+    assert pair(page) == ("C", "B")
+    shown = page.compare.comparison
+    assert shown is not None
+    row = next(row for row in shown.rows if row.measure.column == "knee_range_deg" and row.side is Side.LEFT)
+    apart = row.part.value(Side.LEFT, "knee_range_deg").mean - row.against.value(Side.LEFT, "knee_range_deg").mean
+    assert row.difference.difference == pytest.approx(apart)
+    QTest.keyClick(page, Qt.Key.Key_1)
+    assert pair(page) == ("A", "B")
+    QTest.keyClick(page, Qt.Key.Key_9)  # there is none
+    assert pair(page) == ("A", "B")
+    assert page.compare.bases.currentData() == "B"
+
+
+def test_with_shift_a_letter_becomes_what_the_other_stands_against(three: ResultPage) -> None:
+    buttons = three.compare.chips.buttons
+    three.compare.choose_pair(2, is_second=False)
+    with_shift(buttons[1])
+    assert pair(three) == ("C", "B")
+    with_shift(three.compare.chips.buttons[2])  # itself: then the one beside it is shown
+    assert pair(three)[1] == "C"
+    QTest.mouseClick(three.compare.chips.buttons[0], Qt.MouseButton.LeftButton)
+    assert len(three.compare.chips.chosen) == 3  # without it is added, as always
+
+
+def with_shift(button: QAbstractButton) -> None:
+    QTest.mouseClick(button, Qt.MouseButton.LeftButton, Qt.KeyboardModifier.ShiftModifier)
+
+
+def test_legs_have_no_pair(three: ResultPage) -> None:
+    three.compare.kinds.setCurrentIndex(three.compare.kinds.count() - 1)
+    before = three.compare.side_rows
+    three.compare.choose_pair(1, is_second=False)
+    assert three.compare.side_rows is before

@@ -12,7 +12,7 @@ from app.reports.comparison import Comparison, Contrast, Part
 from app.reports.differences import rows_along_chain, rows_of, write_compared_cycles, write_differences, write_sides
 from core.alignment import AlignmentChange, PartChange, ProsthesisPart
 from core.body import Joint, Side
-from core.results import ZeroKind
+from core.results import SideGait, ZeroKind
 from tests.core.verdicts.built_walk import Told, calibrations, judged_walk, leg, walk
 
 
@@ -129,3 +129,44 @@ def test_a_changed_alignment_is_told_against_the_one_it_was_changed_from_too(tmp
     alone = Comparison(Contrast.CONDITIONS, (first, changed_from(part("B"), "gone")))
     assert alone.base_of(alone.parts[1]) is alone.parts[0]
     assert len(list(rows_along_chain(alone))) == len(list(rows_of(alone)))
+
+
+def with_fitting(of: SideGait, heel_rise_deg: float, pitch_deg: float) -> SideGait:
+    n = len(of.strides)
+    fitting = {
+        "foot_heel_rise_rad": np.full(n, np.deg2rad(heel_rise_deg)),
+        "foot_pitch_at_contact_rad": np.full(n, np.deg2rad(pitch_deg)),
+        "shank_at_mid_stance_rad": np.full(n, 0.1),
+    }
+    return replace(of, parameters={**of.parameters, **fitting})
+
+
+def test_measures_for_fitting_are_told_with_their_errors(tmp_path: Path) -> None:
+    before = part("A", left=with_fitting(leg(Side.LEFT), 60.0, 12.0))
+    after = part("B", left=with_fitting(leg(Side.LEFT), 66.0, 13.0))
+    found = differences(tmp_path, before, after)
+    rise, pitch = found["left", "foot_heel_rise_deg"], found["left", "foot_pitch_at_contact_deg"]
+    assert (rise["difference"], rise["verdict"], rise["status"]) == ("6.00000", "exceeds_error", "read")
+    assert float(rise["error"]) == pytest.approx(1.96 * np.sqrt(2) * 1.3, abs=0.01)
+    assert (pitch["difference"], pitch["verdict"]) == ("1.00000", "inside_error")
+    assert ("left", "foot_flat_percent") not in found  # was not measured
+    names = [parameter for side, parameter in found if side == "left"]
+    assert names.index("knee_range_deg") < names.index("foot_heel_rise_deg")
+
+
+def test_a_withheld_knee_withholds_what_the_shank_leans(tmp_path: Path) -> None:
+    bad = part("B", calibrations(Joint.LEFT_KNEE, sign_margin=1.0), left=with_fitting(leg(Side.LEFT), 66.0, 13.0))
+    found = differences(tmp_path, part("A", left=with_fitting(leg(Side.LEFT), 60.0, 12.0)), bad)
+    row = found["left", "shank_at_mid_stance_deg"]
+    assert (row["difference"], row["error"], row["verdict"]) == ("", "", "withheld")
+
+
+def test_legs_differ_in_measures_for_fitting_by_more_than_their_error(tmp_path: Path) -> None:
+    left, right = with_fitting(leg(Side.LEFT), 75.0, 12.0), with_fitting(leg(Side.RIGHT), 60.0, -2.0)
+    write_sides([part("A", left=left, right=right)], (Side.LEFT, Side.RIGHT), tmp_path / "sides.csv")
+    found = {row["parameter"]: row for row in table(tmp_path / "sides.csv")}
+    rise, pitch = found["foot_heel_rise_deg"], found["foot_pitch_at_contact_deg"]
+    assert (rise["difference"], rise["verdict"]) == ("15.00000", "exceeds_error")
+    assert float(rise["error"]) == pytest.approx(9.2, abs=0.01)
+    assert rise["symmetry_index_percent"] != ""
+    assert pitch["symmetry_index_percent"] == ""  # it may be nought, or on both sides of it

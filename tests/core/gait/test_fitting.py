@@ -31,6 +31,7 @@ def two_strides() -> Strides:
         end_s=start + 1.0,
         length_m=np.ones(2),
         clearance_m=np.ones(2),
+        climb_m=np.zeros(2),
         turn_rad=np.zeros(2),
         bout=np.zeros(2, dtype=np.int64),
         reason=(Reason.USED,) * 2,

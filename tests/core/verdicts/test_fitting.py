@@ -2,7 +2,7 @@
 
 import pytest
 
-from core.body import Joint, Side
+from core.body import LEG_JOINTS, Joint, Side
 from core.verdicts.fitting import BY_COLUMN, MEASURES
 from core.verdicts.measurement_error import KINDS, ComparisonKind, sigma_of
 from core.verdicts.model import READ, Assessment, JointVerdicts, LegVerdicts, Verdict, Verdicts
@@ -25,7 +25,7 @@ def verdicts(
         one: JointVerdicts(
             **{name: BAD if (one, name) == (joint, part) else READ for name in ("shape", "height", "sign")}
         )
-        for one in Joint
+        for one in LEG_JOINTS
     }
     return Verdicts(found, {Side.LEFT: LegVerdicts(timing, distance), Side.RIGHT: LegVerdicts(READ, READ)}, READ)
 

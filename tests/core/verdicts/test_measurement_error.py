@@ -5,17 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from core.verdicts.measurement_error import (
-    ComparisonKind,
-    Difference,
-    Judgement,
-    MeanOfStrides,
-    compare,
-    mean_of_strides,
-    sigma_of,
-    whisker,
-)
+from core.verdicts.measurement_error import ComparisonKind, Difference, Judgement, compare, sigma_of, whisker
 from core.verdicts.model import NOT_MEASURED, READ, Assessment, GateReason, Verdict, assess
+from core.verdicts.stride_means import MeanOfStrides, mean_of_strides
 
 ATTACHED, LEGS = ComparisonKind.ATTACHED, ComparisonKind.LEGS
 STRAPPINGS, VISITS = ComparisonKind.STRAPPINGS, ComparisonKind.VISITS

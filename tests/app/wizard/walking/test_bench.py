@@ -13,17 +13,20 @@ from pytestqt.qtbot import QtBot
 from app.reports.comparison import Comparison, Contrast, Part
 from app.reports.patient_report.answer import Outcome
 from app.theme import ThemeNotifier
+from app.widgets.table_cells import TextCell
 from app.wizard.visit import Visit
 from app.wizard.walking.bench import ChangeEntry, chain_of, next_walk
 from app.wizard.walking.bench_bar import bench_bar
 from app.wizard.walking.bench_control import Bench
+from app.wizard.walking.bench_differences import BenchDifferences
 from app.wizard.walking.bench_words import bench_answer
 from app.wizard.walking.page import WalkingPage
+from app.wizard.walking.readout import WalkingReadout
 from app.wizard.walking.walk_labels import new_alignment
 from app.wizard.walking.walk_list import WalkRow, WalkState
-from core.alignment import AlignmentChange, PartChange, ProsthesisPart
+from core.alignment import AlignmentChange, NetChange, PartChange, ProsthesisPart
 from core.body import Side
-from core.results import Analysis, Calibration, Method
+from core.results import Analysis, Calibration, Method, SideGait
 from core.samples import Recording, RecordingKind, Session
 from tests.app.room import words_cut
 from tests.core.verdicts.built_walk import calibrations, judged_walk, leg, walk
@@ -318,3 +321,53 @@ def test_no_word_of_the_bench_is_cut_in_a_language_as_long_as_german(
     page.show_bench(bench.state())
     page.show()
     assert words_cut(page) == []
+
+
+def test_in_a_small_window_the_next_change_is_told_without_scrolling(page: WalkingPage) -> None:
+    """896 x 420 is what 960 x 600 leaves of the window between header and a bar of two rows."""
+    page.set_compact(True)
+    page.resize(896, 420)
+    QTest.qWait(50)
+    for widget in (*page.bench.alignments.tab_order, page.bench.alignments.written):
+        assert widget.isVisible()
+        seen = widget.visibleRegion().boundingRect()
+        assert seen.size() == widget.size(), widget.accessibleName()
+
+
+def test_a_walk_that_begins_shows_no_strides_of_the_one_before(page: WalkingPage) -> None:
+    page.show_view(WalkingReadout(now_s=20.0, strides={Side.LEFT: 13, Side.RIGHT: 12}, cadence_steps_min=104.0))
+    assert page.figures.in_words.startswith("13 strides.")
+    page.count_anew()
+    assert page.figures.in_words.startswith("0 strides. Left 0. Right 0.")
+    assert "104" not in page.figures.in_words
+
+
+def test_the_simulated_prosthesis_is_told_by_what_it_differs_from_the_first() -> None:
+    chain = chain_of(WALKED, "")
+    assert chain.set_so("Alignment A", None) == ()
+    assert chain.set_so("Alignment B", OF_B) == (NetChange(PYLON, height_mm=3.0),)
+    turned = AlignmentChange("Alignment C", (PartChange(ProsthesisPart.KNEE_UNIT, turns=-1.0),))
+    wanted = (NetChange(ProsthesisPart.KNEE_UNIT, turns=-1.0), NetChange(PYLON, height_mm=2.0))
+    assert chain.set_so("Alignment D", turned) == wanted
+    assert chain_of((), "").set_so("Alignment A", None) == ()
+
+
+@pytest.mark.parametrize(("rise_deg", "is_named"), [(66.0, True), (61.0, False)])
+def test_a_measure_for_fitting_is_named_where_it_changes_by_more_than_its_error(
+    qtbot: QtBot, look: ThemeNotifier, rise_deg: float, is_named: bool
+) -> None:
+    def with_rise(of: SideGait, degrees: float) -> SideGait:
+        rise = np.full(len(of.strides), np.deg2rad(degrees))
+        return replace(of, parameters={**of.parameters, "foot_heel_rise_rad": rise})
+
+    before, after = (
+        part("A", left=with_rise(leg(Side.LEFT), 60.0)),
+        part("B", left=with_rise(leg(Side.LEFT), rise_deg)),
+    )
+    shown_differences = BenchDifferences(look)
+    qtbot.addWidget(shown_differences)
+    shown_differences.show_pair(Comparison(Contrast.CONDITIONS, (before, after)), Side.LEFT, "")
+    names = [row.cells[0] for row in shown_differences.table.cells.rows]
+    words = [cell.text for cell in names if isinstance(cell, TextCell)]
+    assert ("Heel rise" in words) is is_named
+    assert "Foot flat, % of stride" not in words  # was not measured

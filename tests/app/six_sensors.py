@@ -1,0 +1,82 @@
+"""Sessions of six sensors and the bytes of their results, which a seventh sensor must not change.
+
+`python -m tests.app.six_sensors` writes tests/golden/six_sensors.json anew, which is to be done on purpose only: the
+file says what was written before there was a pelvis.
+"""
+
+import hashlib
+import json
+import platform
+import tempfile
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from app.reports.result_folder import write_results
+from core.analysis import analyse
+from core.body import Side, Site
+from core.samples import Session
+from devices.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
+
+GOLDEN = Path(__file__).parents[1] / "golden" / "six_sensors.json"
+RIGHT_LATE = dict.fromkeys((Site.RIGHT_THIGH, Site.RIGHT_SHANK, Site.RIGHT_FOOT), 0.04)
+SESSIONS = {
+    "rigid": WalkerSettings(seed=1, recordings=(Standing(), FreeMotion(), Walk(strides=5))),
+    "real, turning, a clock per leg": WalkerSettings(
+        seed=2,
+        tissue=Tissue.REAL,
+        recordings=(Standing(), Walk(strides=7, turn_rad=np.pi)),
+        clock_late_s=RIGHT_LATE,
+    ),
+    "prosthesis, one leg": WalkerSettings(
+        seed=3,
+        tissue=Tissue.SOFT,
+        prosthetic_side=Side.LEFT,
+        sites=(Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT),
+        recordings=(Standing(), FreeMotion(), Walk(strides=5), Walk(name="walk 2", strides=5)),
+    ),
+}
+
+
+def machine() -> dict[str, str]:
+    """What the last digits of a result depend on."""
+    parts = {name: version(name) for name in ("numpy", "scipy", "vqf", "pyarrow")}
+    return {"machine": platform.machine(), "system": platform.system(), **parts}
+
+
+def written(session: Session) -> dict[str, bytes]:
+    """Every file of a session's results by its name."""
+    with tempfile.TemporaryDirectory() as place:
+        folder = Path(place)
+        write_results(session, analyse(session), folder)
+        files = sorted(path for path in folder.rglob("*") if path.is_file())
+        return {path.relative_to(folder).as_posix(): path.read_bytes() for path in files}
+
+
+def digests(files: dict[str, bytes]) -> dict[str, str]:
+    return {name: hashlib.sha256(content).hexdigest() for name, content in files.items()}
+
+
+def structure(files: dict[str, bytes]) -> dict[str, Any]:
+    """Heading of every table and keys of every JSON file, which no machine changes."""
+    found: dict[str, Any] = {}
+    for name, content in files.items():
+        text = content.decode()
+        found[name] = _keys(json.loads(text)) if name.endswith(".json") else text.splitlines()[0]
+    return found
+
+
+def _keys(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {name: _keys(inner) for name, inner in value.items()}
+    return None
+
+
+if __name__ == "__main__":
+    told: dict[str, Any] = {"machine": machine(), "digests": {}, "structure": {}}
+    for case, settings in SESSIONS.items():
+        content = written(simulate(settings).session)
+        told["digests"][case], told["structure"][case] = digests(content), structure(content)
+    GOLDEN.write_text(json.dumps(told, indent=1) + "\n", encoding="utf-8")
