@@ -27,19 +27,22 @@ def list_devices(streams_in: str = "") -> Iterator[str]:
         By which of this computer's addresses streams are asked for; empty: they are not.
     """
     from app.known_columns import known_columns
+    from devices.bluetooth import own_radio
     from devices.catalogue import DRIVERS
     from devices.files.trial import PROGRAMS, PROOFS
     from devices.live import SourceRefusedError
     from devices.search import SearchResult, search, search_streams
 
-    found = search(columns=known_columns())
+    found = search(columns=known_columns(), radio=own_radio())
     if streams_in:
         try:
             streams = search_streams(streams_in)
         except SourceRefusedError as refusal:
             yield str(refusal)
         else:
-            found = SearchResult(found.sensors + streams.sensors, found.passed + streams.passed, found.lines)
+            found = SearchResult(
+                found.sensors + streams.sensors, found.passed + streams.passed, found.lines, found.deaf
+            )
     names = {driver.key: driver.name for driver in DRIVERS}
     yield "Sensors that were heard:" if found.sensors else "No sensor was heard."
     for sensor in found.sensors:
@@ -47,6 +50,8 @@ def list_devices(streams_in: str = "") -> Iterator[str]:
         yield f"- {names[sensor.driver]}: {sensor.name} at {sensor.place}{simulated}"
     for lines in (one for one in found.lines if one.columns is None):
         yield f"- Lines of {lines.count} numbers at {lines.port.device}: tell the application what they are."
+    if found.deaf is not None:
+        yield str(found.deaf)
     if found.passed:
         yield "Ports without one:"
     for passed in found.passed:

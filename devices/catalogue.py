@@ -5,6 +5,8 @@ from dataclasses import dataclass
 
 from devices.csv_serial import DRIVER as CSV
 from devices.csv_serial import CsvSerial
+from devices.dot.decoder import DotDecoder
+from devices.dot.samples import DRIVER as MOVELLA_DOT
 from devices.lsl import DRIVER as LSL
 from devices.shimmer3 import DRIVER as SHIMMER3
 from devices.shimmer3 import KNOCK as KNOCK_SHIMMER3
@@ -108,5 +110,13 @@ DRIVERS = (
         (115200,),
         "Shimmer3",
         *KNOCK_SHIMMER3,
+    ),
+    Driver(
+        MOVELLA_DOT,
+        "Movella DOT, Bluetooth LE",
+        "Not tried on hardware. By the published bytes, and emulated ones behind the Bluetooth library's interface: "
+        "six were synchronised, streamed at 60 Hz, recorded at 120 Hz in their memory and fetched with lost links. No "
+        "sensor and no radio link was at hand.",
+        DotDecoder,
     ),
 )

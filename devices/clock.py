@@ -9,7 +9,7 @@ millisecond by cable.
 """
 
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -149,9 +149,15 @@ class ClockRuns:
         self._doubtful: list[Arrival] = []
         self._may_begin = True
 
-    def begin(self) -> None:
-        """What follows was sent after a loss or a start: a time that does not follow is a new run at once."""
+    def begin(self, *, is_anew: bool = False) -> None:
+        """What follows was sent after a loss or a start: a time that does not follow is a new run at once.
+
+        `is_anew`: the clock is known to be another one, so that even a time that seems to follow does not.
+        """
         self._may_begin = True
+        if is_anew:
+            self._last.clear()
+            self._doubtful.clear()
 
     def take(self, device_s: FloatArray, host_s: FloatArray) -> IntArray:
         """Number the run of each arrival (n,), in the order in which they arrived; -1 for what cannot be."""
@@ -214,87 +220,6 @@ class Unwrapping:
         return near
 
 
-class LiveClock:
-    """Stamps while they come, from the sensor's clock: what is known improves, and the stamps follow it gently.
-
-    A correction changes an interval by a twentieth at most, so that none looks like a lost sample.
-    """
-
-    KEPT_S = 600.0
-    FOLLOWS = 0.05
-    JUMPS_S = 0.5  # what is this wrong was no clock
-
-    def __init__(self) -> None:
-        self._runs = ClockRuns()
-        self._bins: dict[int, tuple[float, float]] = {}
-        self._fit: ClockFit | None = None
-        self._fitted_at_s = self._shift_s = self._stamped_s = 0.0
-        self._run, self._early = -1, 0
-
-    def begin(self) -> None:
-        """What follows was sent after a loss, and the sensor's clock may have begun anew."""
-        self._runs.begin()
-
-    @property
-    def residual_s(self) -> float:
-        """As `ClockFit.residual_s`, 0 before anything was fitted."""
-        return self._fit.residual_s if self._fit is not None else 0.0
-
-    def stamp(self, device_s: FloatArray, host_s: float) -> FloatArray:
-        """Stamps (n,) of samples that arrived together, in seconds of the host; NaN for what cannot be."""
-        run = self._runs.take(device_s, np.full(len(device_s), host_s))
-        stamps_s = np.full(len(device_s), np.nan)
-        if self._runs.run != self._run:
-            self._run, self._fit, self._bins = self._runs.run, None, {}
-        rows = run == self._run
-        rows[rows] = self._is_meant(device_s[rows], host_s)
-        if not rows.any():
-            return stamps_s
-        known_s = device_s[rows]
-        self._learn(known_s, host_s)
-        stamps_s[rows] = self._followed(known_s)
-        return stamps_s
-
-    def _is_meant(self, device_s: FloatArray, host_s: float) -> BoolArray:
-        """Which samples (n,) have not come sooner than can be; if the next ones do, too, the line was wrong, not they.
-
-        Shown where they say they were taken, later than now, they would hide all others until then.
-        """
-        if self._fit is None:
-            return np.ones(len(device_s), dtype=bool)
-        is_early: BoolArray = self._fit.host_s(device_s) > host_s + EARLY_S
-        self._early = self._early + 1 if is_early.any() else 0
-        return ~is_early if self._early < REMEMBERED else np.ones(len(device_s), dtype=bool)
-
-    def _learn(self, device_s: FloatArray, host_s: float) -> None:
-        # of samples that arrive together the last tells most: it waited least
-        newest_s = float(device_s.max())
-        number, late_s = int(newest_s // BIN_S), host_s - newest_s
-        if number not in self._bins or late_s < self._bins[number][1]:
-            self._bins[number] = newest_s, late_s
-        fit = self._fit
-        is_early = fit is None or host_s < fit.host_s(np.array([newest_s]))[0]
-        if is_early or newest_s - self._fitted_at_s > 1.0:
-            while len(self._bins) > self.KEPT_S / BIN_S:
-                del self._bins[min(self._bins)]
-            at_s, behind_s = np.array(list(self._bins.values())).T
-            self._fit, self._fitted_at_s = fit_clock(at_s, at_s + behind_s), newest_s
-            if fit is None:
-                self._shift_s, self._stamped_s = 0.0, newest_s
-            else:  # go on from what was said last
-                moved_s = (fit.host_s(at_s[-1:]) - self._fit.host_s(at_s[-1:]))[0]
-                self._shift_s += float(moved_s)
-                if abs(self._shift_s) > self.JUMPS_S:
-                    self._shift_s = 0.0
-
-    def _followed(self, device_s: FloatArray) -> FloatArray:
-        assert self._fit is not None
-        passed_s = np.maximum(device_s - self._stamped_s, 0.0)
-        shift_s = np.sign(self._shift_s) * np.maximum(abs(self._shift_s) - self.FOLLOWS * passed_s, 0.0)
-        self._shift_s, self._stamped_s = float(shift_s[-1]), max(self._stamped_s, float(device_s.max()))
-        return self._fit.host_s(device_s) + shift_s
-
-
 @dataclass(frozen=True, slots=True)
 class Ordered:
     """Rows of a stream by when they were taken: `rows` indexes what arrived, `time_s` on the host's clock."""
@@ -306,7 +231,13 @@ class Ordered:
     residual_s: float
 
 
-def put_in_order(device_s: FloatArray, host_s: FloatArray, step_s: float | None, begins: Sequence[int] = ()) -> Ordered:
+def put_in_order(
+    device_s: FloatArray,
+    host_s: FloatArray,
+    step_s: float | None,
+    begins: Sequence[int] = (),
+    anew: Collection[int] = (),
+) -> Ordered:
     """Order arrivals (n,) by the sensor's clock, each once, and stamp them by the host's.
 
     Parameters
@@ -319,6 +250,8 @@ def put_in_order(device_s: FloatArray, host_s: FloatArray, step_s: float | None,
         Between two samples, where it is known; else the usual one.
     begins
         Ascending indexes of arrivals before which something was lost, so that the sensor may have begun anew.
+    anew
+        Those of them at which it is known to have, or to run by another clock.
 
     Returns
     -------
@@ -328,7 +261,7 @@ def put_in_order(device_s: FloatArray, host_s: FloatArray, step_s: float | None,
     runs, pieces = ClockRuns(), []
     for begin, end in pairwise([0, *begins, len(device_s)]):
         pieces.append(runs.take(device_s[begin:end], host_s[begin:end]))
-        runs.begin()
+        runs.begin(is_anew=end in anew)
     run = np.concatenate(pieces)
     rows: list[IntArray] = []
     times: list[FloatArray] = []

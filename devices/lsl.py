@@ -21,9 +21,9 @@ from typing import Any
 import numpy as np
 
 from core.samples import ImuBlock, RecordingKind
-from devices.clock import LiveClock
 from devices.host_clock import host_time_ns
 from devices.live import Keep, SensorDetails, SourceLostError, SourceRefusedError
+from devices.live_clock import LiveClock
 from devices.networks import THIS_COMPUTER
 from devices.source import SourceInfo
 

@@ -1,4 +1,4 @@
-"""Search for sensors at ports, where x-IMU3s announce themselves, and in streams that are asked for."""
+"""Search for sensors at ports, by Bluetooth LE, where x-IMU3s announce themselves, and in streams asked for."""
 
 import json
 import socket
@@ -10,10 +10,14 @@ from functools import partial
 from pathlib import Path
 from types import MappingProxyType
 
+from devices.bluetooth import Radio
 from devices.catalogue import DRIVERS, Driver
 from devices.channels import Channel, TcpChannel, UdpChannel
 from devices.csv_serial import DRIVER as CSV
 from devices.csv_serial import Columns, CsvSerial
+from devices.dot.samples import DRIVER as MOVELLA_DOT
+from devices.dot.sensor import DotSensor, is_dot
+from devices.dot.source import DotGroup, DotSource
 from devices.lines import LinesAt, columns_in
 from devices.live import LiveSource, SourceLostError, SourceRefusedError
 from devices.lsl import DRIVER as LSL
@@ -58,11 +62,15 @@ class Passed:
 
 @dataclass(frozen=True, slots=True)
 class SearchResult:
-    """What one search heard: sensors, ports that were passed over and why, ports that send lines of numbers."""
+    """What one search heard: sensors, ports that were passed over and why, ports that send lines of numbers.
+
+    `deaf` says why nothing was heard by Bluetooth LE, where it was to be.
+    """
 
     sensors: tuple[FoundSensor, ...] = ()
     passed: tuple[Passed, ...] = ()
     lines: tuple[LinesAt, ...] = ()
+    deaf: SourceRefusedError | None = None
 
     def of(self, driver: str) -> tuple[FoundSensor, ...]:
         return tuple(sensor for sensor in self.sensors if sensor.driver == driver)
@@ -72,8 +80,9 @@ def search(
     ports: Sequence[PortInfo] | None = None,
     announced_at: int = ANNOUNCED_AT,
     columns: Mapping[str, Columns] = NO_COLUMNS,
+    radio: Radio | None = None,
 ) -> SearchResult:
-    """Listen to all ports at once and to the network; takes a second or two. Each sensor is named once.
+    """Listen to all ports at once and to the network; takes a second or two, or four. Each sensor is named once.
 
     Nothing is sent but to ports. Who wants streams asks for them: `search_streams`.
 
@@ -84,6 +93,8 @@ def search(
     ----------
     columns
         What the columns of lines of numbers are, by the `key` of the port that sends them.
+    radio
+        What to listen to for Bluetooth LE; None: nothing.
     """
     looked_at = [port for port in (list_ports() if ports is None else ports) if port.is_likely]
     heard: list[FoundSensor | Passed | LinesAt] = []
@@ -93,6 +104,9 @@ def search(
     ]
     on_network: list[FoundSensor] = []
     works.append(threading.Thread(target=lambda: on_network.extend(_announced(announced_at)), daemon=True))
+    by_radio: list[FoundSensor | SourceRefusedError] = []
+    if radio is not None:
+        works.append(threading.Thread(target=lambda: by_radio.extend(_by_radio(radio)), daemon=True))
     for work in works:
         work.start()
     for work in works:
@@ -101,10 +115,23 @@ def search(
     at_ports = sorted((one for one in heard if isinstance(one, FoundSensor)), key=lambda one: one.place)
     lines = sorted((one for one in heard if isinstance(one, LinesAt)), key=lambda one: one.port.device)
     at_ports += [_of_lines(one) for one in lines if one.columns is not None]
-    for one in [*at_ports, *on_network]:  # by cable rather than by radio
+    in_air = [one for one in by_radio if isinstance(one, FoundSensor)]
+    for one in [*at_ports, *on_network, *in_air]:  # by cable rather than by radio
         by_name.setdefault((one.driver, one.name), one)
     passed = sorted((one for one in heard if isinstance(one, Passed)), key=lambda one: one.port.device)
-    return SearchResult(tuple(by_name.values()), tuple(passed), tuple(lines))
+    deaf = next((one for one in by_radio if isinstance(one, SourceRefusedError)), None)
+    return SearchResult(tuple(by_name.values()), tuple(passed), tuple(lines), deaf)
+
+
+def _by_radio(radio: Radio) -> Sequence[FoundSensor | SourceRefusedError]:
+    """The sensors that announce themselves by Bluetooth LE, all of one group; or why nobody could be heard."""
+    try:
+        announced = [one for one in radio.run(radio.announced()) if is_dot(one)]
+    except SourceRefusedError as refusal:
+        return [refusal]
+    sensors = [DotSensor(radio, one) for one in sorted(announced, key=lambda one: one.address)]
+    group = DotGroup(radio, sensors)
+    return [FoundSensor(MOVELLA_DOT, one.name, "Bluetooth", partial(DotSource, one, group)) for one in sensors]
 
 
 def _at_port(port: PortInfo, columns: Mapping[str, Columns]) -> FoundSensor | Passed | LinesAt:

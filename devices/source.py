@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import astuple, dataclass, field
 from typing import Protocol
 
-from core.samples import ImuBlock
+from core.samples import FloatArray, ImuBlock
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,11 +62,34 @@ class SensorCounts:
 
 
 @dataclass(frozen=True, slots=True)
+class SharedClock:
+    """A sensor's samples by a clock that it shares with others; what puts them right together: `devices.shared_clock`.
+
+    Attributes
+    ----------
+    name
+        Of the clock; the same for all that share it.
+    device_s : (n,)
+        When each sample of the block was taken, by that clock.
+    arrived_s : (n,)
+        When it arrived, in seconds since the journal was opened.
+    turn_s
+        After how long the clock begins anew; 0: never.
+    """
+
+    name: str
+    device_s: FloatArray
+    arrived_s: FloatArray
+    turn_s: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
 class DecodedSensor:
-    """One sensor's samples in order of time, and what was missing."""
+    """One sensor's samples in order of time, and what was missing. `clock` None: it has one of its own."""
 
     block: ImuBlock
     counts: SensorCounts
+    clock: SharedClock | None = None
 
 
 class StreamDecoder(Protocol):

@@ -23,6 +23,9 @@ TAKERS = {"tr": 1, "tr_n": 2, "later": 1}  # of app.wording, with the number of 
 # which are put into the user's language where they are shown: what, remedy; of some the first says where
 REFUSALS = {
     "SourceRefusedError": 0,
+    "DotRefusedError": 0,
+    "MemoryFullError": 0,
+    "BluetoothMissingError": 0,
     "OtherStreamError": 0,
     "FileRefusedError": 1,
     "LibraryError": 0,

@@ -6,7 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from core.samples import FloatArray, IntArray
-from devices.clock import AGREEING, ClockRuns, LiveClock, Unwrapping, fit_clock, put_in_order
+from devices.clock import AGREEING, ClockRuns, Unwrapping, fit_clock, put_in_order
+from devices.live_clock import LiveClock
 
 RATE_HZ, SKEW, OFFSET_S = 100.0, 200e-6, 4321.0
 
@@ -227,3 +228,16 @@ def test_one_arrival_is_a_clock_too() -> None:
     ordered = put_in_order(np.empty(0), np.empty(0), None)
     assert ordered.counts.received == 0
     assert len(ordered.time_s) == 0
+
+
+@pytest.mark.parametrize("anew", [(), (100,)])
+def test_a_clock_that_shows_what_it_showed_before_is_another_only_where_that_is_known(anew: tuple[int, ...]) -> None:
+    device_s = np.concatenate([np.arange(100), np.arange(100, 200)]) / RATE_HZ
+    taken_s = device_s + np.where(np.arange(200) < 100, 0.0, 4.0)
+    ordered = put_in_order(device_s, taken_s + 0.002, None, (0, 100), anew)
+    if anew:
+        assert np.abs(ordered.time_s - taken_s).max() < 0.005
+        assert ordered.counts.lost == 400
+    else:  # they may have been held up on their way
+        assert np.diff(ordered.time_s).max() < 0.011
+        assert ordered.counts.lost == 0

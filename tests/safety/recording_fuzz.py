@@ -33,10 +33,10 @@ from app.storage.journal.writer import JournalWriter
 from core.body import Site
 from core.samples import ImuBlock, Recording, RecordingKind
 from devices.channels import Channel
-from devices.clock import LiveClock
 from devices.csv_serial import DRIVER as CSV
 from devices.decoders import DECODERS
 from devices.live import SensorDetails
+from devices.live_clock import LiveClock
 from devices.lsl import DRIVER as LSL
 from devices.source import SourceInfo
 from devices.stream import ByteSource, Framer, Row

@@ -21,6 +21,7 @@ from app.storage.journal.records import Record, RecordKind
 from core.body import Site
 from core.samples import BoolArray, FloatArray, ImuBlock, Recording
 from core.tracks import nominal_step_s
+from devices.shared_clock import tied
 from devices.source import DecodedSensor, SensorCounts, SourceInfo, StreamDecoder
 
 Decoders = Mapping[str, Callable[[], StreamDecoder]]
@@ -160,7 +161,7 @@ class _JournalSegment:
 
     def decoded(self) -> list[tuple[str, DecodedSensor]]:
         found = [piece for decoder in self._decoders.values() for piece in decoder.finish().items()]
-        return found + [(sensor, rows.decoded()) for sensor, every in self._samples.items() for rows in every]
+        return tied(found) + [(sensor, rows.decoded()) for sensor, every in self._samples.items() for rows in every]
 
     def _begin(self, entry: SourceEntry) -> None:
         driver = entry.info.driver

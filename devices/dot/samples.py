@@ -1,0 +1,257 @@
+"""Samples of a Movella DOT: what its modes send, and how both its streams and its files lie in a journal.
+
+Everything that arrives is kept as it came, each notification as `u16 characteristic, u16 length, payload`. Stamps are
+the sensor's own microseconds, which begin anew every 71 minutes; there is no counter, so that loss shows in the stamps.
+"""
+
+import math
+import struct
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from devices.clock import Unwrapping
+from devices.dot.messages import Characteristic, DotMessage, DotMessageError, DotNotice
+from devices.source import SourceInfo
+from devices.stream import Heard, Row
+
+DRIVER, VERSION = "movella-dot", "1"
+HEAD = struct.Struct("<HH")
+MOST_PAYLOAD = 512  # of an attribute, by the Bluetooth specification
+KNOWN = frozenset(Characteristic)
+TICK_HZ, TIME_BITS = 1e6, 32
+TURN_S = 2**TIME_BITS / TICK_HZ
+RAD = math.pi / 180.0
+PIECES = {0: "I", 1: "4f", 7: "3f", 8: "3f", 10: "H"}  # of a recorded sample, by the numbers that choose them
+CHOSEN = tuple(PIECES)
+RECORDED = struct.Struct("<" + "".join(PIECES.values()))
+NUMBER = struct.Struct("<I")
+WORN_M_S2 = (5.0, 20.0)  # median of a leg's specific force; outside it is no force in m/s2
+
+
+@dataclass(frozen=True, slots=True)
+class StreamMode:
+    """A mode that a sensor streams in: where it is notified, and in how many bytes."""
+
+    number: int
+    characteristic: Characteristic
+    shape: struct.Struct
+    has_orientation: bool
+
+    def sample(self, payload: bytes) -> "DotSample | None":
+        """What a notification says; None where it is cut or says what cannot be."""
+        if len(payload) < self.shape.size:
+            return None
+        ticks, *values = self.shape.unpack_from(payload)
+        return _sample(ticks, values, self.has_orientation)
+
+
+@dataclass(frozen=True, slots=True)
+class DotSample:
+    """Microseconds, angular rate in rad/s (3), specific force in m/s2 (3), orientation, scalar first (4), or none."""
+
+    ticks: int
+    rate: tuple[float, ...]
+    force: tuple[float, ...]
+    orientation: tuple[float, ...]
+
+
+def _sample(ticks: int, values: Sequence[float], has_orientation: bool) -> DotSample | None:
+    if not all(map(math.isfinite, values)):
+        return None
+    orientation, motion = (values[:4], values[4:]) if has_orientation else ((), values)
+    rate = tuple(value * RAD for value in motion[3:6])
+    return DotSample(ticks, rate, tuple(motion[:3]), tuple(orientation))
+
+
+# orientation, acceleration and rate: in Movella's revision C, not in revision F; a sensor that does not know it has 21
+FULL = StreamMode(26, Characteristic.LONG, struct.Struct("<I10f"), has_orientation=True)
+PLAIN = StreamMode(21, Characteristic.MEDIUM, struct.Struct("<I6f"), has_orientation=False)
+MODES = {mode.number: mode for mode in (FULL, PLAIN)}
+
+
+@dataclass(frozen=True, slots=True)
+class RecordedSample:
+    """A sample of a file: its number, counted from 0, and which values met the end of their range."""
+
+    number: int
+    sample: DotSample
+    status: int
+
+    @classmethod
+    def parsed(cls, data: bytes) -> "RecordedSample | None":
+        """Of a notice DATA, without its first byte; None where it is cut or says what cannot be."""
+        if len(data) < NUMBER.size + RECORDED.size:
+            return None
+        (number,) = NUMBER.unpack_from(data)
+        ticks, *values, status = RECORDED.unpack_from(data, NUMBER.size)
+        sample = _sample(ticks, values, has_orientation=True)
+        return None if sample is None else cls(number, sample, status)
+
+
+def framed(characteristic: int, payload: bytes) -> bytes:
+    """A notification as it is kept."""
+    return HEAD.pack(characteristic, len(payload)) + payload
+
+
+class Frames:
+    """Notifications in what was kept, in pieces of any size."""
+
+    def __init__(self) -> None:
+        self.damaged = 0
+        self._held = b""
+        self._is_lost = False
+
+    def feed(self, data: bytes) -> list[tuple[int, bytes]]:
+        """Characteristic and payload of those that are whole now."""
+        found, held, at = [], self._held + data, 0
+        while len(held) - at >= HEAD.size:
+            characteristic, length = HEAD.unpack_from(held, at)
+            if characteristic not in KNOWN or length > MOST_PAYLOAD:
+                self.damaged += not self._is_lost
+                self._is_lost = True
+                at += 1
+                continue
+            end = at + HEAD.size + length
+            if end > len(held):
+                break
+            found.append((characteristic, held[at + HEAD.size : end]))
+            self._is_lost = False
+            at = end
+        self._held = held[at:]
+        return found
+
+    def flush(self) -> None:
+        """Nothing follows: what was held back was cut."""
+        self.damaged += bool(self._held)
+        self._held = b""
+
+
+class DotFramer:
+    """See `devices.stream.Framer`: what one sensor streams."""
+
+    def __init__(self, info: SourceInfo) -> None:
+        self.heard = Heard()
+        self._frames, self._damaged = Frames(), 0
+        self._mode = _mode_of(info.settings)
+        self._unwrapping, self._before_s = Unwrapping(TIME_BITS, TICK_HZ), 0.0
+        self._is_first = True
+
+    def feed(self, data: bytes, host_s: float) -> None:
+        for characteristic, payload in self._frames.feed(data):
+            if characteristic == Characteristic.BATTERY and payload:
+                self.heard.battery = min(payload[0], 100) / 100
+            elif self._mode is not None and characteristic == self._mode.characteristic:
+                self._take(self._mode.sample(payload), host_s)
+            else:
+                self.heard.skipped += 1
+        self._count_damaged()
+
+    def flush(self) -> None:
+        self._frames.flush()
+        self._count_damaged()
+
+    def _take(self, sample: DotSample | None, host_s: float) -> None:
+        if sample is None:
+            self.heard.damaged += 1
+            return
+        device_s = self._unwrapping.ticks(sample.ticks, host_s) / TICK_HZ
+        if self._is_first:  # so that the clock goes on after a cut, although it may have begun anew
+            self._is_first, self._before_s = False, round((host_s - device_s) / TURN_S) * TURN_S
+        device_s += self._before_s
+        self.heard.rows.append((device_s, *sample.rate, *sample.force))
+        if sample.orientation:
+            self.heard.orientations.append((device_s, *sample.orientation))
+
+    def _count_damaged(self) -> None:
+        self.heard.damaged += self._frames.damaged - self._damaged
+        self._damaged = self._frames.damaged
+
+
+def _mode_of(settings: Mapping[str, object]) -> StreamMode | None:
+    mode = settings.get("mode")
+    return MODES.get(mode) if isinstance(mode, int) else None
+
+
+class FileFramer:
+    """Samples of a file as they are fetched, some of them again. The first of each number is kept.
+
+    Attributes
+    ----------
+    next
+        The number after the highest that was heard.
+    """
+
+    def __init__(self) -> None:
+        self.samples: dict[int, RecordedSample] = {}
+        self.next = 0
+        self.damaged = 0
+        self._frames = Frames()
+
+    def feed(self, data: bytes) -> None:
+        for characteristic, payload in self._frames.feed(data):
+            if characteristic == Characteristic.NOTICE:
+                self._take(payload)
+
+    def _take(self, payload: bytes) -> None:
+        try:
+            message = DotMessage.parsed(payload)
+        except DotMessageError:
+            self.damaged += 1
+            return
+        if not message.data or message.data[0] != DotNotice.DATA:
+            return
+        if (one := RecordedSample.parsed(message.data[1:])) is None:
+            self.damaged += 1
+        else:
+            self.samples.setdefault(one.number, one)
+            self.next = max(self.next, one.number + 1)
+
+    def cut(self) -> None:
+        """What follows does not join what came before."""
+        self._frames = Frames()
+
+    def missing(self) -> tuple[range, ...]:
+        """Numbers that were not heard, below the highest that was."""
+        gaps, expected = [], 0
+        for number in sorted(self.samples):
+            if number > expected:
+                gaps.append(range(expected, number))
+            expected = number + 1
+        return tuple(gaps)
+
+    def has_forces(self) -> bool:
+        """Whether what is said to be specific force can be a leg's: the maker's printed example changes two names."""
+        forces = sorted(math.hypot(*one.sample.force) for one in self.samples.values())
+        return not forces or WORN_M_S2[0] < forces[len(forces) // 2] < WORN_M_S2[1]
+
+    def rows(self, near_s: float, tie_s: "Tie") -> tuple[list[Row], list[Row]]:
+        """Rows and orientations in order, as `Heard` has them, the clock unwrapped so that the first is near `near_s`.
+
+        `near_s` is of the host's clock, which `tie_s` leads to.
+        """
+        rows: list[Row] = []
+        orientations: list[Row] = []
+        ticks, last = 0, None
+        for number in sorted(self.samples):
+            sample = self.samples[number].sample
+            ticks += 0 if last is None else (sample.ticks - last + (1 << 31)) % (1 << 32) - (1 << 31)
+            if last is None:
+                device_s = sample.ticks / TICK_HZ
+                turns = round((near_s - tie_s.host_s(device_s)) / TURN_S)
+                ticks = sample.ticks + turns * (1 << TIME_BITS)
+            last = sample.ticks
+            rows.append((ticks / TICK_HZ, *sample.rate, *sample.force))
+            orientations.append((ticks / TICK_HZ, *sample.orientation))
+        return rows, orientations
+
+
+@dataclass(frozen=True, slots=True)
+class Tie:
+    """How the host's seconds follow from a sensor's, as they were found before it recorded: see `ClockFit`."""
+
+    origin_s: float
+    offset_s: float
+    skew: float
+
+    def host_s(self, device_s: float) -> float:
+        return device_s + self.offset_s + self.skew * (device_s - self.origin_s)

@@ -1,0 +1,266 @@
+"""Movella DOTs as live sources: one for each sensor, and one clock for those that are worn together."""
+
+import threading
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.samples import ImuBlock, RecordingKind
+from devices.bluetooth import Radio
+from devices.channels import READ_S
+from devices.dot.messages import EMULATED, DotMessageError
+from devices.dot.samples import DRIVER, TURN_S, VERSION, DotFramer, StreamMode, Tie
+from devices.dot.sensor import DotSensor
+from devices.dot.synchronising import (
+    RENEWED_S,
+    NotSynchronisedError,
+    Synchronised,
+    SyncStage,
+    Tell,
+    end_synchronising,
+    refuse_while_recording,
+    synchronise,
+)
+from devices.live import Keep, SensorDetails, SourceLostError, SourceRefusedError
+from devices.live_clock import LiveClock, LiveLine
+from devices.source import SourceInfo
+
+LIVE_HZ, SLOWER_HZ = 60, 30
+GENERAL = 0
+
+
+def _tell_nobody(_stage: SyncStage, _sensor: str) -> None:
+    """Who synchronises in passing shows no steps."""
+
+
+@dataclass(slots=True)
+class _Common:
+    """The clock that sensors were brought onto, by whom it is kept, and what is known of it."""
+
+    synchronised: Synchronised
+    members: set[str]
+    line: LiveLine
+
+
+class DotGroup:
+    """Sensors that are worn together: they are synchronised before the first of them is read. Methods from any thread.
+
+    Parameters
+    ----------
+    sensors
+        The first one is the root of synchronising, and should be worn nearest to all others.
+    rate_hz
+        60, or 30 where the air is too full for that.
+    """
+
+    def __init__(
+        self, radio: Radio, sensors: Sequence[DotSensor], rate_hz: int = LIVE_HZ, profile: int = GENERAL
+    ) -> None:
+        self.radio, self.sensors = radio, tuple(sensors)
+        self.rate_hz, self.profile = rate_hz, profile
+        self._common: _Common | None = None
+        self._synchronising = threading.Lock()
+
+    def sources(self) -> "tuple[DotSource, ...]":
+        return tuple(DotSource(sensor, self) for sensor in self.sensors)
+
+    @property
+    def is_synchronising(self) -> bool:
+        return self._synchronising.locked()
+
+    def synchronise(self, tell: Tell = _tell_nobody) -> None:
+        """Bring all onto one clock, also once more; takes half a minute to two. Never while one of them is recorded.
+
+        Raises
+        ------
+        NotSynchronisedError
+            Some did not follow. They may be tried again, or left out.
+        SourceRefusedError
+            One cannot be synchronised, and says why.
+        """
+        with self._synchronising:
+            self._common = None
+            found = self.radio.run(synchronise(self.sensors, self.rate_hz, self.profile, tell))
+            self._common = _Common(found, {sensor.name for sensor in self.sensors}, LiveLine())
+
+    def end(self) -> None:
+        """Let each have its own clock again, which spares the batteries."""
+        with self._synchronising:
+            self._common = None
+            self.radio.run(end_synchronising(self.sensors))
+
+    def prepare(self) -> None:
+        """Synchronise, unless that was done or there is nobody to synchronise with."""
+        if len(self.sensors) > 1 and self._common is None and not self.is_synchronising:
+            self.synchronise()
+
+    def renewal_due_s(self) -> float | None:
+        """How long the clocks are one still, s, negative where they may not be; None: they are not."""
+        if self._common is None:
+            return None
+        return RENEWED_S - (self.radio.now_ns() - self._common.synchronised.at_ns) / 1e9
+
+    def clock_of(self, sensor: str) -> str:
+        """The name of the clock that a sensor is on; empty: its own."""
+        common = self._common
+        return common.synchronised.name if common is not None and sensor in common.members else ""
+
+    def line_of(self, sensor: str) -> LiveLine | None:
+        """What is known of that clock; None where it is the sensor's own."""
+        common = self._common
+        return common.line if common is not None and sensor in common.members else None
+
+    def leave(self, sensor: str) -> None:
+        """A sensor that was switched off has lost the common clock."""
+        if self._common is not None:
+            self._common.members.discard(sensor)
+
+
+class DotSource:
+    """The `LiveSource` of one sensor: streams, and goes on streaming while its link is lost.
+
+    Attributes
+    ----------
+    sensor, group
+        Whose source it is, and with whom it is worn.
+    """
+
+    has_bytes = True
+
+    def __init__(self, sensor: DotSensor, group: DotGroup) -> None:
+        self.sensor, self.group = sensor, group
+        self._info = SourceInfo(DRIVER, VERSION, sensors=(sensor.name,))
+        self._mode: StreamMode | None = None
+        self._framer: DotFramer | None = None
+        self._clock, self._clock_name = LiveClock(), ""
+        self._was_open = False
+        self._clock_begun = 0  # so often its own clock is known to have begun anew
+        self._keeps_link = False
+
+    @property
+    def info(self) -> SourceInfo:
+        return self._info
+
+    @property
+    def sent(self) -> Sequence[bytes]:
+        return tuple(self.sensor.sent)
+
+    def open(self) -> None:
+        if self.group.is_synchronising:
+            raise SourceLostError(f"{self.sensor.name} is being synchronised")
+        self._keeps_link = False
+        try:
+            if not self._was_open:
+                self.group.prepare()
+            self.sensor.sent.clear()
+            self.group.radio.run(self._opened())
+        except (SourceLostError, DotMessageError) as problem:
+            raise SourceRefusedError(
+                "{sensor} does not answer", "Press its button, and bring it nearer", sensor=self.sensor.name
+            ) from problem
+        self._was_open = True
+
+    async def _opened(self) -> None:
+        sensor, group = self.sensor, self.group
+        await sensor.connect()
+        await refuse_while_recording(sensor)
+        mode = await sensor.streaming()
+        if mode is None or (await sensor.settings()).rate_hz != group.rate_hz:
+            if self._was_open:  # it was switched off meanwhile: its clock has begun anew
+                group.leave(sensor.name)
+                self._clock_begun += 1  # now: should the link be lost next, nothing tells it any more
+            await sensor.stop_stream()
+            await sensor.set_up(group.rate_hz, group.profile)
+            sensor.taken()
+            mode = await sensor.start_stream()
+        if not self._was_open:
+            sensor.taken()  # it streamed before anybody asked for it
+        self._begin(mode)
+
+    def _begin(self, mode: StreamMode) -> None:
+        sensor, group = self.sensor, self.group
+        info = sensor.info
+        assert info is not None
+        settings: dict[str, object] = {"rate_hz": group.rate_hz, "mode": mode.number, "profile": group.profile}
+        name = group.clock_of(sensor.name)
+        if name:
+            settings |= {"clock": name, "turn_s": TURN_S}
+        if self._clock_begun:
+            settings["clock_begun"] = self._clock_begun  # its stamps alone may seem to follow those before
+        if name != self._clock_name or not name:
+            self._clock = LiveClock(group.line_of(sensor.name))
+        self._clock.begin()
+        self._clock_name = name
+        self._info = SourceInfo(
+            DRIVER, VERSION, info.serial, (sensor.name,), settings, is_simulated=info.model == EMULATED
+        )
+        self._framer = DotFramer(self._info)
+
+    def read(self, keep: Keep) -> Sequence[ImuBlock]:
+        radio, framer = self.group.radio, self._framer
+        if self.group.is_synchronising:
+            radio.wait(threading.Event(), READ_S)
+            return ()
+        if framer is None:
+            raise SourceLostError(f"{self.sensor.name} is closed")
+        if self.group.clock_of(self.sensor.name) != self._clock_name:
+            self._keeps_link = True
+            raise SourceLostError(f"{self.sensor.name} has another clock now")
+        radio.wait(self.sensor.arrived, READ_S)
+        data = b"".join(frame for _, frame in self.sensor.taken())
+        if not data:
+            if not self.sensor.is_up:
+                raise SourceLostError(f"{self.sensor.name} was lost")
+            return ()
+        keep(data)
+        now_s = radio.now_ns() / 1e9
+        framer.feed(data, now_s)
+        rows, framer.heard.rows = np.array(framer.heard.rows, dtype=float), []
+        framer.heard.orientations.clear()
+        if not len(rows):
+            return ()
+        stamps_s = self._clock.stamp(rows[:, 0], now_s)
+        return (ImuBlock(self.sensor.name, stamps_s, rows[:, 1:4], rows[:, 4:7]),)
+
+    def tie(self) -> Tie | None:
+        """How the host's time follows from the sensor's clock, as the stream has told so far; None: nothing has."""
+        fit = self._clock.fit
+        return None if fit is None else Tie(fit.origin_s, fit.offset_s, fit.skew)
+
+    def close(self) -> None:
+        self._framer = None
+        if self._keeps_link or self.group.is_synchronising:
+            return
+        with suppress(Exception):
+            self.group.radio.run(self._closed())
+
+    async def _closed(self) -> None:
+        """One that is in reach is not needed any more; one that is lost goes on, and is looked for."""
+        if self.sensor.is_up:
+            with suppress(SourceLostError):
+                await self.sensor.stop_stream()
+        await self.sensor.disconnect()
+
+    def details(self) -> Mapping[str, SensorDetails]:
+        info = self.sensor.info
+        if info is None:
+            return {}
+        firmware = ".".join(map(str, info.firmware))
+        told = SensorDetails(info.model, info.serial, firmware, self.group.rate_hz, battery=self.sensor.battery)
+        return {self.sensor.name: told}
+
+    def identify(self, sensor: str) -> bool:
+        if sensor != self.sensor.name or self._framer is None or self.group.is_synchronising:
+            return False
+        with suppress(SourceLostError):  # what is lost is noticed by whoever reads
+            self.group.radio.run(self.sensor.identify())
+            return True
+        return False
+
+    def ask(self, kind: RecordingKind | None) -> None:
+        """Only simulated patients listen."""
+
+
+__all__ = ["DotGroup", "DotSource", "NotSynchronisedError"]

@@ -1,0 +1,429 @@
+"""A Movella DOT that is not there: what it answers, streams, records and sends, and what may go wrong with it.
+
+Its messages are laid out here once more, from the printed specification and not from the driver, which is held to them.
+"""
+
+import struct
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+Motion = Callable[[float], Sequence[float]]
+"""Orientation (4), force in m/s2 (3) and rate in deg/s (3) at an instant of the host's clock, ns."""
+Notification = tuple[int, bytes]
+
+MODE_SIZES = {26: (0x2002, 63), 21: (0x2003, 40)}
+STEPS_US = {60: 16667, 30: 33333, 120: 8333}
+TURN_US = 1 << 32
+SYNC_TAKES_NS = 12_000_000_000
+TOGETHER_NS = 1_500_000_000
+IDLE, RECORDING, EXPORTING = 0x06, 0x40, 0x70
+SENT_AT_ONCE = 8  # notices of a file in one step
+MOST_SAMPLES = 16_000_000 // 62
+
+
+@dataclass
+class DotFaults:
+    """What goes wrong. Shares are of notifications; counts are used up.
+
+    Attributes
+    ----------
+    sync_results
+        What each attempt of synchronising ends with; a good one after the last.
+    stale_s
+        So far its clock is off after synchronising, which it calls good.
+    has_26
+        Whether its firmware knows that mode.
+    again
+        Whether it sends a file from the middle on, once the link was lost.
+    """
+
+    loss: float = 0.0
+    doubles: float = 0.0
+    cut: float = 0.0
+    damaged: float = 0.0
+    silent: float = 0.0
+    sync_results: list[int] = field(default_factory=list)
+    stale_s: float = 0.0
+    has_26: bool = True
+    again: bool = True
+    tells_end: bool = True
+    """Whether it takes an order to send what lies behind the last sample, and answers that nothing does."""
+    busy: int = 0
+    drops_after: list[int] = field(default_factory=list)
+    """After so many operations each the link is lost."""
+    drops_export_after: list[int] = field(default_factory=list)
+    """After so many samples of a file each the link is lost."""
+    unreachable_until_ns: int = 0
+    unreachable_after_drop_s: float = 0.0
+    """So long it stays away once its link was lost while it sent a file."""
+
+
+@dataclass
+class EmulatedFile:
+    """A recording in its memory: ticks and values (10) of each sample."""
+
+    utc_s: int
+    ticks: list[int]
+    values: list[Sequence[float]]
+
+
+class EmulatedDot:
+    """Its clocks run by `now_ns`. `notifications` is called every few milliseconds, whether or not a link is up.
+
+    Attributes
+    ----------
+    sent
+        Of every sample that it took while it streamed, lost or not: ticks without turns, values (10) in single
+        precision, and when it was taken by the host's clock, ns.
+    """
+
+    def __init__(
+        self,
+        number: int,
+        motion: Motion,
+        now_ns: Callable[[], int],
+        faults: DotFaults | None = None,
+        *,
+        skew: float = 0.0,
+        says_so: bool = True,
+    ) -> None:
+        self.mac = bytes([0xD4, 0x22, 0xCD, 0x00, 0x00, number + 1])
+        self.faults = faults or DotFaults()
+        self.chance = np.random.default_rng(number)
+        self._motion, self._now_ns = motion, now_ns
+        self._code = b"EMUDOT" if says_so else b"XS-T02"
+        self._power_on_ns, self._skew = now_ns() - int(self.chance.integers(10**9, 4 * 10**12)), skew
+        self._root: EmulatedDot | None = None
+        self._drift_us = 0.0
+        self.settings = bytearray(struct.pack("<24xHB5x", 30, 0))
+        self.is_streaming, self.mode = False, 26
+        self._next = 0
+        self.sent: list[tuple[int, tuple[float, ...], float]] = []
+        self.is_up = False
+        self.subscribed: set[int] = set()
+        self.blinked = 0
+        self.battery = 85
+        self._answer = b""
+        self._notices: list[bytes] = []
+        self._sync_root: bytes | None = None
+        self._sync_from_ns = 0
+        self._peers: Sequence[EmulatedDot] = ()
+        self._must_read_first = False
+        self.state = IDLE
+        self.files: list[EmulatedFile] = []
+        self.erased: list[EmulatedFile] = []
+        self.room = MOST_SAMPLES
+        self._record_utc_s = self._record_from = 0
+        self._export: list[bytes] = []
+        self._exported: EmulatedFile | None = None
+        self._begun_in_link = False
+        self.unreadable: set[int] = set()  # samples of a file that it never sends
+        self.unheard: list[int] = []  # and some that are lost on their way, once each
+        self.exported = 0  # samples of files
+        self.cut_recordings = 0  # by settings that were written meanwhile
+
+    def meet(self, peers: "Sequence[EmulatedDot]") -> None:
+        """These are the sensors that it may be synchronised with, itself among them."""
+        self._peers = peers
+
+    def restart(self) -> None:
+        """It was switched off and on: it does nothing, and its clock begins anew. What it recorded is there."""
+        self._end_recording()
+        self.is_streaming, self._root, self._sync_root = False, None, None
+        self._power_on_ns = self._now_ns()
+
+    def stay_away(self, seconds: float) -> None:
+        """It is out of reach from now on."""
+        self.faults.unreachable_until_ns = self._now_ns() + round(seconds * 1e9)
+
+    # its clock
+
+    def begin_clock_at(self, ticks: int) -> None:
+        """Let its clock show this now."""
+        self._power_on_ns = self._now_ns() - ticks * 1000
+
+    def _clock_us(self, at_ns: float) -> float:
+        if self._root is not None:
+            return self._root.own_us(at_ns) + self._drift_us
+        return self.own_us(at_ns)
+
+    def own_us(self, at_ns: float) -> float:
+        return (at_ns - self._power_on_ns) * (1.0 + self._skew) / 1e3
+
+    def _taken_ns(self, clock_us: float) -> float:
+        clock = self._root or self
+        own_us = clock_us - (self._drift_us if self._root is not None else 0.0)
+        return clock._power_on_ns + own_us * 1e3 / (1.0 + clock._skew)
+
+    @property
+    def rate_hz(self) -> int:
+        return int(struct.unpack_from("<H", self.settings, 24)[0])
+
+    # what comes through the air
+
+    def may_connect(self) -> bool:
+        is_synchronising = self._sync_root is not None and self._now_ns() - self._sync_from_ns < SYNC_TAKES_NS
+        return not is_synchronising and self._now_ns() >= self.faults.unreachable_until_ns
+
+    def connected(self) -> None:
+        self._end_synchronising()
+        if self.is_streaming:
+            self._streamed()  # what was sent meanwhile nobody heard
+        self.is_up, self._begun_in_link = True, False
+
+    def disconnected(self) -> None:
+        self.is_up = False
+        self.subscribed.clear()
+        self._notices.clear()
+        self._export.clear()
+        if self.state == EXPORTING:
+            self.state = IDLE
+
+    def read(self, characteristic: int) -> bytes:
+        if characteristic != 0x7002 and self._must_read_first:
+            self._root = None  # anything else first breaks it
+        self._must_read_first = False
+        match characteristic:
+            case 0x1001:
+                info = self.mac[::-1] + bytes([2, 4, 0]) + bytes(7) + struct.pack("<I", 1)
+                return info + struct.pack("<Q", 0x4244030023B00100 + self.mac[5]) + self._code
+            case 0x1002:
+                return bytes(self.settings)
+            case 0x2001:
+                return bytes([1, self.is_streaming, self.mode])
+            case 0x3001:
+                return bytes([self.battery, 0])
+            case 0x7002:
+                return self._answer + bytes(160 - len(self._answer))
+        raise KeyError(characteristic)
+
+    def write(self, characteristic: int, data: bytes) -> None:
+        if self._must_read_first:
+            self._root, self._must_read_first = None, False
+        if characteristic == 0x1002:
+            self._set(data)
+        elif characteristic == 0x2001:
+            self._switch(data)
+        elif characteristic == 0x7001:
+            if sum(data) % 256 or len(data) != data[1] + 3:
+                return
+            (self._synchronise if data[0] == 2 else self._remember)(data[2:-1])
+
+    def notifications(self) -> list[Notification]:
+        """What is due now."""
+        said = self._streamed() if self.is_streaming else []
+        self._look_for_room()
+        export, self._export = self._export[:SENT_AT_ONCE], self._export[SENT_AT_ONCE:]
+        if self.state == EXPORTING and not self._export:
+            self.state = IDLE
+        self.exported += len(export)
+        for notice in [*self._notices, *export]:
+            if notice in export and self.chance.random() < self.faults.silent:
+                continue
+            said.append((0x7003, notice + bytes(160 - len(notice))))
+        self._notices.clear()
+        return [one for one in said if one[0] in self.subscribed] if self.is_up else []
+
+    def _set(self, data: bytes) -> None:
+        if data[0] & 0x01:
+            self.blinked += 1
+        if data[0] & 0x30:
+            self._cut_recording()
+        if data[0] & 0x10:
+            self.settings[24:26] = data[24:26]
+        if data[0] & 0x20:
+            self.settings[26] = data[26]
+
+    def _switch(self, data: bytes) -> None:
+        self._cut_recording()
+        if data[2] not in MODE_SIZES or (data[2] == 26 and not self.faults.has_26) or self.rate_hz == 120:
+            return
+        self.is_streaming, self.mode = bool(data[1]), data[2]
+        self._next = self._grid(self._now_ns()) + 1
+
+    def _cut_recording(self) -> None:
+        if self.state == RECORDING:
+            self.cut_recordings += 1
+            self._end_recording()
+
+    # streaming
+
+    @property
+    def step_us(self) -> int:
+        return STEPS_US.get(self.rate_hz, round(1e6 / self.rate_hz))
+
+    def _grid(self, at_ns: int) -> int:
+        return int(self._clock_us(at_ns) // self.step_us)
+
+    def _measured(self, number: int) -> tuple[int, tuple[float, ...], float]:
+        ticks = number * self.step_us
+        taken_ns = self._taken_ns(ticks)
+        return ticks, tuple(np.array(self._motion(taken_ns), dtype=np.float32).tolist()), taken_ns
+
+    def _streamed(self) -> list[Notification]:
+        said: list[Notification] = []
+        characteristic, size = MODE_SIZES[self.mode]
+        last = self._grid(self._now_ns())
+        for number in range(self._next, last + 1):
+            one = self._measured(number)
+            self.sent.append(one)
+            values = one[1] if self.mode == 26 else one[1][4:]
+            payload = struct.pack(f"<I{len(values)}f", one[0] % TURN_US, *values)
+            payload += bytes(size - len(payload))
+            if self.chance.random() < self.faults.cut:
+                payload = payload[:20]
+            if self.chance.random() < self.faults.loss:
+                continue
+            said += [(characteristic, payload)] * (1 + (self.chance.random() < self.faults.doubles))
+        self._next = max(self._next, last + 1)
+        return said
+
+    # synchronising
+
+    def _synchronise(self, data: bytes) -> None:
+        match data[0]:
+            case 0x08:
+                self._notices.append(_message(2, b"\x51\x04" if self._root else b"\x51\x09"))
+            case 0x02:
+                self._root, self._sync_root = None, None
+                self._notices.append(_message(2, b"\x50\x00"))
+            case 0x01:
+                self._sync_root, self._sync_from_ns = data[1:7][::-1], self._now_ns()
+
+    def _end_synchronising(self) -> None:
+        if self._sync_root is None:
+            return
+        root = next((one for one in self._peers if one.mac == self._sync_root), None)
+        was_together = root is not None and abs(self._sync_from_ns - root.began_ns) < TOGETHER_NS
+        result = self.faults.sync_results.pop(0) if self.faults.sync_results else 0
+        if not was_together:
+            result = 0x09
+        self._sync_root = None
+        self._answer = _message(2, bytes([3, result]))
+        if result == 0:
+            self._root = root
+            self._drift_us = float(self.chance.uniform(-100, 100)) + self.faults.stale_s * 1e6
+            self._must_read_first = True
+
+    @property
+    def began_ns(self) -> int:
+        """When it was told to synchronise."""
+        return self._sync_from_ns
+
+    # its memory
+
+    def _remember(self, data: bytes) -> None:
+        order = data[0]
+        self._look_for_room()
+        if order == 0x02:
+            self._answer = _message(1, bytes([1, self.state, order]))
+            return
+        if self.faults.busy:
+            self.faults.busy -= 1
+            self._answer = _message(1, bytes([1, 0x03, order]))
+            return
+        result = self._done(order, data[1:])
+        self._answer = _message(1, bytes([1, result, order]) + data[1:])
+
+    def _done(self, order: int, data: bytes) -> int:
+        if self.state == RECORDING and order != 0x41:
+            return 0x03
+        match order:
+            case 0x40:
+                if self._used() >= self.room or self.is_streaming:
+                    return 0x34 if not self.is_streaming else 0x03
+                (self._record_utc_s,) = struct.unpack_from("<I", data)
+                self._record_from, self.state = self._grid(self._now_ns()) + 1, RECORDING
+            case 0x41:
+                self._end_recording()
+                self._notices.append(_message(1, b"\x41"))
+            case 0x50:
+                flash = b"".join(b"\xee" + b"\xcc" * (len(file.ticks) * 62 // 228_000) for file in self.files)
+                whole = bytes.fromhex("73616C46") + flash + b"\xff" * 8
+                self._notices += [_message(1, b"\x51" + whole[at : at + 150]) for at in range(0, len(whole), 150)]
+                self._notices.append(_message(1, b"\x52"))
+            case 0x60:
+                self._notices += self._told_of(data[0])
+            case 0x74:
+                return 0 if data == bytes([0, 1, 7, 8, 10]) else 0x03
+            case 0x70:
+                if not 0 < data[0] <= len(self.files):
+                    return 0x03
+                self._exported, self._begun_in_link = self.files[data[0] - 1], True
+                self._send_from(0)
+            case 0x75:
+                if self._exported is None or not (self.faults.again or self._begun_in_link):
+                    return 0x03
+                (first,) = struct.unpack("<I", data)
+                if first >= len(self._exported.ticks) and not self.faults.tells_end:
+                    return 0x03
+                self._send_from(first)
+            case 0x73:
+                self._export.clear()
+                self.state = IDLE
+                self._notices.append(_message(1, b"\x73"))
+            case 0x30:
+                self.erased += self.files
+                self.files, self._exported = [], None
+                self._notices.append(_message(1, b"\x33"))
+            case _:
+                return 0x03
+        return 0
+
+    def _told_of(self, number: int) -> list[bytes]:
+        if not 0 < number <= len(self.files):
+            return [_message(1, b"\x63")]
+        file = self.files[number - 1]
+        length_s = len(file.ticks) * STEPS_US[120] // 1_000_000
+        told = struct.pack("<4sIHIH", bytes.fromhex("6F636552"), 128, 1, file.utc_s, length_s)
+        return [_message(1, b"\x61" + told), _message(1, b"\x62")]
+
+    def _send_from(self, first: int) -> None:
+        assert self._exported is not None
+        file = self._exported
+        self._export = []
+        for number in range(first, len(file.ticks)):
+            if number in self.unheard:
+                self.unheard.remove(number)
+                continue
+            if number in self.unreadable or self.chance.random() < self.faults.damaged:
+                self._export.append(_message(1, b"\x76" + struct.pack("<I", number)))
+                continue
+            sample = struct.pack("<I10fH", file.ticks[number] % TURN_US, *file.values[number], 0)
+            self._export.append(_message(1, b"\x71" + struct.pack("<I", number) + sample))
+        self._export.append(_message(1, b"\x72"))
+        self.state = EXPORTING
+
+    def _look_for_room(self) -> None:
+        if self.state == RECORDING and self._recorded() > self.room:
+            self._end_recording()
+            self._notices.append(_message(1, b"\x34"))
+
+    def _used(self) -> int:
+        return sum(len(file.ticks) for file in self.files)
+
+    def _recorded(self) -> int:
+        return self._used() + self._grid(self._now_ns()) - self._record_from + 1
+
+    def _end_recording(self) -> None:
+        if self.state != RECORDING:
+            return
+        last = min(self._grid(self._now_ns()), self._record_from + self.room - self._used())
+        samples = [self._measured(number) for number in range(self._record_from, last + 1)]
+        self.files.append(EmulatedFile(self._record_utc_s, [one[0] for one in samples], [one[1] for one in samples]))
+        self.state = IDLE
+
+    @property
+    def is_synchronised(self) -> bool:
+        return self._root is not None
+
+    def taken_ns(self, ticks: int) -> float:
+        """When the sample of these ticks was taken, by the host's clock."""
+        return self._taken_ns(ticks)
+
+
+def _message(group: int, data: bytes) -> bytes:
+    body = bytes([group, len(data)]) + data
+    return body + bytes([-sum(body) % 256])

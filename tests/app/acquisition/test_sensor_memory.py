@@ -1,0 +1,308 @@
+"""Is what emulated DOTs record in their memory fetched whole, or said to be not, and erased only once it is kept?"""
+
+from collections.abc import Iterator, Sequence
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from app.acquisition.sensor_memory import MemoryRecording
+from app.storage.journal.decoding import DecodedJournal, decode
+from app.storage.journal.writer import JournalWriter
+from core.samples import ImuBlock
+from devices.decoders import DECODERS
+from devices.dot.memory import MemoryFullError
+from devices.dot.sensor import DotRefusedError, DotSensor
+from devices.dot.source import DotGroup
+from devices.emulators.dot import DotFaults, EmulatedDot
+from devices.live import SourceLostError, SourceRefusedError
+from tests.devices.dot.virtual_time import VirtualRadio, worn
+from tests.safety.journal_material import ID, KEY, NO_ROOM_ASKED
+
+UTC_S = 1_600_000_000
+
+
+class MemorySession:
+    """Sensors that were heard for a while and record in their memory, and the journal that they are fetched into."""
+
+    def __init__(self, radio: VirtualRadio, folder: Path, faults: Sequence[DotFaults], heard_s: float = 15.0) -> None:
+        self.radio = radio
+        self.air, self.dots = worn(radio, faults)
+        self.group = DotGroup(radio, [DotSensor(radio, one) for one in self.air.announced()])
+        self.sources = self.group.sources()
+        for source in self.sources:
+            source.open()
+        self.listen(heard_s)
+        for source in self.sources:
+            source.close()
+        self.memory = MemoryRecording(self.sources)
+        self.writer = JournalWriter.create(folder, ID, KEY, room=NO_ROOM_ASKED, now_ns=radio.now_ns)
+        self.told: list[tuple[str, int, int]] = []
+        self.segments: tuple[Path, ...] = ()
+
+    def listen(self, seconds: float) -> None:
+        until_s = self.radio.loop.time() + seconds
+        while self.radio.loop.time() < until_s:
+            self.radio.pass_s(0.05)
+            for source in self.sources:
+                source.read(lambda _data: None)
+
+    def record(self, seconds: float) -> None:
+        self.memory.begin(UTC_S)
+        self.radio.pass_s(seconds)
+        assert self.memory.end() == {}
+
+    def fetch(self) -> None:
+        assert self.memory.fetch(self.writer, lambda *one: self.told.append(one)) == {}
+
+    def close(self) -> dict[str, bool]:
+        self.segments = (self.writer.stop().path,)
+        return dict(self.memory.look_into(self.segments, KEY))
+
+    @cached_property
+    def decoded(self) -> DecodedJournal:
+        return decode(self.segments, KEY, DECODERS)
+
+    def block(self, number: int) -> ImuBlock:
+        return self.decoded.sensors[f"DOT {number + 1:04d}"].block
+
+    def lost(self, number: int) -> int:
+        return self.decoded.sensors[f"DOT {number + 1:04d}"].counts.lost
+
+    def stamps_off_s(self, number: int) -> tuple[float, float]:
+        """Least and most that a stamp is off when its sample was taken."""
+        file = self.file(number)
+        opened_s = self.writer.header.opened_ns / 1e9
+        truth_s = np.array([self.dots[number].taken_ns(ticks) / 1e9 for ticks in file.ticks]) - opened_s
+        off_s = self.block(number).time_s - truth_s
+        return float(off_s.min()), float(off_s.max())
+
+    def file(self, number: int) -> "RecordedByDot":
+        dot = self.dots[number]
+        return RecordedByDot(dot)
+
+
+class RecordedByDot:
+    """What one sensor recorded: the oracle."""
+
+    def __init__(self, dot: EmulatedDot) -> None:
+        file = (dot.files or dot.erased)[0]
+        self.ticks = file.ticks
+        values = np.array(file.values)
+        self.gyr_rad_s, self.acc_m_s2, self.q = values[:, 7:] * (np.pi / 180), values[:, 4:7], values[:, :4]
+
+
+@pytest.fixture
+def radio() -> Iterator[VirtualRadio]:
+    one = VirtualRadio()
+    yield one
+    one.close()
+
+
+@pytest.mark.endurance
+def test_six_record_at_120_hz_and_are_fetched_through_lost_links_and_damage(
+    radio: VirtualRadio, tmp_path: Path
+) -> None:
+    faults = [DotFaults() for _ in range(6)]
+    faults[0].drops_export_after = [100, 700, 300]
+    faults[1].drops_export_after, faults[1].again = [500, 500, 500], False
+    faults[2].damaged = 0.01
+    faults[3].silent = 0.01
+    faults[4].busy = 3
+    session = MemorySession(radio, tmp_path, faults)
+    session.record(20.0)
+    session.fetch()
+    assert session.close() == {f"DOT {number + 1:04d}": True for number in range(6)}
+    offs = [session.stamps_off_s(number) for number in range(6)]
+    for number in range(6):
+        one, file = session.block(number), session.file(number)
+        result = session.memory.results[one.sensor]
+        assert result.is_complete
+        assert result.samples == len(file.ticks) == len(one) > 2390
+        assert np.array_equal(one.gyr_rad_s, file.gyr_rad_s)
+        assert np.array_equal(one.acc_m_s2, file.acc_m_s2)
+        assert one.q_earth_from_sensor is not None
+        assert np.array_equal(one.q_earth_from_sensor, file.q)
+        assert session.lost(number) == 0
+    assert max(most for _, most in offs) - min(least for least, _ in offs) < 0.002
+    told = [one for one in session.told if one[0] == "DOT 0001"]
+    done = [one[1] for one in told]
+    assert done == sorted(done)
+    assert done[-1] <= told[-1][2]
+
+
+def test_what_cannot_be_had_is_a_gap_that_is_said_by_number(radio: VirtualRadio, tmp_path: Path) -> None:
+    session = MemorySession(radio, tmp_path, [DotFaults(), DotFaults()])
+    session.record(10.0)
+    session.dots[0].unreadable = {300, 301, 302, 900}
+    session.fetch()
+    assert session.close() == {"DOT 0001": True, "DOT 0002": True}
+    result = session.memory.results["DOT 0001"]
+    assert result.missing == (range(300, 303), range(900, 901))
+    assert not result.is_complete
+    assert session.lost(0) == 4
+    assert session.memory.results["DOT 0002"].is_complete
+    steps = np.diff(session.block(0).time_s)
+    assert np.round(steps[[299, 896]] / np.median(steps)).tolist() == [4, 2]
+    with pytest.raises(DotRefusedError, match="samples that were not fetched"):
+        session.memory.erase("DOT 0001", UTC_S, is_confirmed=True)
+    assert session.dots[0].files
+    session.memory.erase("DOT 0001", UTC_S, is_confirmed=True, may_lack=True)
+    assert not session.dots[0].files
+
+
+def test_the_last_samples_are_asked_for_until_the_sensor_says_that_there_are_no_more(
+    radio: VirtualRadio, tmp_path: Path
+) -> None:
+    session = MemorySession(radio, tmp_path, [DotFaults()])
+    session.record(5.0)
+    last = len(session.file(0).ticks) - 1
+    session.dots[0].unheard = [last, last - 1]  # once each
+    session.fetch()
+    assert session.memory.results["DOT 0001"].samples == last + 1
+    assert session.memory.results["DOT 0001"].is_complete
+
+
+def test_one_that_tells_nothing_of_what_lies_behind_the_end_sends_all_of_it_once_more(
+    radio: VirtualRadio, tmp_path: Path
+) -> None:
+    session = MemorySession(radio, tmp_path, [DotFaults(tells_end=False)])
+    session.record(5.0)
+    last = len(session.file(0).ticks) - 1
+    session.dots[0].unheard = [last - 1, last]
+    session.fetch()
+    assert session.close() == {"DOT 0001": True}
+    assert session.memory.results["DOT 0001"].is_complete
+    assert session.memory.results["DOT 0001"].samples == last + 1
+
+
+def test_a_sensor_that_goes_away_while_it_is_fetched_is_named_and_goes_on_later(
+    radio: VirtualRadio, tmp_path: Path
+) -> None:
+    session = MemorySession(radio, tmp_path, [DotFaults(), DotFaults()])
+    session.record(10.0)
+    session.dots[0].faults.drops_export_after = [400]
+    session.dots[0].faults.unreachable_after_drop_s = 300.0
+    failed = session.memory.fetch(session.writer, lambda *_: None)
+    assert list(failed) == ["DOT 0001"]
+    assert isinstance(failed["DOT 0001"], SourceLostError)
+    assert list(session.memory.results) == ["DOT 0002"]
+    with pytest.raises(DotRefusedError, match="not known to be kept"):
+        session.memory.erase("DOT 0001", UTC_S, is_confirmed=True)
+    radio.pass_s(300.0)
+    sent = session.dots[0].exported
+    session.fetch()
+    assert session.close() == {"DOT 0001": True, "DOT 0002": True}
+    assert session.memory.results["DOT 0001"].is_complete
+    assert session.dots[0].exported - sent < len(session.file(0).ticks) - 350, "what came is not sent again"
+
+
+def test_nothing_is_written_to_a_sensor_that_records_but_what_asks_for_its_state(
+    radio: VirtualRadio, tmp_path: Path
+) -> None:
+    """The emulated one ends its recording where a rate or a mode is written to it."""
+    session = MemorySession(radio, tmp_path, [DotFaults(), DotFaults()])
+    session.memory.begin(UTC_S)
+    radio.pass_s(3.0)
+    session.air.drop(session.dots[0])
+    radio.pass_s(3.0)
+    for source in session.sources:
+        with pytest.raises(SourceRefusedError, match="recording in its memory"):
+            source.open()
+        assert not source.identify(source.sensor.name)
+    with pytest.raises(SourceRefusedError, match="recording in its memory"):
+        session.group.synchronise()
+    radio.pass_s(4.0)
+    assert session.memory.end() == {}
+    assert [len(session.file(number).ticks) for number in (0, 1)] == pytest.approx([1250, 1250], rel=0.1)
+    session.fetch()
+    assert all(session.close().values())
+
+
+def test_a_full_memory_is_a_refusal_and_nobody_else_records(radio: VirtualRadio, tmp_path: Path) -> None:
+    session = MemorySession(radio, tmp_path, [DotFaults(), DotFaults()])
+    session.dots[1].room = 0
+    with pytest.raises(MemoryFullError, match="memory of DOT 0002 is full"):
+        session.memory.begin(UTC_S)
+    assert [dot.state for dot in session.dots] == [0x06, 0x06]
+    session.writer.stop()
+
+
+def test_a_recording_that_ended_because_the_memory_was_full_is_fetched_to_there(
+    radio: VirtualRadio, tmp_path: Path
+) -> None:
+    session = MemorySession(radio, tmp_path, [DotFaults(), DotFaults()])
+    session.dots[0].room = 600
+    session.record(10.0)
+    session.fetch()
+    assert all(session.close().values())
+    results = session.memory.results
+    assert 600 <= results["DOT 0001"].samples <= 602
+    assert results["DOT 0002"].samples > 1190
+    early_s = session.memory.ended_early_s()
+    assert list(early_s) == ["DOT 0001"]
+    assert early_s["DOT 0001"] == pytest.approx(5.0, abs=0.5)
+    assert results["DOT 0001"].is_complete
+
+
+def test_without_a_clock_that_is_known_nothing_is_recorded(radio: VirtualRadio, tmp_path: Path) -> None:
+    session = MemorySession(radio, tmp_path, [DotFaults(), DotFaults()], heard_s=0.0)
+    with pytest.raises(DotRefusedError, match="was not heard yet"):
+        session.memory.begin(UTC_S)
+    assert [dot.state for dot in session.dots] == [0x06, 0x06]
+    session.writer.stop()
+
+
+# erasing
+
+
+def test_it_is_erased_only_once_it_is_in_the_journal_and_that_is_confirmed(radio: VirtualRadio, tmp_path: Path) -> None:
+    session = MemorySession(radio, tmp_path, [DotFaults()])
+    session.record(5.0)
+    session.fetch()
+    with pytest.raises(DotRefusedError, match="not known to be kept"):  # nobody has looked
+        session.memory.erase("DOT 0001", UTC_S, is_confirmed=True)
+    assert session.close() == {"DOT 0001": True}
+    with pytest.raises(DotRefusedError, match="not known to be kept"):
+        session.memory.erase("DOT 0001", UTC_S, is_confirmed=False)
+    assert session.dots[0].files
+    session.memory.erase("DOT 0001", UTC_S, is_confirmed=True)
+    assert not session.dots[0].files
+
+
+def test_a_journal_that_lacks_what_came_keeps_the_memory(radio: VirtualRadio, tmp_path: Path) -> None:
+    session = MemorySession(radio, tmp_path, [DotFaults()])
+    session.record(5.0)
+    session.fetch()
+    path = session.writer.stop().path
+    whole = path.read_bytes()
+    path.write_bytes(whole[: len(whole) // 2])  # a disk that lies
+    assert session.memory.look_into((path,), KEY) == {"DOT 0001": False}
+    with pytest.raises(DotRefusedError, match="not known to be kept"):
+        session.memory.erase("DOT 0001", UTC_S, is_confirmed=True)
+    assert session.dots[0].files
+
+
+def test_a_memory_that_holds_more_than_was_fetched_is_not_erased(radio: VirtualRadio, tmp_path: Path) -> None:
+    session = MemorySession(radio, tmp_path, [DotFaults()])
+    earlier = MemoryRecording(session.sources)
+    earlier.begin(UTC_S - 1000)
+    radio.pass_s(2.0)
+    assert earlier.end() == {}
+    session.record(5.0)
+    session.fetch()
+    assert session.close() == {"DOT 0001": True}
+    assert len(session.block(0)) == len(session.dots[0].files[1].ticks)
+    with pytest.raises(DotRefusedError, match="holds 1 more recordings"):
+        session.memory.erase("DOT 0001", UTC_S, is_confirmed=True)
+    assert len(session.dots[0].files) == 2
+
+
+def test_forces_and_rates_that_changed_places_are_not_taken_for_kept(radio: VirtualRadio, tmp_path: Path) -> None:
+    session = MemorySession(radio, tmp_path, [DotFaults()])
+    session.record(5.0)
+    file = session.dots[0].files[0]
+    file.values = [(*values[:4], *values[7:], *values[4:7]) for values in file.values]
+    session.fetch()
+    assert session.close() == {"DOT 0001": False}

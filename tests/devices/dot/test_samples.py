@@ -1,0 +1,130 @@
+"""Are a Movella DOT's samples read as they are laid out: whole, cut, in pieces, and when its clock begins anew?"""
+
+import math
+import struct
+
+import numpy as np
+import pytest
+
+from devices.dot.samples import DotFramer, FileFramer, Tie, framed
+from devices.source import SourceInfo
+from devices.stream import Row
+
+STEP_US, TURN = 16667, 1 << 32
+VALUES = (0.5, -0.5, 0.5, 0.5, 1.0, -2.0, 9.75, 90.0, -180.0, 360.0)  # exact in single precision
+
+
+def long(ticks: int) -> bytes:
+    return framed(0x2002, struct.pack("<I10f", ticks % TURN, *VALUES) + bytes(19))
+
+
+def medium(ticks: int) -> bytes:
+    return framed(0x2003, struct.pack("<I6f", ticks % TURN, *VALUES[4:]) + bytes(12))
+
+
+def framer(mode: int = 26) -> DotFramer:
+    return DotFramer(SourceInfo("movella-dot", "1", settings={"mode": mode}))
+
+
+def is_row(row: Row, ticks: int) -> bool:
+    return row == pytest.approx((ticks / 1e6, math.pi / 2, -math.pi, 2 * math.pi, 1.0, -2.0, 9.75))
+
+
+def test_a_notification_lies_in_the_journal_as_characteristic_length_payload() -> None:
+    assert framed(0x2003, b"\x01\x02\x03").hex() == "03200300010203"
+
+
+def test_both_modes_are_read_and_their_padding_is_not() -> None:
+    full, plain = framer(26), framer(21)
+    full.feed(long(5_000_000), 5.1)
+    plain.feed(medium(5_000_000), 5.1)
+    assert is_row(full.heard.rows[0], 5_000_000)
+    assert is_row(plain.heard.rows[0], 5_000_000)
+    assert full.heard.orientations == [(5.0, 0.5, -0.5, 0.5, 0.5)]
+    assert plain.heard.orientations == []
+
+
+def test_a_notification_cut_to_20_bytes_is_damaged_and_costs_no_other() -> None:
+    one = framer()
+    one.feed(long(0) + framed(0x2002, bytes(20)) + long(2 * STEP_US), 0.1)
+    assert (len(one.heard.rows), one.heard.damaged) == (2, 1)
+
+
+def test_what_is_no_number_is_damaged() -> None:
+    one = framer()
+    one.feed(framed(0x2002, struct.pack("<I10f", 0, *VALUES[:-1], math.nan)), 0.1)
+    assert (len(one.heard.rows), one.heard.damaged) == (0, 1)
+
+
+def test_another_mode_s_notification_is_passed_over_and_the_battery_is_heard() -> None:
+    one = framer(26)
+    one.feed(medium(0) + framed(0x3001, b"\x55\x00"), 0.1)
+    assert (one.heard.rows, one.heard.skipped, one.heard.battery) == ([], 1, 0.85)
+
+
+@pytest.mark.parametrize("size", [1, 3, 7, 50, 1000])
+def test_what_is_heard_does_not_hang_on_the_pieces(size: int) -> None:
+    data = b"".join(long(k * STEP_US) for k in range(20)) + framed(0x3001, b"\x20\x00")
+    one = framer()
+    for at in range(0, len(data), size):
+        one.feed(data[at : at + size], 0.5)
+    one.flush()
+    assert (len(one.heard.rows), one.heard.damaged, one.heard.battery) == (20, 0, 0.32)
+
+
+def test_after_damage_the_next_notification_is_found() -> None:
+    one = framer()
+    one.feed(long(0) + b"\xff\x00\xff" + long(STEP_US) + long(2 * STEP_US)[:9], 0.1)
+    one.flush()
+    assert (len(one.heard.rows), one.heard.damaged) == (2, 2)
+
+
+def test_the_clock_goes_on_where_it_begins_anew_and_after_a_break() -> None:
+    begin_us = TURN - 3 * STEP_US
+    one = framer()
+    for k in range(6):
+        one.feed(long(begin_us + k * STEP_US), 4295.0 + k * STEP_US / 1e6)
+    stamps_s = [row[0] for row in one.heard.rows]
+    assert np.allclose(np.diff(stamps_s), STEP_US / 1e6, atol=1e-9)
+    again = framer()  # the link was lost, and what follows is read by another one
+    again.feed(long(begin_us + 60 * STEP_US), 4296.0)
+    assert again.heard.rows[0][0] == pytest.approx(stamps_s[0] + 60 * STEP_US / 1e6)
+
+
+# files
+
+
+def data(number: int, ticks: int, *, kind: int = 0x71) -> bytes:
+    said = bytes([kind]) + struct.pack("<II10fH", number, ticks % TURN, *VALUES, 0)
+    message = bytes([1, len(said)]) + said
+    message += bytes([-sum(message) % 256])
+    return framed(0x7003, message + bytes(160 - len(message)))
+
+
+def test_a_file_is_put_together_from_what_came_in_any_order_and_twice() -> None:
+    one = FileFramer()
+    for number in (0, 1, 2, 6, 7, 2, 3):
+        one.feed(data(number, TURN - 2 * 8333 + number * 8333))
+    assert one.missing() == (range(4, 6),)
+    tie = Tie(origin_s=0.0, offset_s=-4290.0, skew=0.0)
+    rows, orientations = one.rows(5.0, tie)
+    begin_s = (TURN - 2 * 8333) / 1e6
+    assert [row[0] for row in rows] == pytest.approx([begin_s + k * 0.008333 for k in (0, 1, 2, 3, 6, 7)])
+    assert rows[0][1:] == pytest.approx((math.pi / 2, -math.pi, 2 * math.pi, 1.0, -2.0, 9.75))
+    assert orientations[0][1:] == (0.5, -0.5, 0.5, 0.5)
+
+
+def test_a_file_that_was_begun_after_the_clock_had_is_put_where_it_was_recorded() -> None:
+    one = FileFramer()
+    one.feed(data(0, 1_000_000))
+    tie = Tie(origin_s=4000.0, offset_s=-4000.0, skew=0.0)  # found before the clock began anew
+    rows, _ = one.rows(296.0, tie)
+    assert tie.host_s(rows[0][0]) == pytest.approx(TURN / 1e6 + 1.0 - 4000.0)
+
+
+def test_damaged_data_of_a_file_is_missing_and_said_to_be() -> None:
+    one = FileFramer()
+    changed = bytearray(data(1, 8333))
+    changed[20] ^= 1
+    one.feed(data(0, 0) + bytes(changed) + data(2, 16667) + framed(0x7003, bytes.fromhex("01017688")))
+    assert (sorted(one.samples), one.missing(), one.damaged) == ([0, 2], (range(1, 2),), 1)

@@ -1,0 +1,294 @@
+"""Emulated DOTs with everything going wrong at once: is a sample lost untold, is there a dead end, is anything erased?
+
+    python -m tests.safety.dot_faults --runs 500
+
+Each run synchronises two to six sensors, streams from them for some seconds, lets them record in their memory, fetches
+and erases, while links are lost at any operation, notifications are lost, doubled, cut and damaged, sensors are busy,
+full, switched off, out of reach, or only say that they are synchronised. Seconds pass at once (`VirtualRadio`), and who
+waits for what never comes is an error. What a sensor took and recorded, and when, is told by itself, float for float.
+"""
+
+import argparse
+import random
+import sys
+import tempfile
+import traceback
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from app.acquisition.sensor_memory import MemoryRecording
+from app.storage.journal.decoding import decode
+from app.storage.journal.writer import JournalWriter
+from core.samples import ImuBlock
+from devices.decoders import DECODERS
+from devices.dot.memory import MemoryFullError
+from devices.dot.sensor import DotRefusedError
+from devices.emulators.dot import DotFaults, EmulatedDot
+from devices.live import SourceLostError, SourceRefusedError
+from devices.source import DecodedSensor
+from tests.devices.dot.virtual_time import VirtualRadio
+from tests.devices.dot.worn_dots import RAD, WornDots, not_there
+from tests.safety.journal_material import ID, KEY, NO_ROOM_ASKED
+
+TRIES = 12  # of a user who does what is said
+LIVE_S, RECORDED_S = 6.0, 5.0
+STAMPED_MS = 50.0  # the least latency of a link, which nobody can see, and what its clock is off by
+UTC_S = 1_700_000_000
+
+
+@dataclass(slots=True)
+class DotRuns:
+    """What came of all runs."""
+
+    seen: Counter[str] = field(default_factory=Counter)
+    faults: list[str] = field(default_factory=list)
+
+    def __str__(self) -> str:
+        told = ", ".join(f"{count} {what}" for what, count in sorted(self.seen.items()))
+        return f"{len(self.faults)} faults; {told}"
+
+
+def some_faults(rng: random.Random) -> DotFaults:
+    """Of one sensor; half of what may go wrong does not."""
+
+    def perhaps(value: float) -> float:
+        return value if rng.random() < 0.5 else 0.0
+
+    return DotFaults(
+        loss=perhaps(rng.uniform(0.0, 0.08)),
+        doubles=perhaps(0.03),
+        cut=perhaps(0.01),
+        damaged=perhaps(rng.uniform(0.0, 0.02)),
+        silent=perhaps(rng.uniform(0.0, 0.02)),
+        sync_results=[rng.choice([0, 5, 7, 8, 9]) for _ in range(rng.randrange(3))] if rng.random() < 0.2 else [],
+        stale_s=rng.choice([-2.0, 0.5, 30.0]) if rng.random() < 0.03 else 0.0,
+        has_26=rng.random() < 0.8,
+        again=rng.random() < 0.6,
+        tells_end=rng.random() < 0.8,
+        busy=rng.choice([0, 0, 1, 3]),
+        drops_after=[rng.randrange(1, 60) for _ in range(rng.randrange(4))],
+        drops_export_after=[rng.randrange(1, 700) for _ in range(rng.randrange(4))],
+    )
+
+
+def run_often(runs: int, seed: int, folder: Path) -> DotRuns:
+    """So many runs, each told by its number."""
+    every = DotRuns()
+    for number in range(runs):
+        rng, radio = random.Random(seed + number), VirtualRadio()
+        try:
+            place = folder / str(number)
+            place.mkdir()
+            every.faults += [f"run {seed + number}: {fault}" for fault in _run(rng, radio, place, every.seen)]
+        except Exception:  # what nobody was told to expect is a fault of this run
+            every.faults.append(f"run {seed + number}: {traceback.format_exc()}")
+        finally:
+            radio.close()
+    return every
+
+
+def _run(rng: random.Random, radio: VirtualRadio, folder: Path, seen: Counter[str]) -> list[str]:
+    wearing = WornDots(radio, [some_faults(rng) for _ in range(rng.randrange(2, 7))])
+    if not _opened(wearing, seen):
+        return ["dead end: never opened"]
+    faults = _live(rng, wearing, seen)
+    for source in wearing.sources:
+        source.close()
+    return faults + _memory(rng, wearing, folder, seen)
+
+
+def _opened(wearing: WornDots, seen: Counter[str]) -> bool:
+    for attempt in range(TRIES):
+        try:
+            wearing.open()
+        except (SourceRefusedError, SourceLostError):
+            seen["openings refused"] += 1
+            for source in wearing.sources:
+                source.close()
+            if attempt == TRIES // 2:  # switched off and on, as the refusal says
+                for dot in wearing.dots:
+                    wearing.air.drop(dot)
+                    dot.restart()
+                    dot.faults.stale_s = 0.0
+            continue
+        seen["sensors synchronised"] += sum(bool(wearing.group.clock_of(one.name)) for one in wearing.group.sensors)
+        return True
+    return False
+
+
+def _live(rng: random.Random, wearing: WornDots, seen: Counter[str]) -> list[str]:
+    """Stream while links are lost; hold what was decoded against what was taken."""
+    restarted = set()
+    for _ in range(3):
+        wearing.measure(LIVE_S / 3)
+        number = rng.randrange(len(wearing.dots))
+        dot = wearing.dots[number]
+        match rng.choice(["nothing", "drop", "away", "off"]):
+            case "drop":
+                wearing.air.drop(dot)
+            case "away":
+                dot.stay_away(rng.uniform(0.1, 4.0))
+                wearing.air.drop(dot)
+            case "off":
+                wearing.air.drop(dot)
+                dot.restart()
+                restarted.add(number)
+    wearing.measure(6.0)
+    faults = [] if all(wearing.is_open) else ["dead end: a source never came back"]
+    for number, one in enumerate(wearing.decoded()):
+        held = _held_live(wearing, number, one, number in restarted, seen)
+        faults += [f"sensor {number}: {fault}" for fault in held]
+    return faults
+
+
+def _held_live(
+    wearing: WornDots, number: int, one: DecodedSensor, was_restarted: bool, seen: Counter[str]
+) -> list[str]:
+    found = _taken_rows(wearing.dots[number], one.block)
+    seen["samples streamed"] += len(one.block)
+    seen["samples lost live, and told"] += one.counts.lost
+    rows = [row for row in found if row is not None]
+    if len(set(rows)) != len(found):
+        return ["a sample that was never taken, or twice"]
+    faults, lacking = [], not_there(rows)
+    is_told = one.counts.lost >= lacking if was_restarted else one.counts.lost == lacking
+    if not is_told:
+        faults.append(f"{lacking} samples lost, {one.counts.lost} told")
+    off_ms = 1e3 * float(np.abs(one.block.time_s - wearing.truth(number)[1][rows]).max())
+    seen["ms is the furthest stamp off"] = max(seen["ms is the furthest stamp off"], round(off_ms))
+    if off_ms > STAMPED_MS:
+        faults.append(f"a stamp is {off_ms:.0f} ms off")
+    return faults
+
+
+def _taken_rows(dot: EmulatedDot, block: ImuBlock) -> list[int | None]:
+    taken = {np.array([*_rates(one[1]), *one[1][4:7]]).tobytes(): row for row, one in enumerate(dot.sent)}
+    return [taken.get(row.tobytes()) for row in np.hstack([block.gyr_rad_s, block.acc_m_s2])]
+
+
+def _rates(values: tuple[float, ...]) -> list[float]:
+    return [value * RAD for value in values[7:]]
+
+
+def _memory(rng: random.Random, wearing: WornDots, folder: Path, seen: Counter[str]) -> list[str]:
+    """Record, fetch, look into the journal, erase; as often as it takes."""
+    memory, radio = MemoryRecording(wearing.sources), wearing.radio
+    for dot in wearing.dots:
+        dot.room = rng.choice([10**6, 10**6, 10**6, 400, 0])
+    if not _begun(memory, wearing, seen):
+        return ["dead end: never recorded"]
+    radio.pass_s(RECORDED_S)
+    for dot in wearing.dots:
+        if rng.random() < 0.1:
+            wearing.air.drop(dot)
+            dot.restart()
+        if rng.random() < 0.02:
+            dot.unreadable = {rng.randrange(500)}
+    if not any(not memory.end() for _ in range(TRIES)):
+        return ["dead end: a recording goes on"]
+    writer = JournalWriter.create(folder, ID, KEY, room=NO_ROOM_ASKED, now_ns=radio.now_ns)
+    failed: Mapping[str, Exception] = {}
+    for _ in range(TRIES):
+        failed = memory.fetch(writer, lambda *_: None)
+        seen["fetches refused"] += len(failed)
+        if not failed:
+            break
+    path = writer.stop().path
+    kept = memory.look_into((path,), KEY)
+    faults = [f"dead end: {name} was never fetched: {problem}" for name, problem in failed.items()]
+    blocks = {name: one.block for name, one in decode((path,), KEY, DECODERS).sensors.items()}
+    faults += [fault for dot in wearing.dots for fault in _held_against(dot, memory, blocks, seen)]
+    return faults + _erased(rng, wearing, memory, kept, blocks, seen)
+
+
+def _begun(memory: MemoryRecording, wearing: WornDots, seen: Counter[str]) -> bool:
+    for attempt in range(TRIES):
+        try:
+            memory.begin(UTC_S + attempt)
+        except (SourceRefusedError, SourceLostError) as refused:
+            seen["recordings refused"] += 1
+            if isinstance(refused, MemoryFullError):
+                for dot in wearing.dots:
+                    dot.room = 10**6  # fetched and erased, as the refusal says
+        else:
+            return True
+    return False
+
+
+def _held_against(
+    dot: EmulatedDot, memory: MemoryRecording, blocks: Mapping[str, ImuBlock], seen: Counter[str]
+) -> list[str]:
+    name = f"DOT {dot.mac[4]:02X}{dot.mac[5]:02X}"
+    result = memory.results.get(name)
+    if result is None:
+        return []
+    file = next(one for one in dot.files if one.utc_s == result.file.started_utc_s)
+    faults = [f"{name}: its file was cut by what was written to it"] if dot.cut_recordings else []
+    count, block = len(file.ticks), blocks.get(name)
+    seen["files fetched"] += 1
+    seen["files complete"] += result.is_complete
+    seen["samples fetched"] += result.samples
+    seen["samples that could not be had, and told"] += result.lost
+    if result.is_complete and result.samples != count:
+        faults.append(f"{name}: called complete with {result.samples} of {count} samples")
+    if result.is_end_known and result.samples + result.lost != count:
+        faults.append(f"{name}: {count - result.samples - result.lost} samples lost untold")
+    gone = {number for gap in result.missing for number in gap}
+    there = [number for number in range(result.samples + result.lost) if number not in gone]
+    values = np.array(file.values).reshape(-1, 10)[there]
+    if block is None or not np.array_equal(block.gyr_rad_s, values[:, 7:] * RAD):
+        faults.append(f"{name}: the journal holds other rates than were recorded")
+    elif not np.array_equal(block.acc_m_s2, values[:, 4:7]):
+        faults.append(f"{name}: the journal holds other forces than were recorded")
+    return faults
+
+
+def _erased(
+    rng: random.Random,
+    wearing: WornDots,
+    memory: MemoryRecording,
+    kept: Mapping[str, bool],
+    blocks: Mapping[str, ImuBlock],
+    seen: Counter[str],
+) -> list[str]:
+    faults = []
+    for dot, sensor in zip(wearing.dots, wearing.group.sensors, strict=True):
+        name, before = sensor.name, len(dot.files)
+        is_confirmed = rng.random() < 0.8
+        for _ in range(3):
+            try:
+                memory.erase(name, UTC_S + 100, is_confirmed=is_confirmed)
+                break
+            except DotRefusedError:
+                seen["erasures refused"] += 1
+            except SourceLostError:
+                continue
+        if not dot.erased:
+            continue
+        seen["memories erased"] += 1
+        begun_s = memory.results[name].file.started_utc_s
+        samples = sum(len(file.ticks) for file in dot.erased if file.utc_s >= begun_s)
+        if not is_confirmed or not kept[name] or len(blocks[name]) != samples:
+            faults.append(f"{name}: {samples} samples of {before} files erased, {len(blocks[name])} kept")
+    return faults
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description="Emulated DOTs with faults.")
+    parser.add_argument("--runs", type=int, default=500)
+    parser.add_argument("--seed", type=int, default=0)
+    wanted = parser.parse_args()
+    with tempfile.TemporaryDirectory() as folder:
+        every = run_often(wanted.runs, wanted.seed, Path(folder))
+    for fault in every.faults:
+        print(fault)
+    print(f"{wanted.runs} runs: {every}")
+    sys.exit(bool(every.faults))
+
+
+if __name__ == "__main__":
+    main()
