@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from core.body import Joint, Segment, Side, Site, ankle_of, knee_of
+from core.body import LEG_JOINTS, Joint, Segment, Side, Site, ankle_of, knee_of
 from core.calibrated import Bases, calibrate
 from core.calibration import certainty
 from core.calibration.clinical_sign import range_of
@@ -18,6 +18,7 @@ from core.clock_drift import about_clocks, clock_drifts
 from core.findings import Finding, Severity
 from core.gait.inclination import inclination
 from core.gait.strides import Reason
+from core.hip.analysis import HipsOfSpan, find_hips, with_hips
 from core.identified import Identified, clock_moved_s, identify
 from core.joint_findings import about_angles, about_joint, about_missing_joints, about_session
 from core.measure import Twist, measure
@@ -38,6 +39,7 @@ from core.robust import robust_sd
 from core.samples import FloatArray, Patient, Recording, RecordingKind, Session
 from core.sensors import SensorTracks
 from core.strap import slips_in_walks
+from core.timed.timing import time_test
 from core.validity import Basis, basis_of, spans_of_validity
 from core.verdicts.gates import verdicts_of
 from core.walk_findings import about_prosthesis, about_walk
@@ -108,7 +110,8 @@ def analyse(
         identified = _identify(tracks, bases, method, tau_s, steps)
         lags, noticed = _lags(tracks, bases, identified)
         findings += noticed
-        measured = _measure(tracks, bases, identified, lags, steps)
+        hips = find_hips(tracks)
+        measured = _measure(tracks, bases, identified, lags, hips, steps)
         calibrated = calibrate(tracks, bases, identified, measured, method)
         for basis, calibration in calibrated.items():
             joint = basis.joint
@@ -119,11 +122,14 @@ def analyse(
         slipped, noticed = _slipped(tracks, by_walk, lags)
         findings += noticed
         for recording in _moving(span):
-            found = _angles(tracks, recording, bases, calibrated, measured, lags)
+            found = _angles(tracks, recording, bases, calibrated, measured, lags, hips)
             found = _before_slips(found, slipped)
+            if recording.test is not None and recording.kind is RecordingKind.WALKING:
+                found = replace(found, timed=time_test(tracks, recording, recording.test))
             found = replace(found, clocks=clocks_in(tracks, recording, found.gait, _lags_in(recording, lags)))
             found = replace(found, drifting_percent={s: p for (name, s), p in drifts.items() if name == recording.name})
             here = {joint: calibrated[bases[recording.name, joint]] for joint in found.joints}
+            found = with_hips(found, tracks, recording, hips, here)
             found = replace(found, verdicts=verdicts_of(found, here, stiff_sides))
             recordings.append(found)
             findings += about_angles(found)
@@ -179,7 +185,7 @@ def _bases(tracks: SensorTracks) -> Bases:
     return {
         (recording.name, joint): basis_of(tracks.span, recording, joint, tracks.is_usable)
         for recording in _moving(tracks.span)
-        for joint in Joint
+        for joint in LEG_JOINTS
         if tracks.is_usable(recording, joint.proximal, joint.distal)
     }
 
@@ -221,12 +227,13 @@ def _measure(
     bases: Bases,
     identified: dict[Basis, Identified],
     lags: dict[tuple[str, Joint], float],
+    hips: HipsOfSpan,
     steps: _Steps,
 ) -> dict[tuple[str, Joint], Twist]:
     measured: dict[tuple[str, Joint], Twist] = {}
     for recording in _moving(tracks.span):
         time_s = _clock_of(tracks, recording)
-        for joint in Joint:
+        for joint in LEG_JOINTS:
             basis = bases.get((recording.name, joint))
             if basis is None or basis not in identified:
                 continue
@@ -234,6 +241,7 @@ def _measure(
             # an ankle is measured on its shank's clock, which the knee brings to the thigh's
             knee = (recording.name, knee_of(joint.side))
             offset_s = lags.get(knee, 0.0) if joint.proximal.segment is Segment.SHANK else 0.0
+            offset_s += hips.offset_s(recording, joint.side)
             geometry = replace(identified[basis].geometry, lag_s=lags[recording.name, joint])
             measured[recording.name, joint] = measure(tracks, recording, joint, geometry, time_s, offset_s)
     return measured
@@ -255,7 +263,7 @@ def _by_walk(span: tuple[Recording, ...], bases: Bases, calibrated: dict[Basis, 
     groups: dict[tuple[Basis, ...], list[str]] = {}
     walks = [recording for recording in span if recording.kind is RecordingKind.WALKING]
     for recording in walks or _moving(span):
-        key = tuple(bases[recording.name, joint] for joint in Joint if (recording.name, joint) in bases)
+        key = tuple(bases[recording.name, joint] for joint in LEG_JOINTS if (recording.name, joint) in bases)
         groups.setdefault(key, []).extend([recording.name] if walks else [])
     in_walks = {basis.joint for key in groups for basis in key}
     alone = {basis.joint: found for basis, found in calibrated.items() if basis.joint not in in_walks}
@@ -273,17 +281,20 @@ def _angles(
     calibrated: dict[Basis, JointCalibration],
     measured: dict[tuple[str, Joint], Twist],
     lags: dict[tuple[str, Joint], float],
+    hips: HipsOfSpan,
 ) -> RecordingAnalysis:
     """Turn the twists of one recording to the clinical sign and zero, and say how sure they are."""
     joints: dict[Joint, JointAngle] = {}
-    for joint in Joint:
+    for joint in LEG_JOINTS:
         basis, found = bases.get((recording.name, joint)), measured.get((recording.name, joint))
         if basis is None or found is None:
             continue
         joints[joint] = _angle(calibrated[basis], found, _ringing_rad_s(tracks, joint, measured))
     time_s, gait = _clock_of(tracks, recording), dict[Side, SideGait]()
     if recording.kind is RecordingKind.WALKING:
-        offsets = {side: _clock_offset_s(tracks, recording, side, lags) for side in Side}
+        offsets = {
+            side: _clock_offset_s(tracks, recording, side, lags) + hips.offset_s(recording, side) for side in Side
+        }
         leaning: dict[Site, FloatArray] = {}
         for joint in (knee for knee in joints if knee.is_knee):
             leaning |= _inclinations(tracks, calibrated[bases[recording.name, joint]], measured[recording.name, joint])
@@ -323,9 +334,9 @@ def _slipped(
                 continue  # an earlier slip, told already
             numbers = {"from_s": round(float(slip.from_s), 1), "turn_deg": round(float(np.rad2deg(abs(slip.turn_rad))))}
             findings.append(Finding("strap_slipped", Severity.WARNING, f"{walk.name}, {slip.site}", numbers))
-            slipped[walk.name, slip.site.side] = slip.sure_until_s
+            slipped[walk.name, slip.site.leg_side] = slip.sure_until_s
             for later in _until_free_motion(tracks.span, walk, slip.site):
-                slipped[later.name, slip.site.side] = -np.inf
+                slipped[later.name, slip.site.leg_side] = -np.inf
     return slipped, findings
 
 

@@ -9,7 +9,9 @@ from core.findings import Finding
 from core.gait.clocks import LegClocks
 from core.gait.events import FootEvents
 from core.gait.strides import Strides
+from core.hip.results import HipAngle, LegClock, PelvisAngles, PelvisTurn
 from core.samples import FloatArray, IntArray, RecordingKind
+from core.timed.found import TimedTest
 from core.verdicts.model import Verdicts
 
 
@@ -148,8 +150,13 @@ class RecordingAnalysis:
         How much faster than its leg's clock that of a site runs, where it does.
     clocks
         What ties the clocks of both legs; None where not both were measured.
+    hips, pelvis, turns, leg_clock
+        What a sensor on the pelvis adds: hip angles, the pelvis itself, turns of the body, and how far the legs' clocks
+        are apart. Empty and None without one.
     verdicts
         What may be said of it; whoever changes what is above makes them anew.
+    timed
+        Of a walk that is a timed test.
     """
 
     name: str
@@ -162,7 +169,12 @@ class RecordingAnalysis:
     slipped_from_s: Mapping[Side, float] = field(default_factory=dict)
     drifting_percent: Mapping[Site, float] = field(default_factory=dict)
     clocks: LegClocks | None = None
+    hips: Mapping[Joint, HipAngle] = field(default_factory=dict)
+    pelvis: PelvisAngles | None = None
+    turns: tuple[PelvisTurn, ...] = ()
+    leg_clock: LegClock | None = None
     verdicts: Verdicts = field(default_factory=Verdicts)
+    timed: TimedTest | None = None
 
 
 @dataclass(frozen=True, slots=True)

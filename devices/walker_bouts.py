@@ -8,7 +8,7 @@ import numpy as np
 from core.body import Side
 from core.samples import FloatArray
 from devices.walker_body import Leg
-from devices.walker_gait import HIP_AHEAD_OF_ANKLE_M, Bend, WalkPlan, plan_foot, walk_leg
+from devices.walker_gait import walk_leg
 from devices.walker_manners import gait_at
 from devices.walker_motion import (
     Z_AXIS,
@@ -20,20 +20,23 @@ from devices.walker_motion import (
     rotation_about,
     smooth_step,
 )
+from devices.walker_plan import HIP_AHEAD_OF_ANKLE_M, Bend, WalkPlan, plan_foot
 from devices.walker_variation import NO_CHANGES
 
 SEATED_KNEE_RAD, SEATED_ANKLE_RAD = np.deg2rad(95.0), np.deg2rad(5.0)  # the thighs then lie level
 LEAN_RAD = np.deg2rad(12.0)  # so much further the shanks lean forward on the way up and down
+CLIMB_SHARE = 0.9  # of a swing, in which the foot comes to its new height: before it lands
 FIDGET_RAD, FIDGET_HZ = np.deg2rad(0.6), 0.4  # of the thighs on the seat
 
 
 @dataclass(frozen=True, slots=True)
 class CourseStep:
-    """One step: how far the body goes, how long the step takes, and the number of the turn it belongs to."""
+    """One step: how far the body goes, how long the step takes, the turn it belongs to, how much higher it leads."""
 
     length_m: float
     time_s: float
     turn: int | None = None
+    rise_m: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,6 +161,29 @@ def walk_bouts(
         heading += sum(bend.turn_rad for bend in plan.bends)
         place = left[-1] + shift[:2]
     return {side: _joined(parts[side], time_s) for side in Side}
+
+
+def climb(motion: LegMotion, heights_m: FloatArray) -> LegMotion:
+    """The same motion on stairs: each swing leads the foot to the height of its next foothold.
+
+    The leg goes up as it is, with the angles of level walking: what is told of it is the way of the foot alone.
+
+    Parameters
+    ----------
+    heights_m : (k + 1,)
+        Of the foothold before the first of k swings, and of those after each.
+
+    Returns
+    -------
+    LegMotion
+        Earth axes, z up, metres.
+    """
+    events, height = motion.events, np.full_like(motion.time_s, heights_m[0])
+    pairs = zip(events.toe_off_s.tolist(), events.initial_contact_s.tolist(), strict=True)
+    for number, (off_s, on_s) in enumerate(pairs):
+        share = smooth_step((motion.time_s - off_s) / (CLIMB_SHARE * (on_s - off_s)))
+        height += (heights_m[number + 1] - heights_m[number]) * share
+    return replace(motion, origins_m=motion.origins_m + height[:, None] * np.array([0.0, 0.0, 1.0]))
 
 
 def _moved(motion: LegMotion, turned: FloatArray, shift: FloatArray, by_s: float) -> LegMotion:

@@ -13,10 +13,11 @@ import numpy as np
 from core.body import Side, Site
 from core.samples import BoolArray, FloatArray, ImuBlock, Patient, Recording, RecordingKind, SensorInfo, Session
 from devices.walker_body import Leg, SensorErrors, Tissue, WalkerSettings, make_leg
-from devices.walker_bouts import Bout, CourseStep, PlannedBout, SeatChange, plan_bout, sit, walk_bouts
-from devices.walker_gait import plan_standing, walk_leg
+from devices.walker_bouts import Bout, CourseStep, PlannedBout, SeatChange, climb, plan_bout, sit, walk_bouts
+from devices.walker_gait import walk_leg
 from devices.walker_manners import gait_at
 from devices.walker_motion import Z_AXIS, LegMotion, rotation_about, smooth_step, sway_of
+from devices.walker_plan import plan_standing
 from devices.walker_sensors import draw_faults, draw_mounting, draw_ride, make_clock, record, sensor_poses
 
 FINE_HZ, MARGIN_S = 500.0, 0.25
@@ -26,17 +27,18 @@ CHAIR_TO_CONE_M = 3.0
 EDGE_SHARE = 0.1  # of the way between seat and standing: from there on the thighs have left one or reached the other
 PAUSE_S = 1.0  # both feet on the floor for so long is a pause
 ALL_SITES = (Site.LEFT_THIGH, Site.RIGHT_THIGH, Site.LEFT_FOOT, Site.RIGHT_FOOT)
-LONG_S = {"2_min": 120.0, "6_min": 360.0}
+LONG_S = {"2 min": 120.0, "6 min": 360.0}
 
 
 class CourseKind(StrEnum):
     """Which test the patient walks."""
 
-    TEN_METRES = "10_m"
-    TWO_MINUTES = "2_min"
-    SIX_MINUTES = "6_min"
-    UP_AND_GO = "up_and_go"
-    SIT_TO_STAND = "sit_to_stand_5"
+    TEN_METRES = "10 m"
+    TWO_MINUTES = "2 min"
+    SIX_MINUTES = "6 min"
+    UP_AND_GO = "up and go"
+    SIT_TO_STAND = "sit to stand 5"
+    STAIRS = "stairs"
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,6 +101,8 @@ class CourseTruth:
         Of each rise: the thighs have left the seat; they are as in standing.
     seated_s : (d,)
         Of each sitting down: the thighs rest on the seat.
+    climbs_m : (k,)
+        Of each foot: how much higher each of its contacts is than the one before.
     """
 
     time_s: FloatArray
@@ -109,6 +113,7 @@ class CourseTruth:
     left_seat_s: FloatArray
     upright_s: FloatArray
     seated_s: FloatArray
+    climbs_m: Mapping[Side, FloatArray] = field(default_factory=dict)
 
     def passes_s(self, at_m: float) -> float:
         """When the body passes a place along its way, seconds."""
@@ -164,7 +169,7 @@ def simulate_course(course: TimedCourse) -> SimulatedCourse:
         ride = draw_ride(_rng(course, 4, site))
         for name, motions, lasts_s in (("standing", stood, STANDING_S), ("course", walked, duration_s)):
             chance = _rng(course, 5 if name == "course" else 6, site)
-            leg = motions[site.side]
+            leg = motions[site.leg_side]
             poses = sensor_poses(leg, site, mountings[site], course.tissue, ride, chance)
             clock = make_clock(settings, site, lasts_s, chance)
             imu[name][site] = record(settings, site, clock, leg.time_s, poses, faults[site], chance)[0]
@@ -214,7 +219,8 @@ def _walk(course: TimedCourse, legs: Mapping[Side, Leg]) -> tuple[dict[Side, Leg
         changes.append(SeatChange(start_s, course.rise_s, is_down=False))
         start_s = changes[-1].end_s
     end_s = start_s
-    for bout in _bouts(course, rng):
+    bouts = _bouts(course, rng)
+    for bout in bouts:
         plan = plan_bout(bout, course.speed_m_s, 1.0 / FINE_HZ, list(Side)[int(rng.integers(2))], rng)
         planned.append(PlannedBout(round(end_s * FINE_HZ) / FINE_HZ, plan))
         end_s = planned[-1].start_s + plan.duration_s
@@ -233,11 +239,23 @@ def _walk(course: TimedCourse, legs: Mapping[Side, Leg]) -> tuple[dict[Side, Leg
     else:
         plan = plan_standing(time_s, duration_s)
         motions = {side: walk_leg(legs[side], plan, time_s, sway_m, per_leg[side]) for side in Side}
+    climbs_m: dict[Side, FloatArray] = {}
+    if course.kind is CourseKind.STAIRS:
+        motions, climbs_m = _climbed(motions, bouts[0])
     phase_rad = rng.uniform(0.0, 2.0 * np.pi)
     motions = {side: sit(legs[side], motion, changes, phase_rad) for side, motion in motions.items()}
     compass = rotation_about(Z_AXIS, rng.uniform(0.0, 2.0 * np.pi, 1))[0]
     motions = {side: _turned(motion, compass) for side, motion in motions.items()}
-    return motions, _truth(motions, planned, changes), duration_s
+    return motions, replace(_truth(motions, planned, changes), climbs_m=climbs_m), duration_s
+
+
+def _climbed(motions: Mapping[Side, LegMotion], bout: Bout) -> tuple[dict[Side, LegMotion], dict[Side, FloatArray]]:
+    """Both legs on the stairs of a bout, and how much higher each contact of each is than the one before."""
+    height_m = np.cumsum([step.rise_m for step in bout.steps])
+    first = min(motions, key=lambda side: float(motions[side].events.initial_contact_s[0]))
+    heights = {side: np.concatenate([[0.0], height_m[0 if side is first else 1 :: 2]]) for side in motions}
+    climbed = {side: climb(motion, heights[side]) for side, motion in motions.items()}
+    return climbed, {side: np.diff(values) for side, values in heights.items()}
 
 
 def _turned(motion: LegMotion, compass: FloatArray) -> LegMotion:
@@ -264,6 +282,8 @@ def _bouts(course: TimedCourse, rng: np.random.Generator) -> list[Bout]:
     """What the patient walks between one pause and the next."""
     if course.kind is CourseKind.SIT_TO_STAND:
         return []
+    if course.kind is CourseKind.STAIRS:
+        return [Bout(_stairs(course, rng), (), 0.5, 1.5)]
     if course.kind is CourseKind.TEN_METRES:
         return [Bout(_straight(course, 15.0, 0.0, rng), (), 0.5, 1.5)]
     if course.kind is CourseKind.UP_AND_GO:
@@ -324,6 +344,21 @@ def _straight(course: TimedCourse, way_m: float, done: float, rng: np.random.Gen
     return steps
 
 
+def _stairs(course: TimedCourse, rng: np.random.Generator) -> list[CourseStep]:
+    """To the stairs, up, over a landing, down again and away; one step a tread, or both feet on each."""
+    count, rise_m, tread_m = int(rng.integers(6, 13)), float(rng.uniform(0.14, 0.19)), float(rng.uniform(0.27, 0.32))
+    is_by_both = bool(rng.integers(2))
+    time_s = float(rng.uniform(0.55, 0.8))
+    steps = _straight(course, 5.0, 0.0, rng)
+    for sign in (1.0, -1.0):
+        for _ in range(count):
+            steps.append(CourseStep(tread_m, time_s * rng.normal(1.0, 0.03), rise_m=sign * rise_m))
+            if is_by_both:
+                steps.append(CourseStep(0.02, time_s * rng.normal(1.0, 0.03)))
+        steps += _straight(course, 4.0, 0.5, rng)
+    return steps
+
+
 def _turn(course: TimedCourse, number: int, rng: np.random.Generator) -> list[CourseStep]:
     """Shorter steps on the turn; a patient who hesitates waits before it and takes two short steps on the straight."""
     gait = gait_at(course.speed_m_s)
@@ -355,13 +390,16 @@ def _truth(
     offs = np.sort(np.concatenate([m.events.toe_off_s for m in motions.values()]))
     following = np.searchsorted(offs, contacts)
     stands = [(float(a), float(offs[k])) for a, k in zip(contacts, following, strict=True) if k < len(offs)]
+    seat = _seat_truth(motions, changes)
     return CourseTruth(
         time_s=time_s,
         way_m=way,
         contacts_s=contacts,
         turns=tuple(turns),
         pauses_s=tuple((a, b) for a, b in stands if b - a >= PAUSE_S and not np.any((contacts > a) & (contacts < b))),
-        **_seat_truth(motions, changes),
+        left_seat_s=seat["left_seat_s"],
+        upright_s=seat["upright_s"],
+        seated_s=seat["seated_s"],
     )
 
 

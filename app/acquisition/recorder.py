@@ -12,6 +12,7 @@ import threading
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import suppress
+from dataclasses import replace
 from uuid import UUID
 
 from app.acquisition.acquisition import Acquisition
@@ -142,6 +143,8 @@ class Recorder:
             bring_home(opened)
         stored = self._entry.close(opened, self.summary, self._writer.header.segment)
         recording, _ = recording_with_samples(opened, stored, DECODERS)
+        if recording.test != stored.details.test:  # keys of a timed test, which its journal alone has known
+            stored = opened.library.recordings.change(stored, replace(stored.details, test=recording.test))
         return stored, recording
 
 

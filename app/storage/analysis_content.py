@@ -18,6 +18,7 @@ from core.findings import Finding, Severity
 from core.gait.clocks import ClockTie, LegClocks
 from core.gait.events import FootEvents
 from core.gait.strides import Reason, Strides
+from core.hip.results import ClockStatus, HipAngle, HipIdentification, LegClock, PelvisAngles, PelvisTurn
 from core.results import (
     Analysis,
     AxisSource,
@@ -30,9 +31,11 @@ from core.results import (
     ZeroKind,
 )
 from core.samples import RecordingKind
+from core.timed.found import NotMeasured, Rise, Silence, StairStride, TimedPart, TimedTest, Turn
+from core.timed.protocols import TimedProtocol
 from core.verdicts.model import Assessment, GateReason, JointVerdicts, LegVerdicts, Verdict, Verdicts
 
-FORMAT = "gaitwright-kept-analysis/2"
+FORMAT = "gaitwright-kept-analysis/3"
 DIGEST, LENGTH = 32, 8
 KINDS = "biuf"  # of arrays: truth and figures
 VALUES: Mapping[str, type] = {
@@ -40,12 +43,17 @@ VALUES: Mapping[str, type] = {
     for kind in (
         *(Analysis, Calibration, Finding, FootEvents, JointAngle, JointCalibration),
         *(RecordingAnalysis, SideGait, Strides),
+        *(HipAngle, HipIdentification, LegClock, PelvisAngles, PelvisTurn),
         *(Assessment, GateReason, LegClocks, JointVerdicts, LegVerdicts, Verdicts),
+        *(Rise, Silence, StairStride, TimedPart, TimedTest, Turn),
     )
 }
 WORDS: Mapping[str, type[StrEnum]] = {
     kind.__name__: kind
-    for kind in (AxisSource, ClockTie, Joint, Method, Reason, RecordingKind, Severity, Side, Site, Verdict, ZeroKind)
+    for kind in (
+        *(AxisSource, ClockStatus, ClockTie, Joint, Method, NotMeasured, Reason, RecordingKind),
+        *(Severity, Side, Site, TimedProtocol, Verdict, ZeroKind),
+    )
 }
 
 

@@ -20,6 +20,7 @@ from app.storage.stored import AnalysedRecording, AnalysisInputs, LibraryError, 
 from core.body import Site
 from core.results import Analysis
 from core.samples import ImuBlock, Patient, Recording, SensorInfo, Session
+from core.timed.protocols import planned_text
 
 _log = logging.getLogger(__name__)
 
@@ -42,6 +43,7 @@ def bare(session: Session) -> Session:
                 imu={site: replace(block, sensor="", unknown={}) for site, block in recording.imu.items()},
                 is_kept=recording.is_kept,
                 is_restrapped_before=recording.is_restrapped_before,
+                test=recording.test,
             )
             for recording in session.recordings
         ),
@@ -123,6 +125,7 @@ def inputs_of(session: Session) -> AnalysisInputs:
                 recording.is_kept,
                 recording.is_restrapped_before,
                 tuple((site, _digest(block)) for site, block in recording.imu.items()),
+                planned_text(recording.test),
             )
             for recording in session.recordings
         ),

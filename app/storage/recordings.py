@@ -28,6 +28,7 @@ from app.storage.stored import (
 from app.storage.unit_of_work import UnitOfWork
 from core.alignment import alignment_text
 from core.samples import Recording, RecordingKind
+from core.timed.protocols import planned_text
 
 
 class Recordings:
@@ -82,6 +83,7 @@ class Recordings:
                 station=self._unit.station,
                 left_out=left_out_in_row(told.left_out_s),
                 alignment=alignment_text(told.alignment),
+                test=planned_text(told.test),
                 **{name: getattr(told, name) for name in RECORDING_FIELDS},
             )
             session.add(row)
@@ -283,6 +285,7 @@ def recording_changes(visit: SessionRow, row: RecordingRow, told: Recording) -> 
         _refuse_taken(visit, told.name)
     wanted = {name: getattr(told, name) for name in RECORDING_CORRECTABLE}
     in_row = {"left_out": left_out_in_row(told.left_out_s), "alignment": alignment_text(told.alignment)}
+    in_row |= {"test": planned_text(told.test)}
     return differences(row, wanted | in_row)
 
 

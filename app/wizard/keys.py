@@ -2,8 +2,8 @@
 
 Text has the first word: in a text field letters, figures, brackets and Space are written, and Ctrl Z takes back what
 was written; only a field of numbers, which has no use for Space, lets it through. A button that has the focus is
-pressed by Space and Enter, as everywhere; but while something runs Space stops it, whatever has the focus but a text
-field: who stops a walk looks at the patient and not at the screen.
+pressed by Space and Enter, as everywhere, and a list of choices is searched by letters; but while something runs Space
+stops it, whatever has the focus but a text field: who stops a walk looks at the patient and not at the screen.
 """
 
 import sys
@@ -54,6 +54,7 @@ class KeyAction(Enum):
     UNDO = auto()
     PATIENT_SCREEN = auto()  # F8
     FULL_SCREEN = auto()  # F11
+    NEXT_TEST = auto()  # T
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,7 +73,17 @@ _PLAIN: dict[int, KeyAction] = {
     _Key.Key_L: KeyAction.LEFT_LEG,
     _Key.Key_R: KeyAction.RIGHT_LEG,
     _Key.Key_I: KeyAction.IDENTIFY,
+    _Key.Key_T: KeyAction.NEXT_TEST,
 }
+# what presenters' clickers send: forward and back, first and last, start, black screen, volume, media
+_OF_CLICKERS = frozenset(
+    {
+        *(_Key.Key_PageUp, _Key.Key_PageDown, _Key.Key_Return, _Key.Key_Enter),
+        *(_Key.Key_Left, _Key.Key_Right, _Key.Key_Up, _Key.Key_Down, _Key.Key_Home, _Key.Key_End),
+        *(_Key.Key_F5, _Key.Key_B, _Key.Key_Period, _Key.Key_VolumeUp, _Key.Key_VolumeDown),
+        *(_Key.Key_MediaPlay, _Key.Key_MediaTogglePlayPause, _Key.Key_MediaNext, _Key.Key_MediaPrevious),
+    }
+)
 # digits with Shift by their place on the keyboard, as Linux and Windows tell it: what they write is each country's own
 _FIRST_DIGIT_AT = {"linux": 10, "win32": 2}
 _US_SHIFTED = "!@#$%^&*("
@@ -102,6 +113,7 @@ _FUNCTIONS: dict[int, KeyAction] = {
     _Key.Key_F8: KeyAction.PATIENT_SCREEN,
     _Key.Key_F11: KeyAction.FULL_SCREEN,
 }
+_LETTERS = (KeyAction.KEEP, KeyAction.DISCARD, KeyAction.LEFT_LEG, KeyAction.RIGHT_LEG, KeyAction.IDENTIFY)
 _REPEATED_WHILE_HELD = {KeyAction.EARLIER, KeyAction.LATER, KeyAction.LARGER, KeyAction.SMALLER}
 _ENTER = (_Key.Key_Return, _Key.Key_Enter)
 _NO_LETTERS = Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.AltModifier | Qt.KeyboardModifier.MetaModifier
@@ -117,7 +129,7 @@ class Keys(QObject):
 
     def __init__(self, root: QWidget) -> None:
         super().__init__(root)
-        self._root, self._is_running = root, False
+        self._root, self._is_running, self._has_clicker = root, False, False
         self._heard: list[QWidget] = []
         application = QApplication.instance()
         assert isinstance(application, QApplication)
@@ -128,6 +140,10 @@ class Keys(QObject):
         """Say whether something runs that Space stops."""
         self._is_running = is_running
 
+    def set_clicker(self, has_clicker: bool) -> None:
+        """Say whether a presenter's clicker means what Space does, whichever of its keys it sends."""
+        self._has_clicker = has_clicker
+
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         if event.type() is not QEvent.Type.KeyPress or not isinstance(event, QKeyEvent):
             return False
@@ -137,13 +153,19 @@ class Keys(QObject):
             or watched.window() is not self._root.window()
         ):
             return False
+        if self._has_clicker and event.key() in _OF_CLICKERS and not event.modifiers() & _NO_LETTERS:
+            focused = self._focused_in(watched)
+            return watched is focused and not _takes_text(focused) and self._emit(Intent(KeyAction.RUN), event)
         if event.key() in _ENTER:  # what nobody on its way up from the focus wanted is for the primary verb
             return watched is self._root.window() and self._emit(Intent(KeyAction.PRIMARY), event)
-        focused = watched.window().focusWidget() or watched.window()
+        focused = self._focused_in(watched)
         if watched is not focused:
             return False
         intent = self._intent(event, focused)
         return intent is not None and self._emit(intent, event)
+
+    def _focused_in(self, watched: QWidget) -> QWidget:
+        return watched.window().focusWidget() or watched.window()
 
     def _on_focus_changed(self, _before: QWidget | None, focused: QWidget | None) -> None:
         """Listen where keys go and where unwanted ones end: to hear all events of all widgets takes a third of the
@@ -164,6 +186,8 @@ class Keys(QObject):
         if plain is None:
             intent = _modified_intent(event)
             return None if is_text and intent == Intent(KeyAction.UNDO) else intent
+        if isinstance(focused, QComboBox) and plain.action in _LETTERS and not self._is_running:
+            return None  # a list is searched by its letters
         if is_text and not (plain.action is KeyAction.RUN and _takes_figures_only(focused)):
             return None
         if plain.action is KeyAction.RUN and not self._is_running and isinstance(focused, _PRESSED_BY_SPACE):

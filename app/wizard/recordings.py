@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from app.acquisition.acquisition import Acquisition
     from app.storage.opened import OpenedLibrary
     from core.alignment import AlignmentChange
+    from core.timed.protocols import PlannedTest
 
 
 READ_AGAIN_MS = 2000  # after the library did not answer
@@ -233,8 +234,11 @@ class SessionRecordings(QObject):
         kind: RecordingKind,
         condition: str = "",
         alignment: "AlignmentChange | None" = None,
+        test: "PlannedTest | None" = None,
     ) -> None:
-        """Record from now on; `begun` or `refused` follows. `alignment`: what was changed at a prosthesis before.
+        """Record from now on; `begun` or `refused` follows.
+
+        `alignment`: what was changed at a prosthesis before; `test`: which timed test it is.
 
         Raises
         ------
@@ -253,6 +257,7 @@ class SessionRecordings(QObject):
             started=datetime.datetime.now().astimezone().isoformat(timespec="seconds"),
             is_restrapped_before=self._is_restrapped,
             alignment=alignment,
+            test=test,
         )
         self.ongoing = Ongoing(told, acquisition.now_s)
         if self._phase is not RecordingPhase.CLOSED:
@@ -566,6 +571,13 @@ def counted(recordings: Sequence[SessionRecording]) -> tuple[Recording, ...]:
     for recording in recordings:
         is_restrapped |= recording.details.is_restrapped_before
         if recording.details.is_kept and recording.read_back is not None:
-            found.append(replace(recording.details, imu=recording.read_back.imu, is_restrapped_before=is_restrapped))
+            told = replace(recording.details, imu=recording.read_back.imu, is_restrapped_before=is_restrapped)
+            found.append(replace(told, test=_with_its_keys(told.test, recording.read_back.test)))
             is_restrapped = False
     return tuple(found)
+
+
+def _with_its_keys(told: "PlannedTest | None", read: "PlannedTest | None") -> "PlannedTest | None":
+    """The test as it is told; a recovered recording's keys are in its journal alone."""
+    has_keys = told is not None and (told.start_key_s, told.end_key_s) != (None, None)
+    return told if told is None or read is None or has_keys or read.protocol is not told.protocol else read

@@ -16,6 +16,8 @@ from core.samples import BoolArray, FloatArray, IntArray
 MAX_STRIDE_S = 3.0  # a stride at 0.3 m/s takes 2; longer, the patient stood
 PAUSE_RATIO = 1.5  # of the usual stride time
 MAX_TURN_RAD = np.deg2rad(12.0)  # straight strides turn a foot by up to 5 deg
+LEAST_CLIMB_M = 0.1  # steps of stairs rise by 0.14 to 0.2 m; the height of a level stride is told to some centimetres
+LEAST_SLOPE = 0.125  # ramps rise by up to 1 in 8, stairs by half; the first swing onto them comes from the level floor
 EDGE_STRIDES = 2  # so many at either end of a bout may be speeding up or slowing down,
 EDGE_RATIO = 0.87  # if they are so much slower or shorter than the bout
 OUTLIER_SD, MIN_OUTLIER_SHARE = 4.0, 0.12  # beyond both, a stride is unlike the others
@@ -34,6 +36,8 @@ class Reason(StrEnum):
     STOP = "stop"
     OUTLIER = "outlier"
     SLIPPED = "strap_slipped"
+    STAIRS_UP = "stairs_up"
+    STAIRS_DOWN = "stairs_down"
     BY_HAND = "left_out_by_hand"
 
 
@@ -41,8 +45,9 @@ class Reason(StrEnum):
 class Strides:
     """Strides of one foot, ascending, all (k,).
 
-    `length_m`, `clearance_m` and `turn_rad` are of the swing that ends the stride; the clearance is how high the foot
-    sensor rises over the floor, not the toe's. NaN from a shank. `bout` numbers the uninterrupted runs of strides.
+    `length_m`, `clearance_m`, `climb_m` and `turn_rad` are of the swing that ends the stride; the clearance is how high
+    the foot sensor rises over the floor, not the toe's, the climb how much higher the foot comes to stand. NaN from a
+    shank. `bout` numbers the uninterrupted runs of strides.
     """
 
     start_s: FloatArray
@@ -52,6 +57,7 @@ class Strides:
     end_s: FloatArray
     length_m: FloatArray
     clearance_m: FloatArray
+    climb_m: FloatArray
     turn_rad: FloatArray
     bout: IntArray
     reason: tuple[Reason, ...]
@@ -107,6 +113,7 @@ def strides_of(stretches: Sequence[FootEvents]) -> Strides:
             "end_s": end,
             "length_m": events.length_m[1:],
             "clearance_m": events.height_m[1:],
+            "climb_m": events.climb_m[1:],
             "turn_rad": events.turn_rad[1:],
             "is_certain": (events.is_certain[1:] & events.is_certain[:-1]).astype(np.float64),
             "is_measured": (events.is_measured[1:] & events.is_measured[:-1]).astype(np.float64),
@@ -122,7 +129,8 @@ def strides_of(stretches: Sequence[FootEvents]) -> Strides:
 
 
 _COLUMNS = (
-    *("start_s", "full_contact_s", "heel_rise_s", "toe_off_s", "end_s", "length_m", "clearance_m", "turn_rad"),
+    *("start_s", "full_contact_s", "heel_rise_s", "toe_off_s", "end_s", "length_m", "clearance_m"),
+    *("climb_m", "turn_rad"),
     *("is_certain", "is_measured"),
 )
 
@@ -142,6 +150,9 @@ def _reasons(
 
     mark(~is_measured, Reason.GAP)
     mark(~is_certain, Reason.DOUBT)
+    is_up, is_down = on_stairs(columns["climb_m"], length)
+    mark(is_up, Reason.STAIRS_UP, Reason.DOUBT)  # a foot that climbs rolls otherwise
+    mark(is_down, Reason.STAIRS_DOWN, Reason.DOUBT)
     mark(np.abs(columns["turn_rad"]) > MAX_TURN_RAD, Reason.TURN)
     usual = np.median(time[code == 0]) if np.any(code == 0) else np.median(time)
     is_start, is_stop = _edges(time, length, bout, code == 0)
@@ -150,6 +161,25 @@ def _reasons(
     mark(time > PAUSE_RATIO * usual, Reason.PAUSE)
     mark(_is_unlike(time, code == 0) | _is_unlike(length, code == 0), Reason.OUTLIER)
     return tuple(order[k] for k in code)
+
+
+def on_stairs(climb_m: FloatArray, length_m: FloatArray) -> tuple[BoolArray, BoolArray]:
+    """Which swings lead up a step or two of stairs, and which down: higher than any kerb, steeper than any ramp.
+
+    Parameters
+    ----------
+    climb_m, length_m : (k,)
+        How much higher the foot came to stand, and how far it went over the floor; NaN where not known.
+
+    Returns
+    -------
+    (k,), (k,)
+        Neither of an unknown one.
+    """
+    low = climb_m[np.abs(climb_m) < LEAST_CLIMB_M]  # a sensor whose scale is off raises every level stride alike
+    above_m = climb_m - (float(np.median(low)) if len(low) >= MIN_STRIDES_TO_COMPARE else 0.0)
+    is_steep = np.abs(above_m) > np.maximum(LEAST_CLIMB_M, LEAST_SLOPE * length_m)
+    return is_steep & (above_m > 0.0), is_steep & (above_m < 0.0)
 
 
 def _edges(time: FloatArray, length: FloatArray, bout: IntArray, is_good: BoolArray) -> tuple[BoolArray, BoolArray]:

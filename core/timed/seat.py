@@ -11,22 +11,13 @@ import numpy as np
 from core.body import Segment, Side, Site
 from core.samples import BoolArray, FloatArray, Recording, RecordingKind
 from core.sensors import SensorTracks
+from core.timed.found import Rise
 
 STEP_S = 0.01
 SEATED_RAD, STANDING_RAD = np.deg2rad(50.0), np.deg2rad(30.0)  # a step lifts the mean of both thighs by less
-EDGE_SHARE = (
-    0.1  # of the way between seat and standing: from there on the thighs have left the one or reached the other
-)
+EDGE_SHARE = 0.1  # of the way between seat and standing: from there on the thighs have left or reached it
 QUIET_RAD_S = np.deg2rad(15.0)
 REST_S = 1.0  # beside a rise or a sitting down, the patient stands; and what a sensor may miss at either end
-
-
-@dataclass(frozen=True, slots=True)
-class Rise:
-    """The thighs left the seat, and were upright, seconds."""
-
-    left_seat_s: float
-    upright_s: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +27,9 @@ class SeatMotions:
     rises: tuple[Rise, ...]
     seated_s: tuple[float, ...]
     has_thighs: bool = True
+
+
+NO_SEAT = SeatMotions((), ())
 
 
 def seat_motions(tracks: SensorTracks, recording: Recording) -> SeatMotions:

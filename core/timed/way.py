@@ -16,8 +16,9 @@ from core.gait.events import FootEvents, detect_events
 from core.gait.foot import FootMotion, follow
 from core.gait.strides import MAX_STRIDE_S
 from core.pair import OrientedTrack, moving_mean
-from core.samples import FloatArray, Recording
+from core.samples import BoolArray, FloatArray, Recording
 from core.sensors import SensorTracks
+from core.timed.found import Silence, Turn
 from core.walking import prosthetic_sides
 
 STEP_S = 0.02
@@ -29,44 +30,22 @@ PIECE_PAD_S = 0.6
 LOST_SWING_S = 1.5  # beside a silence a swing may be missing
 TURNING_RAD = np.deg2rad(20.0)  # in the time of one stride; straight strides turn a foot by up to 5 deg
 MIN_TURN_RAD = np.deg2rad(60.0)
-ABOUT_RAD = np.deg2rad(120.0)  # from here on, a turn ends a lap
 ONE_TURN_M = 0.6  # two turns to one side with no more way between them are one
 MAX_ARC_RAD = np.deg2rad(150.0)
 USUAL_STRIDE_S = 1.2  # where no stride tells
 
 
 @dataclass(frozen=True, slots=True)
-class Turn:
-    """A turn of the body: when, and how far, positive to the left."""
-
-    start_s: float
-    end_s: float
-    angle_rad: float
-
-    @property
-    def is_about(self) -> bool:
-        return abs(self.angle_rad) >= ABOUT_RAD
-
-    @property
-    def middle_s(self) -> float:
-        return 0.5 * (self.start_s + self.end_s)
-
-
-@dataclass(frozen=True, slots=True)
-class Silence:
-    """A sensor that was not heard, and when."""
-
-    site: Site
-    start_s: float
-    end_s: float
-
-
-@dataclass(frozen=True, slots=True)
 class FootSteps:
-    """One foot's swings, ascending: when it left, when it landed (k,)."""
+    """One foot's swings, ascending: when it left, when it landed, and where to (k,).
+
+    `length_m` is how far it went over the floor, `climb_m` how much higher it came to stand.
+    """
 
     toe_off_s: FloatArray
     contact_s: FloatArray
+    length_m: FloatArray
+    climb_m: FloatArray
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,6 +96,35 @@ class BodyWay:
         return 120.0 / float(np.median(times)) if times else float("nan")
 
 
+@dataclass(frozen=True, slots=True)
+class FootSwings:
+    """One foot's swings, ascending: toe-off and contact, the arc of the body's way, the heading before and after.
+
+    All (k,) but `heading_rad` (k, 2), which goes on from one swing to the next. `climb_m`: how much higher it stands.
+    """
+
+    toe_off_s: FloatArray
+    contact_s: FloatArray
+    arc_m: FloatArray
+    heading_rad: FloatArray
+    climb_m: FloatArray
+
+    def select(self, rows: BoolArray) -> "FootSwings":
+        """The swings of these rows."""
+        return FootSwings(
+            self.toe_off_s[rows], self.contact_s[rows], self.arc_m[rows], self.heading_rad[rows], self.climb_m[rows]
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class HeardFoot:
+    """One foot: from when to when its sensor was heard; its swings, stretch by stretch, each with its own heading."""
+
+    site: Site
+    heard_s: tuple[tuple[float, float], ...]
+    swings: tuple[FootSwings, ...]
+
+
 def body_way(tracks: SensorTracks, recording: Recording) -> BodyWay:
     """The body's way over a recording of up to a quarter of an hour; without foot sensors it has no samples.
 
@@ -126,52 +134,57 @@ def body_way(tracks: SensorTracks, recording: Recording) -> BodyWay:
         Seconds on the recording's clock, metres, radians.
     """
     block = tracks.blocks(recording)[0]
-    start_s, end_s = tracks.span_of(recording)
-    time_s = np.arange(start_s, end_s + 0.5 * STEP_S, STEP_S)
-    speeds, turnings, silences = [], [], []
-    feet: dict[Side, FootSteps] = {}
+    feet: dict[Side, HeardFoot] = {}
     for side in Side:
         site = Site(f"{side}_{Segment.FOOT}")
         if not tracks.is_usable(recording, site):
             continue
         worn = tracks.oriented(recording, site, block)
         is_rigid = side in prosthetic_sides(tracks.session.patient)
-        speed, turning = np.full_like(time_s, np.nan), np.full_like(time_s, np.nan)
-        offs: list[FloatArray] = [np.empty(0)]
-        ons: list[FloatArray] = [np.empty(0)]
-        for whole in worn:
-            heard = (time_s >= whole.track.start_s - STEP_S) & (time_s <= whole.track.end_s + STEP_S)
-            speed[heard], turning[heard] = 0.0, 0.0
-            for one in moving_pieces(whole):
-                motion = follow(one)
-                events = detect_events(motion, one.track.is_measured, is_rigid)
-                off_s, on_s = _moments(motion, events)
-                here = (time_s >= one.track.start_s - STEP_S) & (time_s <= one.track.end_s + STEP_S)
-                heading = _headings(one, motion)
-                arc_m = _arcs(events.length_m, heading[1::2] - heading[::2])
-                total_m = np.cumsum(arc_m)
-                way_m = np.stack([total_m - arc_m, total_m], axis=1).ravel()
-                speed[here] += _rate(time_s[here], off_s, on_s, way_m)
-                turning[here] += _rate(time_s[here], off_s, on_s, heading)
-                offs.append(off_s)
-                ons.append(on_s)
-        feet[side] = FootSteps(np.concatenate(offs), np.concatenate(ons))
-        silences += _silences(site, worn, start_s, end_s)
-        speeds.append(speed)
-        turnings.append(turning)
+        heard_s = tuple((one.track.start_s, one.track.end_s) for one in worn)
+        pieces = (piece for whole in worn for piece in moving_pieces(whole))
+        feet[side] = HeardFoot(site, heard_s, tuple(swings_of(piece, is_rigid) for piece in pieces))
+    return way_of(feet, *tracks.span_of(recording))
+
+
+def swings_of(one: OrientedTrack, is_rigid: bool) -> FootSwings:
+    """The swings of one piece of a foot's track; `is_rigid`: a prosthetic foot."""
+    motion = follow(one)
+    events = detect_events(motion, one.track.is_measured, is_rigid)
+    off_s, on_s = _moments(motion, events)
+    heading = _headings(one, motion).reshape(-1, 2)
+    return FootSwings(off_s, on_s, _arcs(events.length_m, heading[:, 1] - heading[:, 0]), heading, events.climb_m)
+
+
+def way_of(feet: Mapping[Side, HeardFoot], start_s: float, end_s: float) -> BodyWay:
+    """The body's way from what both feet did; without a foot it has no samples."""
     if not feet:
         nothing = np.empty(0)
-        return BodyWay(nothing, nothing, nothing, feet, ())
-    return BodyWay(time_s, _smooth(_total(speeds), feet), _total(turnings), feet, tuple(silences))
+        return BodyWay(nothing, nothing, nothing, {}, ())
+    time_s = np.arange(start_s, end_s + 0.5 * STEP_S, STEP_S)
+    speeds, turnings, silences = [], [], []
+    steps: dict[Side, FootSteps] = {}
+    for side, foot in feet.items():
+        speed, turning = np.full_like(time_s, np.nan), np.full_like(time_s, np.nan)
+        for from_s, to_s in foot.heard_s:
+            heard = (time_s >= from_s - STEP_S) & (time_s <= to_s + STEP_S)
+            speed[heard], turning[heard] = 0.0, 0.0
+        for swings in foot.swings:
+            total_m = np.cumsum(swings.arc_m)
+            way_m = np.stack([total_m - swings.arc_m, total_m], axis=1).ravel()
+            speed += _rate(time_s, swings.toe_off_s, swings.contact_s, way_m)
+            turning += _rate(time_s, swings.toe_off_s, swings.contact_s, swings.heading_rad.ravel())
+        names = ("toe_off_s", "contact_s", "arc_m", "climb_m")
+        every = [[np.empty(0), *(getattr(swings, name) for swings in foot.swings)] for name in names]
+        steps[side] = FootSteps(*(np.concatenate(one) for one in every))
+        silences += _silences(foot, start_s, end_s)
+        speeds.append(speed)
+        turnings.append(turning)
+    return BodyWay(time_s, _smooth(_total(speeds), steps), _total(turnings), steps, tuple(silences))
 
 
 def moving_pieces(whole: OrientedTrack) -> list[OrientedTrack]:
-    """A foot's track from each long standing to the next, with a little of both.
-
-    Zero velocity is known at one instant of each stance. Where a patient stands for seconds, that instant may lie far
-    from the step: the filter's tilt has changed by then, and the first step after the standing came out a quarter too
-    short.
-    """
+    """A foot's track from each long standing to the next, with a little of both."""
     track = whole.track
     speed = moving_mean(np.linalg.norm(track.gyr_rad_s, axis=1), max(1, round(CALM_S / track.step_s)))
     moving = np.flatnonzero(speed > MOVING_RAD_S)
@@ -248,9 +261,9 @@ def _total(rates: list[FloatArray]) -> FloatArray:
     return np.asarray(np.cumsum(mean) * STEP_S)
 
 
-def _silences(site: Site, worn: list[OrientedTrack], start_s: float, end_s: float) -> list[Silence]:
-    edges = [start_s, *(t for one in worn for t in (one.track.start_s, one.track.end_s)), end_s]
-    return [Silence(site, a, b) for a, b in zip(edges[::2], edges[1::2], strict=True) if b - a > SILENCE_S]
+def _silences(foot: HeardFoot, start_s: float, end_s: float) -> list[Silence]:
+    edges = [start_s, *(t for span_s in foot.heard_s for t in span_s), end_s]
+    return [Silence(foot.site, a, b) for a, b in zip(edges[::2], edges[1::2], strict=True) if b - a > SILENCE_S]
 
 
 def turns_of(way: BodyWay) -> tuple[Turn, ...]:

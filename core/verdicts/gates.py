@@ -3,15 +3,16 @@
 Every limit stands in `LIMITS`, each with its reason; a reason in a verdict carries the value found beside its limit.
 """
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from core.body import Joint, Segment, Side, Site, ankle_of
+from core.body import Joint, Segment, Side, Site, ankle_of, knee_of
 from core.calibration.clinical_sign import MIN_MARGIN
 from core.gait.clocks import CARE_S, READ_S, ClockGate, LegClocks
 from core.gait.cycles import mean_cycle, range_of_cycles
+from core.hip.results import HipIdentification
 from core.norms import MIN_STRIDES_FOR_MEAN, MIN_STRIDES_FOR_SD
 from core.results import Analysis, JointCalibration, RecordingAnalysis, SideGait, ZeroKind
 from core.samples import FloatArray, RecordingKind
@@ -38,6 +39,10 @@ class GateLimits:
     lag_sd_ms: tuple[float, float] = (2.0, 10.0)  # 400 deg/s for 10 ms are 4 deg
     knee_range_deg: tuple[float, float] = (5.0, 90.0)  # walking knees 62 +- 4, stiff ones to 5
     ankle_range_deg: tuple[float, float] = (3.0, 60.0)  # walking ankles 25 +- 5
+    hip_range_deg: tuple[float, float] = (5.0, 90.0)  # walking hips 40 to 58, stiff ones less
+    hip_disagreement: float = 0.2  # hips 0.07 to 0.08, of pelvis and shank 0.54
+    hip_centre_m: tuple[float, float] = (0.05, 0.4)
+    hips_apart_m: tuple[float, float] = (0.12, 0.28)
     knee_least_deg: float = -20.0
     ankle_height_deg: tuple[float, float] = (-45.0, 40.0)
     halves_deg: float = 2.0
@@ -52,6 +57,7 @@ class GateLimits:
 
 
 LIMITS = GateLimits()
+OF_COURSE = ("halves", "halves_time", "drift")  # gates of what changes over a walk
 MIN_STRIDES_TO_SPLIT = 6  # halves of three strides, thirds of two: fewer say nothing of a walk's course
 
 
@@ -72,10 +78,12 @@ def verdicts_of(
         for joint in recording.joints
         if joint in calibrated
     }
+    joints |= {joint: _hip_verdicts(recording, joint, calibrated.get(knee_of(joint.side))) for joint in recording.hips}
+    pelvis = assess(_pelvis(recording)) if recording.pelvis is not None else NOT_MEASURED
     if recording.kind is not RecordingKind.WALKING:
-        return Verdicts(joints)
+        return Verdicts(joints, pelvis=pelvis)
     legs = {side: _leg_verdicts(recording, side, calibrated) for side in recording.gait}
-    return Verdicts(joints, legs, _between(recording))
+    return Verdicts(joints, legs, _between(recording), pelvis)
 
 
 def calibration_verdicts(calibration: JointCalibration) -> JointVerdicts:
@@ -113,7 +121,59 @@ def _joint_verdicts(
         shape += [*of_strides, *_drift(ranges)]
         height += [*of_strides, *_drift(ranges), *_drift(cycles.mean(axis=1))]
         height += _plausible_height(joint, cycles, calibration)
+    shape, height = _without_course(recording, shape), _without_course(recording, height)
     return JointVerdicts(assess(shape), assess(height), assess(_sign(calibration)))
+
+
+def _without_course(recording: RecordingAnalysis, reasons: Iterable[GateReason]) -> list[GateReason]:
+    """In a timed test its course is what is measured, and no reason for care."""
+    return [one for one in reasons if recording.timed is None or one.gate not in OF_COURSE]
+
+
+def _hip_verdicts(recording: RecordingAnalysis, joint: Joint, knee: JointCalibration | None) -> JointVerdicts:
+    """A hip has no axis of its own: its frames lean on the knee's, its sign on the knee's sign."""
+    of_knee = [*_pairing(knee), *_axis(knee)] if knee is not None else [GateReason("axis", Verdict.WITHHELD)]
+    shape = [
+        *_neighbours(recording.hips[joint].identification),
+        *of_knee,
+        *_lost(recording, joint.proximal, joint.distal),
+        *_drifting(recording, Verdict.WITHHELD, joint.proximal, joint.distal),
+    ]
+    sign = [*_sign(knee)] if knee is not None else []
+    gait = recording.gait.get(joint.side)
+    if recording.kind is RecordingKind.WALKING and gait is not None:
+        ranges = np.rad2deg(gait.parameters["hip_range_rad"][gait.strides.is_used])
+        ranges = ranges[np.isfinite(ranges)]
+        shape += [*_slip(recording, joint.side), *_strides(len(ranges))]
+        shape += [*_plausible_range(joint, ranges, may_be_stiff=True), *_steady(ranges, LIMITS.halves_deg, "deg")]
+        shape += _drift(ranges)
+    return JointVerdicts(assess(shape), assess([*shape, *sign]), assess(sign))
+
+
+def _neighbours(found: HipIdentification) -> Iterator[GateReason]:
+    """Whether pelvis and thigh moved as neighbours, at lengths that a body has, the legs not swapped."""
+    if found.margin < LIMITS.pairing_margin:
+        yield GateReason("pairing", Verdict.WITHHELD, found.margin, LIMITS.pairing_margin)
+    if found.disagreement >= LIMITS.hip_disagreement:
+        yield GateReason("hip_disagreement", Verdict.WITHHELD, found.disagreement, LIMITS.hip_disagreement)
+    for centre_m in (found.centre_proximal_m, found.centre_distal_m):
+        least, most = LIMITS.hip_centre_m
+        length_m = float(np.linalg.norm(centre_m))
+        if not least <= length_m <= most:
+            yield GateReason("hip_centre", Verdict.WITHHELD, length_m, least if length_m < least else most, "m")
+    if found.centres_apart_m is not None:
+        least, most = LIMITS.hips_apart_m
+        if not least <= found.centres_apart_m <= most:
+            limit = least if found.centres_apart_m < least else most
+            yield GateReason("hips_apart", Verdict.WITHHELD, found.centres_apart_m, limit, "m")
+
+
+def _pelvis(recording: RecordingAnalysis) -> Iterator[GateReason]:
+    """The pelvis's frame comes from the hips: where no hip can be read, it has none."""
+    yield from _lost(recording, Site.PELVIS)
+    trusted = [hip for hip in recording.hips.values() if not [*_neighbours(hip.identification)]]
+    if not trusted:
+        yield GateReason("pairing", Verdict.WITHHELD, None, LIMITS.pairing_margin)
 
 
 def _leg_verdicts(
@@ -132,6 +192,7 @@ def _leg_verdicts(
         timing.append(GateReason(TOE_OFF_GATE, Verdict.CARE))
     distance = [*shared, *_lost(recording, foot), *_equal_lengths(recording), *_speed(gait)]
     has_length = bool(np.isfinite(strides.length_m[used]).any())
+    timing = _without_course(recording, timing)
     return LegVerdicts(assess(timing), assess(distance) if has_length or not used.any() else NOT_MEASURED)
 
 
@@ -214,7 +275,8 @@ def _plausible_range(joint: Joint, ranges_deg: FloatArray, may_be_stiff: bool) -
     if not len(ranges_deg):
         return
     usual = float(np.median(ranges_deg))
-    least, most = LIMITS.knee_range_deg if joint.is_knee else LIMITS.ankle_range_deg
+    of_kind = {"hip": LIMITS.hip_range_deg, "knee": LIMITS.knee_range_deg, "ankle": LIMITS.ankle_range_deg}
+    least, most = of_kind[joint.split("_")[1]]
     if usual < least:
         yield GateReason("plausible", Verdict.CARE if may_be_stiff else Verdict.WITHHELD, usual, least, "deg")
     elif usual > most:

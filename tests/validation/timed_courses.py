@@ -1,4 +1,4 @@
-"""How well are timed tests told, on 200 simulated courses and on people's recordings?
+"""How well are timed tests told, on 220 simulated courses and on people's recordings?
 
     python -m tests.validation.timed_courses [--scale 1.0]
 
@@ -20,8 +20,9 @@ import numpy as np
 from core.body import Side
 from core.samples import RateKind, Recording, Session
 from core.sensors import SensorTracks
-from core.timed.protocols import TimedProtocol
-from core.timed.timing import TimedTest, time_test
+from core.timed.found import TimedTest
+from core.timed.protocols import PlannedTest, TimedProtocol
+from core.timed.timing import time_test
 from core.timed.way import body_way, pauses_of, start_of, turns_of
 from devices.files.session_folder import read_session
 from devices.walker_courses import TAPE_M, CourseKind, CourseTruth, draw_course, simulate_course
@@ -34,6 +35,7 @@ COURSES = {
     CourseKind.SIX_MINUTES: 10,
     CourseKind.UP_AND_GO: 50,
     CourseKind.SIT_TO_STAND: 40,
+    CourseKind.STAIRS: 20,
 }
 LASTS_S = {CourseKind.TWO_MINUTES: 120.0, CourseKind.SIX_MINUTES: 360.0}
 MAX_DISTANCE_PERCENT, MAX_TIME_S, MAX_PAUSE_S = 2.0, 0.1, 0.1
@@ -52,6 +54,9 @@ class Score:
     turns: int = 0
     pauses: int = 0
     rises: int = 0
+    stairs: int = 0
+    level: int = 0
+    climb_m: list[float] = field(default_factory=list)
     silent: int = 0
     wrong: list[str] = field(default_factory=list)
 
@@ -61,13 +66,14 @@ class Score:
         self.time_s.append(found.time_s - (end_s - start_s))
         if not abs(self.time_s[-1]) <= MAX_TIME_S:
             self.wrong.append(f"{seed}: time {self.time_s[-1]:+.3f} s")
-        if is_silent != np.isnan(found.distance_m):
+        has_distance = not is_silent and kind is not CourseKind.SIT_TO_STAND
+        if has_distance == np.isnan(found.distance_m):
             self.wrong.append(f"{seed}: distance {found.distance_m} of a sensor that was silent: {is_silent}")
         self.silent += is_silent
         way_m = truth.way_at(end_s)
         if kind is CourseKind.TEN_METRES:  # 10 m by definition: what the body went between the ends that were found
             way_m = truth.way_at(found.end_s) - truth.way_at(found.start_s)
-        if way_m > 0.0 and not is_silent:
+        if has_distance:
             self.distance_percent.append(100.0 * (found.distance_m / way_m - 1.0))
             if abs(self.distance_percent[-1]) > MAX_DISTANCE_PERCENT:
                 self.wrong.append(f"{seed}: distance {self.distance_percent[-1]:+.1f} %")
@@ -90,9 +96,24 @@ class Score:
             self.wrong.append(f"{seed}: {len(found.pauses_s)} pauses of {len(pauses)}")
         else:
             self.pause_s += [(a[1] - a[0]) - (b[1] - b[0]) for a, b in zip(found.pauses_s, pauses, strict=True)]
+        self._add_stairs(seed, found, truth)
         self.rises += len(truth.left_seat_s)
         if len(found.rises) != len(truth.left_seat_s):
             self.wrong.append(f"{seed}: {len(found.rises)} rises of {len(truth.left_seat_s)}")
+
+    def _add_stairs(self, seed: int, found: TimedTest, truth: CourseTruth) -> None:
+        """Every stride up and down with its height, by the foot; a foot's first swing ends no stride."""
+        for side, climbs_m in truth.climbs_m.items():
+            true_m = [float(one) for one in climbs_m[1:] if abs(one) > 0.01]
+            told_m = [one.climb_m for one in found.stairs if one.side is side]
+            self.stairs += len(true_m)
+            self.level += len(climbs_m) - 1 - len(true_m)
+            if [np.sign(one) for one in told_m] != [np.sign(one) for one in true_m]:
+                self.wrong.append(f"{seed}: {len(told_m)} strides on stairs of {len(true_m)}, or up for down, {side}")
+            else:
+                self.climb_m += [a - b for a, b in zip(told_m, true_m, strict=True)]
+        if not truth.climbs_m and found.stairs:
+            self.wrong.append(f"{seed}: {len(found.stairs)} strides on stairs that are not there")
 
 
 def true_span(kind: CourseKind, truth: CourseTruth) -> tuple[float, float]:
@@ -103,6 +124,8 @@ def true_span(kind: CourseKind, truth: CourseTruth) -> tuple[float, float]:
         return float(truth.left_seat_s[0]), float(truth.seated_s[0])
     if kind is CourseKind.SIT_TO_STAND:
         return float(truth.left_seat_s[0]), float(truth.upright_s[4])
+    if kind is CourseKind.STAIRS:
+        return float(truth.contacts_s[0]), float(truth.contacts_s[-1])
     return float(truth.contacts_s[0]), float(truth.contacts_s[0]) + LASTS_S[kind]
 
 
@@ -117,10 +140,10 @@ def score(kind: CourseKind, seeds: range) -> Score:
         course = draw_course(kind, seed)
         made = simulate_course(course)
         tracks, recording = tracks_of(made.session)
-        found = time_test(tracks, recording, TimedProtocol(kind.value))
+        found = time_test(tracks, recording, PlannedTest(TimedProtocol(kind.value)))
         total.add(seed, found, made.truth, kind, is_silent=bool(course.silent_s))
         if kind is CourseKind.TEN_METRES:
-            by_key = time_test(tracks, recording, TimedProtocol(kind.value), true_span(kind, made.truth))
+            by_key = time_test(tracks, recording, PlannedTest(TimedProtocol(kind.value), *true_span(kind, made.truth)))
             total.tape_percent.append(100.0 * by_key.tape_difference_m / by_key.distance_m)
     return total
 
@@ -142,6 +165,8 @@ def told(kind: CourseKind, total: Score) -> Iterator[str]:
         yield f"  the sensors' own 10 m between two keys {spread(total.tape_percent, '%')}"
     yield f"  time {spread(total.time_s, 's', 3)}; start {spread(total.start_s, 's', 3)}"
     yield f"  {total.turns} turns, angle {spread(total.turn_deg, 'deg', 1)}"
+    if total.stairs:
+        yield f"  {total.stairs} strides on stairs and {total.level} level ones, height {spread(total.climb_m, 'm', 3)}"
     yield f"  {total.pauses} pauses, length {spread(total.pause_s, 's', 3)}; {total.rises} rises"
     yield f"  missed: {'; '.join(total.wrong) or 'nothing'}"
 
@@ -172,10 +197,12 @@ def recordings(data: Path) -> Iterator[str]:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--scale", type=float, default=1.0, help="share of the 200 courses")
-    scale = parser.parse_args().scale
+    parser.add_argument("--first", type=int, default=0, help="the first seed")
+    parser.add_argument("--scale", type=float, default=1.0, help="share of the 220 courses")
+    wanted = parser.parse_args()
+    scale, first = wanted.scale, wanted.first
     for kind, count in COURSES.items():
-        for line in told(kind, score(kind, range(max(1, round(scale * count))))):
+        for line in told(kind, score(kind, range(first, first + max(1, round(scale * count))))):
             print(line, flush=True)
     data = os.environ.get("GAITWRIGHT_TEST_DATA")
     for line in recordings(Path(data)) if data else ():

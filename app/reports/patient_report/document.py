@@ -19,6 +19,7 @@ from app.reports.patient_report.patient_page import patient_page
 from app.reports.patient_report.plain_text import isolated, plain, shortened
 from app.reports.patient_report.request import ReportRequest
 from app.reports.patient_report.time_page import time_page
+from app.reports.patient_report.timed_page import timed_page
 from app.reports.patient_report.trend_page import trend_page
 from app.wording import spoken_language, tr
 
@@ -120,6 +121,7 @@ def report_data(request: ReportRequest) -> dict[str, Any]:
     pages: list[list[Block]] = [
         *of_walk,
         words_page(request, facts),
+        *([tests] if (tests := timed_page(request)) else []),
         *([comparison_page(comparison, facts)] if comparison is not None else []),
         *([alone] if (alone := not_compared_page(request)) else []),
         *([course] if (course := trend_page(request.course, condition, facts)) else []),

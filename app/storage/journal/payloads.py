@@ -2,8 +2,8 @@
 
 import json
 import struct
-from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict, dataclass, replace
 from typing import Any, NamedTuple
 from uuid import UUID
 
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from core.alignment import alignment_of_table, alignment_table
 from core.samples import FloatArray, ImuBlock, Recording, RecordingKind
+from core.timed.protocols import TABLE_KEYS, KeyMeaning, PlannedTest, planned_of_table, planned_table
 from devices.files.site_files import ACC, GYR, MAG, QUAT, TIME
 from devices.source import SourceInfo
 
@@ -21,6 +22,7 @@ FLOAT = np.dtype("<f8")
 BELONGING = "gaitwright-recording/1 "  # how the mark begins that says whose a recording is
 BELONGING_FIELDS = ("name", "kind", "folder", "condition", "started", "is_restrapped_before")
 ALIGNMENT = "alignment"  # among what that mark says, where something was changed
+KEY_PRESSED = "gaitwright-test-key/1 "  # how the mark begins that says what a key amid a timed test meant
 OWN_COLUMNS = {
     (has_orientation, has_field): (TIME, *GYR, *ACC, *(QUAT if has_orientation else ()), *(MAG if has_field else ()))
     for has_orientation in (False, True)
@@ -75,6 +77,7 @@ class Belonging:
         told = {name: getattr(self.details, name) for name in BELONGING_FIELDS}
         if self.details.alignment is not None:  # left out otherwise: earlier versions read no other keys
             told[ALIGNMENT] = alignment_table(self.details.alignment)
+        told |= planned_table(self.details.test)  # likewise
         return BELONGING + json.dumps({"session": str(self.session_id), **told})
 
     @classmethod
@@ -85,6 +88,8 @@ class Belonging:
         told: dict[str, Any] = json.loads(text.removeprefix(BELONGING))
         session_id = UUID(told.pop("session"))
         told[ALIGNMENT] = alignment_of_table(told.get(ALIGNMENT))
+        test = planned_of_table(told)
+        told = {key: value for key, value in told.items() if key not in TABLE_KEYS} | {"test": test}
         return cls(session_id, Recording(imu={}, **(told | {"kind": RecordingKind(told["kind"])})))
 
 
@@ -197,4 +202,21 @@ def block_of(sensor: str, numbers: FloatArray, texts: Sequence[Sequence[str]], l
         mag=columns(MAG) if MAG[0] in known else None,
         is_rate_derived=layout.is_rate_derived,
         unknown=unknown,
+    )
+
+
+def key_text(meaning: KeyMeaning) -> str:
+    """The text of the mark of a key that was pressed amid a timed test, at its instant."""
+    return KEY_PRESSED + str(meaning)
+
+
+def with_keys(planned: PlannedTest | None, marks: Iterable[tuple[float, str]]) -> PlannedTest | None:
+    """The test with the keys that a journal's marks tell, seconds and text; what is said of it already stays."""
+    if planned is None or planned.start_key_s is not None or planned.end_key_s is not None:
+        return planned
+    at_s = {text: time_s for time_s, text in marks if text.startswith(KEY_PRESSED)}
+    return replace(
+        planned,
+        start_key_s=at_s.get(key_text(KeyMeaning.START)),
+        end_key_s=at_s.get(key_text(KeyMeaning.END)),
     )

@@ -13,6 +13,7 @@ from app.widgets.chip import Chip
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.wizard.walking.charts import Hairline
 from app.wizard.walking.label_chooser import LabelChooser
+from app.wizard.walking.timed_chooser import TimedChooser
 from app.wizard.walking.walk_list import WalkRow, WalkState
 from app.wording import tr, tr_n
 from core.body import Side
@@ -187,14 +188,18 @@ class EmptyCard(Card):
 
 
 class NextCard(Card):
-    """What the next walk is called, beside the button that starts it."""
+    """What the next walk is called and which test it is, beside the button that starts it."""
 
     def __init__(self, look: ThemeNotifier) -> None:
         self._title = Text(look, size=14, weight=MEDIUM, tone="ink2")
         self.chooser = LabelChooser(look)
+        self.test = TimedChooser(look)
         super().__init__(look)
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
-        self.column.addWidget(self._title)
+        head = QHBoxLayout()
+        head.addWidget(self._title, 1)
+        head.addWidget(self.test)
+        self.column.addLayout(head)
         self.column.addWidget(self.chooser)
 
     def sizeHint(self) -> QSize:

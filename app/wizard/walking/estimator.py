@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from app.wizard.walking.readout import LiveLane, LiveTrace, PhaseSpan, WalkingReadout
-from core.body import Joint, Segment, Site
+from core.body import LEG_JOINTS, LEG_SITES, Joint, Segment, Site
 from core.gait.live import PHASE_AFTER, FootEvent, LiveEvent, PhaseChange
 from core.gait.phases import Phase
 from core.gait.strides import MAX_STRIDE_S
@@ -19,6 +19,7 @@ from core.live.stride_values import StrideValue, StrideValues
 from core.live.walking import LiveFoot, LiveWalk
 from core.results import JointCalibration
 from core.samples import FloatArray, ImuBlock
+from core.timed.live import LiveTest
 
 KEPT_S = 15.0
 SILENT_S = 0.5
@@ -37,6 +38,8 @@ class WalkingEstimator:
     ----------
     on_value
         Called by the estimator's thread whenever `state` has a new value of a stride, so that nobody has to look.
+    test
+        The timed test that is going on; it is given all samples.
     """
 
     def __init__(
@@ -48,9 +51,11 @@ class WalkingEstimator:
         self._site_of = {name: site for name, site in site_of.items() if name in live_sensors}
         sensors = {site: live_sensors[name] for name, site in self._site_of.items()}
         self._walking = LiveWalk(sensors, calibration)
-        known = [joint for joint in Joint if joint in calibration and {joint.proximal, joint.distal} <= set(sensors)]
+        known = [
+            joint for joint in LEG_JOINTS if joint in calibration and {joint.proximal, joint.distal} <= set(sensors)
+        ]
         self._curves = {joint: _Curve(sensors[joint.proximal].step_s) for joint in known}
-        self._feet = {site.side: _Foot() for site in sensors if site.segment is Segment.FOOT}
+        self._feet = {site.leg_side: _Foot() for site in sensors if site.segment is Segment.FOOT}
         self._heard_s: dict[Site, float] = {}
         self._first_s: float | None = None
         self._now_s = -np.inf
@@ -59,6 +64,7 @@ class WalkingEstimator:
         self._told: deque[StrideValue] = deque(maxlen=KEPT_VALUES)
         self._values_told = 0
         self.on_value: Callable[[], None] | None = None
+        self.test: LiveTest | None = None  # set by the screen
         self._wishes: deque[tuple[Joint, JointCalibration]] = deque()  # put in by the screen, taken by the estimator
         self.state = WalkingReadout()
 
@@ -84,6 +90,9 @@ class WalkingEstimator:
             return
         self._hear(worn)
         told = self._walking.update(worn)
+        test = self.test
+        if test is not None:
+            test.update(told.turned)
         values = self._values.update(told)
         self._told.extend(values)
         self._values_told += len(values)
@@ -111,6 +120,7 @@ class WalkingEstimator:
             missing=missing,
             stride_values=tuple(self._told),
             values_told=self._values_told,
+            test=None if test is None else test.state,
         )
         if values and (on_value := self.on_value) is not None:
             on_value()
@@ -123,7 +133,7 @@ class WalkingEstimator:
         self._now_s = max(self._heard_s.values())
 
     def _walking_sites(self) -> list[Site]:
-        return [site for site in Site if site in self._site_of.values()]
+        return [site for site in LEG_SITES if site in self._site_of.values()]
 
     def _is_silent(self, site: Site) -> bool:
         assert self._first_s is not None

@@ -27,8 +27,11 @@ from app.wizard.walking.bench_view import BenchState, BenchView
 from app.wizard.walking.cards import ACROSS, DOWN, FIGURE, EmptyCard, NextCard, StoppedCard, WalkFigures
 from app.wizard.walking.charts import WalkingCharts, last_angles_in_words
 from app.wizard.walking.readout import WalkingReadout
+from app.wizard.walking.timed_result import TimedResult, TimedResultView
+from app.wizard.walking.timed_view import TimedView, TimedViewState
 from app.wizard.walking.walk_list import WalkList, WalkRow, WalkState
 from app.wording import tr
+from core.timed.protocols import TimedProtocol
 
 MARGIN, BETWEEN = 24, 12
 MARGIN_COMPACT, BETWEEN_COMPACT = 8, 8
@@ -70,7 +73,7 @@ class WalkingPage(Themed):
     def __init__(self, look: ThemeNotifier, entry: ChangeEntry | None = None) -> None:
         super().__init__()
         self._look = look
-        self._is_compact = self._has_bench = False
+        self._is_compact = self._has_bench = self._has_test = self._has_result = False
         self.bench = BenchView(look, entry or ChangeEntry())
         self.rows: tuple[WalkRow, ...] = ()
         self._asked: WalkRow | None = None
@@ -87,6 +90,8 @@ class WalkingPage(Themed):
         self.figures = WalkFigures(look)
         self.walks = WalkList(look)
         self.next = NextCard(look)
+        self.timed = TimedView(look)
+        self.timed_result = TimedResultView(look)
         self._inside = QWidget()
         self._scroll = QScrollArea()
         self._build()
@@ -104,7 +109,7 @@ class WalkingPage(Themed):
         controls: list[QWidget] = [*self.patient_controls.controls, *self.bench.tab_order, *self.tabs.segments]
         controls += [self.stopped.keep, self.stopped.discard]
         controls += [*self.walks.buttons, self.walks.restrapped]
-        controls += [*self.next.chooser.buttons, self.next.chooser.own.line_edit]
+        controls += [*self.next.chooser.buttons, self.next.chooser.own.line_edit, self.next.test.box]
         return [one for one in controls if one.isVisibleTo(self)]
 
     def focus(self) -> None:
@@ -120,6 +125,10 @@ class WalkingPage(Themed):
             self._described_s = live.now_s
             said = [self.figures.in_words, last_angles_in_words(live)]
             self.charts.setAccessibleDescription(" ".join(filter(None, said)))
+
+    def count_anew(self) -> None:
+        """Show no stride of a walk that begins: those of the one before are not its own."""
+        self.figures.show_figures(dict.fromkeys(self.live.strides, 0), math.nan)
 
     def show_walks(self, rows: tuple[WalkRow, ...], facts: str = "") -> None:
         """Show the walks of this session in the order of recording.
@@ -158,6 +167,24 @@ class WalkingPage(Themed):
         self.next.chooser.show_labels(labels, choice)
         self._name_next()
 
+    def show_test(self, state: TimedViewState | None) -> None:
+        """Show a timed test in the place of the curves while it is recorded; None: they stand there."""
+        if state is not None:
+            self.timed.show_state(state)
+        if (state is not None) != self._has_test:
+            self._has_test = state is not None
+            self._arrange()
+            if self._has_test:
+                self.timed.setFocus()
+
+    def show_tests(self, protocol: TimedProtocol | None, state: TimedResult | None) -> None:
+        """Show which test comes next, and what came of the latest in the place of the curves; None: it was no test."""
+        self.next.test.show_choice(protocol)
+        self._has_result = state is not None
+        if state is not None:
+            self.timed_result.show_state(state)
+        self._arrange()
+
     def choose_digit(self, digit: int) -> bool:
         """Choose the label whose cap shows `digit`; False where it means nothing now."""
         return not self.is_recording and self.next.chooser.choose_digit(digit)
@@ -187,6 +214,7 @@ class WalkingPage(Themed):
             self.charts.set_compact(is_compact)
             self.walks.set_compact(is_compact)
             self.bench.set_compact(is_compact)
+            self.timed.set_compact(is_compact)
             self._on_look_changed()
             self._arrange()
 
@@ -201,7 +229,7 @@ class WalkingPage(Themed):
     @property
     def _regions(self) -> tuple[QWidget, ...]:
         """What may have the focus and is no button; in a small window the walks stand in the place of the charts."""
-        return self.bench, self.empty, self.charts, self.walks
+        return self.bench, self.timed, self.empty, self.charts, self.timed_result, self.walks
 
     def _build(self) -> None:
         for region in self._regions:
@@ -211,6 +239,7 @@ class WalkingPage(Themed):
         self._left, self._right = QVBoxLayout(), QVBoxLayout()
         self._left.addWidget(self.empty, 1)
         self._left.addWidget(self.charts, 1)
+        self._left.addWidget(self.timed_result, 1)
         self._right.addWidget(self.figures)
         self._right.addWidget(self.walks, 1)
         self._middle = QBoxLayout(ACROSS)
@@ -221,6 +250,7 @@ class WalkingPage(Themed):
         for widget in (self.notice, self.patient_controls, self.tabs, self.stopped):
             self._column.addWidget(widget)
         self._column.addWidget(self.bench, 1)
+        self._column.addWidget(self.timed, 1)
         self._column.addLayout(self._middle, 1)
         self._column.addWidget(self.next)
         self._scroll.setWidget(self._inside)
@@ -247,17 +277,24 @@ class WalkingPage(Themed):
         was_on_region = QApplication.focusWidget() in self._regions
         is_recording, has_walks = self.is_recording, bool(self.rows)
         is_bench = self._has_bench and not is_recording
+        is_test = self._has_test and is_recording
         is_tabbed = self._is_compact and has_walks and not is_recording
         shows_curves = has_walks and (not self._is_compact or is_recording or self.tabs.choice == "curves")
         shows_walks = not self._is_compact or (not is_recording and not (is_tabbed and shows_curves))
         shows_curves, shows_walks = shows_curves and not is_bench, shows_walks and not is_bench
+        shows_result = self._has_result and shows_curves and not is_recording
+        shows_curves, shows_walks = shows_curves and not is_test and not shows_result, shows_walks and not is_test
         self.bench.setVisible(is_bench)
-        self.notice.setVisible((self._has_message and not is_bench) or (is_recording and not self._is_compact))
+        self.notice.setVisible(
+            (self._has_message and not is_bench) or (is_recording and not self._is_compact and not is_test)
+        )
         self.tabs.setVisible(is_tabbed and not is_bench)
         self.stopped.setVisible(self._asked is not None and not is_recording and shows_walks)
         self.empty.setVisible(not has_walks)
         self.charts.setVisible(shows_curves)
-        self.figures.setVisible(is_recording)
+        self.timed.setVisible(is_test)
+        self.timed_result.setVisible(shows_result)
+        self.figures.setVisible(is_recording and not is_test)
         self.next.setVisible(not is_recording and shows_walks)
         self.walks.setVisible(has_walks and shows_walks)
         self.walks.set_restrap_offered(not is_recording)

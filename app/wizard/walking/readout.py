@@ -4,11 +4,12 @@ import math
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 
-from core.body import Joint, Side, Site
+from core.body import LEG_SITES, Joint, Side, Site
 from core.gait.phases import Phase
 from core.live.stride_values import StrideValue
 from core.samples import FloatArray
 from core.strap import Slip
+from core.timed.live import LiveReadout
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,6 +60,8 @@ class WalkingReadout:
     stride_values, values_told
         The values of the last strides in the order of telling, for a target; and how many there were of them so far,
         those that are no longer among them included.
+    test
+        How the timed test stands that the walk is; None of other walks.
     """
 
     now_s: float = math.nan
@@ -70,6 +73,7 @@ class WalkingReadout:
     missing: tuple[Site, ...] = ()
     stride_values: tuple[StrideValue, ...] = ()
     values_told: int = 0
+    test: LiveReadout | None = None
 
     @property
     def knees(self) -> dict[Side, LiveTrace]:
@@ -84,7 +88,7 @@ class WalkingReadout:
         if math.isnan(self.now_s) or now_s <= self.now_s:
             return self
         lanes = {side: _silent_since(lane, self.now_s) for side, lane in self.lanes.items()}
-        missing = tuple(site for site in Site if site in sites)
+        missing = tuple(site for site in LEG_SITES if site in sites)
         return replace(self, now_s=now_s, lanes=lanes, cadence_steps_min=math.nan, missing=missing)
 
 

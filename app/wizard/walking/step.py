@@ -10,26 +10,24 @@ from PySide6.QtCore import QObject, Slot
 from app import sounds
 from app.icons import Icon
 from app.sounds import Sound
-from app.storage.stored import RecordingState
 from app.theme import ThemeNotifier
 from app.widgets.action_bar import BarAction, BarState, RecordingNote
 from app.widgets.rail_row import StepState
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.losses import NOTHING
 from app.wizard.step import Step
-from app.wizard.walk_messages import (
-    clock,
-    no_foot_message,
-)
+from app.wizard.walk_messages import no_foot_message
 from app.wizard.walking.bench_bar import bench_bar
 from app.wizard.walking.bench_control import Bench
 from app.wizard.walking.estimator import WalkingEstimator
 from app.wizard.walking.patient_feedback import PatientFeedback
+from app.wizard.walking.timed_bar import timed_bar
+from app.wizard.walking.timed_control import TimedControl
 from app.wizard.walking.walk_labels import label_after, labels_for
-from app.wizard.walking.walk_list import WalkRow, WalkState
-from app.wizard.walking.walk_notice import WalkNotice, asked_walk, length_s, strides_of
+from app.wizard.walking.walk_notice import WalkNotice, asked_walk
+from app.wizard.walking.walk_rows import facts_of, ongoing_walk, rows_of
 from app.wording import tr
-from core.body import Joint, Side
+from core.body import LEG_JOINTS, Side
 from core.live.walking import STRIDES_FOR_ANKLE
 from core.samples import Recording, RecordingKind
 from core.targets import TargetTally, with_tallies
@@ -64,6 +62,8 @@ class WalkingStep(Step):
         self._kept: UUID | None = None  # at the bench, and can be taken back
         self._bench = Bench(visit, self)
         self._bench.changed.connect(self._show)
+        self._timed = TimedControl(visit, self)
+        self._timed.changed.connect(self._show)
         visit.recordings.begun.connect(self._on_begun)
         visit.recordings.ended.connect(self._on_ended)
         visit.recordings.changed.connect(self._show)
@@ -81,6 +81,7 @@ class WalkingStep(Step):
             page.bench.chosen.connect(self._bench.choose)
             page.bench.told.connect(self._on_change_told)
             page.label_chosen.connect(self._on_label_chosen)
+            page.next.test.chosen.connect(self._timed.on_chosen)
             page.keep_pressed.connect(self._on_keep_pressed)
             page.discard_pressed.connect(self._on_discard_pressed)
             page.undo_pressed.connect(self._on_undo_pressed)
@@ -147,6 +148,14 @@ class WalkingStep(Step):
         return ""
 
     @property
+    def folds_sensors(self) -> bool:
+        return self._is_bench and not self._visit.recordings.is_recording
+
+    @property
+    def takes_clicker(self) -> bool:
+        return self._timed.is_running
+
+    @property
     def topic(self) -> str:
         return "walking"
 
@@ -172,6 +181,9 @@ class WalkingStep(Step):
         if self._ticks % WATCH_TICKS == 0:
             self._watch_sensors()
         self._ticks += 1
+        self.page.show_test(self._timed.view())
+        if self._timed.tick():
+            self._stop()
         is_recording = self._visit.recordings.is_recording
         is_fed_back = self._feedback is not None and self._feedback.is_open
         if self._estimator is None or not (is_recording or is_fed_back):
@@ -192,13 +204,17 @@ class WalkingStep(Step):
         bar = self._bar()
         if self._is_bench:  # which has no room for another; the key is there
             return bar
-        return replace(bar, quiet=(*bar.quiet, BarAction(tr("Patient's screen"), "F8")))
+        return (
+            bar if self._timed.is_running else replace(bar, quiet=(*bar.quiet, BarAction(tr("Patient's screen"), "F8")))
+        )
 
     def _bar(self) -> BarState:
         recordings = self._visit.recordings
         if recordings.ongoing is not None and not recordings.is_stopping:
             acquisition = self._visit.sensors.acquisition
             elapsed_s = 0.0 if acquisition is None else max(0.0, acquisition.now_s - recordings.ongoing.began_s)
+            if self._timed.is_running:
+                return timed_bar(self._timed, elapsed_s)
             return BarState(
                 primary=BarAction(tr("Stop walk"), tr("Space"), Icon.STOP),
                 recording=RecordingNote(
@@ -223,11 +239,11 @@ class WalkingStep(Step):
             both = BarAction(
                 tr("Keep, start next"), tr("Space"), Icon.PLAY, is_wished=False, is_enabled=self._can_start
             )
-            return BarState(primary=both, note=self._cannot_start or tr("Next: {label}").format(label=self._label))
+            return BarState(primary=both, note=self._cannot_start or self._timed.next_words(self._label))
         if any(recording.details.is_kept for recording in recordings.walks):
             again = BarAction(start.text, start.key, start.icon, is_wished=False, is_enabled=start.is_enabled)
             return BarState(primary=BarAction(tr("Results"), "", Icon.NEXT), others=(again,), note=self._cannot_start)
-        note = tr("Next: {label}").format(label=self._label)
+        note = self._timed.next_words(self._label)
         if not recordings.has_moved:
             note = tr("Without a free motion, angles are poor or missing.")
         return BarState(primary=start, note=self._cannot_start or note)
@@ -263,7 +279,9 @@ class WalkingStep(Step):
             self._run()
 
     def on_other(self, number: int) -> None:
-        if self._is_bench and number < len(self._bench_bar().others) - 1:
+        if self._timed.is_running:
+            self._stop()
+        elif self._is_bench and number < len(self._bench_bar().others) - 1:
             if said := self._bench.return_to_first():
                 self._kept = self._discarded = None
                 self.offered.emit(said)
@@ -296,6 +314,10 @@ class WalkingStep(Step):
         match intent.action:
             case KeyAction.RUN:
                 self._run()
+            case KeyAction.NEXT_TEST if not self._visit.recordings.is_recording:
+                self._timed.choose_next()
+            case KeyAction.LEAVE if self._timed.is_running:
+                self._stop()
             case KeyAction.KEEP if self._asked is not None:
                 self._keep(self._asked, is_kept=True)
             case KeyAction.DISCARD if self._asked is not None:
@@ -338,7 +360,8 @@ class WalkingStep(Step):
     def _run(self) -> None:
         """Start, or stop; between walks, keep the last one and start the next."""
         if self._visit.recordings.is_recording:
-            self._stop()
+            if not self._timed.press():
+                self._stop()
         elif self._can_start:
             if self._asked is not None:
                 self._keep(self._asked, is_kept=True)
@@ -351,14 +374,17 @@ class WalkingStep(Step):
         self._notice.is_troubled = self._visit.controller.is_gone
         self._shown = self._at_stop = None
         self._counted_before = {}
-        acquisition.ask(RecordingKind.WALKING)
+        self.page.count_anew()
         label, alignment = self._label, None
         if self._is_bench:
             label, alignment = self._bench.next_walk()
-        recordings.begin(acquisition, RecordingKind.WALKING, label, alignment)
+            acquisition.set_up(self._bench.chain.set_so(label, alignment))
+        acquisition.ask(RecordingKind.WALKING)
+        recordings.begin(acquisition, RecordingKind.WALKING, label, alignment, self._timed.planned)
         self._bench.begun()
         if self._estimator is not None and recordings.ongoing is not None:
             self._estimator.count_from(recordings.ongoing.began_s)
+            self._timed.begin(self._estimator, recordings.ongoing.began_s)
         if self._feedback is not None:
             self._feedback.begin_walk()
         self.page.focus()
@@ -371,7 +397,8 @@ class WalkingStep(Step):
         self._visit.recordings.stop(None if view is None else self._strides(view))
         if acquisition is not None:
             acquisition.ask(None)
-        sounds.play(Sound.STOP)
+        if not self._timed.end(self._estimator):
+            sounds.play(Sound.STOP)
 
     def _keep(self, recording: "SessionRecording", is_kept: bool) -> None:
         called = self._called(recording.details.name)
@@ -395,6 +422,7 @@ class WalkingStep(Step):
         self._estimator = WalkingEstimator(self._visit.sensors.site_of, self._visit.live_sensors(), calibration)
         if self._visit.recordings.ongoing is not None:
             self._estimator.count_from(self._visit.recordings.ongoing.began_s)
+        self._timed.watch(self._estimator)
         acquisition.set_estimator(self._estimator)
         if self._feedback is not None:
             self._feedback.watch(self._estimator)
@@ -415,8 +443,9 @@ class WalkingStep(Step):
         worn = self._visit.sensors.site_of
         imu = {site: acquisition.latest(sensor, seconds) for sensor, site in worn.items()}
         told = recordings.ongoing.details
+        heard = {site: block for site, block in imu.items() if len(block)}
         self._visit.evaluate(
-            Recording(told.name, told.kind, told.folder, {site: block for site, block in imu.items() if len(block)})
+            Recording(told.name, told.kind, told.folder, heard, condition=told.condition, alignment=told.alignment)
         )
 
     @Slot()
@@ -435,7 +464,7 @@ class WalkingStep(Step):
             if self._estimator is not None and self._counted_before and self._visit.sensors.acquisition is not None:
                 self._estimator.count_from(self._visit.sensors.acquisition.now_s)
         else:
-            for joint in Joint:
+            for joint in LEG_JOINTS:
                 if not joint.is_knee and joint in calibration:
                     self._estimator.recalibrate(joint, calibration[joint])
         if self._feedback is not None:
@@ -481,45 +510,17 @@ class WalkingStep(Step):
         if self._page is None or not self._is_in_sight:
             self.changed.emit()
             return
-        recordings, asked = self._visit.recordings, self._asked
-        ongoing = (
-            recordings.ongoing
-            if recordings.ongoing and recordings.ongoing.details.kind is RecordingKind.WALKING
-            else None
-        )
+        asked, ongoing = self._asked, ongoing_walk(self._visit.recordings)
         conditions = [*self._used, *([ongoing.details.condition] if ongoing is not None else [])]
-        names = recordings.shown_names
-        strapped_last = {recording.id for recording in recordings.since_strapped}
-        rows = []
-        for recording in recordings.walks:
-            state = WalkState.KEPT if recording.details.is_kept else WalkState.DISCARDED
-            if not recording.is_decided:
-                is_recovered = recording.stored.state is RecordingState.RECOVERED
-                state = WalkState.RECOVERED if is_recovered else WalkState.ASKING
-            strides = max(strides_of(self._visit, recording).values(), default=None)
-            name, is_old = names[recording.details.name], recording.id not in strapped_last
-            rows.append(WalkRow(str(recording.id), name.letter, name.words, state, strides, is_old))
-        if ongoing is not None:
-            name = names[ongoing.details.name]
-            rows.append(WalkRow("", name.letter, name.words, WalkState.RECORDING))
-        self._page.show_walks(tuple(rows), self._facts(asked) if asked is not None else "")
+        cadence = math.nan
+        if self._at_stop is not None and asked is not None and not asked.is_decided:
+            cadence = self._at_stop.cadence_steps_min
+        facts = facts_of(self._visit, asked, cadence) if asked is not None else ""
+        self._page.show_walks(rows_of(self._visit), facts)
         self._page.show_bench(self._bench.state() if self._is_bench and ongoing is None else None)
         self._page.show_labels(labels_for(self._visit.patient.details, conditions), self._label)
+        self._page.show_tests(self._timed.protocol, self._timed.result())
         self.changed.emit()
-
-    def _facts(self, recording: "SessionRecording") -> str:
-        strides = strides_of(self._visit, recording)
-        said = []
-        if strides:
-            counts = ", ".join(f"{letter} {strides[side]}" for side, letter in _LETTERS.items() if side in strides)
-            said.append(tr("Strides: {counts}").format(counts=counts))
-        cadence = (
-            self._at_stop.cadence_steps_min if self._at_stop is not None and not recording.is_decided else math.nan
-        )
-        if math.isfinite(cadence):
-            said.append(tr("{cadence:.0f} steps/min").format(cadence=cadence))
-        said.append(clock(length_s(recording)))
-        return " · ".join(said)
 
     # what the page and the visit tell
 
@@ -581,6 +582,3 @@ class WalkingStep(Step):
     def _on_restrapped_pressed(self) -> None:
         self._visit.recordings.say_restrapped()
         self.jumped.emit(STAND_STILL)
-
-
-_LETTERS = {Side.LEFT: "L", Side.RIGHT: "R"}

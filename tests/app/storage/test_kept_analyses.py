@@ -21,6 +21,7 @@ from core.body import Joint, Side, Site
 from core.findings import Finding, Severity
 from core.results import Analysis
 from core.samples import ImuBlock, Patient, RateKind, Recording, SensorInfo, Session
+from core.timed.protocols import PlannedTest, TimedProtocol
 from devices.walker import DEMONSTRATION, Standing, Walk, simulate
 
 SHANK = Site.LEFT_SHANK
@@ -115,6 +116,8 @@ def test_anything_that_an_analysis_is_given_makes_it_another_one(session: Sessio
         replace(session, turned_sign={Joint.LEFT_KNEE: -1}),
         replace(session, is_simulated=False),
         replace(session, findings=()),
+        with_walk(session, lambda walk: replace(walk, test=PlannedTest(TimedProtocol.TEN_METRES))),
+        with_walk(session, lambda walk: replace(walk, test=PlannedTest(TimedProtocol.TEN_METRES, end_key_s=9.0))),
     ]
     keys = [key_of(inputs_of(one)) for one in (session, *changed)]
     assert len(set(keys)) == len(keys)

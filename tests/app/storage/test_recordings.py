@@ -11,11 +11,12 @@ import pytest
 from app.storage.clinic.rows import copy_rows
 from app.storage.database.engine import Database, sqlite_engine
 from app.storage.database.schema import bring_up_to_date
-from app.storage.journal.payloads import BELONGING, Belonging
+from app.storage.journal.payloads import BELONGING, Belonging, key_text, with_keys
 from app.storage.library import Library
 from app.storage.stored import StoredSession
 from core.alignment import AlignmentChange, PartChange, ProsthesisPart
 from core.samples import Patient, Recording, RecordingKind, Session
+from core.timed.protocols import KeyMeaning, PlannedTest, TimedProtocol
 
 WALK = Recording("walk 1", RecordingKind.WALKING, "walk_1", {}, condition="alignment A")
 
@@ -99,3 +100,32 @@ def test_a_journal_says_what_was_turned_and_one_of_an_earlier_version_is_read() 
     earlier = json.loads(Belonging(told_at, without).text().removeprefix(BELONGING))
     assert "alignment" not in earlier  # which earlier versions could not read
     assert Belonging.parsed(BELONGING + json.dumps(earlier)) == Belonging(told_at, without)
+
+
+TIMED = replace(WALK, test=PlannedTest(TimedProtocol.SIX_MINUTES, start_key_s=2.5))
+
+
+def test_which_test_it_was_is_in_the_row_its_history_and_its_journal(library: Library, visit: StoredSession) -> None:
+    walk = library.recordings.start(visit.id, TIMED, is_simulated=False)
+    assert walk.details == TIMED
+    changed = library.recordings.change(walk, replace(TIMED, test=None))
+    assert changed.details.test is None
+    (correction,) = library.corrections.of_session(visit.id)
+    assert [change.field for change in correction.changes] == ["test"]
+    library.corrections.undo(correction.id)
+    found = library.recordings.find(walk.id)
+    assert found is not None
+    assert found.details == TIMED
+    belonging = Belonging(UUID(int=1), TIMED)
+    assert Belonging.parsed(belonging.text()) == belonging
+    assert "test" not in json.loads(Belonging(UUID(int=1), WALK).text().removeprefix(BELONGING))
+
+
+def test_keys_that_a_journal_tells_are_the_tests_unless_the_row_has_its_own() -> None:
+    marks = [(1.0, "left_foot silent"), (2.0, key_text(KeyMeaning.START)), (9.5, key_text(KeyMeaning.END))]
+    plain = PlannedTest(TimedProtocol.TEN_METRES)
+    assert with_keys(plain, marks) == replace(plain, start_key_s=2.0, end_key_s=9.5)
+    assert with_keys(plain, marks[:1]) == plain
+    own = replace(plain, end_key_s=8.0)
+    assert with_keys(own, marks) == own
+    assert with_keys(None, marks) is None

@@ -4,7 +4,16 @@ import pytest
 from PySide6.QtCore import QEvent, Qt
 from PySide6.QtGui import QKeyEvent
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QApplication, QDialog, QLineEdit, QPlainTextEdit, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import (
+    QApplication,
+    QComboBox,
+    QDialog,
+    QLineEdit,
+    QPlainTextEdit,
+    QPushButton,
+    QVBoxLayout,
+    QWidget,
+)
 from pytestqt.qtbot import QtBot
 
 from app.theme import ThemeNotifier
@@ -53,6 +62,7 @@ MEANINGS = [
     (Key.Key_Enter, Held.KeypadModifier, Intent(KeyAction.PRIMARY)),
     (Key.Key_K, Held.NoModifier, Intent(KeyAction.KEEP)),
     (Key.Key_D, Held.NoModifier, Intent(KeyAction.DISCARD)),
+    (Key.Key_T, Held.NoModifier, Intent(KeyAction.NEXT_TEST)),
     (Key.Key_L, Held.NoModifier, Intent(KeyAction.LEFT_LEG)),
     (Key.Key_R, Held.ShiftModifier, Intent(KeyAction.RIGHT_LEG)),
     (Key.Key_1, Held.NoModifier, Intent(KeyAction.LABEL, 1)),
@@ -113,7 +123,7 @@ def test_a_text_field_takes_what_can_be_written(window: Window) -> None:
     for key in written:
         if key not in (Key.Key_Return, Key.Key_Escape, Key.Key_F6, Key.Key_F8, Key.Key_F11):
             assert window.press(key) == [], key
-    assert window.field.text() == " kdl1i[]"
+    assert window.field.text() == " kdtl1i[]"
 
 
 def test_space_is_written_in_a_text_field_even_while_something_runs(window: Window) -> None:
@@ -201,3 +211,37 @@ def test_a_window_without_a_focus_hears_keys_too(window: Window) -> None:
     window.plain.clearFocus()
     assert window.press(Key.Key_Space) == [Intent(KeyAction.RUN)]
     assert window.press(Key.Key_Return) == [Intent(KeyAction.PRIMARY)]
+
+
+def test_a_list_of_choices_is_searched_by_letters_but_not_while_something_runs(qtbot: QtBot, window: Window) -> None:
+    parts = QComboBox(window)
+    parts.addItems(["Foot, front screw", "Knee unit"])
+    parts.show()
+    parts.setFocus()
+    assert window.press(Key.Key_K) == []
+    assert parts.currentText() == "Knee unit"
+    assert window.press(Key.Key_1) == [Intent(KeyAction.LABEL, 1)]
+    window.keys.set_running(True)
+    assert window.press(Key.Key_K) == [Intent(KeyAction.KEEP)]
+
+
+CLICKER = [Key.Key_PageDown, Key.Key_PageUp, Key.Key_Return, Key.Key_F5, Key.Key_B, Key.Key_Period, Key.Key_VolumeUp]
+
+
+@pytest.mark.parametrize("key", CLICKER)
+def test_a_clickers_key_means_space_while_a_test_runs_and_else_what_it_is(window: Window, key: Qt.Key) -> None:
+    run = [Intent(KeyAction.RUN)]
+    assert window.press(key) != run
+    window.keys.set_clicker(True)
+    assert window.press(key) == run
+    window.button.setFocus()
+    assert window.press(key) == run
+    assert window.clicks == 0
+    assert window.press(Key.Key_F1) == [Intent(KeyAction.HELP)]
+    assert window.press(Key.Key_Escape) == [Intent(KeyAction.LEAVE)]
+    assert window.press(key, Held.ControlModifier) != run
+    window.field.setFocus()
+    assert window.press(key) != run
+    window.keys.set_clicker(False)
+    window.plain.setFocus()
+    assert window.press(key) != run

@@ -5,11 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from core.body import Site
+from core.analysis import analyse
+from core.body import Side, Site
+from core.gait.strides import Reason
 from core.samples import RateKind, Recording, Session
 from core.sensors import SensorTracks
-from core.timed.protocols import DEFINITIONS, TimedProtocol
-from core.timed.timing import NotMeasured, TimedTest, time_test
+from core.timed.found import NotMeasured, TimedTest
+from core.timed.protocols import DEFINITIONS, PlannedTest, TimedProtocol
+from core.timed.timing import time_test
 from devices.walker_body import Tissue
 from devices.walker_courses import CourseKind, CourseTruth, SimulatedCourse, TimedCourse, draw_course, simulate_course
 
@@ -22,7 +25,7 @@ TWO_MINUTES = TimedCourse(
 
 def timed(session: Session, protocol: TimedProtocol, keys_s: tuple[float, ...] = ()) -> TimedTest:
     tracks = SensorTracks(session, session.recordings, frozenset(), RateKind.INSTANTANEOUS)
-    return time_test(tracks, session.recordings[-1], protocol, keys_s)
+    return time_test(tracks, session.recordings[-1], PlannedTest(protocol, *keys_s))
 
 
 def with_course(session: Session, course: Recording) -> Session:
@@ -132,6 +135,8 @@ def test_five_rises_are_timed_to_the_fifth(seed: int) -> None:
     np.testing.assert_allclose([rise.left_seat_s for rise in found.rises], made.truth.left_seat_s, atol=0.1)
     np.testing.assert_allclose([rise.upright_s for rise in found.rises], made.truth.upright_s, atol=0.1)
     assert found.pauses_s == ()
+    assert np.isnan(found.distance_m)
+    assert found.missing == ()
     # cut after the fourth it is not finished
     shorter = cut(made.session, 0.0, float(made.truth.left_seat_s[4]) - 0.3)
     assert timed(shorter, TimedProtocol.SIT_TO_STAND).missing == (NotMeasured.NOT_FINISHED,)
@@ -161,13 +166,37 @@ def test_what_is_missing_is_named(ten_metres: SimulatedCourse, up_and_go: Simula
 
 
 def test_keys_out_of_order_are_refused(ten_metres: SimulatedCourse) -> None:
-    with pytest.raises(ValueError, match="expected none, the start, or start and end"):
+    with pytest.raises(ValueError, match="not after the start"):
         timed(ten_metres.session, TimedProtocol.TEN_METRES, (5.0, 4.0))
 
 
-def test_every_test_is_defined_with_its_error_and_what_was_not_read_is_marked() -> None:
+def test_every_test_is_defined_with_its_error_and_its_source_was_read() -> None:
     assert set(DEFINITIONS) == set(TimedProtocol)
     assert all(definition.errors for definition in DEFINITIONS.values())
     errors = [error for definition in DEFINITIONS.values() for error in definition.errors]
-    assert all(error.is_verified == ("not read" not in error.source) for error in errors)
-    assert sum(not error.is_verified for error in errors) == 2
+    assert all(error.is_verified for error in errors)
+    assert {(error.low, error.high) for error in errors if error.quantity == "distance_m"} == {
+        (0.0, 13.0),
+        (16.0, 39.0),
+    }
+
+
+@pytest.mark.parametrize("seed", [0, 3])
+def test_strides_on_stairs_are_told_with_their_heights_and_are_in_no_mean(seed: int) -> None:
+    made = simulate_course(draw_course(CourseKind.STAIRS, seed))
+    found = timed(made.session, TimedProtocol.STAIRS)
+    for side in Side:
+        true_m = [one for one in made.truth.climbs_m[side][1:].tolist() if abs(one) > 0.01]
+        told_m = [one.climb_m for one in found.stairs if one.side is side]
+        np.testing.assert_allclose(told_m, true_m, atol=0.08)
+    assert found.time_s == pytest.approx(made.truth.contacts_s[-1] - made.truth.contacts_s[0], abs=0.1)
+    walk = analyse(made.session).recordings[-1]
+    reasons = [reason for gait in walk.gait.values() for reason in gait.strides.reason]
+    on_stairs = sum(one in (Reason.STAIRS_UP, Reason.STAIRS_DOWN) for one in reasons)
+    assert on_stairs >= len(found.stairs) - 2  # a stride over 3 s is none
+    for gait in walk.gait.values():
+        assert np.all(np.abs(gait.strides.climb_m[gait.strides.is_used]) < 0.1)
+
+
+def test_no_stride_of_a_level_course_is_on_stairs(two_minutes: SimulatedCourse) -> None:
+    assert timed(two_minutes.session, TimedProtocol.TWO_MINUTES).stairs == ()

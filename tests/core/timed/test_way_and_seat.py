@@ -5,17 +5,22 @@ import pytest
 
 from core.body import Side, Site
 from core.samples import FloatArray
+from core.timed.found import Silence
 from core.timed.seat import motions_of_tilt
-from core.timed.way import BodyWay, FootSteps, Silence, pauses_of, start_of, turns_of
+from core.timed.way import BodyWay, FootSteps, pauses_of, start_of, turns_of
 
 TIME_S = np.arange(0.0, 30.0, 0.02)
+
+
+def steps(contact_s: FloatArray) -> FootSteps:
+    return FootSteps(contact_s - 0.4, contact_s, np.full(len(contact_s), 1.2), np.zeros(len(contact_s)))
 
 
 def way_with(
     heading_rad: FloatArray, contacts_s: FloatArray | None = None, silences: tuple[Silence, ...] = ()
 ) -> BodyWay:
     contact_s = np.arange(1.5, 29.0, 0.6) if contacts_s is None else contacts_s
-    feet = {side: FootSteps(contact_s[k::2] - 0.4, contact_s[k::2]) for k, side in enumerate((Side.LEFT, Side.RIGHT))}
+    feet = {side: steps(contact_s[k::2]) for k, side in enumerate((Side.LEFT, Side.RIGHT))}
     return BodyWay(TIME_S, 1.0 * TIME_S, heading_rad, feet, silences)
 
 

@@ -1,0 +1,36 @@
+"""Which timed test is the next walk, if it is one?"""
+
+from PySide6.QtCore import Signal
+from PySide6.QtWidgets import QHBoxLayout, QWidget
+
+from app.theme import ThemeNotifier
+from app.timed_words import name_of_test
+from app.widgets.choice import Choice
+from app.wording import tr
+from core.timed.protocols import TimedProtocol
+
+LEAST, MOST = 120, 300  # px of the box
+
+
+class TimedChooser(QWidget):
+    """`chosen` with the value of a protocol, empty for none. T chooses the next."""
+
+    chosen = Signal(str)
+
+    def __init__(self, look: ThemeNotifier) -> None:
+        super().__init__()
+        self.box = Choice(look, tr("Timed test"))
+        self.box.addItem(tr("No timed test (T)"), "")
+        for protocol in TimedProtocol:
+            self.box.addItem(name_of_test(protocol), str(protocol))
+        row = QHBoxLayout(self)
+        row.setContentsMargins(0, 0, 0, 0)
+        row.addWidget(self.box)
+        self.box.let_shrink(LEAST, MOST)
+        self.box.activated.connect(self._on_activated)
+
+    def show_choice(self, protocol: TimedProtocol | None) -> None:
+        self.box.setCurrentIndex(0 if protocol is None else 1 + list(TimedProtocol).index(protocol))
+
+    def _on_activated(self, _index: int) -> None:
+        self.chosen.emit(self.box.currentData())

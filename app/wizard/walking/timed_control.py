@@ -1,0 +1,189 @@
+"""What joins timed tests to the visit: which test comes next, its clock, and what a key means while it runs."""
+
+import math
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject, Signal, Slot
+
+from app import sounds
+from app.sounds import Sound
+from app.storage.journal.payloads import key_text
+from app.timed_words import name_of_test
+from app.wizard.walking.timed_result import TimedAttempt, TimedResult
+from app.wizard.walking.timed_view import TimedViewState
+from app.wording import tr
+from core.body import Segment
+from core.timed.found import TimedTest
+from core.timed.live import RUN_OUT_S, LiveReadout, LiveTest
+from core.timed.protocols import DEFINITIONS, KeyMeaning, PlannedTest, TimedProtocol
+
+if TYPE_CHECKING:
+    from app.wizard.recordings import SessionRecording
+    from app.wizard.visit import Visit
+    from app.wizard.walking.estimator import WalkingEstimator
+
+
+class TimedControl(QObject):
+    """Knows the visit and no page.
+
+    Signals
+    -------
+    changed
+        Something else is to be shown.
+    """
+
+    changed = Signal()
+
+    def __init__(self, visit: "Visit", parent: QObject) -> None:
+        super().__init__(parent)
+        self._visit = visit
+        self.protocol: TimedProtocol | None = None
+        self._live: LiveTest | None = None
+        self._has_begun = self._is_over = False
+        self._pressed_end_s = math.nan
+
+    @property
+    def planned(self) -> PlannedTest | None:
+        """What the next walk is, as its recording says it."""
+        return None if self.protocol is None else PlannedTest(self.protocol)
+
+    @property
+    def is_running(self) -> bool:
+        return self._live is not None
+
+    @property
+    def readout(self) -> LiveReadout | None:
+        """How the test that is recorded stands; None where none is."""
+        return None if self._live is None else self._live.state
+
+    @property
+    def now_s(self) -> float:
+        acquisition = self._visit.sensors.acquisition
+        return math.nan if acquisition is None else acquisition.now_s
+
+    def choose(self, protocol: TimedProtocol | None) -> None:
+        if protocol is not self.protocol:
+            self.protocol = protocol
+            self.changed.emit()
+
+    def choose_next(self) -> None:
+        """Choose the test after the one in force; after the last none."""
+        every: list[TimedProtocol | None] = [None, *TimedProtocol]
+        self.choose(every[(every.index(self.protocol) + 1) % len(every)])
+
+    def begin(self, estimator: "WalkingEstimator | None", began_s: float) -> None:
+        """The recording of the test that was chosen begins, if one was."""
+        self._live = None
+        self._has_begun = self._is_over = False
+        self._pressed_end_s = math.nan
+        if self.protocol is None:
+            return
+        visit, worn = self._visit, self._visit.sensors.site_of
+        upright = {
+            site: visit.rests[name].acc_m_s2
+            for name, site in worn.items()
+            if site.segment is Segment.THIGH and name in visit.rests
+        }
+        feet = frozenset(site.side for site in worn.values() if site.segment is Segment.FOOT and site.side is not None)
+        self._live = LiveTest(self.protocol, upright, visit.prosthetic_sides, feet, began_s)
+        self.watch(estimator)
+
+    def watch(self, estimator: "WalkingEstimator | None") -> None:
+        """Give the samples of this estimator to the test."""
+        if estimator is not None:
+            estimator.test = self._live
+
+    def press(self) -> bool:
+        """Take a key; whether the test wanted it. One that it does not want stops the recording."""
+        live = self._live
+        if live is None or not self._visit.recordings.has_begun or math.isfinite(self._pressed_end_s):
+            return False
+        now_s = self.now_s
+        meaning = live.press(now_s)
+        if meaning is None:
+            return False
+        self._visit.recordings.mark(key_text(meaning))
+        if meaning is KeyMeaning.END:
+            self._pressed_end_s = now_s
+        self.changed.emit()
+        return True
+
+    def tick(self) -> bool:
+        """Let start and end be heard; whether the test is over and its run-out too."""
+        live = self._live
+        if live is None:
+            return False
+        state, now_s = live.state, self.now_s
+        if state.has_begun and not self._has_begun:
+            self._has_begun = True
+            sounds.play(Sound.START)
+            self.changed.emit()
+        end_s = self.end_s
+        if math.isfinite(end_s) and not self._is_over:
+            self._is_over = True
+            sounds.play(Sound.STOP)
+            self.changed.emit()
+        return self._is_over and now_s > end_s + RUN_OUT_S
+
+    @property
+    def end_s(self) -> float:
+        """When the clock stopped; NaN while it runs. A set time passes whether or not a sensor is heard."""
+        live = self._live
+        if live is None:
+            return math.nan
+        state, duration_s = live.state, DEFINITIONS[live.planned.protocol].duration_s
+        if state.is_over or duration_s is None or not state.has_begun:
+            return state.end_s
+        due_s = state.start_s + duration_s
+        return due_s if self.now_s >= due_s else math.nan
+
+    def end(self, estimator: "WalkingEstimator | None") -> bool:
+        """The recording has ended; whether it was heard that the test was over."""
+        self._live = None
+        if estimator is not None:
+            estimator.test = None
+        return self._is_over
+
+    def view(self) -> TimedViewState | None:
+        """What is shown while a test is recorded."""
+        ongoing = self._visit.recordings.ongoing
+        if self._live is None or ongoing is None:
+            return None
+        earlier = sum(one.protocol is self._live.planned.protocol and one.is_kept for one in self.attempts())
+        attempt = tr("attempt {number}").format(number=earlier + 1)
+        note = ", ".join(filter(None, [ongoing.details.condition, attempt]))
+        return TimedViewState(self._live.state, note, self.now_s, self.end_s)
+
+    def result(self) -> TimedResult | None:
+        """What is shown of the latest walk if it was a test: every attempt at the same one; None where it was none."""
+        recordings = self._visit.recordings
+        if not recordings.walks or recordings.walks[-1].details.test is None:
+            return None
+        every = self.attempts()
+        same = [one for one in every if one.protocol is every[-1].protocol]
+        names = recordings.shown_names
+        return TimedResult(same, [str(names[one.name]) for one in same])
+
+    def next_words(self, label: str) -> str:
+        """What the next walk is."""
+        if self.protocol is None:
+            return tr("Next: {label}").format(label=label)
+        return tr("Next: {test}, {label}").format(test=name_of_test(self.protocol), label=label)
+
+    def attempts(self) -> tuple[TimedAttempt, ...]:
+        """Every test of this session in the order of recording."""
+        return tuple(
+            TimedAttempt(one.details.name, one.details.test.protocol, self._found(one), one.details.is_kept)
+            for one in self._visit.recordings.walks
+            if one.details.test is not None
+        )
+
+    def _found(self, recording: "SessionRecording") -> TimedTest | None:
+        analysis = self._visit.evaluation.analysis
+        walks = () if analysis is None else analysis.recordings
+        return next((one.timed for one in walks if one.name == recording.details.name), None)
+
+    @Slot(str)
+    def on_chosen(self, value: str) -> None:
+        """Of the card: the value of a protocol, or nothing."""
+        self.choose(TimedProtocol(value) if value else None)

@@ -1,0 +1,200 @@
+"""What came of a timed test: one sentence, the attempts so far, and how it went from third to third and lap to lap."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
+
+from app.icons import Icon
+from app.theme import ThemeNotifier
+from app.timed_words import (
+    course_sentence,
+    error_words,
+    name_of_test,
+    pauses_sentence,
+    result_sentence,
+    stairs_sentence,
+    tape_sentence,
+    why_sentence,
+)
+from app.widgets.card import Card
+from app.widgets.focus_ring import NO_RING
+from app.widgets.icons import IconMark
+from app.widgets.table import CellTable, TableColumn, TableRow
+from app.widgets.table_cells import RIGHT, TextCell
+from app.widgets.text import SEMIBOLD, Text
+from app.widgets.themed import Themed
+from app.wording import tr
+from core.timed.found import TimedPart, TimedTest
+from core.timed.protocols import TimedProtocol
+
+NO_FIGURE = "\N{EN DASH}"
+MOST_LAPS = 12  # more do not fit; the table in the files has all
+
+
+@dataclass(frozen=True, slots=True)
+class TimedAttempt:
+    """One test that was recorded: which walk it is, and what the analysis tells; None until it does."""
+
+    name: str
+    protocol: TimedProtocol
+    found: TimedTest | None
+    is_kept: bool
+
+
+@dataclass(frozen=True, slots=True)
+class TimedResult:
+    """The latest test, and every attempt at the same one in this session; `called`: each walk's name on the screen."""
+
+    attempts: Sequence[TimedAttempt]
+    called: Sequence[str]
+
+    @property
+    def latest(self) -> TimedAttempt:
+        return self.attempts[-1]
+
+
+class TimedResultView(Themed):
+    """In the place of the curves, between walks."""
+
+    def __init__(self, look: ThemeNotifier) -> None:
+        super().__init__()
+        self._look = look
+        self._mark = IconMark(look, Icon.CHECK, size=24)
+        self.first = Text(look, size=20, weight=SEMIBOLD, wraps=True)
+        self.then = Text(look, tone="ink2", wraps=True)
+        self.attempts = CellTable(look, tr("Attempts"))
+        self.parts = CellTable(look, tr("Over the test"))
+        self.errors = Text(look, size=12, tone="ink2", wraps=True)
+        self._build()
+        self._on_look_changed()
+
+    def show_state(self, state: TimedResult) -> None:
+        found, latest = state.latest.found, state.latest
+        if found is None:
+            self.first.setText(tr("{test}: being analysed.").format(test=name_of_test(latest.protocol)))
+            self.then.setText("")
+        else:
+            self.first.setText(result_sentence(found))
+            said = [
+                why_sentence(found),
+                tape_sentence(found),
+                stairs_sentence(found),
+                course_sentence(found),
+                pauses_sentence(found),
+            ]
+            self.then.setText(" ".join(filter(None, said)))
+        self.then.setVisible(bool(self.then.text()))
+        self._mark.set_icon(Icon.CHECK if found is not None and not found.missing else Icon.INFO)
+        self.setAccessibleDescription(f"{self.first.text()} {self.then.text()}")
+        self.attempts.show_rows(*_attempts(state))
+        parts = _parts(found) if found is not None else []
+        self._parts_card.setVisible(bool(parts))
+        if parts:
+            self.parts.show_rows(_part_columns(), parts)
+        errors = found.definition.errors if found is not None else ()
+        self.errors.setText(" ".join(error_words(one) for one in errors))
+
+    def _build(self) -> None:
+        self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.setProperty(NO_RING, True)
+        self.setAccessibleName(tr("What came of the test"))
+        head, words = QHBoxLayout(), QVBoxLayout()
+        words.addWidget(self.first)
+        words.addWidget(self.then)
+        head.addWidget(self._mark, 0, Qt.AlignmentFlag.AlignTop)
+        head.addLayout(words, 1)
+        inside = QWidget()
+        self._column = QVBoxLayout(inside)
+        self._column.setContentsMargins(0, 0, 0, 0)
+        self._column.addLayout(head)
+        attempts, self._parts_card = Card(self._look), Card(self._look)
+        for card, title, table in (
+            (attempts, tr("Attempts"), self.attempts),
+            (self._parts_card, tr("Over the test"), self.parts),
+        ):
+            card.column.addWidget(Text(self._look, title, size=16, weight=SEMIBOLD))
+            card.column.addWidget(table)
+            self._column.addWidget(card)
+        self._column.addWidget(self.errors)
+        self._column.addStretch(1)
+        scroll = QScrollArea()
+        scroll.setWidget(inside)
+        scroll.setWidgetResizable(True)
+        scroll.setFrameShape(QFrame.Shape.NoFrame)
+        scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        outer = QVBoxLayout(self)
+        outer.setContentsMargins(0, 0, 0, 0)
+        outer.addWidget(scroll)
+
+    def _on_look_changed(self) -> None:
+        self._column.setSpacing(self._look.theme.px(12))
+
+
+def number(value: float, digits: int) -> str:
+    """A figure, or a dash where it was not measured."""
+    return f"{value:.{digits}f}" if math.isfinite(value) else NO_FIGURE
+
+
+def _attempts(state: TimedResult) -> tuple[list[TableColumn], list[TableRow]]:
+    heads = (tr("time, s"), tr("distance, m"), tr("speed, m/s"), tr("steps/min"), tr("turns"), tr("off the tape, m"))
+    has_tape = any(one.found is not None and math.isfinite(one.found.tape_difference_m) for one in state.attempts)
+    shown = len(heads) if has_tape else len(heads) - 1
+    columns = [TableColumn(share=1), *(TableColumn(TextCell(head, align=RIGHT, tone="ink2")) for head in heads[:shown])]
+    rows = []
+    for called, attempt in zip(state.called, state.attempts, strict=True):
+        found = attempt.found
+        figures = ["", "", "", "", "", ""] if found is None else _figures(found)
+        tone = "ink" if attempt.is_kept else "ink3"
+        name = called if attempt.is_kept else tr("{walk}, discarded").format(walk=called)
+        cells = [TextCell(name, tone=tone), *(TextCell(one, align=RIGHT, tone=tone) for one in figures[:shown])]
+        rows.append(TableRow(tuple(cells)))
+    return columns, rows
+
+
+def _figures(found: TimedTest) -> list[str]:
+    apart_m = found.tape_difference_m
+    return [
+        number(found.time_s, 1),
+        number(found.distance_m, 1),
+        number(found.speed_m_s, 2),
+        number(found.cadence_steps_min, 0),
+        str(len(found.turns)),
+        f"{apart_m:+.2f}" if math.isfinite(apart_m) else NO_FIGURE,
+    ]
+
+
+def _part_columns() -> list[TableColumn]:
+    heads = (tr("from, s"), tr("to, s"), tr("distance, m"), tr("speed, m/s"), tr("steps/min"))
+    return [TableColumn(share=1), *(TableColumn(TextCell(head, align=RIGHT, tone="ink2")) for head in heads)]
+
+
+def _parts(found: TimedTest) -> list[TableRow]:
+    """Thirds and laps of a walk of a set time, rises from a chair."""
+    rows = []
+    if found.definition.duration_s is not None:
+        rows += [_part(tr("Third {number}"), k, one, found) for k, one in enumerate(found.thirds, 1)]
+        rows += [_part(tr("Lap {number}"), k, one, found) for k, one in enumerate(found.laps[:MOST_LAPS], 1)]
+    if found.definition.rises > 1:
+        for k, one in enumerate(found.rises, 1):
+            from_s, to_s = one.left_seat_s - found.start_s, one.upright_s - found.start_s
+            told = [number(from_s, 1), number(to_s, 1), "", "", ""]
+            rows.append(_row(tr("Rise {number}").format(number=k), told))
+    return rows
+
+
+def _part(word: str, k: int, part: TimedPart, found: TimedTest) -> TableRow:
+    figures = [
+        number(part.start_s - found.start_s, 1),
+        number(part.end_s - found.start_s, 1),
+        number(part.distance_m, 1),
+        number(part.speed_m_s, 2),
+        number(part.cadence_steps_min, 0),
+    ]
+    return _row(word.format(number=k), figures)
+
+
+def _row(name: str, figures: list[str]) -> TableRow:
+    return TableRow((TextCell(name), *(TextCell(one, align=RIGHT) for one in figures)))

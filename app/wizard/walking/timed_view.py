@@ -1,0 +1,369 @@
+"""A timed test as it goes on, to be read from three metres: the time, the distance, and how far the course is done."""
+
+import math
+from dataclasses import dataclass
+
+from PySide6.QtCore import QPointF, QRectF, QSize, Qt
+from PySide6.QtGui import QBrush, QColor, QPainter, QPaintEvent, QPen, QPolygonF
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QSizePolicy, QVBoxLayout
+
+from app.icons import Icon
+from app.theme import ThemeNotifier
+from app.timed_words import end_words, name_of_test, reason_words, start_words
+from app.widgets.card import Card
+from app.widgets.digits import Digits
+from app.widgets.focus_ring import NO_RING
+from app.widgets.icons import IconMark
+from app.widgets.painted_text import CENTRE, LEFT, RIGHT, PaintedText
+from app.widgets.text import MEDIUM, SEMIBOLD, Text
+from app.widgets.themed import Themed
+from app.wording import capitalised, joined, name_of, tr
+from core.body import Side
+from core.timed.live import LiveReadout
+from core.timed.protocols import DEFINITIONS, TimedProtocol
+
+TIME, DISTANCE = 240, 160
+TIME_COMPACT, DISTANCE_COMPACT = 150, 110
+NO_FIGURE = "\N{EN DASH}"
+RUN_IN_M, RUN_OUT_M = 2.0, 2.0
+SHOWN_STEPS = 24
+UP_AND_GO_M = 6.0  # there and back
+
+
+@dataclass(frozen=True, slots=True)
+class TimedViewState:
+    """What is shown of a test. `now_s` and `end_s` are on the clock of `readout`, which may lag behind."""
+
+    readout: LiveReadout
+    note: str
+    now_s: float
+    end_s: float
+
+    @property
+    def protocol(self) -> TimedProtocol:
+        return self.readout.planned.protocol
+
+    @property
+    def elapsed_s(self) -> float:
+        """What the clock shows; 0 before the start."""
+        if not self.readout.has_begun:
+            return 0.0
+        return max(0.0, (self.end_s if math.isfinite(self.end_s) else self.now_s) - self.readout.start_s)
+
+
+def time_text(elapsed_s: float) -> str:
+    """Seconds with a tenth up to two minutes, from then on minutes and seconds."""
+    if elapsed_s < 100.0:
+        return f"{math.floor(10.0 * elapsed_s + 1e-6) / 10.0:.1f}"
+    return f"{int(elapsed_s) // 60}:{int(elapsed_s) % 60:02d}"
+
+
+def status_words(state: TimedViewState) -> str:
+    """What the test is doing, in a word."""
+    if math.isfinite(state.end_s):
+        return tr("Finished")
+    if state.readout.has_begun:
+        return tr("Timing")
+    if DEFINITIONS[state.protocol].is_from_chair:
+        return tr("Sit still")
+    return tr("Ready to walk") if state.readout.is_still else tr("Stand still")
+
+
+def distance_words(state: TimedViewState) -> tuple[str, str]:
+    """The distance and, where it cannot be told, why."""
+    found = state.readout
+    if not found.has_begun:
+        return "0.0", ""
+    if found.silent:
+        return NO_FIGURE, tr("silent: {sites}").format(sites=joined([name_of(one) for one in found.silent]))
+    if not math.isfinite(found.distance_m):
+        reasons = [reason_words(one) for one in found.reasons]
+        return NO_FIGURE, capitalised(joined(reasons)) if reasons else ""
+    metres = found.distance_m
+    return (f"{metres:.1f}" if metres < 99.95 else f"{metres:.0f}"), ""
+
+
+class TimedView(Themed):
+    """Everything of one test; nothing in it is pressed: Space and the bar do that."""
+
+    def __init__(self, look: ThemeNotifier) -> None:
+        super().__init__()
+        self._look, self._is_compact, self._said_s = look, False, -1
+        self._title = Text(look, size=24, weight=SEMIBOLD)
+        self._note = Text(look, size=16, tone="ink2")
+        self.status = _Status(look)
+        self.time = Digits(look, TIME, "88.8", "s")
+        self.distance = Digits(look, DISTANCE, "88.8", "m")
+        self.why = Text(look, size=16, weight=MEDIUM, wraps=True)
+        self.course = _Course(look)
+        self._tiles = [_ByItself(look, Icon.CHECK), _ByItself(look, Icon.STOP), _ByItself(look, Icon.SOUND)]
+        self._build()
+        self._on_look_changed()
+
+    def show_state(self, state: TimedViewState) -> None:
+        protocol, has_distance = state.protocol, state.protocol is not TimedProtocol.SIT_TO_STAND
+        self._title.setText(name_of_test(protocol))
+        self._note.setText(state.note)
+        self.status.show_words(status_words(state), is_on=state.readout.has_begun and not math.isfinite(state.end_s))
+        elapsed_s = state.elapsed_s
+        is_long = elapsed_s >= 100.0
+        self.time.show_text(time_text(elapsed_s), "" if is_long else "s", "8:88" if is_long else "88.8")
+        self._distance_card.setVisible(has_distance)
+        metres, why = distance_words(state)
+        self.distance.show_text(metres, "" if metres == NO_FIGURE else "m")
+        if self.why.text() != why:
+            self.why.setText(why)
+        self.why.setVisible(bool(why))
+        self.course.show_state(state)
+        words = (
+            (tr("Starts by itself"), start_words(protocol)),
+            (tr("Ends by itself"), end_words(protocol)),
+            (tr("Tones tell start and end"), tr("rising, then falling")),
+        )
+        for tile, (first, then) in zip(self._tiles, words, strict=True):
+            tile.show_words(first, then)
+        self._say(state, metres, why)
+
+    def _say(self, state: TimedViewState, metres: str, why: str) -> None:
+        """Tell who listens, once a second and with the last figure."""
+        whole = time_text(state.elapsed_s) if math.isfinite(state.end_s) else str(int(state.elapsed_s))
+        distance = "" if state.protocol is TimedProtocol.SIT_TO_STAND or metres == NO_FIGURE else f"{metres} m."
+        said = " ".join(filter(None, [f"{status_words(state)}.", f"{whole} s.", distance, why]))
+        if int(state.elapsed_s) != self._said_s or math.isfinite(state.end_s):
+            self._said_s = int(state.elapsed_s)
+            if said != self.accessibleDescription():
+                self.setAccessibleDescription(said)
+
+    def set_compact(self, is_compact: bool) -> None:
+        self._is_compact = is_compact
+        self._on_look_changed()
+
+    def _build(self) -> None:
+        self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.setProperty(NO_RING, True)
+        self.setAccessibleName(tr("Timed test"))
+        head = QHBoxLayout()
+        for widget in (self._title, self._note):
+            head.addWidget(widget, 0, Qt.AlignmentFlag.AlignBottom)
+        head.addStretch(1)
+        head.addWidget(self.status)
+        self._time_card, self._distance_card = Card(self._look), Card(self._look)
+        self._labels: list[QLabel] = []
+        for card, title, figure in (
+            (self._time_card, tr("Time"), self.time),
+            (self._distance_card, tr("Distance"), self.distance),
+        ):
+            label = Text(self._look, title, size=20, weight=MEDIUM, tone="ink2")
+            self._labels.append(label)
+            card.column.addWidget(label)
+            card.column.addWidget(figure, 1)
+        self._distance_card.column.addWidget(self.why)
+        self._figures = QHBoxLayout()
+        self._figures.addWidget(self._time_card, 604)
+        self._figures.addWidget(self._distance_card, 396)
+        self._course_card = Card(self._look)
+        self._course_card.column.addWidget(self.course)
+        self._row = QHBoxLayout()
+        for tile in self._tiles:
+            self._row.addWidget(tile, 1)
+        self._column = QVBoxLayout(self)
+        self._column.setContentsMargins(0, 0, 0, 0)
+        self._column.addLayout(head)
+        self._column.addLayout(self._figures, 1)
+        self._column.addWidget(self._course_card)
+        self._column.addLayout(self._row)
+
+    def _on_look_changed(self) -> None:
+        px = self._look.theme.px
+        for layout in (self._column, self._figures, self._row):
+            layout.setSpacing(px(8 if self._is_compact else 16))
+        for tile in self._tiles:
+            tile.setVisible(not self._is_compact)
+
+
+class _Status(Themed):
+    """A word on an inverse ground, with a dot that is full while the clock runs."""
+
+    def __init__(self, look: ThemeNotifier) -> None:
+        super().__init__()
+        self._look, self._words, self._is_on = look, "", False
+        self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
+        self._on_look_changed()
+
+    def show_words(self, words: str, *, is_on: bool) -> None:
+        if (words, is_on) != (self._words, self._is_on):
+            self._words, self._is_on = words, is_on
+            self.setAccessibleName(words)
+            self.update()
+
+    def sizeHint(self) -> QSize:
+        return QSize(self._look.theme.px(176), self._look.theme.px(48))
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        theme = self._look.theme
+        c, px = theme.colours, theme.px
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        theme.paint_box(painter, QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5), c.inv, c.inv, 1)
+        dot = QRectF(px(20), 0.5 * (self.height() - px(12)), px(12), px(12))
+        painter.setPen(QPen(QColor(c.inv_ink), 2))
+        painter.setBrush(QColor(c.inv_ink) if self._is_on else Qt.BrushStyle.NoBrush)
+        painter.drawEllipse(dot)
+        box = QRectF(dot.right() + px(10), 0, self.width() - dot.right() - px(14), self.height())
+        PaintedText(self._words, box, theme.font(18, SEMIBOLD), "inv_ink").paint(painter, c)
+
+    def _on_look_changed(self) -> None:
+        self.updateGeometry()
+
+
+class _ByItself(Card):
+    """What happens by itself, in two lines."""
+
+    def __init__(self, look: ThemeNotifier, icon: Icon) -> None:
+        self._first, self._then = Text(look, weight=SEMIBOLD, wraps=True), Text(look, size=13, tone="ink2", wraps=True)
+        self._mark = IconMark(look, icon, size=20)
+        super().__init__(look)
+        self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
+        row, words = QHBoxLayout(), QVBoxLayout()
+        words.setSpacing(0)
+        words.addWidget(self._first)
+        words.addWidget(self._then)
+        row.addWidget(self._mark)
+        row.addLayout(words, 1)
+        self.column.addLayout(row)
+
+    def show_words(self, first: str, then: str) -> None:
+        for label, text in ((self._first, first), (self._then, capitalised(then))):
+            if label.text() != text:
+                label.setText(text)
+
+
+class _Course(Themed):
+    """How much of a test is done, as a bar; under it the steps, on the side of the foot that made them."""
+
+    def __init__(self, look: ThemeNotifier) -> None:
+        super().__init__()
+        self._look = look
+        self._state: TimedViewState | None = None
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        self._on_look_changed()
+
+    def show_state(self, state: TimedViewState) -> None:
+        self._state = state
+        self.update()
+
+    def sizeHint(self) -> QSize:
+        return QSize(self._look.theme.px(400), self._look.theme.px(132))
+
+    def minimumSizeHint(self) -> QSize:
+        return QSize(self._look.theme.px(200), self._look.theme.px(132))
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        if self._state is None:
+            return
+        theme, state = self._look.theme, self._state
+        c, px = theme.colours, theme.px
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        whole = QRectF(px(4), px(36), self.width() - px(8), px(48))
+        is_taped = DEFINITIONS[state.protocol].tape_m is not None
+        inner = QRectF(whole)
+        if is_taped:
+            tape_m = DEFINITIONS[state.protocol].length_m or 1.0
+            all_m = RUN_IN_M + tape_m + RUN_OUT_M
+            inner.setLeft(whole.left() + whole.width() * RUN_IN_M / all_m)
+            inner.setRight(whole.right() - whole.width() * RUN_OUT_M / all_m)
+            for box in (
+                QRectF(whole.left(), whole.top(), inner.left() - whole.left(), whole.height()),
+                QRectF(inner.right(), whole.top(), whole.right() - inner.right(), whole.height()),
+            ):
+                painter.fillRect(box, QColor(c.sunken))
+                painter.fillRect(box, QBrush(QColor(c.line), Qt.BrushStyle.BDiagPattern))
+        painter.fillRect(inner, QColor(c.track))
+        done = QRectF(inner)
+        done.setWidth(inner.width() * _share(state))
+        painter.fillRect(done, QColor(c.ink))
+        painter.setPen(QPen(QColor(c.ink), px(3)))
+        if is_taped:
+            for x in (inner.left(), inner.right()):
+                painter.drawLine(QPointF(x, whole.top() - px(6)), QPointF(x, whole.bottom() + px(6)))
+        if 0.0 < _share(state) < 1.0:
+            self._paint_pointer(painter, done)
+        for text in self._texts(state, whole, inner):
+            text.paint(painter, c)
+
+    def _paint_pointer(self, painter: QPainter, done: QRectF) -> None:
+        px = self._look.theme.px
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(QColor(self._look.theme.colours.ink))
+        tip = QPointF(done.right(), done.top() - px(1))
+        painter.drawPolygon(QPolygonF([tip, tip + QPointF(-px(10), -px(13)), tip + QPointF(px(10), -px(13))]))
+
+    def _texts(self, state: TimedViewState, whole: QRectF, inner: QRectF) -> list[PaintedText]:
+        theme = self._look.theme
+        px = theme.px
+        top = QRectF(whole.left(), 0, whole.width(), px(24))
+        under = QRectF(whole.left(), whole.bottom() + px(8), whole.width(), px(28))
+        found = [PaintedText(_middle_words(state), top, theme.font(16, SEMIBOLD), align=CENTRE)]
+        if DEFINITIONS[state.protocol].tape_m is not None:
+            found += [
+                PaintedText(tr("run-in"), top, theme.font(15), "ink2", LEFT),
+                PaintedText(tr("run-out"), top, theme.font(15), "ink2", RIGHT),
+            ]
+        steps = state.readout.steps[-SHOWN_STEPS:]
+        total_m = _total_m(state)
+        for number, (side, at_m) in enumerate(steps):
+            share = at_m / total_m if total_m else (number + 0.5) / SHOWN_STEPS
+            if share <= 1.0:
+                box = QRectF(inner.left() + share * inner.width() - px(12), under.top(), px(24), under.height())
+                tone = "left_text" if side is Side.LEFT else "right_text"
+                found.append(PaintedText(_LETTERS[side], box, theme.font(17, SEMIBOLD), tone, CENTRE))
+        return found
+
+    def _on_look_changed(self) -> None:
+        self.updateGeometry()
+
+
+def _total_m(state: TimedViewState) -> float | None:
+    """How long the course is that is drawn; None where it has no length."""
+    return DEFINITIONS[state.protocol].length_m
+
+
+def _share(state: TimedViewState) -> float:
+    """How much of the test is done."""
+    definition, found = DEFINITIONS[state.protocol], state.readout
+    if math.isfinite(state.end_s):
+        return 1.0
+    if not found.has_begun:
+        return 0.0
+    if definition.duration_s is not None:
+        return min(1.0, state.elapsed_s / definition.duration_s)
+    if definition.rises > 1:
+        return min(1.0, _rises(state) / definition.rises)
+    metres = found.distance_m if math.isfinite(found.distance_m) else 0.0
+    wanted_m = definition.length_m or (UP_AND_GO_M if definition.rises else 0.0)
+    return min(0.99, metres / wanted_m) if wanted_m else 0.0
+
+
+def _rises(state: TimedViewState) -> int:
+    found = state.readout.found
+    return 0 if found is None else len(found.rises)
+
+
+def _middle_words(state: TimedViewState) -> str:
+    """What the bar measures, and laps as they come."""
+    definition, turns = DEFINITIONS[state.protocol], state.readout.turns
+    if definition.length_m is not None:
+        return tr("{length:.0f} m timed").format(length=definition.length_m)
+    if definition.rises > 1:
+        return tr("{count} of {wanted} rises").format(count=_rises(state), wanted=definition.rises)
+    if definition.rises:
+        return tr("3 m, turn, 3 m back") if not turns else tr("turned")
+    laps = tr("Lap {lap}").format(lap=turns + 1)
+    if definition.duration_s is None:
+        return laps
+    left_s = max(0, math.ceil(definition.duration_s - state.elapsed_s))
+    return tr("{lap}, {minutes}:{seconds:02d} left").format(lap=laps, minutes=left_s // 60, seconds=left_s % 60)
+
+
+_LETTERS = {Side.LEFT: "L", Side.RIGHT: "R"}

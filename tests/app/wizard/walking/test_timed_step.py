@@ -1,0 +1,143 @@
+"""A timed test through the Walking step: chosen by T, started and ended by the motion or a key, kept with its keys."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import pytest
+from PySide6.QtCore import QTimer
+from pytestqt.qtbot import QtBot
+
+from app.theme import ThemeNotifier
+from app.wizard.keys import Intent, KeyAction
+from app.wizard.visit import Visit
+from app.wizard.walking.step import WalkingStep
+from core.body import Site
+from core.samples import Patient, RecordingKind, Session
+from core.timed.protocols import PlannedTest, TimedProtocol
+from devices.replay import ReplaySource
+from devices.walker import DEMONSTRATION, Standing, Walk, simulate
+
+SPEED = 6.0
+RUN, NEXT_TEST = Intent(KeyAction.RUN), Intent(KeyAction.NEXT_TEST)
+
+
+@pytest.fixture(scope="module")
+def simulated_session() -> Session:
+    """A patient who stands a while before each walk: at this speed much of it passes until a recording begins."""
+    walk = Walk(strides=14, standing_before_s=8.0)
+    played = (Standing(duration_s=10.0), walk, replace(walk, name="walk 2"))
+    return simulate(replace(DEMONSTRATION, recordings=played)).session
+
+
+@pytest.fixture
+def source(simulated_session: Session) -> ReplaySource:
+    """Slower than elsewhere: what a busy machine's live estimator misses would be a test that never begins."""
+    return ReplaySource(simulated_session, speed=SPEED)
+
+
+@pytest.fixture
+def step(qtbot: QtBot, look: ThemeNotifier, visit: Visit, worn: dict[str, Site]) -> Iterator[WalkingStep]:
+    """Of a patient who has stood still, entered, and looked at as the wizard does."""
+    visit.patient.edit(Patient(code="DEMO-7"))
+    with qtbot.waitSignal(visit.patient.changed):
+        visit.patient.commit()
+    with qtbot.waitSignal(visit.changed):
+        visit.begin_session()
+    with qtbot.waitSignal(visit.sensors.opened, timeout=10_000):
+        visit.sensors.search(visit.choices[0])
+    qtbot.waitUntil(lambda: set(visit.sensors.status) == set(worn))
+    visit.sensors.assign_all(worn)
+    with qtbot.waitSignal(visit.changed):
+        visit.place_sensors()
+    acquisition = visit.sensors.acquisition
+    assert acquisition is not None
+    acquisition.ask(RecordingKind.STANDING)
+    with qtbot.waitSignal(visit.recordings.begun, timeout=10_000):
+        visit.recordings.begin(acquisition, RecordingKind.STANDING)
+    qtbot.wait(round(4.0 / SPEED * 1000))
+    with qtbot.waitSignal(visit.recordings.ended, timeout=10_000):
+        visit.recordings.stop()
+    step = WalkingStep(look, visit)
+    qtbot.addWidget(step.page)
+    step.page.resize(1064, 600)
+    step.page.show()
+    step.enter()
+    timer = QTimer()
+    timer.setInterval(10)
+    timer.timeout.connect(step.tick)
+    timer.start()
+    yield step
+    timer.stop()
+    step.leave()
+
+
+def is_for_clicker(step: WalkingStep) -> bool:
+    return step.takes_clicker
+
+
+@pytest.mark.endurance
+def test_ten_metres_by_the_motion_alone(qtbot: QtBot, step: WalkingStep, visit: Visit) -> None:
+    assert step.on_intent(NEXT_TEST)
+    assert step.page.next.test.box.currentText() == "10-metre walk"
+    with qtbot.waitSignal(visit.recordings.ended, timeout=30_000):  # which stops by itself
+        step.on_intent(RUN)
+        qtbot.waitUntil(lambda: step.page.timed.isVisible(), timeout=10_000)
+        assert is_for_clicker(step)
+        qtbot.waitUntil(lambda: step.page.timed.time.text not in ("", "0.0"), timeout=10_000)
+    assert not is_for_clicker(step)
+    (walk,) = visit.recordings.walks
+    assert walk.details.test == PlannedTest(TimedProtocol.TEN_METRES)
+    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=20_000)
+    assert step.page.timed_result.isVisible()
+    assert step.page.timed_result.first.text().startswith("10-metre walk: ")
+    analysis = visit.evaluation.analysis
+    assert analysis is not None
+    found = analysis.recordings[-1].timed
+    assert found is not None
+    assert found.distance_m == 10.0
+    assert found.missing == ()
+
+
+def test_a_key_at_the_tape_wins_and_is_kept(qtbot: QtBot, step: WalkingStep, visit: Visit) -> None:
+    step.on_intent(NEXT_TEST)
+    with qtbot.waitSignal(visit.recordings.ended, timeout=30_000):
+        step.on_intent(RUN)
+        qtbot.waitUntil(lambda: step.page.timed.time.text not in ("", "0.0", "0.1", "0.2"), timeout=10_000)
+        qtbot.wait(round(3.0 / SPEED * 1000))
+        step.on_intent(RUN)  # at the tape, long before the sensors' 10 m
+    (walk,) = visit.recordings.walks
+    assert walk.details.test is not None
+    assert walk.details.test.start_key_s is None
+    pressed_s = walk.details.test.end_key_s
+    assert pressed_s is not None
+    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=20_000)
+    analysis = visit.evaluation.analysis
+    assert analysis is not None
+    found = analysis.recordings[-1].timed
+    assert found is not None
+    assert found.end_s == pressed_s
+    assert found.distance_m == 10.0
+    assert found.sensor_distance_m < 9.0
+    assert "more than the 3 % that is allowed" in step.page.timed_result.then.text()
+
+
+def test_esc_breaks_a_test_off_and_no_test_is_a_walk_as_ever(qtbot: QtBot, step: WalkingStep, visit: Visit) -> None:
+    step.on_intent(NEXT_TEST)
+    with qtbot.waitSignal(visit.recordings.begun, timeout=10_000):
+        step.on_intent(RUN)
+    with qtbot.waitSignal(visit.recordings.ended, timeout=10_000):
+        assert step.on_intent(Intent(KeyAction.LEAVE))
+    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=20_000)
+    assert "no time was taken" in step.page.timed_result.first.text()
+    for _ in TimedProtocol:
+        step.on_intent(NEXT_TEST)
+    assert step.page.next.test.box.currentIndex() == 0
+    with qtbot.waitSignal(visit.recordings.begun, timeout=10_000):
+        step.on_intent(RUN)
+    assert not step.takes_clicker
+    assert not step.page.timed.isVisible()
+    with qtbot.waitSignal(visit.recordings.ended, timeout=10_000):
+        step.on_intent(RUN)
+    assert visit.recordings.walks[-1].details.test is None
+    assert not step.page.timed_result.isVisible()
+    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=20_000)

@@ -1,0 +1,72 @@
+"""The view of a running test: what it shows and says, and that no figure moves as it counts."""
+
+import math
+from dataclasses import replace
+
+import pytest
+from pytestqt.qtbot import QtBot
+
+from app.theme import ThemeNotifier
+from app.wizard.walking.timed_view import TimedView, TimedViewState, distance_words, status_words, time_text
+from core.body import Side, Site
+from core.timed.found import NotMeasured
+from core.timed.live import LiveReadout
+from core.timed.protocols import PlannedTest, TimedProtocol
+
+TEN = PlannedTest(TimedProtocol.TEN_METRES)
+WAITING = TimedViewState(LiveReadout(TEN, now_s=2.0), "Shoes, attempt 1", 2.0, math.nan)
+TIMING = TimedViewState(LiveReadout(TEN, 8.0, 3.0, distance_m=6.12), "Shoes, attempt 1", 8.44, math.nan)
+
+
+@pytest.mark.parametrize(
+    ("elapsed_s", "text"), [(0.0, "0.0"), (5.49, "5.4"), (99.94, "99.9"), (100.0, "1:40"), (214.9, "3:34")]
+)
+def test_the_time_is_cut_to_tenths_and_told_in_minutes_from_100_s(elapsed_s: float, text: str) -> None:
+    assert time_text(elapsed_s) == text
+
+
+def test_what_the_test_is_doing_is_a_word() -> None:
+    assert status_words(WAITING) == "Stand still"
+    assert status_words(replace(WAITING, readout=replace(WAITING.readout, is_still=True))) == "Ready to walk"
+    chair = replace(WAITING, readout=LiveReadout(PlannedTest(TimedProtocol.UP_AND_GO)))
+    assert status_words(chair) == "Sit still"
+    assert status_words(TIMING) == "Timing"
+    assert status_words(replace(TIMING, end_s=12.0)) == "Finished"
+
+
+def test_a_distance_that_cannot_be_told_is_a_dash_with_its_reason() -> None:
+    assert distance_words(WAITING) == ("0.0", "")
+    assert distance_words(TIMING) == ("6.1", "")
+    silent = replace(TIMING, readout=replace(TIMING.readout, silent=(Site.LEFT_FOOT,)))
+    assert distance_words(silent) == ("\N{EN DASH}", "silent: L foot")
+    lost = replace(TIMING.readout, distance_m=math.nan, reasons=(NotMeasured.NO_FEET,))
+    assert distance_words(replace(TIMING, readout=lost)) == ("\N{EN DASH}", "No foot sensor was worn")
+    far = replace(TIMING, readout=replace(TIMING.readout, distance_m=362.4))
+    assert distance_words(far) == ("362", "")
+
+
+def test_every_digit_has_a_cell_of_its_own(qtbot: QtBot) -> None:
+    view = TimedView(ThemeNotifier())
+    qtbot.addWidget(view)
+    view.resize(1016, 600)
+    view.show()
+    places = set()
+    for now_s in (4.1, 5.8, 10.7, 11.1):
+        view.show_state(replace(TIMING, now_s=now_s))
+        places.add(tuple(round(box.left(), 3) for _, box in view.time.cells()))
+    assert len(places) == 1
+    view.show_state(replace(TIMING, now_s=25.0))
+    assert len(view.time.cells()) == 4
+    assert view.time.text == "22.0"
+
+
+def test_who_listens_is_told_once_a_second_and_the_end(qtbot: QtBot) -> None:
+    view = TimedView(ThemeNotifier())
+    qtbot.addWidget(view)
+    view.show_state(replace(TIMING, now_s=4.2))
+    first = view.accessibleDescription()
+    assert first == "Timing. 1 s. 6.1 m."
+    view.show_state(replace(TIMING, now_s=4.6, readout=replace(TIMING.readout, distance_m=6.6)))
+    assert view.accessibleDescription() == first
+    view.show_state(replace(TIMING, now_s=5.1, end_s=4.85, readout=replace(TIMING.readout, steps=((Side.LEFT, 0.5),))))
+    assert view.accessibleDescription() == "Finished. 1.8 s. 6.1 m."
