@@ -7,19 +7,27 @@ from collections.abc import Sequence
 import numpy as np
 
 from app.alignment_words import since_in_words
+from app.measure_names import goal_in_words, measure_name, whose_name
 from app.patient_words import when
-from app.storage.edited_fields import ALIGNMENT, KEPT, PLACEMENT
+from app.storage.edited_fields import ALIGNMENT, GOALS, KEPT, PLACEMENT, TEST
 from app.storage.three_way import OtherChange, Value
+from app.timed_words import planned_words
 from app.wording import capitalised, name_of, side_name, tr, tr_n
 from core.alignment import alignment_of_text
 from core.body import Joint, Side, Site
+from core.goals import GoalOf, goals_of_text, held
+from core.timed.protocols import planned_of_text
 
 MINUS = "\N{MINUS SIGN}"
 
 
 def field_word(field: str) -> str:
-    """Name a field as the pages do: "Height", "Zero, left knee"."""
+    """Name a field as the pages do: "Body height", "Zero, left knee"."""
     name, _, part = field.partition(".")
+    if name == GOALS:
+        column, _, of = part.partition(".")
+        whose = ", ".join(filter(None, [measure_name(column), whose_name(GoalOf(of))]))
+        return tr("Goal, {whose}").format(whose=whose)
     if part in list(Joint):
         of_joint = {"zero_rad": tr("Goniometer, {joint}"), "turned_sign": tr("Sign, {joint}")}
         return of_joint[name].format(joint=name_of(Joint(part)))
@@ -30,7 +38,7 @@ def field_word(field: str) -> str:
         "code": tr("Patient code"),
         "birth_year": tr("Birth year"),
         "sex": tr("Sex"),
-        "height_m": tr("Height"),
+        "height_m": tr("Body height"),
         "mass_kg": tr("Mass"),
         "device": tr("Device"),
         "aids": tr("Aids and footwear"),
@@ -49,6 +57,7 @@ def field_word(field: str) -> str:
         "note": tr("Note"),
         "is_restrapped_before": tr("Sensors"),
         ALIGNMENT: tr("Changed at the prosthesis"),
+        TEST: tr("Timed test"),
         PLACEMENT: tr("Which sensor was worn where"),
     }[name]
 
@@ -110,8 +119,12 @@ def _text(name: str, value: str) -> str:
         if affected in sides:
             return capitalised(tr("{side} affected").format(side=sides[affected]))
         return tr("Neither") if "none" in (affected, prosthetic) else tr("nothing said")
+    if name == GOALS:
+        return "; ".join(map(goal_in_words, held(goals_of_text(value)))) or tr("taken back")
     if name == ALIGNMENT:
         return since_in_words(alignment_of_text(value))
+    if name == TEST:
+        return planned_words(planned_of_text(value))
     if name == PLACEMENT:
         worn = json.loads(value).items()
         return ", ".join(f"{name_of(Site(site))} {sensor}" for site, sensor in worn) or tr("nothing said")

@@ -55,6 +55,7 @@ class Icon(StrEnum):
     WITHHELD = "withheld"
     LEGS = "legs"
     GROUPS = "groups"
+    GOAL = "goal"
 
 
 VERDICT_ICONS = {  # circles speak of the measurement, triangles of the patient

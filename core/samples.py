@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 from core.alignment import AlignmentChange
 from core.body import Joint, Side, Site
 from core.findings import Finding
+from core.goals import Goal
+from core.timed.protocols import PlannedTest
 
 # any precision: NumPy's operators on float64 are typed so
 FloatArray = NDArray[np.floating[Any]]
@@ -118,7 +120,7 @@ class SensorInfo:
 
 @dataclass(frozen=True, slots=True)
 class Patient:
-    """What the clinic typed. Sides are left, right, both, none or empty."""
+    """What the clinic typed. Sides are left, right, both, none or empty; `goals` are those that ended, too."""
 
     code: str = ""
     birth_year: int | None = None
@@ -130,6 +132,7 @@ class Patient:
     affected_side: str = ""
     prosthetic_side: str = ""
     unknown: Mapping[str, object] = field(default_factory=dict)
+    goals: tuple[Goal, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,6 +143,7 @@ class Recording:
     `left_out_s` holds, for each side, one time inside of each stride that a person has left out, ascending, seconds on
     the recording's clock: a time goes on naming the same stride when its events are found a little earlier or later.
     `alignment` is what was changed at the prosthesis before the walk; None where nobody has said anything.
+    `test` is the timed test that the walk is, with the instants of its keys; None of other walks.
     """
 
     name: str
@@ -153,6 +157,7 @@ class Recording:
     is_restrapped_before: bool = False
     left_out_s: Mapping[Side, tuple[float, ...]] = field(default_factory=dict)
     alignment: AlignmentChange | None = None
+    test: PlannedTest | None = None
     unknown: Mapping[str, object] = field(default_factory=dict)
 
     def holds(self, *sites: Site) -> bool:

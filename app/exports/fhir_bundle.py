@@ -1,7 +1,7 @@
 """How does a hospital's system read the averages? A FHIR R4 Bundle of Observations, one per figure of summary.json.
 
 A figure that is to be read with care, or that fewer than ten strides made, is preliminary and says why. One that is
-withheld has no value and its reason in place of it; nothing is ever called high, low or normal.
+withheld has no value and its reason in place of it; nothing is ever called high, low or normal. Goals are Goals.
 Our figures have no codes of their own in LOINC or SNOMED CT that say how they were measured, so each is coded by its
 column's name; sides are coded. Simulated figures carry the label that HL7 gives to test data.
 """
@@ -16,8 +16,11 @@ from uuid import NAMESPACE_URL, uuid5
 
 from app.exports.figures import RESEARCH, SIMULATED, WalkFigure, reason_of, software, unit_of, walk_figures
 from app.gates_in_words import gate_sentence
+from app.measure_names import goal_in_words
+from app.reports.agreed import agreed_with
 from app.storage.pseudonyms import AGE
 from core.body import Side
+from core.goals import Goal
 from core.results import Analysis
 from core.samples import Session
 from core.verdicts.model import Verdict
@@ -60,9 +63,10 @@ def write_bundle(session: Session, analysis: Analysis, path: Path) -> None:
 
 
 def bundle(session: Session, analysis: Analysis) -> dict[str, Any]:
-    """A Bundle of kind collection: the patient, as far as is told, and an Observation per figure."""
+    """A Bundle of kind collection: the patient, as far as is told, what was agreed, and an Observation per figure."""
     patient_url = _url(session, "patient")
     resources = [(patient_url, _patient(session)), *_age(session, patient_url)]
+    resources += [(_url(session, "goal", *goal.key), _goal(goal, patient_url)) for goal in agreed_with(session).held]
     conditions = {recording.name: recording.condition for recording in session.recordings}
     started = {recording.name: recording.started or session.started for recording in session.recordings}
     for one in walk_figures(analysis):
@@ -101,6 +105,29 @@ def _age(session: Session, patient_url: str) -> Iterator[tuple[str, dict[str, An
         value = {"value": value.pop("value"), "comparator": ">=", **value}
     observation = {"resourceType": "Observation", "status": "final", "code": {"coding": [YEARS_OLD], "text": "age"}}
     yield _url(session, "age"), {**observation, "subject": {"reference": patient_url}, "valueQuantity": value}
+
+
+def _goal(goal: Goal, patient_url: str) -> dict[str, Any]:
+    """What had been agreed by the session's day. Whether it is reached is left to who reads the figures."""
+    unit = unit_of(goal.column)
+    code = _code(goal.column, f"{goal.column}, {goal.of}".replace("_", " "))
+    limit = {**_quantity(goal.value, unit), "comparator": "<=" if goal.is_at_most else ">="}
+    target: dict[str, Any] = {"measure": code, "detailQuantity": limit}
+    if goal.until is not None:
+        target["dueDate"] = goal.until.isoformat()
+    told: dict[str, Any] = {
+        "resourceType": "Goal",
+        "lifecycleStatus": "active",
+        "description": {"text": goal_in_words(goal)},
+        "subject": {"reference": patient_url},
+        "startDate": goal.agreed.isoformat(),
+        "target": [target],
+    }
+    if goal.by:
+        told["expressedBy"] = {"display": goal.by}
+    if goal.note:
+        told["note"] = [{"text": goal.note}]
+    return told
 
 
 def _observation(one: WalkFigure, patient_url: str, when: str, notes: list[str]) -> Iterator[tuple[str, Any]]:

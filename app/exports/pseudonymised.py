@@ -10,8 +10,11 @@ from dataclasses import replace
 from uuid import UUID, uuid4
 
 from app.alignment_words import since_in_words
+from app.measure_names import goal_in_words
 from app.storage.pseudonyms import AGE, Pseudonyms, Typed
+from app.timed_words import planned_words
 from app.wording import later
+from core.goals import Goal, held
 from core.results import Analysis, Calibration, JointCalibration
 from core.samples import Recording, Session
 
@@ -70,6 +73,7 @@ def what_is_said(session: Session) -> list[Row]:
         (later("aids"), patient.aids),
         (later("affected side"), patient.affected_side),
         (later("prosthetic side"), patient.prosthetic_side),
+        (later("goals"), "; ".join(map(_goal, held(patient.goals)))),
         (later("session"), session.started),
         (later("operator"), session.operator),
         (later("surface"), session.surface),
@@ -83,7 +87,14 @@ def what_leaves(session: Session) -> list[Row]:
     return said + [(recording.name, _about(recording)) for recording in session.recordings]
 
 
+def _goal(goal: Goal) -> str:
+    """What was agreed and since when; by whom and what was typed of it, where that is said."""
+    said = [f"{goal_in_words(goal)} ({goal.agreed.isoformat()})", goal.by, goal.note]
+    return ", ".join(filter(None, said))
+
+
 def _about(recording: Recording) -> str:
     changed = since_in_words(recording.alignment)
-    said = [recording.kind.replace("_", " "), recording.condition, changed, recording.started]
+    test = planned_words(recording.test) if recording.test is not None else ""
+    said = [recording.kind.replace("_", " "), recording.condition, test, changed, recording.started]
     return ", ".join(filter(None, said))

@@ -14,6 +14,7 @@ from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QStackedWidget, 
 from app.home.analysing_again import AnalysingAgain
 from app.home.computing_courses import ComputingCourses
 from app.home.deleting import Deleting
+from app.home.goals import GoalsOfPatient
 from app.home.importing import Importing
 from app.home.library_notices import LibraryNotices
 from app.home.patient_reading import PatientReading, read_patient
@@ -22,6 +23,7 @@ from app.home.recovering import Recovering
 from app.home.settings_controller import SettingsController
 from app.icons import Icon
 from app.pages.analyse_again_page import AnalyseAgainPage
+from app.pages.goals_page import GoalsPage
 from app.pages.home_page import HomePage
 from app.pages.import_page import ImportPage
 from app.pages.questions_page import QuestionsPage
@@ -82,6 +84,7 @@ class Home(Themed):
         self._settings_controller: SettingsController | None = None
         self._questions: Questions | None = None
         self._again: AnalysingAgain | None = None
+        self._goals: GoalsOfPatient | None = None
         self.working = WorkingPage(look)
         self.bar = ActionBar(look)
         self.toast = Toast(look, self)
@@ -114,6 +117,17 @@ class Home(Themed):
             made.done.connect(self._on_analysed_again)
             made.table_made.connect(self._on_table_made)
         return self._again
+
+    @property
+    def goals(self) -> GoalsOfPatient:
+        """The goals of the patient, made when they are first asked for."""
+        if self._goals is None:
+            made = self._goals = GoalsOfPatient(self._look, self._controller, self)
+            self._add_page(made.page)
+            made.kept.connect(self.refresh)
+            made.told.connect(self.banner.tell)
+            self._fit()
+        return self._goals
 
     def prepare(self) -> bool:
         """Make the next part before somebody asks for it; whether there was one."""
@@ -172,6 +186,8 @@ class Home(Themed):
         self._state = None
         if self._again is not None:
             self._again.page.forget()
+        if self._goals is not None:
+            self._goals.forget()
         self.importing.forget()
         if self._questions is not None:
             self._questions.forget()
@@ -210,7 +226,7 @@ class Home(Themed):
 
     def focus(self) -> None:
         page = self.current
-        if isinstance(page, AnalyseAgainPage | HomePage | ImportPage | SettingsPage | QuestionsPage):
+        if isinstance(page, AnalyseAgainPage | GoalsPage | HomePage | ImportPage | SettingsPage | QuestionsPage):
             page.focus()
 
     def paintEvent(self, _event: QPaintEvent) -> None:
@@ -257,6 +273,7 @@ class Home(Themed):
         page.import_wished.connect(self._begin_import)
         page.computing_wished.connect(self._on_computing_wished)
         page.panel.analysing_wished.connect(self._begin_again)
+        page.panel.goals_wished.connect(self._begin_goals)
         page.patient_deleted.connect(self._on_patient_deleted)
         page.session_deleted.connect(self.deleting.session)
         self.rail.step_pressed.connect(self._on_rail_pressed)
@@ -325,6 +342,8 @@ class Home(Themed):
         self.importing.page.set_room(width - form.value)
         if self._questions is not None:
             self._questions.page.set_room(width - form.value)
+        if self._goals is not None:
+            self._goals.page.set_room(width - form.value)
         self.bar.show_state(self._bar())
         px = self._look.theme.px
         self.toast.move(px(form.value + 24), self.height() - self.bar.height() - self.toast.height() - px(16))
@@ -333,7 +352,7 @@ class Home(Themed):
         """Show what can be done from the page in sight."""
         current = self.current
         is_demonstration = self._state is not None and self._state.is_demonstration
-        states = [current is self.page, False, current is self.importing.page, self._is_asking]
+        states = [current is self.page or self._has_goals, False, current is self.importing.page, self._is_asking]
         icons = (Icon.HOME, Icon.BACK if is_demonstration else Icon.PLAY, Icon.IMPORT, Icon.GROUPS)
         names = (
             tr("Patients"),
@@ -363,6 +382,8 @@ class Home(Themed):
             return self.questions.bar
         if self._is_again:
             return self.again.bar
+        if self._has_goals:
+            return self.goals.bar
         if self.current is not self.page:
             return BarState()
         new = BarAction(tr("New patient"), tr("Ctrl N"), Icon.ADD)
@@ -379,6 +400,10 @@ class Home(Themed):
     @property
     def _is_again(self) -> bool:
         return self._again is not None and self.current is self._again.page
+
+    @property
+    def _has_goals(self) -> bool:
+        return self._goals is not None and self.current is self._goals.page
 
     @property
     def _is_asking(self) -> bool:
@@ -424,7 +449,7 @@ class Home(Themed):
             return  # somebody may be moving in what stands there
         now = datetime.datetime.now().astimezone()
         self._reading = reading
-        self.page.show_sessions(reading.lines(now), reading.visits(now), reading.next_step(now))
+        self.page.show_sessions(reading.lines(now), reading.visits(now), reading.next_step(now), reading.goals)
 
     def _on_computing_wished(self) -> None:
         if self._reading is not None:
@@ -446,6 +471,8 @@ class Home(Themed):
             self.questions.save()
         elif self._is_again:
             self.again.analyse()
+        elif self._has_goals:
+            self.goals.page.submit()
         elif self.current is self.page and self.patient is not None:
             self.session_wished.emit(self.patient)
 
@@ -466,6 +493,12 @@ class Home(Themed):
         self.again.begin(self.page.patient_id if self.current is self.page else None)
         self._go_to(self.again.page)
         self.bar.back.setFocus()  # until the sessions are read
+
+    def _begin_goals(self) -> None:
+        """Show what was agreed with the patient who is chosen."""
+        if self.patient is not None:
+            self.goals.begin(self.patient)
+            self._go_to(self.goals.page)
 
     def _on_analysed_again(self, what: str, then: str) -> None:
         self._go_to(self.again.page)
@@ -492,7 +525,8 @@ class Home(Themed):
             self.questions.save()
 
     def _on_help(self) -> None:
-        self.help_wished.emit("questions" if self._is_asking else "home")
+        topic = "questions" if self._is_asking else "goals" if self._has_goals else "home"
+        self.help_wished.emit(topic)
 
     def _on_rail_pressed(self, number: int) -> None:
         if self.current is self.working:

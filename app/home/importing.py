@@ -326,4 +326,5 @@ def _named(name: str) -> str:
         "aids": tr("aids"),
         "affected_side": tr("affected side"),
         "prosthetic_side": tr("prosthetic side"),
+        "goals": tr("goals"),
     }.get(name, name)

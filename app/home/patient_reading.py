@@ -12,10 +12,12 @@ from app.patient_words import day_of_session, session_line, time_of_session
 from app.reports.course import Course
 from app.reports.course_lanes import CourseVisit
 from app.reports.course_words import LatestVisit, NextStep, next_step, recovered_step
+from app.reports.goals import reached_at
 from app.storage.journal.header import JournalRefusedError
 from app.storage.stored import LibraryError, SessionSummary
 from app.wizard.resuming import current_courses, read_analysed
 from app.workers.background import Report
+from core.goals import Goal, held
 
 if TYPE_CHECKING:
     from app.storage.opened import OpenedLibrary
@@ -28,7 +30,7 @@ class PatientReading:
     """The sessions of a patient, latest first, and by id what is known of them.
 
     `recovered`: those with a walk that was recovered and is not decided yet. `courses`: figures that still hold.
-    `reported`: those whose report was written.
+    `reported`: those whose report was written. `goals`: all that were agreed, those that ended, too.
     """
 
     patient_id: UUID
@@ -36,6 +38,7 @@ class PatientReading:
     recovered: frozenset[UUID]
     courses: Mapping[UUID, Course]
     reported: frozenset[UUID]
+    goals: tuple[Goal, ...] = ()
 
     def visits(self, now: datetime.datetime) -> tuple[CourseVisit, ...]:
         """Those with a day, in order of time; without those that are known to hold no walk."""
@@ -64,7 +67,9 @@ class PatientReading:
         conditions = last.course.conditions if last.course is not None else ()
         withheld = dict.fromkeys(joint for one in conditions for joint in one.withheld)
         has_walk = last.course is not None and bool(conditions)
-        latest = LatestVisit(last.id, last.day, tuple(withheld), has_walk, last.id in self.reported)
+        before = [goal for goal in held(self.goals) if goal.is_chosen_before(last.day)]
+        reached = reached_at(before, last.course) if last.course is not None else ()
+        latest = LatestVisit(last.id, last.day, tuple(withheld), has_walk, last.id in self.reported, reached)
         return next_step(recovered, latest, now.date())
 
 
@@ -76,7 +81,9 @@ def read_patient(opened: "OpenedLibrary", patient_id: UUID) -> PatientReading:
         walk.recording.session_id for walk in library.recordings.undecided() if walk.patient_id == patient_id
     )
     ids = [session.id for session in sessions]
-    return PatientReading(patient_id, sessions, recovered, current_courses(library, ids), library.audit.reported(ids))
+    goals = library.patients.get(patient_id).details.goals
+    reported, courses = library.audit.reported(ids), current_courses(library, ids)
+    return PatientReading(patient_id, sessions, recovered, courses, reported, goals)
 
 
 def compute_courses(opened: "OpenedLibrary", session_ids: Sequence[UUID], report: Report) -> int:

@@ -2,10 +2,12 @@
 
 import math
 from collections import Counter
+from collections.abc import Sequence
 from statistics import fmean
 
 from app.charts.cycles import is_mean_enough
 from app.gates_in_words import verdict_word
+from app.reports.goals import goal_mark
 from app.reports.patient_report.data_quality import DataQuality
 from app.reports.patient_report.facts import Facts
 from app.reports.patient_report.numbers_in_words import NOTHING, fixed
@@ -15,6 +17,7 @@ from app.widgets.fact_strip import KeyFigure
 from app.wording import tr, tr_n
 from core.body import Side
 from core.gait.strides import Reason
+from core.goals import Goal
 from core.verdicts.model import Verdict
 
 KEY_COLUMNS = ("speed_m_s", "cadence_steps_min", "stride_length_m")
@@ -37,10 +40,10 @@ def door_words(found: DataQuality) -> DoorWords:
 
 def key_figures(facts: Facts) -> list[KeyFigure]:
     """Speed, cadence and stride length of a walk whose legs were measured."""
-    return [_of_row(facts.time_distance[column]) for column in KEY_COLUMNS]
+    return [_of_row(facts.time_distance[column], facts.alone.agreed.of(column)) for column in KEY_COLUMNS]
 
 
-def _of_row(row: Figure) -> KeyFigure:
+def _of_row(row: Figure, goals: Sequence[Goal]) -> KeyFigure:
     told = {side: value.mean for side, value in row.sides.items() if is_mean_enough(value.n)}
     value = row.both if row.both is not None else fmean(told.values()) if told else math.nan
     is_known = math.isfinite(value)
@@ -55,6 +58,9 @@ def _of_row(row: Figure) -> KeyFigure:
     elif row.band is not None:
         low, high = (fixed(edge, row.decimals) for edge in row.band)
         note = tr("band {low} to {high}").format(low=low, high=high)
+    if is_known and goals:  # in place of the legs' values or the band, but not of a doubt
+        doubt = [note] if row.with_care else []
+        note = ", ".join([*doubt, *map(goal_mark, goals)])
     shown = fixed(value, row.decimals) if is_known else NOTHING
     unit = row.unit if is_known else ""
     words = tr("{name}: {value}.").format(name=row.name, value=" ".join(filter(None, [shown, unit, note])))

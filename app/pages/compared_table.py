@@ -9,6 +9,7 @@ from app.gates_in_words import verdict_word
 from app.icons import Icon
 from app.pages.compared_words import BRIEF, MINUS, change_in_words, days_of, error_in_figures
 from app.reports.comparison import Compared, Comparison, Contrast, Part, SideRow
+from app.reports.goals import goal_mark
 from app.reports.patient_report.numbers_in_words import DAGGER, NOTHING, fixed
 from app.reports.visit_trend import trend_of
 from app.widgets.chip import LETTERS
@@ -20,6 +21,7 @@ from app.widgets.trend_cell import TrendCell
 from app.wording import side_name, tr
 from core.body import Side
 from core.gait.spatiotemporal import MeanAndSd
+from core.goals import Goal, GoalOf
 from core.verdicts.measurement_error import Difference, Judgement
 from core.verdicts.model import Verdict
 
@@ -71,7 +73,8 @@ def head_cell(words: str, small: str = "", spoken: str = "") -> TextCell:
 def _told_briefly(found: Comparison) -> set[str]:
     """The columns of the measures in a brief table."""
     marked = {row.measure.column for row in found.changes if row.exceeds}
-    return {row.measure.column for row in found.changes} & marked.union(WALK_FIRST, BRIEF)
+    agreed = {goal.column for part in found.parts for goal in part.agreed.held}
+    return {row.measure.column for row in found.changes} & marked.union(WALK_FIRST, BRIEF, agreed)
 
 
 def _shown(found: Comparison, most_visits: int) -> list[Part]:
@@ -107,7 +110,19 @@ def _comparison_row(
     values = [value_cell(*part.figure(measure, side), measure.decimals, has_spread=not is_of_visits) for part in shown]
     changes = [*(_changed(row, found.against) for row in compared), _error_cell(compared[-1])]
     trend = [_trend_cell(found, compared[-1])] if is_of_visits else []
-    return _table_row(tr(measure.name), None if measure.is_of_walk else side, heads, (*values, *trend, *changes))
+    goals = _goals(compared[-1])
+    return _table_row(tr(measure.name), None if measure.is_of_walk else side, heads, (*values, *trend, *changes), goals)
+
+
+def _goals(row: Compared) -> str:
+    """What had been agreed of a measure by the day of the part that is compared."""
+    return " · ".join(map(goal_mark, _agreed(row)))
+
+
+def _agreed(row: Compared) -> tuple[Goal, ...]:
+    """The goals of a leg, or of the walk."""
+    wanted = GoalOf.WALK if row.measure.is_of_walk else GoalOf(row.side.value)
+    return tuple(goal for goal in row.part.agreed.held if goal.key == (row.measure.column, wanted))
 
 
 def _trend_cell(found: Comparison, row: Compared) -> TrendCell:
@@ -115,7 +130,9 @@ def _trend_cell(found: Comparison, row: Compared) -> TrendCell:
     each = zip(found.parts, trend.values, strict=True)
     said = ", ".join(f"{part.letter} {fixed(value, row.measure.decimals)}" for part, value in each)
     side = None if row.measure.is_of_walk else row.side
-    return TrendCell(trend.places, trend.values, trend.edges, trend.band, side, said)
+    goals = tuple(goal.value for goal in _agreed(row))
+    low, high = (pick((edge, *goals)) for pick, edge in zip((min, max), trend.edges, strict=True))
+    return TrendCell(trend.places, trend.values, (low, high), trend.band, side, said, goals)
 
 
 def side_table_row(row: SideRow, heads: Sequence[str]) -> TableRow:
@@ -126,12 +143,14 @@ def side_table_row(row: SideRow, heads: Sequence[str]) -> TableRow:
     return _table_row(tr(row.measure.name), None, heads, (*values, _changed(row), _error_cell(row), _figure(symmetry)))
 
 
-def _table_row(name: str, side: Side | None, heads: Sequence[str], cells: Sequence[TextCell | TrendCell]) -> TableRow:
+def _table_row(
+    name: str, side: Side | None, heads: Sequence[str], cells: Sequence[TextCell | TrendCell], small: str = ""
+) -> TableRow:
     """A row whose cells say which leg, measure and part they are of, for who hears one cell at a time."""
     chip = EMPTY if side is None else TextCell(side=side, spoken=side_name(side))
     who = name if side is None else f"{LETTERS[side]} {name}"
     said = (replace(cell, spoken=f"{who}, {head}: {cell.said}") for head, cell in zip(heads, cells, strict=True))
-    return TableRow((chip, TextCell(name), *said))
+    return TableRow((chip, TextCell(name, small), *said))
 
 
 def _figure(value: str, small: str = "", *, is_marked: bool = False, is_grey: bool = False) -> TextCell:

@@ -7,6 +7,7 @@ from app.charts.cycles import is_mean_enough, is_spread_enough
 from app.icons import Icon
 from app.pages.beside_words import beside_columns, beside_rows
 from app.reports.comparison import Comparison
+from app.reports.goals import goal_mark
 from app.reports.patient_report.facts import Facts
 from app.reports.patient_report.numbers_in_words import DAGGER, NOTHING, fixed, in_words, judged_in_words, signed
 from app.reports.patient_report.what_differs import LegsRow, what_differs
@@ -101,7 +102,7 @@ def _row(facts: Facts, row: LegsRow) -> TableRow:
     shown = signed(found.difference, row.decimals) if found.is_told else ""
     said = tr("{measure}, difference: {difference}{unit}").format(measure=row.name, difference=shown, unit=unit)
     cells: tuple[TableCell, ...] = (
-        TextCell(row.name, weight=weight),
+        TextCell(row.name, " · ".join(map(goal_mark, row.goals)), weight=weight),
         *(_value(row, side) for side in Side),
         TextCell(
             shown, align=RIGHT, weight=weight, mark=Icon.WARNING if exceeds else None, spoken=said if shown else ""

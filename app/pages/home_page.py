@@ -19,6 +19,7 @@ from app.widgets.segmented import Segmented
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.themed import Themed
 from app.wording import tr, tr_n
+from core.goals import Goal
 
 SEARCH_HEIGHT = 48
 EDGE, GUTTER = 24, 16
@@ -115,11 +116,15 @@ class HomePage(Themed):
         self._show_parts()
 
     def show_sessions(
-        self, lines: Sequence[SessionLine], visits: Sequence[CourseVisit] = (), step: NextStep | None = None
+        self,
+        lines: Sequence[SessionLine],
+        visits: Sequence[CourseVisit] = (),
+        step: NextStep | None = None,
+        goals: Sequence[Goal] = (),
     ) -> None:
-        """Show sessions, the course over those that are visits with a day, and what is to be done next."""
+        """Show sessions, the course over those that are visits with a day, what is next, and what was agreed."""
         self.panel.show_sessions(lines)
-        self.panel.show_course(visits)
+        self.panel.show_course(visits, goals)
         self.panel.show_next(step)
 
     def set_room(self, width: float, *, is_compact: bool = False) -> None:

@@ -7,9 +7,10 @@ from PySide6.QtGui import QAction
 from PySide6.QtWidgets import QHBoxLayout, QMenu, QSizePolicy, QVBoxLayout, QWidget
 
 from app.icons import Icon
+from app.measure_names import goal_in_words
 from app.pages.home_course import CourseCard
 from app.pages.home_lists import LineList, SessionLine
-from app.reports.course_lanes import MOST_TOGETHER, CourseVisit, conditions_of_visits, lanes
+from app.reports.course_lanes import MOST_TOGETHER, CourseVisit, conditions_of_visits, lanes, without_lane
 from app.reports.course_words import NextStep
 from app.reports.visits import condition_in_words
 from app.theme import ThemeNotifier
@@ -20,6 +21,7 @@ from app.widgets.icons import IconMark
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed
 from app.wording import tr, tr_n
+from core.goals import Goal, held
 
 SESSION_ROW = 48
 SESSIONS_SEEN, SESSIONS_AT_LEAST = 3, 2  # the others are scrolled to
@@ -36,6 +38,7 @@ class PatientPanel(Themed):
     """
 
     next_wished = Signal(object)
+    goals_wished = Signal()
     analysing_wished = Signal()  # again, of this patient's sessions
     delete_patient_wished = Signal()
     delete_session_wished = Signal()
@@ -44,6 +47,7 @@ class PatientPanel(Themed):
         super().__init__()
         self._look = look
         self._visits: tuple[CourseVisit, ...] = ()
+        self._agreed: tuple[Goal, ...] = ()
         self._next: NextStep | None = None
         self.code = Text(look, size=26, weight=SEMIBOLD, is_code=True, wraps=True)
         self.person = Text(look, tone="ink2", wraps=True)
@@ -55,6 +59,7 @@ class PatientPanel(Themed):
         self.menu.addActions([self.analyse_again, self.delete_session, self.delete_patient])
         self.condition = Choice(look, tr("Condition"))
         self.count = Text(look, tone="ink2", wraps=True)
+        self.goals = Button(look, tr("Goals"), ButtonKind.SECONDARY, Icon.GOAL, height=44)
         self.course = CourseCard(look)
         self.sessions = LineList(look, tr("Sessions"), is_opened_by_click=True, row=SESSION_ROW)
         self.none_yet = Text(look, tr("No sessions yet."), tone="ink2", wraps=True)
@@ -66,7 +71,7 @@ class PatientPanel(Themed):
 
     @property
     def tab_order(self) -> list[QWidget]:
-        return [self.more, self.condition, self.course, self.course.compute, self.sessions, self.go]
+        return [self.more, self.condition, self.goals, self.course, self.course.compute, self.sessions, self.go]
 
     def set_room(self, width: float) -> None:
         """Lay out for this width, in px of the design."""
@@ -78,6 +83,7 @@ class PatientPanel(Themed):
         self.person.setText(person)
         self.more.setVisible(bool(code))
         self._sessions_card.setVisible(bool(code))
+        self._above.setVisible(bool(code))
 
     def show_sessions(self, lines: Sequence[SessionLine]) -> None:
         line = self.sessions.line  # the same patient's, read anew, or none
@@ -87,9 +93,9 @@ class PatientPanel(Themed):
         self.delete_session.setEnabled(self.sessions.line is not None)
         self._on_look_changed()
 
-    def show_course(self, visits: Sequence[CourseVisit]) -> None:
+    def show_course(self, visits: Sequence[CourseVisit], goals: Sequence[Goal] = ()) -> None:
         """Show the course over visits, which are in order of time; of the condition that is chosen, else of all."""
-        self._visits = tuple(visits)
+        self._visits, self._agreed = tuple(visits), tuple(goals)
         found, before = conditions_of_visits(visits), self.condition.currentData()
         self.condition.blockSignals(True)
         self.condition.clear()
@@ -101,8 +107,7 @@ class PatientPanel(Themed):
         self.condition.blockSignals(False)
         self.condition.setVisible(len(found) > 1)
         self.condition.updateGeometry()
-        self.count.setText(_counted(found, len(visits)))
-        self._above.setVisible(bool(visits))
+        self.count.setText(_counted(found, visits, goals))
         self.course.setVisible(bool(visits))
         self._show_lanes()
 
@@ -125,6 +130,7 @@ class PatientPanel(Themed):
         self._above_row.setContentsMargins(0, 0, 0, 0)
         self._above_row.addWidget(self.condition)
         self._above_row.addWidget(self.count, 1)
+        self._above_row.addWidget(self.goals)
         self._sessions_card = Card(self._look, padding=0)
         self._sessions_card.column.addWidget(self.sessions, 1)
         self._sessions_card.column.addWidget(self.none_yet, 0, Qt.AlignmentFlag.AlignHCenter)
@@ -148,13 +154,14 @@ class PatientPanel(Themed):
         self.analyse_again.triggered.connect(self.analysing_wished)
         self.delete_patient.triggered.connect(self.delete_patient_wished)
         self.delete_session.triggered.connect(self.delete_session_wished)
+        self.goals.clicked.connect(self.goals_wished)
         self.condition.currentIndexChanged.connect(self._show_lanes)
         self.sessions.chosen.connect(self._on_session_chosen)
         self.go.clicked.connect(self._on_next)
 
     def _show_lanes(self) -> None:
         chosen = self.condition.currentData()
-        shown = lanes(self._visits, None if chosen in (ALL, None) else chosen)
+        shown = lanes(self._visits, None if chosen in (ALL, None) else chosen, self._agreed)
         self.course.show_course(self._visits, shown, list(conditions_of_visits(self._visits)))
         has_lanes = any(lane.lines for lane in shown)  # without any there is a line of words, and no room is taken
         self._column.setStretchFactor(self.course, int(has_lanes))
@@ -171,6 +178,8 @@ class PatientPanel(Themed):
     def _on_next(self) -> None:
         if self._next is not None and self._next.session_id is not None:
             self.next_wished.emit(self._next.session_id)
+        elif self._next is not None:
+            self.goals_wished.emit()
 
     def _on_look_changed(self) -> None:
         px = self._look.theme.px
@@ -184,8 +193,9 @@ class PatientPanel(Themed):
         self.sessions.setMaximumHeight(max(1, rows) * px(SESSION_ROW))
 
 
-def _counted(found: dict[str, int], visits: int) -> str:
-    """How many visits there are, and of each condition but the most frequent one."""
-    said = [tr_n("{count} visit", "{count} visits", visits).format(count=visits)]
+def _counted(found: dict[str, int], visits: Sequence[CourseVisit], goals: Sequence[Goal]) -> str:
+    """How many visits there are, and of each condition but the most frequent one; goals that are not seen below."""
+    said = [tr_n("{count} visit", "{count} visits", len(visits)).format(count=len(visits))] if visits else []
     said += [f"{condition_in_words(name)}: {count}" for name, count in list(found.items())[1:]]
-    return " · ".join(said)
+    unseen = without_lane(goals) if any(visit.course is not None for visit in visits) else held(goals)
+    return " · ".join([*said, *map(goal_in_words, unseen)])

@@ -12,6 +12,7 @@ from app.reports.patient_report.marks_on_curves import windows_of
 from app.reports.patient_report.numbers_in_words import fixed
 from app.reports.visits import ComparedVisits
 from app.wording import tr
+from core.goals import NO_GOALS, AgreedGoals
 from core.results import Analysis
 from core.samples import Recording
 from core.verdicts.quantities import QUANTITIES, QuantityClass
@@ -19,14 +20,16 @@ from core.verdicts.quantities import QUANTITIES, QuantityClass
 MARKED = (QuantityClass.SHAPE, QuantityClass.EXCURSION)
 
 
-def walks_alone(analysis: Analysis, recordings: Sequence[Recording]) -> Mapping[str, Part]:
+def walks_alone(
+    analysis: Analysis, recordings: Sequence[Recording], agreed: AgreedGoals = NO_GOALS
+) -> Mapping[str, Part]:
     """Every walk of a session that has strides by its name, each by itself, in order of time; called as it is shown."""
     names = shown_names(recordings)
     alone = {
         walk.name: replace(
             part, name=str(names.get(walk.name, walk.name)), walks=(walk,), calibrated=analysis.calibrated_for(walk)
         )
-        for part in conditions_of(analysis, recordings)
+        for part in conditions_of(analysis, recordings, agreed=agreed)
         for walk in part.walks
     }
     return {walk.name: alone[walk.name] for walk in analysis.recordings if walk.name in alone}

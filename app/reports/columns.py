@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from app.reports.csv_report import write_table
-from core.body import Joint, Side
+from core.body import LEG_JOINTS, Joint, Side, hip_of
 from core.gait.cycles import PeakWindow
 from core.verdicts.fitting import BY_COLUMN
 from core.verdicts.quantities import EXCURSIONS_BY_COLUMN, FITTING, PARAMETERS, QUANTITIES, WINDOWS, QuantityClass
@@ -133,6 +133,43 @@ def _of_angles(joint: Joint) -> dict[str, ColumnMeaning]:
     }
 
 
+def _of_hip(joint: Joint) -> dict[str, ColumnMeaning]:
+    """Columns of a hip, which has no axis and no published filter."""
+    return {
+        f"{joint}_deg": ColumnMeaning("flexion of the thigh in the pelvis, from standing", HEIGHT, "flexion positive"),
+        f"{joint}_sd_deg": ColumnMeaning("standard deviation of the flexion, estimated"),
+        f"{joint}_abduction_deg": ColumnMeaning(
+            "abduction from standing; empty where the heading between pelvis and thigh is not sure enough",
+            HEIGHT,
+            "abduction positive",
+        ),
+        f"{joint}_status": ANGLE_STATUS,
+    }
+
+
+OF_PELVIS = {
+    "pelvis_tilt_deg": ColumnMeaning("tilt against the vertical, from standing", "zero", "forward positive"),
+    "pelvis_obliquity_deg": ColumnMeaning("obliquity against the vertical, from standing", "zero", "left up positive"),
+    "pelvis_rotation_deg": ColumnMeaning(
+        "heading against its mean over two strides; empty in turns", sign="to the left positive"
+    ),
+}
+HIP_STRIDES = {
+    "hip_range_deg": ColumnMeaning("largest less smallest hip flexion of the stride"),
+    "hip_flexion_peak_deg": ColumnMeaning(
+        "largest hip flexion of the stride, from standing", HEIGHT, "flexion positive"
+    ),
+    "hip_extension_peak_deg": ColumnMeaning(
+        "largest hip extension of the stride, from standing", HEIGHT, "extension positive"
+    ),
+    "pelvis_obliquity_range_deg": ColumnMeaning("largest less smallest obliquity of the stride"),
+    "pelvis_drop_deg": ColumnMeaning(
+        "how far the side of this leg drops below the other in its swing, from standing", "zero", "dropping positive"
+    ),
+    "pelvis_rotation_range_deg": ColumnMeaning("largest less smallest rotation of the stride; empty in turns"),
+}
+
+
 def _of_cycles(joint: Joint) -> dict[str, ColumnMeaning]:
     sign = FLEXION[joint.split("_")[1]]
     return {
@@ -148,7 +185,7 @@ def _prefixed(prefix: str, columns: Mapping[str, ColumnMeaning], whose: str) -> 
     return {prefix + name: one._replace(definition=f"{one.definition}{whose}") for name, one in columns.items()}
 
 
-CYCLES = PERCENT | {name: column for joint in Joint for name, column in _of_cycles(joint).items()}
+CYCLES = PERCENT | {name: column for joint in LEG_JOINTS for name, column in _of_cycles(joint).items()}
 DIFFERENCES = {
     **OF_PART,
     **_prefixed("against_", {**OF_PART, **MEAN, **BY_HAND}, ", of what it is compared with"),
@@ -157,11 +194,14 @@ DIFFERENCES = {
     **MEAN,
     **JUDGED,
     **BY_HAND,
+    "chosen_before": _word("true where a goal of the parameter had been agreed before the session's day"),
 }
 KNOWN: Mapping[str, Mapping[str, ColumnMeaning]] = {
     "angles.csv": {
         "time_s": ON_CLOCK,
-        **{name: column for joint in Joint for name, column in _of_angles(joint).items()},
+        **{name: column for joint in LEG_JOINTS for name, column in _of_angles(joint).items()},
+        **{name: column for side in Side for name, column in _of_hip(hip_of(side)).items()},
+        **OF_PELVIS,
         **{f"{side}_phase": _word("loading, foot_flat, pre_swing or swing; empty: not known") for side in Side},
     },
     "events.csv": {
@@ -180,6 +220,10 @@ KNOWN: Mapping[str, Mapping[str, ColumnMeaning]] = {
         "distance_status": _word(f"{STATUS}stride length, speed and clearance"),
         **{f"{kind}_shape_status": _word(f"{STATUS}the {kind}'s range") for kind in FLEXION},
         **{f"{kind}_height_status": _word(f"{STATUS}the {kind}'s angles") for kind in FLEXION},
+        **HIP_STRIDES,
+        "hip_shape_status": _word(f"{STATUS}the hip's range"),
+        "hip_height_status": _word(f"{STATUS}the hip's angles"),
+        "pelvis_status": _word(f"{STATUS}the pelvis"),
     },
     "cycles.csv": CYCLES,
     "peaks.csv": {
@@ -231,6 +275,29 @@ KNOWN: Mapping[str, Mapping[str, ColumnMeaning]] = {
         **JUDGED,
         "symmetry_index_percent": ColumnMeaning("difference by the mean of both legs", AS_PARAMETER),
     },
+    "goals.csv": {
+        "recording": _word("its folder"),
+        "condition": _word("what was worn or set"),
+        "measure": _word("the column of strides.csv or peaks.csv, or the figure of both legs, that the goal is of"),
+        "side": _word("left, right, both (of the walk), or between (how far the legs are apart)"),
+        "limit": _word("at_least or at_most"),
+        "goal": ColumnMeaning("the value that was agreed", unit=AS_ROW),
+        "unit": _word("of goal, value and error"),
+        "agreed": _word("the day on which it was typed"),
+        "until": _word("the day by which it is to be reached, where one was named"),
+        "agreed_before": _word("true where it was agreed before the session's day: only then its standing is judged"),
+        "value": ColumnMeaning(
+            "mean over the strides used; between the legs, left less right", AS_PARAMETER, AS_ROW, AS_ROW
+        ),
+        "error": ColumnMeaning(
+            "what a difference has to exceed to be real, between visits, or between the legs", AS_PARAMETER, "", AS_ROW
+        ),
+        "status": _word(f"{STATUS}the value"),
+        "standing": _word(
+            "reached or short (by more than the error), reached_inside_error or short_inside_error (not told from the "
+            "goal), not_judged or unknown"
+        ),
+    },
     "targets.csv": {
         "recording": _word("its folder"),
         "condition": _word("what was worn or set"),
@@ -241,6 +308,29 @@ KNOWN: Mapping[str, Mapping[str, ColumnMeaning]] = {
         "reached": _word("values that, rounded to a whole number, reached the target"),
         "strides": _word("values that were told"),
         "reached_percent": ColumnMeaning("share of the values told that reached the target"),
+    },
+    "timed_test.csv": {
+        "recording": _word("its folder"),
+        "condition": _word("what was worn or set"),
+        "test": _word("which test the walk is, in the words of session.toml"),
+        "row": _word(
+            "what the row tells of: test, third, lap, turn, pause, rise, stair (a stride) or silence of a sensor"
+        ),
+        "number": _word("of the rows of this kind, from 1"),
+        "start_s": ColumnMeaning("of a test on the recording's clock, of its parts from the start of the test"),
+        "end_s": ColumnMeaning("likewise"),
+        "time_s": ColumnMeaning("from start to end"),
+        "distance_m": ColumnMeaning("what counts: where a key ended a walk between tapes the tapes', else the feet's"),
+        "sensor_distance_m": ColumnMeaning("by the feet's sensors, turns as arcs"),
+        "speed_m_s": ColumnMeaning("distance by time, pauses included"),
+        "cadence_steps_min": ColumnMeaning("of the median stride, pauses excluded", unit="steps/min"),
+        "turn_deg": ColumnMeaning("how far the body turned", sign="positive: to the left"),
+        "side": _word("of the foot that went up or down"),
+        "climb_m": ColumnMeaning("how much higher the foot came to stand", sign="positive: up"),
+        "started_by": _word("key or motion"),
+        "ended_by": _word("key or motion"),
+        "sensor": _word("the one that was silent"),
+        "missing": _word("why cells of the test are empty"),
     },
     "alignments.csv": {
         "walk": _word("the recording before which it was changed"),

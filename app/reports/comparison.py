@@ -21,23 +21,16 @@ from app.reports.alignments import alignments_of
 from app.reports.walk_figures import by_hand_in_words
 from app.wording import joined, later, tr
 from core.alignment import AlignmentChange
-from core.body import Joint, Side
+from core.body import LEG_JOINTS, Joint, Side
 from core.chosen_strides import left_out_by_hand
 from core.gait.cycles import POINTS, MeanCycle, mean_cycle
 from core.gait.spatiotemporal import BothFeet, MeanAndSd, mean_and_sd
 from core.gait.symmetry import symmetry_index_percent
+from core.goals import NO_GOALS, AgreedGoals
 from core.norms import MIN_STRIDES_FOR_MEAN
 from core.results import Analysis, JointCalibration, RecordingAnalysis, ZeroKind
 from core.samples import FloatArray, Recording, RecordingKind
-from core.verdicts.measurement_error import (
-    ANGLE_PER_LAG_DEG_S,
-    ComparisonKind,
-    Difference,
-    ErrorSource,
-    MeanOfStrides,
-    compare,
-    mean_of_strides,
-)
+from core.verdicts.measurement_error import ANGLE_PER_LAG_DEG_S, ComparisonKind, Difference, ErrorSource, compare
 from core.verdicts.model import Assessment, Verdict, Verdicts, pooled, together
 from core.verdicts.quantities import (
     CLASSES,
@@ -51,6 +44,7 @@ from core.verdicts.quantities import (
     raw_values,
     used_cycles,
 )
+from core.verdicts.stride_means import MeanOfStrides, mean_of_strides
 
 ERROR_SOURCES = {
     ErrorSource.CHANCE: later("chance between strides"),
@@ -110,6 +104,15 @@ MEASURES = (
     Measure(CADENCE, later("Cadence, steps/min"), "", "steps/min", 0, is_of_walk=True),
 )
 
+FITTED = (  # those of `core.verdicts.fitting` that the bench names where they are larger than their error
+    Measure("knee_terminal_extension_deg", later("Knee, straightest in swing"), "knee"),
+    Measure("knee_extended_before_contact_percent", later("Knee straight before contact"), "", "%"),
+    Measure("foot_heel_rise_deg", later("Heel rise"), ""),
+    Measure("foot_pitch_at_contact_deg", later("Foot pitch at contact"), ""),
+    Measure("foot_flat_percent", later("Foot flat, % of stride"), "", "%"),
+    Measure("shank_over_flat_foot_deg", later("Shank over the flat foot"), ""),
+)
+
 
 def sources_in_words(differences: Iterable[Difference]) -> str:
     """What the errors of some differences contain, each once."""
@@ -141,7 +144,8 @@ class Part:
 
     `attachment` numbers how often the sensors had been strapped on anew before; equal numbers of one visit share it.
     `visit` numbers the visits of a comparison of several, and `day` is when that visit was, if that is known.
-    `alignment` is what was changed at the prosthesis before it, and since which condition.
+    `alignment` is what was changed at the prosthesis before it, and since which condition; `agreed` are the goals by
+    its day.
     """
 
     letter: str
@@ -152,6 +156,7 @@ class Part:
     visit: int = 0
     day: date | None = None
     alignment: AlignmentChange | None = None
+    agreed: AgreedGoals = NO_GOALS
 
     @property
     def sides(self) -> tuple[Side, ...]:
@@ -161,7 +166,7 @@ class Part:
     def joints(self) -> tuple[Joint, ...]:
         """Those with mean cycles."""
         has = {joint for walk in self.walks for gait in walk.gait.values() for joint in gait.cycles}
-        return tuple(joint for joint in Joint if joint in has)
+        return tuple(joint for joint in LEG_JOINTS if joint in has)
 
     @cached_property
     def verdicts(self) -> Verdicts:
@@ -359,7 +364,7 @@ class Comparison:
 
     @property
     def joints(self) -> tuple[Joint, ...]:
-        return tuple(joint for joint in Joint if any(joint in part.joints for part in self.parts))
+        return tuple(joint for joint in LEG_JOINTS if any(joint in part.joints for part in self.parts))
 
     @property
     def is_one_attachment(self) -> bool:
@@ -444,7 +449,11 @@ class Comparison:
             other,
             part.value(side, column),
             other.value(side, column),
-            compare(column, kind, means[0], means[1], assessments, speed_apart_m_s=_speed_apart_m_s(part, other)),
+            compare(
+                *(column, kind, means[0], means[1], assessments),
+                speed_apart_m_s=_speed_apart_m_s(part, other),
+                is_chosen_before=part.agreed.is_chosen(column, (side,)),
+            ),
             self._reservation(measure, side, pair, assessments),
         )
 
@@ -456,7 +465,8 @@ class Comparison:
         reservation = Reservation.NONE if one.n and other.n else Reservation.NOT_MEASURED
         if any(found.verdict is Verdict.WITHHELD for found in assessments):
             reservation = Reservation.WITHHELD
-        difference = compare(column, kind, one, other, assessments)
+        is_chosen = part.agreed.is_chosen(column, Side)
+        difference = compare(column, kind, one, other, assessments, is_chosen_before=is_chosen)
         values = (part.figure(measure, side)[0], against.figure(measure, side)[0])
         return Compared(measure, side, part, against, *values, difference, reservation)
 
@@ -524,10 +534,13 @@ def compare_legs(part: Part, column: str, sides: tuple[Side, Side]) -> Differenc
     """A column of the first leg less that of the second."""
     one, other = (part.mean(side, column, ComparisonKind.LEGS) for side in sides)
     assessments = tuple(part.assessment(side, column) for side in sides)
-    return compare(column, ComparisonKind.LEGS, one, other, assessments)
+    is_chosen = part.agreed.is_chosen(column, sides)
+    return compare(column, ComparisonKind.LEGS, one, other, assessments, is_chosen_before=is_chosen)
 
 
-def conditions_of(analysis: Analysis, recordings: Sequence[Recording], prefix: str = "") -> tuple[Part, ...]:
+def conditions_of(
+    analysis: Analysis, recordings: Sequence[Recording], prefix: str = "", agreed: AgreedGoals = NO_GOALS
+) -> tuple[Part, ...]:
     """The walks of one session that have strides: those of the same condition and attachment together.
 
     Walks without a condition stay by themselves, named as recorded. Each has the letter of its condition in the
@@ -539,6 +552,8 @@ def conditions_of(analysis: Analysis, recordings: Sequence[Recording], prefix: s
         Those of the session, in order of time, whose conditions and attachments count.
     prefix
         Stands before each letter.
+    agreed
+        The goals by the session's day.
     """
     found: dict[tuple[str, int], list[RecordingAnalysis]] = {}
     told = {
@@ -560,6 +575,7 @@ def conditions_of(analysis: Analysis, recordings: Sequence[Recording], prefix: s
             analysis.calibrated_for(walks[0]),
             at,
             alignment=changed.get(name),
+            agreed=agreed,
         )
         for (name, at), walks in found.items()
         if (letter := letters[walks[0].name] if walks[0].name in letters else next(others, ""))

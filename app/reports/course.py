@@ -8,21 +8,23 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from app.reports.comparison import Part
+from app.reports.comparison import CADENCE, Part
 from app.reports.visits import by_condition
 from core.body import Joint, Side
+from core.goals import OF_LEGS
 from core.norms import MIN_STRIDES_FOR_MEAN
 from core.results import Analysis
 from core.samples import Recording
-from core.verdicts.measurement_error import ComparisonKind, Difference, MeanOfStrides, compare, whisker
+from core.verdicts.measurement_error import ComparisonKind, Difference, compare, whisker
 from core.verdicts.model import Assessment, GateReason, Verdict, together
+from core.verdicts.stride_means import MeanOfStrides
 
-FORMAT = "gaitwright-course/1"
+FORMAT = "gaitwright-course/2"
 SPEED = "speed_m_s"
 KNEE = "knee_stance_to_swing_deg"  # what stands for the knee: an excursion, which needs no zero
 STANCE = "stance_percent"
 PUSH_OFF = "ankle_push_off_deg"
-OF_A_LEG = (KNEE, PUSH_OFF, STANCE)
+OF_A_LEG = tuple(OF_LEGS)  # all that a goal can be of, so that its course can be shown
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,13 +65,12 @@ class CourseCondition:
     def figure(self, column: str, side: Side | None = None) -> CourseFigure | None:
         return next((one for one in self.figures if (one.column, one.side) == (column, side)), None)
 
-    @property
-    def stance_between_legs(self) -> Difference | None:
-        """Stance of the left leg less that of the right, percent of the stride; None with one leg."""
-        left, right = (self.figure(STANCE, side) for side in Side)
-        if left is None or right is None:
+    def between_legs(self, column: str) -> Difference | None:
+        """A figure of the left leg less that of the right, in the column's unit; None where one has none."""
+        left, right = (self.figure(column, side) for side in Side)
+        if left is None or right is None or Verdict.NOT_MEASURED in (left.verdict, right.verdict):
             return None
-        return compare(STANCE, ComparisonKind.LEGS, left.found, right.found, (left.assessment, right.assessment))
+        return compare(column, ComparisonKind.LEGS, left.found, right.found, (left.assessment, right.assessment))
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,7 +99,14 @@ def course_of(analysis: Analysis, recordings: Sequence[Recording]) -> Course:
     )
 
 
-def change(one: CourseCondition, first: CourseCondition, column: str, side: Side | None = None) -> Difference | None:
+def change(
+    one: CourseCondition,
+    first: CourseCondition,
+    column: str,
+    side: Side | None = None,
+    *,
+    is_chosen_before: bool = False,
+) -> Difference | None:
     """A figure less that of an earlier visit, judged as between visits; None where one of them has none."""
     pair = one.figure(column, side), first.figure(column, side)
     if pair[0] is None or pair[1] is None:
@@ -111,11 +119,12 @@ def change(one: CourseCondition, first: CourseCondition, column: str, side: Side
         pair[1].found,
         (pair[0].assessment, pair[1].assessment),
         speed_apart_m_s=abs(speeds[0] - speeds[1]) if len(speeds) == 2 else 0.0,
+        is_chosen_before=is_chosen_before,
     )
 
 
 def _condition(name: str, part: Part) -> CourseCondition:
-    figures = [_speed(part)]
+    figures = [_of_walk(part, column) for column in (SPEED, CADENCE)]
     for side in part.sides:
         for column in OF_A_LEG:
             found = part.assessment(side, column)
@@ -128,9 +137,9 @@ def _condition(name: str, part: Part) -> CourseCondition:
     return CourseCondition(name, sum(map(part.strides, part.sides)), tuple(figures), tuple(withheld))
 
 
-def _speed(part: Part) -> CourseFigure:
+def _of_walk(part: Part, column: str) -> CourseFigure:
     """Of both legs, as comparisons take it."""
-    return _figure(SPEED, None, part.of_walk(SPEED, ComparisonKind.VISITS), part.assessment_of_walk(SPEED))
+    return _figure(column, None, part.of_walk(column, ComparisonKind.VISITS), part.assessment_of_walk(column))
 
 
 def _figure(column: str, side: Side | None, found: MeanOfStrides, assessment: Assessment) -> CourseFigure:

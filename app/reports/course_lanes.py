@@ -9,24 +9,32 @@ import math
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
-from enum import StrEnum
+from typing import NamedTuple
 from uuid import UUID
 
-from app.reports.course import KNEE, SPEED, Course, CourseCondition, change
+from app.reports.course import KNEE, SPEED, STANCE, Course, CourseCondition, change
 from core.body import Side
+from core.goals import OF_WALKS, Goal, GoalOf, held
 from core.verdicts.measurement_error import Difference, Judgement
 from core.verdicts.model import Verdict
 
 MOST_TOGETHER = 4  # conditions in one lane: as many marks can be told apart
+USUAL_LANES, MOST_LANES = 3, 4  # without goals, and with as many
 
 
-class LaneKind(StrEnum):
-    SPEED = "speed"
-    KNEE = "knee"
-    STANCE = "stance"
+class LaneKind(NamedTuple):
+    """What a lane is of: a figure of the walk or of each leg, or by how much the left leg has more than the right."""
+
+    column: str
+    is_between: bool = False
+
+    @property
+    def is_of_walk(self) -> bool:
+        return self.column in OF_WALKS
 
 
-DECIMALS = {LaneKind.SPEED: 2, LaneKind.KNEE: 0, LaneKind.STANCE: 1}
+SPEED_LANE, KNEE_LANE, STANCE_LANE = LaneKind(SPEED), LaneKind(KNEE), LaneKind(STANCE, is_between=True)
+USUAL = (SPEED_LANE, KNEE_LANE, STANCE_LANE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,19 +90,35 @@ class LaneChange:
 
 @dataclass(frozen=True, slots=True)
 class CourseLane:
-    """`changes`: of the lines of the condition that is told of. `band`: its first visit less and plus the error."""
+    """`changes`: of the lines of the condition that is told of. `band`: its first visit less and plus the error.
+
+    `goals`: those that hold now.
+    """
 
     kind: LaneKind
     lines: tuple[LaneLine, ...]
     changes: tuple[LaneChange, ...]
     band: tuple[float, float] | None
+    goals: tuple[Goal, ...] = ()
+
+    @property
+    def goal_values(self) -> list[float]:
+        """Where goals are drawn: between the legs on both sides of no difference."""
+        signs = (1.0, -1.0) if self.kind.is_between else (1.0,)
+        return [sign * one.value for one in self.goals for sign in signs]
 
     @property
     def values(self) -> list[float]:
         """All that has to have a place in the lane."""
         points = [point for line in self.lines for point in line.told]
         ends = [end for p in points if math.isfinite(p.whisker) for end in (p.value - p.whisker, p.value + p.whisker)]
-        return [*(point.value for point in points), *ends, *(self.band or ())]
+        return [*(point.value for point in points), *ends, *(self.band or ()), *self.goal_values]
+
+
+def walked_at(visits: Sequence[CourseVisit], line: LaneLine) -> CourseCondition | None:
+    """What was kept of the last visit that has a value in a line."""
+    course = visits[line.points[-1].visit].course if line.points else None
+    return course.condition(line.condition) if course is not None else None
 
 
 def conditions_of_visits(visits: Sequence[CourseVisit]) -> dict[str, int]:
@@ -103,8 +127,24 @@ def conditions_of_visits(visits: Sequence[CourseVisit]) -> dict[str, int]:
     return dict(Counter(latest_first).most_common())
 
 
-def lanes(visits: Sequence[CourseVisit], condition: str | None = None) -> tuple[CourseLane, ...]:
-    """Speed, knee and stance over the visits, in order of time.
+def lane_kinds(goals: Sequence[Goal] = ()) -> tuple[LaneKind, ...]:
+    """What has a lane: first what goals are of, then the usual ones as far as there is room."""
+    wanted = dict.fromkeys(_kind(goal) for goal in held(goals))
+    own = [*(kind for kind in USUAL if kind in wanted), *(kind for kind in wanted if kind not in USUAL)]
+    few = own[:MOST_LANES]
+    return (*few, *[kind for kind in USUAL if kind not in own][: max(USUAL_LANES - len(few), 0)])
+
+
+def without_lane(goals: Sequence[Goal]) -> tuple[Goal, ...]:
+    """Goals that hold and whose course has no room."""
+    shown = lane_kinds(goals)
+    return tuple(goal for goal in held(goals) if _kind(goal) not in shown)
+
+
+def lanes(
+    visits: Sequence[CourseVisit], condition: str | None = None, goals: Sequence[Goal] = ()
+) -> tuple[CourseLane, ...]:
+    """What goals are of, speed, knee and stance over the visits, in order of time.
 
     Parameters
     ----------
@@ -116,18 +156,22 @@ def lanes(visits: Sequence[CourseVisit], condition: str | None = None) -> tuple[
     told = shown[0] if shown else ""
     affected = next((visit.course.affected for visit in reversed(visits) if visit.course is not None), None)
     sides = (affected,) if affected is not None else tuple(Side)
-    of_legs: dict[LaneKind, tuple[Side | None, ...]] = {
-        LaneKind.SPEED: (None,),
-        LaneKind.KNEE: sides,
-        LaneKind.STANCE: (None,),
-    }
     found = []
-    for kind, wanted in of_legs.items():
+    for kind in lane_kinds(goals):
+        own = tuple(one for one in held(goals) if _kind(one) == kind)
+        wanted: tuple[Side | None, ...] = (None,)
+        if not (kind.is_between or kind.is_of_walk):
+            with_goal = {one.of.side for one in own}
+            wanted = tuple(side for side in Side if side in sides or side in with_goal)
         lines = [_line(visits, kind, one, side) for one in shown for side in wanted]
         lines = [line for line in lines if line.points]
         changes = [_change(visits, kind, line) for line in lines if line.condition == told]
-        found.append(CourseLane(kind, tuple(lines), tuple(changes), _band(lines, told)))
+        found.append(CourseLane(kind, tuple(lines), tuple(changes), _band(lines, told), own))
     return tuple(found)
+
+
+def _kind(goal: Goal) -> LaneKind:
+    return LaneKind(goal.column, goal.of is GoalOf.BETWEEN)
 
 
 def _line(visits: Sequence[CourseVisit], kind: LaneKind, condition: str, side: Side | None) -> LaneLine:
@@ -141,13 +185,13 @@ def _line(visits: Sequence[CourseVisit], kind: LaneKind, condition: str, side: S
 
 def _point(number: int, walked: CourseCondition, kind: LaneKind, side: Side | None) -> LanePoint | None:
     """None where it was not measured."""
-    if kind is LaneKind.STANCE:
-        between = walked.stance_between_legs
+    if kind.is_between:
+        between = walked.between_legs(kind.column)
         if between is None:
             return None
         is_withheld = between.judgement is Judgement.WITHHELD
         return LanePoint(number, between.difference, math.nan, Verdict.WITHHELD if is_withheld else Verdict.READ)
-    figure = walked.figure(SPEED if kind is LaneKind.SPEED else KNEE, side)
+    figure = walked.figure(kind.column, side)
     if figure is None or figure.verdict is Verdict.NOT_MEASURED:
         return None
     return LanePoint(number, figure.found.mean if figure.is_told else math.nan, figure.whisker, figure.verdict)
@@ -165,13 +209,13 @@ def _change(visits: Sequence[CourseVisit], kind: LaneKind, line: LaneLine) -> La
 def _difference(
     visits: Sequence[CourseVisit], kind: LaneKind, line: LaneLine, last: LanePoint, first: LanePoint
 ) -> Difference | None:
-    if kind is LaneKind.STANCE:  # what legs differ by at one visit and another: no error of that is known
+    if kind.is_between:  # what legs differ by at one visit and another: no error of that is known
         return Difference(last.value - first.value, math.nan, Judgement.NO_PUBLISHED_FIGURE)
     walked = [course.condition(line.condition) for at in (last, first) if (course := visits[at.visit].course)]
     one, other = walked
     assert one is not None  # both have a point in this line
     assert other is not None
-    return change(one, other, SPEED if kind is LaneKind.SPEED else KNEE, line.side)
+    return change(one, other, kind.column, line.side)
 
 
 def _band(lines: Sequence[LaneLine], condition: str) -> tuple[float, float] | None:

@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path, PurePosixPath
 
+from app.reports.agreed import agreed_with
 from app.reports.alignments import ALIGNMENTS, write_alignments
 from app.reports.columns import COLUMNS, write_columns
 from app.reports.comparison import Comparison, Contrast, conditions_of, first_and_second
@@ -28,9 +29,13 @@ from app.reports.differences import (
 from app.reports.fitting_csv import MEANS as FITTING_MEANS
 from app.reports.fitting_csv import fitting_means, write_fitting_strides
 from app.reports.gait_csv import peak_table, write_gait
+from app.reports.goals_csv import GOALS, goal_rows
+from app.reports.goals_csv import HEADER as GOAL_COLUMNS
 from app.reports.summary import MOST_BYTES, read_summary, write_summary
 from app.reports.targets import HEADER as TARGET_COLUMNS
 from app.reports.targets import TARGETS, target_rows
+from app.reports.timed_csv import HEADER as TIMED_COLUMNS
+from app.reports.timed_csv import TIMED, timed_rows
 from core.results import Analysis
 from core.samples import Session
 from devices.files.refusal import FileRefusedError
@@ -47,7 +52,7 @@ TAKEN = tuple(
     (name,)
     for name in (
         *(SUMMARY, LOG, REPORT, OWN_SESSION),
-        *(PEAKS, FITTING_MEANS, ALIGNMENTS, DIFFERENCES, COMPARED_CYCLES, SIDES, TARGETS),
+        *(PEAKS, FITTING_MEANS, ALIGNMENTS, DIFFERENCES, COMPARED_CYCLES, SIDES, TARGETS, GOALS, TIMED),
         *(VISITS, VISITS_CYCLES, COLUMNS, METADATA),
     )
 )
@@ -74,11 +79,15 @@ def write_results(session: Session, analysis: Analysis, folder: Path) -> None:
     if any(recording.gait for recording in analysis.recordings):
         write_table(*peak_table(analysis.recordings), folder / PEAKS)
         write_table(*fitting_means(analysis.recordings), folder / FITTING_MEANS)
+    if goals := [*goal_rows(analysis, session.recordings, agreed_with(session))]:
+        write_table(GOAL_COLUMNS, goals, folder / GOALS)
     if targets := [*target_rows(session.recordings)]:
         write_table(TARGET_COLUMNS, targets, folder / TARGETS)
+    if tests := [*timed_rows(analysis, session.recordings)]:
+        write_table(TIMED_COLUMNS, tests, folder / TIMED)
     _write_comparisons(session, analysis, folder)
     describe_tables(analysis, folder)
-    write_summary(analysis, folder / SUMMARY, session.recordings)
+    write_summary(analysis, folder / SUMMARY, session.recordings, agreed_with(session))
 
 
 def describe_tables(analysis: Analysis, folder: Path) -> None:
@@ -96,7 +105,7 @@ def describe_tables(analysis: Analysis, folder: Path) -> None:
 
 def _write_comparisons(session: Session, analysis: Analysis, folder: Path) -> None:
     """The conditions of the session, each against the first and the one it was changed from, and the legs of each."""
-    parts = conditions_of(analysis, session.recordings)
+    parts = conditions_of(analysis, session.recordings, agreed=agreed_with(session))
     write_alignments(session.recordings, folder / ALIGNMENTS)
     if len(parts) > 1:
         write_differences(rows_along_chain(Comparison(Contrast.CONDITIONS, parts)), folder / DIFFERENCES)

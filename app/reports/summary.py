@@ -11,17 +11,21 @@ import numpy as np
 from app.gates_in_words import gate_sentence
 from app.reports.comparison import Part, compare_legs, first_and_second
 from app.reports.fitting_csv import fitting_of_side
+from app.reports.goals_csv import goal_figures, goals_of_walk
+from app.reports.pelvis_summary import hip_figures, summarise_pelvis
 from app.reports.reference_bands import reference_curves
+from app.reports.timed_csv import timed_summary
 from app.wording import sentence
 from core.alignment import alignment_table
 from core.body import Joint, Side
 from core.chosen_strides import left_out_by_hand
 from core.findings import Finding
 from core.gait.symmetry import curve_difference, gait_variable_score, symmetry_index_percent
+from core.goals import NO_GOALS, AgreedGoals
 from core.results import Analysis, JointCalibration, RecordingAnalysis
 from core.samples import FloatArray, Recording, RecordingKind
-from core.verdicts.measurement_error import ComparisonKind, mean_of_strides, whisker
-from core.verdicts.model import Assessment, JointVerdicts, LegVerdicts, Verdicts
+from core.verdicts.measurement_error import ComparisonKind, whisker
+from core.verdicts.model import Assessment, JointVerdicts, LegVerdicts, Verdict, Verdicts
 from core.verdicts.quantities import (
     OF_BOTH,
     PARAMETERS,
@@ -31,6 +35,7 @@ from core.verdicts.quantities import (
     side_mean,
     values_of,
 )
+from core.verdicts.stride_means import mean_of_strides
 
 FORMAT = "gaitwright-analysis/1"
 MOST_BYTES = 50_000_000  # of a file that may be one: ours take a few hundred kilobytes
@@ -48,7 +53,9 @@ SYMMETRIC = (
 )
 
 
-def write_summary(analysis: Analysis, path: Path, recordings: Sequence[Recording] = ()) -> None:
+def write_summary(
+    analysis: Analysis, path: Path, recordings: Sequence[Recording] = (), agreed: AgreedGoals = NO_GOALS
+) -> None:
     """Write `summary.json`; `recordings` are the session's, whose alignments are told beside their walks.
 
     Raises
@@ -56,7 +63,7 @@ def write_summary(analysis: Analysis, path: Path, recordings: Sequence[Recording
     OSError
         The file cannot be written.
     """
-    text = json.dumps(summarise(analysis, recordings), indent=2, ensure_ascii=False, allow_nan=False)
+    text = json.dumps(summarise(analysis, recordings, agreed), indent=2, ensure_ascii=False, allow_nan=False)
     # a file's name may hold bytes that are no text: what replaces them is an escape of JSON too
     path.write_text(text + "\n", encoding="utf-8", errors="backslashreplace", newline="\n")
 
@@ -73,10 +80,14 @@ def read_summary(path: Path) -> dict[str, Any] | None:
     return summary if is_ours else None
 
 
-def summarise(analysis: Analysis, recordings: Sequence[Recording] = ()) -> dict[str, Any]:
+def summarise(
+    analysis: Analysis, recordings: Sequence[Recording] = (), agreed: AgreedGoals = NO_GOALS
+) -> dict[str, Any]:
     """Give the content of `summary.json`; `joints` holds each joint's last calibration.
 
-    A walk before which a prosthesis was changed has `alignment`: since which condition, and each part's figures.
+    A walk before which a prosthesis was changed has `alignment`: since which condition, and each part's figures. One
+    that is a timed test has `timed_test`. Where goals had been agreed by the session's day, each walk has `goals`, by
+    the columns of goals.csv.
     """
     changed = {one.name: alignment_table(one.alignment) for one in recordings if one.alignment is not None}
     calibrations = [{"walks": list(span.walks), "joints": _joints(span.joints)} for span in analysis.calibrations]
@@ -88,12 +99,18 @@ def summarise(analysis: Analysis, recordings: Sequence[Recording] = ()) -> dict[
         "joints": _joints(last),
         "calibrations": calibrations,
         "walks": {
-            walk.name: _walk(analysis, walk) | ({"alignment": changed[walk.name]} if walk.name in changed else {})
+            walk.name: _walk(analysis, walk)
+            | ({"alignment": changed[walk.name]} if walk.name in changed else {})
+            | ({"goals": _goals(analysis, walk, agreed)} if agreed.held else {})
             for walk in walks
         },
         "reference_group": _reference_group(),
         "findings": [_finding(finding) for finding in analysis.findings],
     }
+
+
+def _goals(analysis: Analysis, walk: RecordingAnalysis, agreed: AgreedGoals) -> list[dict[str, Any]]:
+    return [dict(goal_figures(one, agreed)) for one in goals_of_walk(analysis, walk, agreed)] if walk.gait else []
 
 
 def _reference_group() -> dict[str, Any]:
@@ -110,7 +127,9 @@ def _walk(analysis: Analysis, recording: RecordingAnalysis) -> dict[str, Any]:
     for name in OF_BOTH:
         both[name] = _number(getattr(feet, name))
         both[f"{name}_status"] = str(assessment_of_both(recording.verdicts, name).verdict)
-    walk = {**sides, "both": both, "verdicts": _verdicts(recording.verdicts)}
+    walk = {**sides, "both": both, "verdicts": _verdicts(recording.verdicts), **summarise_pelvis(recording)}
+    if recording.timed is not None:
+        walk["timed_test"] = timed_summary(recording.timed)
     if len(recording.gait) < len(Side):
         return walk
     one, other = pair = first_and_second(analysis.affected_side)
@@ -145,7 +164,7 @@ def _side(side: Side, recording: RecordingAnalysis) -> dict[str, Any]:
     joints = {kind: Joint(f"{side}_{kind}") for kind in KINDS}
     scores = {kind: _number(_score_deg(recording, joint)) for kind, joint in joints.items()}
     fitting = fitting_of_side(recording, side)
-    return {**figures, "gait_variable_score_deg": scores, "fitting": fitting}
+    return {**figures, "gait_variable_score_deg": scores, "fitting": fitting, **hip_figures(recording, side)}
 
 
 def _score_deg(recording: RecordingAnalysis, joint: Joint) -> float:
@@ -183,9 +202,10 @@ def _side_difference(part: Part, name: str, sides: tuple[Side, Side]) -> dict[st
 
 def _verdicts(found: Verdicts) -> dict[str, Any]:
     """Give every verdict of a walk with its reasons in words; a joint or leg that was not worn says so."""
-    joints = {str(joint): _parts(found.joint(joint), ("shape", "height", "sign")) for joint in Joint}
+    joints = {str(joint): _parts(found.joint(joint), ("shape", "height", "sign")) for joint in found.told_joints}
     legs = {str(side): _parts(found.leg(side), ("timing", "distance")) for side in Side}
-    return {**joints, **legs, "between": _assessment(found.between)}
+    more = {} if found.pelvis.verdict is Verdict.NOT_MEASURED else {"pelvis": _assessment(found.pelvis)}
+    return {**joints, **legs, "between": _assessment(found.between), **more}
 
 
 def _parts(found: JointVerdicts | LegVerdicts, names: tuple[str, ...]) -> dict[str, Any]:

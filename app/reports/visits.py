@@ -11,17 +11,19 @@ from typing import NamedTuple
 
 from app.reports.comparison import Part, conditions_of
 from app.wording import tr
+from core.goals import NO_GOALS, AgreedGoals
 from core.results import Analysis
 from core.samples import Recording
 
 
 class WalkedVisit(NamedTuple):
-    """A visit's name, what came of it, its recordings in order of time, whose conditions count, and its day."""
+    """A visit's name, what came of it, its recordings in order of time, whose conditions count, its day and goals."""
 
     name: str
     analysis: Analysis
     recordings: Sequence[Recording]
     day: date | None = None
+    agreed: AgreedGoals = NO_GOALS
 
 
 @dataclass(frozen=True)
@@ -43,17 +45,19 @@ class ComparedVisits:
     without: tuple[str, ...]
 
 
-def by_condition(analysis: Analysis, recordings: Sequence[Recording], prefix: str = "") -> Mapping[str, Part]:
+def by_condition(
+    analysis: Analysis, recordings: Sequence[Recording], prefix: str = "", agreed: AgreedGoals = NO_GOALS
+) -> Mapping[str, Part]:
     """Each condition of a visit as it was walked last: of several strappings the last, and so of walks without one."""
     stated = {recording.name: recording.condition for recording in recordings}
-    parts = conditions_of(analysis, recordings, prefix)
+    parts = conditions_of(analysis, recordings, prefix, agreed)
     return {stated.get(part.walks[0].name, ""): part for part in parts}
 
 
 def visits_by_condition(visits: Sequence[WalkedVisit]) -> tuple[ComparedVisits, ...]:
     """The conditions of the last visit that an earlier one has as well; visits are lettered 1, 2 and so on."""
     each = [
-        (str(number), visit, by_condition(visit.analysis, visit.recordings))
+        (str(number), visit, by_condition(visit.analysis, visit.recordings, agreed=visit.agreed))
         for number, visit in enumerate(visits, start=1)
     ]
     found = []
@@ -74,7 +78,7 @@ def parts_of_visits(visits: Sequence[WalkedVisit]) -> tuple[Part, ...]:
     return tuple(
         replace(part, name=f"{visit.name}, {condition_in_words(condition)}", visit=number, day=visit.day)
         for number, visit in enumerate(visits, start=1)
-        for condition, part in by_condition(visit.analysis, visit.recordings, str(number)).items()
+        for condition, part in by_condition(visit.analysis, visit.recordings, str(number), visit.agreed).items()
     )
 
 

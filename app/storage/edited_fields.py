@@ -10,15 +10,22 @@ from typing import Any
 from app.storage.stored import Limits
 from app.storage.three_way import Value, Values
 from core.alignment import alignment_of_text, alignment_text
-from core.body import Joint, Side
+from core.body import LEG_JOINTS, Side
+from core.goals import GOAL_COLUMNS, GoalKey, goals_of_text, goals_text, ordered, whose
 from core.samples import Patient, Recording, RecordingKind, Session
+from core.timed.protocols import planned_of_text, planned_text
 
-PATIENT_CORRECTABLE = tuple(field.name for field in fields(Patient) if field.name != "unknown")
+PATIENT_CORRECTABLE = tuple(field.name for field in fields(Patient) if field.name not in ("goals", "unknown"))
 KEPT = "is_kept"
 PLACEMENT = "placement"
 """What a contest about who wears what is called; it is no field of a row that is edited."""
 ALIGNMENT = "alignment"
 """What was changed at the prosthesis is one field: a chain whose parts came from two people would be nobody's."""
+GOALS = "goals"
+"""What was agreed of each figure is one field, with what it replaced: two people may agree on two figures' goals."""
+GOAL_KEYS = tuple((column, of) for column in GOAL_COLUMNS for of in whose(column))
+TEST = "test"
+"""Which test a walk is is one field, with its keys: they belong to no other."""
 SIDES = ("affected_side", "prosthetic_side")
 SESSION_CORRECTABLE = ("started", "operator", "surface", "notes", "software")
 RECORDING_CORRECTABLE = ("name", "kind", "condition", "started", "is_kept", "note", "is_restrapped_before")
@@ -27,22 +34,29 @@ RECORDING_CORRECTABLE = ("name", "kind", "condition", "started", "is_kept", "not
 def patient_fields(told: Patient) -> dict[str, Value]:
     """Both sides are one field: which is affected and which prosthetic is said in one go."""
     values: dict[str, Value] = {name: getattr(told, name) for name in PATIENT_CORRECTABLE if name not in SIDES}
-    return values | {"sides": ",".join(getattr(told, name) for name in SIDES)}
+    values |= {"sides": ",".join(getattr(told, name) for name in SIDES)}
+    return values | {goal_field(key): goals_text([one for one in told.goals if one.key == key]) for key in GOAL_KEYS}
+
+
+def goal_field(key: GoalKey) -> str:
+    """What the goals of one figure are called among the fields of a patient."""
+    return f"{GOALS}.{key[0]}.{key[1]}"
 
 
 def with_patient_fields(told: Patient, values: Values) -> Patient:
     """The same patient with `values`, which may be of some fields only."""
     every: dict[str, Any] = patient_fields(told) | dict(values)
     affected, prosthetic = every.pop("sides").split(",")
-    return replace(told, affected_side=affected, prosthetic_side=prosthetic, **every)
+    goals = ordered(goal for key in GOAL_KEYS for goal in goals_of_text(every.pop(goal_field(key))))
+    return replace(told, affected_side=affected, prosthetic_side=prosthetic, goals=goals, **every)
 
 
 def session_fields(told: Session, comment: str, limits: Limits) -> dict[str, Value]:
     values: dict[str, Value] = {name: getattr(told, name) for name in SESSION_CORRECTABLE}
     values |= {"comment": comment, "cannot_stand": limits.cannot_stand}
     values |= {f"without_ankle.{side}": side in limits.without_ankle for side in Side}
-    values |= {f"zero_rad.{joint}": told.zero_rad.get(joint) for joint in Joint}
-    return values | {f"turned_sign.{joint}": told.turned_sign.get(joint) for joint in Joint}
+    values |= {f"zero_rad.{joint}": told.zero_rad.get(joint) for joint in LEG_JOINTS}
+    return values | {f"turned_sign.{joint}": told.turned_sign.get(joint) for joint in LEG_JOINTS}
 
 
 def with_session_fields(told: Session, comment: str, limits: Limits, values: Values) -> tuple[Session, str, Limits]:
@@ -50,8 +64,8 @@ def with_session_fields(told: Session, comment: str, limits: Limits, values: Val
     every: Mapping[str, Any] = session_fields(told, comment, limits) | dict(values)
     said = replace(
         told,
-        zero_rad={joint: every[f"zero_rad.{joint}"] for joint in Joint if every[f"zero_rad.{joint}"] is not None},
-        turned_sign={joint: every[f"turned_sign.{joint}"] for joint in Joint if every[f"turned_sign.{joint}"]},
+        zero_rad={joint: every[f"zero_rad.{joint}"] for joint in LEG_JOINTS if every[f"zero_rad.{joint}"] is not None},
+        turned_sign={joint: every[f"turned_sign.{joint}"] for joint in LEG_JOINTS if every[f"turned_sign.{joint}"]},
         **{name: every[name] for name in SESSION_CORRECTABLE},
     )
     without = frozenset(side for side in Side if every[f"without_ankle.{side}"])
@@ -60,7 +74,7 @@ def with_session_fields(told: Session, comment: str, limits: Limits, values: Val
 
 def recording_fields(told: Recording) -> dict[str, Value]:
     values: dict[str, Value] = {name: getattr(told, name) for name in RECORDING_CORRECTABLE}
-    values |= {ALIGNMENT: alignment_text(told.alignment)}
+    values |= {ALIGNMENT: alignment_text(told.alignment), TEST: planned_text(told.test)}
     return values | {f"left_out_s.{side}": tuple(sorted(told.left_out_s.get(side, ()))) for side in Side}
 
 
@@ -70,4 +84,7 @@ def with_recording_fields(told: Recording, values: Values) -> Recording:
     left_out_s = {side: every[f"left_out_s.{side}"] for side in Side if every[f"left_out_s.{side}"]}
     own = {name: every[name] for name in RECORDING_CORRECTABLE if name != "kind"}
     alignment = alignment_of_text(every[ALIGNMENT])
-    return replace(told, kind=RecordingKind(every["kind"]), left_out_s=left_out_s, alignment=alignment, **own)
+    test = planned_of_text(every[TEST])
+    return replace(
+        told, kind=RecordingKind(every["kind"]), left_out_s=left_out_s, alignment=alignment, test=test, **own
+    )

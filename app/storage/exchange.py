@@ -15,7 +15,7 @@ from app.storage.database.ids import uuid7
 from app.storage.journal.decoding import DecodedJournal, Decoders, decode
 from app.storage.journal.disk import ROOM, TOLD, Room, Trouble
 from app.storage.journal.header import RESTORE, JournalRefusedError
-from app.storage.journal.payloads import layout_of
+from app.storage.journal.payloads import layout_of, with_keys
 from app.storage.journal.writer import JournalSummary, JournalWriter, State
 from app.storage.opened import OpenedLibrary, Report
 from app.storage.pseudonyms import Pseudonyms, Typed
@@ -85,8 +85,10 @@ def import_session(
     differing = tuple(
         name
         for name in type(wanted).__slots__
-        if name != "code" and getattr(wanted, name) != getattr(patient.details, name)
+        if name not in ("code", "goals") and getattr(wanted, name) != getattr(patient.details, name)
     )
+    if not set(wanted.goals) <= set(patient.details.goals):
+        differing = (*differing, "goals")
     visit = library.sessions.create(patient.id, replace(session, recordings=(), sensors={}))
     try:
         _import_recordings(opened, visit.id, session, report, room)
@@ -140,7 +142,8 @@ def recording_with_samples(
     read = decoded.recording(recording.details, placement)
     names = _own_names(decoded)
     imu = {site: replace(block, sensor=names.get(block.sensor, block.sensor)) for site, block in read.imu.items()}
-    return replace(read, imu=imu), tuple(_file_findings(recording, decoded))
+    test = with_keys(read.test, ((mark.time_s, mark.text) for mark in decoded.marks))
+    return replace(read, imu=imu, test=test), tuple(_file_findings(recording, decoded))
 
 
 def export_session(

@@ -10,12 +10,20 @@ from sqlalchemy.orm import Session as OrmSession
 from app.storage.audit import about, entry_of, note
 from app.storage.corrections import apply, corrections_of_patient, differences, unchanged
 from app.storage.database.models import AuditRow, PatientRow, ResultRow, SessionRow, folded
-from app.storage.database.values import PATIENT_FIELDS, stored_patient, stored_patients, stored_result, stored_session
+from app.storage.database.values import (
+    patient_in_row,
+    stored_patient,
+    stored_patients,
+    stored_result,
+    stored_session,
+    told_patient,
+)
 from app.storage.edited_fields import PATIENT_CORRECTABLE
 from app.storage.sessions import refuse_early
 from app.storage.stored import Action, Change, LibraryError, PatientFile, Role, StoredPatient
 from app.storage.unit_of_work import UnitOfWork
 from app.wording import tr
+from core.goals import brought_together, goals_text
 from core.samples import Patient
 from devices.files.session_toml import PATIENT
 
@@ -37,7 +45,7 @@ class Patients:
         with self._unit.writing(Role.CLINICIAN) as session:
             told = _checked(told)
             _refuse_taken(session, told.code)
-            row = PatientRow(created_at=self._unit.now(), **{name: getattr(told, name) for name in PATIENT_FIELDS})
+            row = PatientRow(created_at=self._unit.now(), **patient_in_row(told))
             session.add(row)
             session.flush()
             note(self._unit, session, Action.CREATE, about("patient", row.id))
@@ -90,7 +98,7 @@ class Patients:
             return stored_patient(session, row)
 
     def merge(self, kept: StoredPatient, double: StoredPatient) -> StoredPatient:
-        """Give `kept` all sessions of `double`, and what only `double` tells; `double` is then no longer listed.
+        """Give `kept` all sessions and goals of `double`, and what only `double` tells, which is then not listed.
 
         One correction of `kept`, undone as any other.
 
@@ -110,8 +118,9 @@ class Patients:
                 for name in PATIENT_CORRECTABLE
                 if getattr(row, name) in (None, "") and getattr(other, name) not in (None, "")
             }
+            goals = brought_together(*(told_patient(one).goals for one in (row, other)))
             moved = session.scalars(select(SessionRow).where(SessionRow.patient_id == other.id))
-            changes = differences(row, filled)
+            changes = differences(row, filled | {"goals": goals_text(goals)})
             changes += [change for visit in moved for change in differences(visit, {"patient_id": row.id})]
             doubles = [*session.scalars(select(PatientRow).where(PatientRow.merged_into_id == other.id)), other]
             changes += [change for one in doubles for change in differences(one, {"merged_into_id": row.id})]
@@ -186,7 +195,7 @@ def patient_changes(session: OrmSession, row: PatientRow, told: Patient) -> list
     told = _checked(told)
     if folded(told.code) != row.code_folded:
         _refuse_taken(session, told.code)
-    return differences(row, {name: getattr(told, name) for name in PATIENT_CORRECTABLE})
+    return differences(row, patient_in_row(told, PATIENT_CORRECTABLE))
 
 
 def existing_patient(session: OrmSession, patient_id: UUID) -> PatientRow:

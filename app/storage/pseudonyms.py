@@ -6,8 +6,9 @@ What may say a name is left out: notes, operator, software, keys and columns tha
 names that we give, sensors and their clocks are numbered. In place of the year of birth stands the age at the visit,
 90 and older as one. What somebody typed freely, device, aids, surface and conditions, leaves only where it is asked
 for, each by itself; without their words conditions are numbered, so that equal ones are still equal. What was changed
-at a prosthesis stays, part by part with its figures; what was typed of it leaves only where it is asked for. Sex,
-height, mass and sides stay. This is pseudonymous, not anonymous: gait itself can be recognised.
+at a prosthesis stays, part by part with its figures; what was typed of it leaves only where it is asked for. Goals
+stay, without who agreed on them and what was typed of them. Sex, height, mass and sides stay. This is pseudonymous, not
+anonymous: gait itself can be recognised.
 """
 
 import base64
@@ -20,6 +21,7 @@ from uuid import UUID
 
 from app.storage.unit_of_work import DEMO
 from core.alignment import FIGURES, AlignmentChange, PartChange
+from core.goals import Goal
 from core.samples import Patient, Recording, SensorInfo, Session
 from core.targets import tallies_of, with_tallies
 from devices.files.imports import folder_for, free_name
@@ -99,8 +101,20 @@ class Pseudonyms:
             sex=told.sex if told.sex in SEXES else "",
             device=told.device if Typed.DEVICE in kept else "",
             aids=told.aids if Typed.AIDS in kept else "",
+            goals=tuple(self._goal(patient_id, goal) for goal in told.goals),
             unknown={AGE: age} if age else {},
         )
+
+    def _goal(self, patient_id: UUID, goal: Goal) -> Goal:
+        """A goal without who agreed on it and what was typed of it, its days as long before as all others."""
+
+        def shifted(day: datetime.date | None) -> datetime.date | None:
+            moved = self.shifted(patient_id, day.isoformat()) if day is not None else ""
+            return datetime.date.fromisoformat(moved) if moved else None
+
+        agreed, until, ended = shifted(goal.agreed), shifted(goal.until), shifted(goal.ended)
+        own = replace(goal, by="", note="", ended_by="", until=until, ended=ended)
+        return replace(own, agreed=agreed or datetime.date.min)
 
     def _recording(self, patient_id: UUID, recording: Recording, name: str, sensors: Mapping[str, str]) -> Recording:
         return replace(

@@ -16,9 +16,11 @@ from typing import Any
 import tomli_w
 
 from core.alignment import alignment_of_table, alignment_table
-from core.body import Joint, Side, Site
+from core.body import LEG_JOINTS, Joint, Side, Site
 from core.findings import Finding, Severity
+from core.goals import goal_table, goals_of_tables
 from core.samples import Patient, RateKind, Recording, RecordingKind, SensorInfo, Session
+from core.timed.protocols import TABLE_KEYS, planned_of_table, planned_table
 from devices.files.refusal import FileRefusedError, quoted
 
 FORMAT = "gaitwright-session/1"
@@ -168,8 +170,8 @@ RECORDING: Mapping[str, Known] = {
 }
 REQUIRED = ("name", "kind", "folder")
 TABLES = ("session", "patient", "sensors", "zero", "sign")
-ZERO: Mapping[str, Known] = {joint.value: (joint.value, _number(-180.0, 180.0, "degrees")) for joint in Joint}
-SIGN: Mapping[str, Known] = {joint.value: (joint.value, _sign) for joint in Joint}
+ZERO: Mapping[str, Known] = {joint.value: (joint.value, _number(-180.0, 180.0, "degrees")) for joint in LEG_JOINTS}
+SIGN: Mapping[str, Known] = {joint.value: (joint.value, _sign) for joint in LEG_JOINTS}
 
 
 def parse(text: str) -> tuple[Session, tuple[Plan, ...]]:
@@ -214,6 +216,8 @@ def parse_document(document: Table) -> tuple[Session, tuple[Plan, ...]]:
     session_values, session_unknown = _take(tables["session"], SESSION, "[session]")
     patient_values, patient_unknown = _take(tables["patient"], PATIENT, "[patient]")
     zero_deg, zero_unknown = _take(tables["zero"], ZERO, "[zero]")
+    goals = goals_of_tables(patient_unknown.get("goals"))
+    patient_unknown = {key: value for key, value in patient_unknown.items() if not (key == "goals" and goals)}
     signs, sign_unknown = _take(tables["sign"], SIGN, "[sign]")
     sensors = {site: _sensor(tables["sensors"], site) for site in Site if site in tables["sensors"]}
     nested = {
@@ -225,7 +229,7 @@ def parse_document(document: Table) -> tuple[Session, tuple[Plan, ...]]:
     top = {key: value for key, value in document.items() if key not in ("format", "recordings", *TABLES)}
     session = Session(
         recordings=(),
-        patient=Patient(**patient_values, unknown=patient_unknown),
+        patient=Patient(**patient_values, goals=goals or (), unknown=patient_unknown),
         sensors=sensors,
         zero_rad={Joint(key): math.radians(value) for key, value in zero_deg.items()},
         turned_sign={Joint(key): value for key, value in signs.items()},
@@ -249,7 +253,7 @@ def render(session: Session, plans: Sequence[Plan]) -> str:
     document: dict[str, object] = {
         "format": FORMAT,
         "session": _render(session, SESSION) | nested["session"],
-        "patient": _render(session.patient, PATIENT) | dict(session.patient.unknown),
+        "patient": _render_patient(session.patient),
         "sensors": sensors | nested["sensors"],
         "zero": zero_deg | nested["zero"],
         "sign": {joint.value: sign for joint, sign in session.turned_sign.items()} | nested["sign"],
@@ -328,7 +332,9 @@ def _plans(tables: object) -> tuple[Plan, ...]:
         unknown = {key: value for key, value in unknown.items() if not (key == "strides_left_out" and left_out_s)}
         alignment = alignment_of_table(unknown.get("alignment"))
         unknown = {key: value for key, value in unknown.items() if not (key == "alignment" and alignment)}
-        recording = Recording(imu={}, left_out_s=left_out_s, alignment=alignment, unknown=unknown, **values)
+        test = planned_of_table(unknown)
+        unknown = {key: value for key, value in unknown.items() if not (key in TABLE_KEYS and test)}
+        recording = Recording(imu={}, left_out_s=left_out_s, alignment=alignment, test=test, unknown=unknown, **values)
         for other in (plan.recording for plan in plans):
             for key in ("name", "folder"):
                 if _normal(getattr(other, key), key) == _normal(getattr(recording, key), key):
@@ -387,6 +393,11 @@ def _render(thing: Session | Patient | SensorInfo | Recording, known: Mapping[st
     return {key: _plain(value) for key, (value, default) in values.items() if value != default}
 
 
+def _render_patient(patient: Patient) -> dict[str, object]:
+    goals = {"goals": [goal_table(goal) for goal in patient.goals]} if patient.goals else {}
+    return _render(patient, PATIENT) | goals | dict(patient.unknown)
+
+
 def _render_plan(plan: Plan) -> dict[str, object]:
     table = _render(plan.recording, RECORDING)
     if plan.sensors:
@@ -398,6 +409,7 @@ def _render_plan(plan: Plan) -> dict[str, object]:
         table["strides_left_out"] = {side.value: list(left_out_s[side]) for side in Side if left_out_s.get(side)}
     if plan.recording.alignment is not None:
         table["alignment"] = alignment_table(plan.recording.alignment)
+    table |= planned_table(plan.recording.test)
     return table | dict(plan.recording.unknown)
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from app.charts.cycles import is_mean_enough
+from app.reports.goals import goal_sentence
 from app.reports.patient_report import quality
 from app.reports.patient_report.facts import Facts
 from app.reports.patient_report.what_stands_out import (
@@ -15,7 +16,7 @@ from app.reports.patient_report.what_stands_out import (
     nothing_found,
     ranked_findings,
 )
-from app.wording import joined, tr
+from app.wording import joined, tr, within_sentence
 from core.body import Side
 from core.verdicts.model import Verdict
 
@@ -56,14 +57,20 @@ def answer_of(facts: Facts) -> Answer:
     last = _brief_caveat(facts)
     if found := ranked_findings(facts, None, BANDS_ON_SCREEN):
         beside = [found[1].said] if len(found) > 1 else last
-        return Answer(Outcome.DIFFERS, found[0].said, " ".join(filter(None, [found[0].evidence, *beside])))
+        said = [found[0].evidence, *_goal(facts), *beside]
+        return Answer(Outcome.DIFFERS, found[0].said, " ".join(filter(None, said)))
     first, *others = nothing_found(facts, None)
     judged = judged_differences(facts, None)
     is_none = bool(judged) and not any(one.exceeds for one in judged.values())
-    return Answer(Outcome.NOTHING if is_none else Outcome.OPEN, first, " ".join([*others, *last]))
+    return Answer(Outcome.NOTHING if is_none else Outcome.OPEN, first, " ".join([*others, *_goal(facts), *last]))
+
+
+def _goal(facts: Facts) -> list[str]:
+    """How the walk stands to a goal that was agreed before: to the first that is judged."""
+    return [said for one in facts.told_goals if (said := goal_sentence(one))][:1]
 
 
 def _brief_caveat(facts: Facts) -> list[str]:
     """Which joint or leg cannot be read; why, and what to do, stands one step behind the answer."""
     withheld = [cause.where for cause in quality.causes(facts, (Verdict.WITHHELD,)) if not cause.is_between]
-    return [tr("Withheld: {where}.").format(where=withheld[0][:1].lower() + withheld[0][1:])] if withheld else []
+    return [tr("Withheld: {where}.").format(where=within_sentence(withheld[0]))] if withheld else []

@@ -9,7 +9,9 @@ from typing import Any
 import numpy as np
 
 from app.charts.cycles import is_mean_enough
+from app.reports.agreed import agreed_with
 from app.reports.comparison import Part, first_and_second
+from app.reports.goals import GoalFigure, of_part
 from app.reports.patient_report.numbers_in_words import Band
 from app.reports.patient_report.request import AnalysedVisit
 from app.reports.reference_bands import age_and_height, bands_of, sides_with_band
@@ -67,7 +69,18 @@ class Facts:
     @cached_property
     def alone(self) -> Part:
         """The walk as it would stand in a comparison."""
-        return Part("", self.walk.name, (self.walk,), self.calibrated)
+        agreed = agreed_with(self.visit.session)
+        return Part("", self.walk.name, (self.walk,), self.calibrated, agreed=agreed)
+
+    @cached_property
+    def goals(self) -> tuple[GoalFigure, ...]:
+        """What had been agreed by the walk's day, and how the walk stands to it."""
+        return of_part(self.alone)
+
+    @property
+    def told_goals(self) -> tuple[GoalFigure, ...]:
+        """Those of which may be said whether they are reached: agreed before the walk's day."""
+        return tuple(one for one in self.goals if one.goal in self.alone.agreed.told)
 
     @cached_property
     def summary(self) -> dict[str, Any]:

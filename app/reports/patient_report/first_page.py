@@ -7,6 +7,7 @@ from app.charts.drawing import MM, Picture
 from app.charts.on_paper import draw
 from app.gates_in_words import verdict_word
 from app.reports.comparison import Comparison
+from app.reports.goals import goal_sentence
 from app.reports.patient_report import panels, quality
 from app.reports.patient_report.dates import moment
 from app.reports.patient_report.facts import KINDS, Facts, joint_of
@@ -105,7 +106,9 @@ def answer(facts: Facts, comparison: Comparison | None) -> dict[str, object]:
     if not found:
         first, *others = nothing_found(facts, comparison)
         sentences = [["", first, " ".join(others)]]
-    return {"heading": tr("In short"), "sentences": sentences, "caveats": caveat(facts, comparison)}
+    goals = [said for one in facts.told_goals if (said := goal_sentence(one))][:1]  # as on the screen
+    grey = " ".join([*caveat(facts, comparison), *goals])
+    return {"heading": tr("In short"), "sentences": sentences, "caveats": [grey] if grey else []}
 
 
 def readable(facts: Facts) -> dict[str, object]:

@@ -2,6 +2,7 @@
 
 from app.charts.cycles import is_spread_enough
 from app.reports.comparison import Comparison
+from app.reports.goals import goal_mark
 from app.reports.patient_report.blocks import Block, Cell, Column, Row, heading, note, table
 from app.reports.patient_report.facts import Facts
 from app.reports.patient_report.key_strips import strip
@@ -50,10 +51,10 @@ def key_numbers(facts: Facts, comparison: Comparison | None) -> list[Block]:
 
 
 def key_rows(facts: Facts, comparison: Comparison | None) -> list[LegsRow]:
-    """What the findings tell, then what always stands there."""
+    """What the findings tell, what goals are of, then what always stands there."""
     rows = {row.column: row for row in what_differs(facts) if row.values}
     told = [one.column for one in ranked_findings(facts, comparison, BANDS_ON_PAPER)]
-    columns = dict.fromkeys([*told, *ALWAYS])
+    columns = dict.fromkeys([*told, *(column for column, row in rows.items() if row.goals), *ALWAYS])
     return [rows[column] for column in columns if column in rows][:MOST_ROWS]
 
 
@@ -63,7 +64,7 @@ def _cells(row: LegsRow) -> list[Cell | str]:
     unit = row.unit.strip()
     dagger = DAGGER if found.is_unverified else ""
     return [
-        f"{row.name}, {unit}",
+        "; ".join([f"{row.name}, {unit}", *map(goal_mark, row.goals)]),
         *values,
         Cell(signed(found.difference, row.decimals) if found.is_told else NOTHING, is_bold=found.exceeds),
         f"{fixed(found.error, row.decimals)}{dagger}" if row.is_judged else NOTHING,

@@ -17,6 +17,7 @@ from core.body import Side
 
 WIDTH, HEIGHT = 85.5 * MM, 60 * MM
 LEFT_EDGE, RIGHT_EDGE, TOP, FOOT = 28.0, 10.0, 16.0, 26.0  # points around the plot
+OF_GOALS = 10.0  # points for a line of words
 APART = 22.0  # points between two dates that are written
 NEAR = 3.0  # points that the legs stand aside of a date, so that neither covers the other
 TICKS = 4
@@ -38,14 +39,20 @@ def trend_chart(
     lines: Mapping[Side | None, Sequence[TrendValue]],
     *,
     is_simulated: bool,
+    goals: Sequence[tuple[float, str]] = (),
 ) -> Picture:
-    """A line for each leg, or one for both; visits are numbered from 1 in order of time."""
+    """A line for each leg, or one for both; visits are numbered from 1 in order of time.
+
+    `goals` are values with the words that stand beside the title: what was agreed, and when.
+    """
     told = [one for values in lines.values() for one in values if math.isfinite(one.value)]
     reach = [
         one.value + sign * (one.whisker if math.isfinite(one.whisker) else 0.0) for one in told for sign in (-1, 1)
     ]
+    reach += [value for value, _ in goals]
     low, high, step = _axis(min(reach), max(reach))
-    right, bottom = WIDTH - RIGHT_EDGE, HEIGHT - FOOT
+    agreed = "; ".join(words for _, words in goals)
+    right, bottom, top = WIDTH - RIGHT_EDGE, HEIGHT - FOOT, TOP + OF_GOALS * len(goals)
     first, last = days[0].toordinal(), days[-1].toordinal()
 
     def x(visit: int) -> float:
@@ -53,12 +60,16 @@ def trend_chart(
         return LEFT_EDGE + 12 + (right - LEFT_EDGE - 24) * share
 
     def y(value: float) -> float:
-        return bottom - (bottom - TOP) * (value - low) / (high - low)
+        return bottom - (bottom - top) * (value - low) / (high - low)
 
     parts = [text(0, 8, title, 7.6, weight=600)]
     for value in np.arange(low, high + step / 2, step):
         parts.append(line(LEFT_EDGE, y(value), right, y(value), PAPER.ink if value == low else PAPER.grid, 0.5))
         parts.append(text(LEFT_EDGE - 5, y(value) + 2.4, fixed(float(value), _decimals(step)), 6.8, anchor="end"))
+    for value, _ in goals:
+        parts.append(line(LEFT_EDGE, y(value), right, y(value), PAPER.ink, 1.1, "1.4 2"))
+    for number, (_, words) in enumerate(goals):
+        parts.append(text(right, 17 + OF_GOALS * number, f"· · · {words}", 6.4, anchor="end"))
     written = -math.inf
     for visit, day in enumerate(days):
         parts.append(line(x(visit), bottom, x(visit), bottom + 3, PAPER.ink, 0.6))
@@ -74,6 +85,8 @@ def trend_chart(
         said.append(f"{capitalised(side_name(side))}: {each}." if side is not None else f"{each}.")
     if is_simulated:
         parts.append(text(right, 8, tr("SIMULATED"), 6.6, anchor="end", weight=600))
+    if agreed:
+        said.append(f"{agreed}.")
     return picture(parts, WIDTH, HEIGHT, " ".join([tr("SIMULATED.")] * is_simulated + [f"{title}.", *said]))
 
 

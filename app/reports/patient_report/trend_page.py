@@ -6,24 +6,30 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from app.charts.drawing import Picture
-from app.dates import date
+from app.dates import date, short_date
+from app.measure_names import measure_name, unit_name
 from app.reports.course import KNEE, PUSH_OFF, SPEED, STANCE, CourseCondition, change
 from app.reports.course_lanes import CourseVisit
+from app.reports.goals import goal_mark, goal_sentence, in_course
 from app.reports.patient_report.blocks import Block, Cell, Column, Row, bullets, figures, heading, note, table
 from app.reports.patient_report.facts import Facts, role
 from app.reports.patient_report.numbers_in_words import DAGGER, NOTHING, dagger_note, fixed, in_brief, signed
-from app.reports.patient_report.plain_text import CONDITION_LENGTH, typed
+from app.reports.patient_report.plain_text import CONDITION_LENGTH, shortened, typed
 from app.reports.patient_report.trend_chart import TrendValue, trend_chart
-from app.reports.patient_report.what_stands_out import unit_and_decimals
+from app.reports.patient_report.what_stands_out import measure_in_words, unit_and_decimals
 from app.reports.visits import condition_in_words
 from app.wording import capitalised, tr
 from core.body import Side
+from core.goals import OF_WALKS, AgreedGoals, Goal, GoalOf
 from core.verdicts.measurement_error import Difference
 from core.verdicts.model import Verdict
 
 MOST_COLUMNS = 6  # of visits in the table: the first, and the latest
 MOST_SENTENCES = 3
+MOST_GOALS = 5  # in sentences; all of them are in goals.csv
+BY_LENGTH = 16
 MEASURES = (KNEE, PUSH_OFF, STANCE, SPEED)
+MOST_CHARTS = 4  # those with goals come first
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +58,9 @@ def trend_page(visits: Sequence[CourseVisit], condition: str, facts: Facts) -> l
         In order of time; the last is that of the report.
     """
     walked = [visit for visit in visits if visit.course is not None and visit.course.condition(condition) is not None]
-    lines = _lines(walked, condition)
+    agreed = facts.alone.agreed
+    columns = _columns(agreed)
+    lines = _lines(walked, condition, columns, agreed)
     shown = [line for line in lines if len(line.told) > 1]
     if not shown:
         return []
@@ -71,20 +79,50 @@ def trend_page(visits: Sequence[CourseVisit], condition: str, facts: Facts) -> l
     return [
         heading(title),
         note(" ".join(said)),
-        bullets(_sentences(shown, facts, len(walked))),
-        figures([_chart(column, shown, days, facts) for column in MEASURES if _of(shown, column)], columns=2),
+        bullets([*_sentences(shown, facts, len(walked)), *_goals(walked, condition, facts)]),
+        figures([_chart(column, shown, days, facts) for column in columns if _of(shown, column)], columns=2),
         heading(tr("The numbers"), level=2),
         _table(shown, len(walked)),
         note(_below(shown)),
     ]
 
 
-def _lines(walked: Sequence[CourseVisit], condition: str) -> list[_TrendLine]:
+def _columns(agreed: AgreedGoals) -> tuple[str, ...]:
+    """What has a chart: what goals are of, then the usual measures as far as there is room."""
+    wanted = dict.fromkeys(goal.column for goal in agreed.held if goal.of is not GoalOf.BETWEEN)
+    few = list(wanted)[:MOST_CHARTS]
+    others = [column for column in MEASURES if column not in few][: MOST_CHARTS - len(few)]
+    shown = {*few, *others}
+    return tuple(column for column in dict.fromkeys((*MEASURES, *few)) if column in shown)
+
+
+def _goals(walked: Sequence[CourseVisit], condition: str, facts: Facts) -> list[str]:
+    """Each goal that was agreed before this visit: at which visit it was first reached, and how it stands now."""
+    said = []
+    for goal in facts.alone.agreed.told:
+        parts = [(number, visit) for number, visit in enumerate(walked, start=1) if visit.day > goal.agreed]
+        found = [
+            (number, in_course(goal, part))
+            for number, visit in parts
+            if visit.course is not None and (part := visit.course.condition(condition)) is not None
+        ]
+        if not found or not (now := goal_sentence(found[-1][1])):
+            continue
+        first = next((number for number, one in found if one.standing.is_reached), None)
+        if first is not None and found[-1][1].standing.is_reached and first != found[-1][0]:
+            now = f"{now} {tr('First reached at visit {number}.').format(number=first)}"
+        said.append(now)
+    return said[:MOST_GOALS]
+
+
+def _lines(
+    walked: Sequence[CourseVisit], condition: str, columns: Sequence[str], agreed: AgreedGoals
+) -> list[_TrendLine]:
     parts = [visit.course.condition(condition) if visit.course is not None else None for visit in walked]
     at = [part for part in parts if part is not None]
     found = []
-    for column in MEASURES:
-        for side in (None,) if column == SPEED else tuple(Side):
+    for column in columns:
+        for side in (None,) if column in OF_WALKS else tuple(Side):
             values = [value for number, part in enumerate(at) if (value := _value(part, column, side, number))]
             told = [value.visit for value in values if math.isfinite(value.value)]
             if not told:
@@ -93,7 +131,11 @@ def _lines(walked: Sequence[CourseVisit], condition: str) -> list[_TrendLine]:
             before = [visit for visit in told if visit < last]
             first, previous = (before[0], before[-1]) if before else (0, 0)
             is_changed = bool(before) and told[-1] == last
-            since = [change(at[last], at[k], column, side) if is_changed else None for k in (first, previous)]
+            is_chosen = agreed.is_chosen(column, tuple(Side) if side is None else (side,))
+            since = [
+                change(at[last], at[k], column, side, is_chosen_before=is_chosen) if is_changed else None
+                for k in (first, previous)
+            ]
             found.append(_TrendLine(column, side, tuple(values), since[0], since[1], first, previous))
     return found
 
@@ -113,16 +155,28 @@ def _of(lines: Sequence[_TrendLine], column: str) -> list[_TrendLine]:
 def _chart(column: str, lines: Sequence[_TrendLine], days: Sequence[datetime.date], facts: Facts) -> Picture:
     _, decimals = unit_and_decimals(column)
     drawn = {line.side: line.values for line in _of(lines, column)}
-    return trend_chart(_name(column), decimals, days, drawn, is_simulated=facts.is_simulated)
+    held = [goal for goal in facts.alone.agreed.of(column) if goal.of is not GoalOf.BETWEEN]
+    goals = [(goal.value, _agreed_in_words(goal)) for goal in held]
+    return trend_chart(_name(column), decimals, days, drawn, is_simulated=facts.is_simulated, goals=goals)
+
+
+def _agreed_in_words(goal: Goal) -> str:
+    """A goal and when it was agreed, by whom."""
+    by = f", {typed(shortened(goal.by, BY_LENGTH), BY_LENGTH)}" if goal.by else ""
+    return tr("{goal}, agreed {day}").format(goal=goal_mark(goal), day=short_date(goal.agreed)) + by
 
 
 def _name(column: str) -> str:
-    return {
+    names = {
         KNEE: tr("Knee, stance to swing, °"),
         PUSH_OFF: tr("Ankle push\u2011off, °"),
         STANCE: tr("Stance, % of stride"),
         SPEED: tr("Walking speed, m/s"),
-    }[column]
+    }
+    if column in names:
+        return names[column]
+    unit = "°" if column.endswith("_deg") else unit_name(column)
+    return tr("{measure}, {unit}").format(measure=measure_name(column), unit=unit)
 
 
 def _sentences(lines: Sequence[_TrendLine], facts: Facts, visits: int) -> list[str]:
@@ -152,12 +206,7 @@ def _sentence(line: _TrendLine, facts: Facts, visits: int) -> str:
     assert found is not None  # those without one are not told
     unit, decimals = unit_and_decimals(line.column)
     first = next(one for one in line.values if one.visit == line.first)
-    name = {
-        KNEE: tr("knee bend from stance to swing"),
-        PUSH_OFF: tr("ankle push\u2011off"),
-        STANCE: tr("stance, share of the stride"),
-        SPEED: tr("walking speed"),
-    }[line.column]
+    name = measure_in_words(line.column)
     who = name if line.side is None else f"{role(facts, line.side)}, {name}"
     said = tr("{who}: {a} at visit {first}, {b} at visit {last}; {change}, error between visits {error}.").format(
         who=capitalised(who),

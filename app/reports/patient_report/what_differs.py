@@ -1,4 +1,4 @@
-"""In what do the legs differ most? Every measure that is judged between them, the one of most errors first."""
+"""In what do the legs differ most? Measures with goals first, then those judged, the one of most errors first."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -12,6 +12,7 @@ from app.reports.walk_figures import NO_HEIGHT, NO_ZERO, doubt_in
 from app.wording import capitalised, tr
 from core.body import Side
 from core.gait.spatiotemporal import MeanAndSd
+from core.goals import Goal
 from core.verdicts.measurement_error import Difference
 from core.verdicts.model import Verdict
 from core.verdicts.quantities import joint_of
@@ -23,7 +24,7 @@ class LegsRow:
 
     A leg whose figure may not be told, or is not known, is missing in `values`, and `unknown` says why. `difference` is
     the first side's less the second's, as `Facts.first_and_second` orders them. `band` is the cited group's mean less
-    and plus 2 SD.
+    and plus 2 SD. `goals` had been agreed by the walk's day.
     """
 
     column: str
@@ -35,6 +36,7 @@ class LegsRow:
     unknown: Mapping[Side, str]
     difference: Difference
     band: Band | None
+    goals: tuple[Goal, ...] = ()
 
     @property
     def is_judged(self) -> bool:
@@ -45,7 +47,12 @@ class LegsRow:
 def what_differs(facts: Facts) -> tuple[LegsRow, ...]:
     """Judged differences by how many errors they are large, then those without an error, then those not told."""
     rows = [_row(facts, column) for column in BETWEEN_LEGS if any(facts.is_worn(side, column) for side in facts.gait)]
-    return tuple(sorted(rows, key=lambda row: (not row.is_judged, not row.difference.is_told, -row.difference.ratio)))
+    return tuple(sorted(rows, key=_weight))
+
+
+def _weight(row: LegsRow) -> tuple[bool, bool, bool, float]:
+    """What is told first is least: measures with goals, then what is judged by how many errors it is large."""
+    return not row.goals, not row.is_judged, not row.difference.is_told, -row.difference.ratio
 
 
 def _row(facts: Facts, column: str) -> LegsRow:
@@ -64,6 +71,7 @@ def _row(facts: Facts, column: str) -> LegsRow:
         unknown=unknown,
         difference=compare_legs(facts.alone, column, facts.first_and_second),
         band=_band(facts, column),
+        goals=facts.alone.agreed.of(column),
     )
 
 

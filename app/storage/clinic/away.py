@@ -5,7 +5,8 @@ begun there are begun as always. Once the server answers, the folder is renamed,
 all its rows go to the server in one transaction, which leaves a mark; then its journals become the station's own, which
 are handed over as any. Killed anywhere in between, the next start goes on, and nothing goes there twice.
 
-A patient is known again by the code. What the clinic says of a patient holds; what was said of one here fills no gaps.
+A patient is known again by the code. What the clinic says of a patient holds; what was said of one here fills no gaps,
+but goals that were agreed here are added to those at the clinic.
 """
 
 import json
@@ -34,6 +35,7 @@ from app.storage.database.models import (
     SettingRow,
     folded,
 )
+from app.storage.database.values import told_patient
 from app.storage.derived_keys import derived_keys
 from app.storage.files import replace_file, sync_folder
 from app.storage.journal.header import SUFFIX
@@ -42,6 +44,7 @@ from app.storage.library import Library, now_utc
 from app.storage.opened import OpenedLibrary, held_alone
 from app.storage.root import read_id
 from app.storage.stored import Action, NotAllowedError, Operator, Role
+from core.goals import brought_together, goals_text
 
 AWAY, COMING_HOME = "away", "away-coming-home"
 OPERATORS = "operators.json"  # who works at the clinic, as the station saw it last
@@ -187,6 +190,7 @@ def _bring_patients(here: OrmSession, there: OrmSession) -> dict[UUID, UUID]:
             there.add(found)
         elif row.deleted_at is None:
             found.deleted_at = None  # who is measured is a patient
+            found.goals = goals_text(brought_together(told_patient(found).goals, told_patient(row).goals))
         known[row.id] = found.id
     there.flush()
     return known

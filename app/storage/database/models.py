@@ -112,7 +112,10 @@ class Versioned:
 
 
 class PatientRow(Versioned, Base):
-    """A patient whose double was merged into another stays, empty, so that merging can be undone."""
+    """A patient whose double was merged into another stays, empty, so that merging can be undone.
+
+    `goals`: what was agreed, as `core.goals` writes it; empty where nothing was.
+    """
 
     __tablename__ = "patients"
     __table_args__ = (_one_of("affected_side", SIDES), _one_of("prosthetic_side", SIDES))
@@ -128,6 +131,7 @@ class PatientRow(Versioned, Base):
     aids: Mapped[str]
     affected_side: Mapped[str]
     prosthetic_side: Mapped[str]
+    goals: Mapped[str] = mapped_column(default="", server_default="")
     unknown: Mapped[Mapping[str, object]]
     created_at: Mapped[datetime.datetime]
     deleted_at: Mapped[datetime.datetime | None]
@@ -223,6 +227,8 @@ class RecordingRow(Versioned, Base):
 
     `alignment`: what was changed at the prosthesis before, as `core.alignment` writes it; empty where nothing was said.
 
+    `test`: which timed test it is, as `core.timed.protocols` writes it; empty where it is none.
+
     `station`: which station of a clinic recorded it; empty where a library has no stations.
     """
 
@@ -243,6 +249,7 @@ class RecordingRow(Versioned, Base):
     is_restrapped_before: Mapped[bool]
     left_out: Mapped[str] = mapped_column(default="", server_default="")
     alignment: Mapped[str] = mapped_column(default="", server_default="")
+    test: Mapped[str] = mapped_column(default="", server_default="")
     is_simulated: Mapped[bool]
     state: Mapped[RecordingState] = mapped_column(_words(RecordingState, "state"), index=True)
     judged_by: Mapped[str] = mapped_column(default="", server_default="")

@@ -22,17 +22,24 @@ from app.storage.stored import (
 from core.alignment import alignment_of_text
 from core.body import Side, Site
 from core.findings import Finding, Severity
+from core.goals import goals_of_text, goals_text
 from core.samples import Patient, Recording, SensorInfo, Session
+from core.timed.protocols import planned_of_text
 
-PATIENT_FIELDS = tuple(field.name for field in fields(Patient))
+PATIENT_FIELDS = tuple(field.name for field in fields(Patient) if field.name != "goals")
 SENSOR_FIELDS = tuple(field.name for field in fields(SensorInfo))
-IN_OTHER_FORM = ("imu", "left_out_s", "alignment")
+IN_OTHER_FORM = ("imu", "left_out_s", "alignment", "test")
 RECORDING_FIELDS = tuple(field.name for field in fields(Recording) if field.name not in IN_OTHER_FORM)
 SESSION_FIELDS = ("started", "operator", "surface", "notes", "software", "is_simulated", "unknown")
 
 
 def told_patient(row: PatientRow) -> Patient:
-    return Patient(**{name: getattr(row, name) for name in PATIENT_FIELDS})
+    return Patient(goals=goals_of_text(row.goals), **{name: getattr(row, name) for name in PATIENT_FIELDS})
+
+
+def patient_in_row(told: Patient, names: Sequence[str] = PATIENT_FIELDS) -> dict[str, object]:
+    """Some fields of a patient, and the goals, as the row holds them."""
+    return {name: getattr(told, name) for name in names} | {"goals": goals_text(told.goals)}
 
 
 def stored_patients(session: OrmSession, *is_wanted: ColumnElement[bool]) -> list[StoredPatient]:
@@ -75,6 +82,7 @@ def stored_recording(row: RecordingRow) -> StoredRecording:
             imu={},
             left_out_s=left_out_of(row.left_out),
             alignment=alignment_of_text(row.alignment),
+            test=planned_of_text(row.test),
             **{name: getattr(row, name) for name in RECORDING_FIELDS},
         ),
         row.state,

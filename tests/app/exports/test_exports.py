@@ -1,5 +1,6 @@
 """Does an export leave without names, noted in the library it comes from, whole or not at all?"""
 
+import datetime
 import io
 import json
 import zipfile
@@ -28,8 +29,10 @@ from app.storage.pseudonyms import Pseudonyms, Typed, age_in_words
 from app.storage.slots import Cost
 from app.storage.stored import Action, LibraryError, Operator, Role
 from core.alignment import AlignmentChange, PartChange, ProsthesisPart
+from core.goals import Goal, GoalOf
 from core.results import Analysis
 from core.samples import Session
+from core.timed.protocols import PlannedTest, TimedProtocol
 from devices.files.refusal import FileRefusedError
 from devices.files.session_folder import write_session
 
@@ -87,6 +90,10 @@ PLANTED = {
 }
 CHANGED = PartChange(ProsthesisPart.PYLON, height_mm=3.0, text=PLANTED[Typed.CHANGES])
 NEVER = ("Operateur-Qx5", "Notiz-Qx6", "Programm-Qx7", "Uhr-Qx8", "Geschlecht-Qx9", "birth", NAME)
+AGREED = Goal(
+    *("speed_m_s", GoalOf.WALK, 1.2, datetime.date(2026, 1, 5), NEVER[0], False, f"as {NAME} wants"),
+    until=datetime.date(2026, 1, 5) + datetime.timedelta(weeks=12),
+)
 
 
 @pytest.fixture(scope="session")
@@ -97,7 +104,12 @@ def planted(visit: tuple[Session, Analysis]) -> tuple[Session, Analysis]:
     session = replace(
         session,
         patient=replace(
-            session.patient, device=PLANTED[Typed.DEVICE], aids=PLANTED[Typed.AIDS], sex=sex, unknown={"name": NAME}
+            session.patient,
+            device=PLANTED[Typed.DEVICE],
+            aids=PLANTED[Typed.AIDS],
+            sex=sex,
+            unknown={"name": NAME},
+            goals=(AGREED,),
         ),
         recordings=tuple(
             replace(
@@ -129,12 +141,29 @@ def test_what_is_typed_freely_leaves_only_where_it_is_ticked(
         assert not [word for word in NEVER if word in said]
 
 
+def test_a_goal_leaves_with_its_figures_and_not_with_who_agreed_on_it(planted: tuple[Session, Analysis]) -> None:
+    own, patient_id = Pseudonyms(bytes(32)), uuid4()
+    (goal,) = own.session(patient_id, planted[0]).patient.goals
+    assert (goal.by, goal.note, goal.ended_by) == ("", "", "")
+    assert (goal.key, goal.value) == (AGREED.key, AGREED.value)
+    assert goal.agreed.isoformat() == own.shifted(patient_id, AGREED.agreed.isoformat()) != AGREED.agreed.isoformat()
+    assert goal.until is not None
+    assert goal.until - goal.agreed == datetime.timedelta(weeks=12)
+
+
 def test_what_was_turned_leaves_with_its_figures_and_not_with_the_words(planted: tuple[Session, Analysis]) -> None:
     told = Pseudonyms(bytes(32)).session(uuid4(), planted[0]).recordings[0].alignment
     assert told == AlignmentChange("condition 1", (PartChange(ProsthesisPart.PYLON, height_mm=3.0),))
     words = AlignmentChange("", (PartChange(ProsthesisPart.OTHER, text="a wedge"),))
     only_words = replace(planted[0], recordings=(replace(planted[0].recordings[0], alignment=words),))
     assert Pseudonyms(bytes(32)).session(uuid4(), only_words).recordings[0].alignment is None
+
+
+def test_which_test_a_walk_is_leaves_with_the_instants_of_its_keys(planted: tuple[Session, Analysis]) -> None:
+    test = PlannedTest(TimedProtocol.TEN_METRES, end_key_s=9.5)
+    timed = replace(planted[0], recordings=(replace(planted[0].recordings[0], test=test),))
+    assert Pseudonyms(bytes(32)).session(uuid4(), timed).recordings[0].test == test
+    assert Pseudonyms(bytes(32)).session(uuid4(), planted[0]).recordings[0].test is None
 
 
 def test_all_that_was_typed_leaves_with_identity(planted: tuple[Session, Analysis], tmp_path: Path) -> None:

@@ -7,23 +7,26 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from PySide6.QtCore import QSettings
+from PySide6.QtCore import QSettings, Qt
+from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.home.home import Home
 from app.home.patient_reading import PatientReading, compute_courses, read_patient
 from app.pages.home_lists import SessionLine
+from app.reports.course_lanes import SPEED_LANE
 from app.settings import Settings
 from app.storage.audit import REPORT_FORMAT, about
 from app.storage.database.ids import uuid7
 from app.storage.exchange import import_session
 from app.storage.library import DEMONSTRATOR, Library
 from app.storage.opened import OpenedLibrary, open_library
-from app.storage.stored import Action
+from app.storage.stored import Action, StoredPatient
 from app.theme import ThemeNotifier, load_fonts
 from app.workers.library_controller import LibraryController
 from core.body import Site
+from core.goals import GOAL_COLUMNS, Goal, GoalOf
 from core.samples import Patient
 from devices.walker import DEMONSTRATION, Standing, Walk, simulate
 from tests.app.home.course_library import PASSPHRASE, add_visit, course_of_visit, make_course_library
@@ -180,3 +183,90 @@ def test_a_report_is_written_once_its_export_has_ended_well(opened: OpenedLibrar
     audit.note(Action.EXPORT, about("session", ids[1]), format="fhir")
     assert audit.reported(ids) == set(ids)
     assert audit.reported([]) == frozenset()
+
+
+def wait_for_goals(qtbot: QtBot, home: Home, count: int) -> None:
+    page = home.goals.page
+    qtbot.waitUntil(lambda: sum(row.take_back is not None for row in page.rows) == count, timeout=WAIT_MS)
+
+
+def test_a_goal_is_agreed_by_keys_stands_in_the_course_and_is_taken_back(qtbot: QtBot, home: Home) -> None:
+    """From the patient's panel to the library and back; by the time it ends, the history has both."""
+    panel = home.page.panel
+    QTest.keyClick(panel.goals, Qt.Key.Key_Return)
+    page = home.goals.page
+    assert home.current is page
+    for _ in range(GOAL_COLUMNS.index("speed_m_s")):
+        QTest.keyClick(page.measure, Qt.Key.Key_Down)
+    QTest.keyClicks(page.value.line_edit, "1.2")
+    QTest.keyClick(page.value.line_edit, Qt.Key.Key_Return)
+    wait_for_goals(qtbot, home, 1)
+    assert page.value.text == ""
+    assert page.rows[0].about.text().endswith(", H. Keller")
+    home.bar.back_pressed.emit()
+    qtbot.waitUntil(lambda: any(lane.goals for lane in panel.course.lanes), timeout=WAIT_MS)
+    speed = panel.course.lanes[0]
+    assert (speed.kind, speed.goal_values) == (SPEED_LANE, [1.2])
+    assert "Goal: Walking speed: at least 1.20" in panel.course.accessibleDescription()
+    panel.goals.click()
+    wait_for_goals(qtbot, home, 1)
+    take_back = page.rows[0].take_back
+    assert take_back is not None
+    QTest.keyClick(take_back, Qt.Key.Key_Return)
+    wait_for_goals(qtbot, home, 0)
+    assert [row.key for row in page.rows] == [("speed_m_s", GoalOf.WALK)]
+    home.bar.back_pressed.emit()
+    qtbot.waitUntil(lambda: not any(lane.goals for lane in panel.course.lanes), timeout=WAIT_MS)
+
+
+def test_a_goal_that_another_changed_meanwhile_is_not_written_over(
+    qtbot: QtBot, home: Home, controller: LibraryController
+) -> None:
+    panel, page = home.page.panel, home.goals.page
+    panel.goals.click()
+    qtbot.waitUntil(lambda: page.none_yet.isVisible(), timeout=WAIT_MS)
+    patient = home.patient
+    assert patient is not None
+    theirs = Goal("speed_m_s", GoalOf.WALK, 0.9, datetime.date(2026, 1, 5), "B. Berger")
+
+    def change(opened: OpenedLibrary) -> StoredPatient:
+        held = opened.library.patients.get(patient.id)
+        return opened.library.patients.change(held, replace(held.details, goals=(theirs,)))
+
+    controller.run(change, None, None, home)
+    page.measure.setCurrentIndex(GOAL_COLUMNS.index("speed_m_s"))
+    QTest.keyClicks(page.value.line_edit, "1.2")
+    page.submit()
+    qtbot.waitUntil(lambda: home.banner.isVisible(), timeout=WAIT_MS)
+    assert home.banner.text.startswith("Goal, Walking speed was changed meanwhile by ")
+    assert page.rows[0].limit.text() == "at least 0.90\N{NO-BREAK SPACE}m/s"
+    assert page.value.text == "1.2"  # what was typed stays
+
+
+def test_goals_of_nobody_are_left_for_whoever_comes_next(qtbot: QtBot, home: Home) -> None:
+    home.page.panel.goals.click()
+    assert home.current is home.goals.page
+    home.clear()
+    assert home.goals.page.rows == []
+    assert home.page.panel.course.lanes == () or not any(lane.goals for lane in home.page.panel.course.lanes)
+
+
+def test_a_reached_goal_is_next_and_leads_to_the_goals(tmp_path: Path) -> None:
+    """Agreed before the latest visit; one agreed on its day is not said to be reached."""
+    with open_library(make_course_library(tmp_path, visits=0), PASSPHRASE) as opened:
+        library = opened.library
+        (patient,) = library.patients.search("P-0158")
+        visit = add_visit(library, patient.id, 1, course_of_visit(1))
+        library.audit.note(Action.EXPORT, about("session", visit), format=REPORT_FORMAT, is_document=True)
+        now = day_and_time("2026-07-12T09:00:00")
+
+        def said(agreed: str, speed_m_s: float) -> str:
+            goal = Goal("speed_m_s", GoalOf.WALK, speed_m_s, datetime.date.fromisoformat(agreed))
+            held = library.patients.get(patient.id)
+            library.patients.change(held, replace(held.details, goals=(goal,)))
+            step = read_patient(opened, patient.id).next_step(now)
+            return step.sentence if step is not None else ""
+
+        assert said("2026-07-10", 0.80).startswith("goal reached on 11 Jul: Walking speed: at least 0.80")
+        assert said("2026-07-11", 0.80) == ""
+        assert said("2026-07-10", 0.90) == ""

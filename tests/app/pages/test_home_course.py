@@ -1,5 +1,7 @@
 """The course beside the list of patients: read by keys and ears, no word cut at any size, and quiet about deleting."""
 
+import datetime
+from dataclasses import replace
 from uuid import UUID
 
 import pytest
@@ -14,6 +16,7 @@ from app.reports.course_lanes import CourseVisit
 from app.reports.course_words import NextStep
 from app.theme import ThemeNotifier
 from app.widgets.text import Text
+from core.goals import Goal, GoalOf
 from tests.app.home.course_library import SHOES, STICK, VISITS
 from tests.app.pages.test_home_page import patient, session
 from tests.app.room import words_cut
@@ -171,3 +174,38 @@ def test_no_word_is_cut_at_any_size(
     assert page.minimumSizeHint().width() <= width
     assert words_cut(page) == []
     look.set_scale(1.0)
+
+
+def test_a_goal_stands_beside_its_lane_with_how_the_last_visit_stands_to_it(page: HomePage) -> None:
+    early, late = (
+        Goal("speed_m_s", GoalOf.WALK, 1.05, datetime.date.fromisoformat(day), "H. Keller")
+        for day in ("2026-10-03", "2026-11-14")
+    )
+    page.panel.show_course(VISITS, [early])
+    found = said(page.panel.course)
+    assert f"{3 * chr(0xB7)} goal 1.05\N{NO-BREAK SPACE}m/s" in found
+    assert "reached, inside error" in found
+    page.panel.show_course(VISITS, [late])  # agreed on the day of the last visit
+    assert "reached, inside error" not in said(page.panel.course)
+    page.panel.show_course(VISITS, [replace(early, ended=early.agreed)])
+    assert not any("goal" in one for one in said(page.panel.course))
+
+
+def test_lanes_of_other_measures_come_and_go_with_their_goals(page: HomePage, qapp: QApplication) -> None:
+    card = page.panel.course
+    day = datetime.date(2026, 6, 20)
+    page.panel.show_course(VISITS, [Goal("stride_length_m", GoalOf.LEFT, 1.3, day)])
+    qapp.processEvents()  # what is new comes with the next layout
+    assert {"Stride length", "Walking speed"} <= set(said(card))
+    assert "Stance L \N{MINUS SIGN} R" not in said(card)
+    assert [row.label.y() for row in card.rows.values()] == sorted(row.label.y() for row in card.rows.values())
+    assert len(card.rows) == 3
+    page.panel.show_course(VISITS)
+    assert "Stride length" not in said(card)
+    many = [
+        Goal(column, GoalOf.LEFT, 20.0, day)
+        for column in ("knee_range_deg", "knee_while_loading_deg", "ankle_push_off_deg", "ankle_rocker_deg")
+    ]
+    page.panel.show_course(VISITS, [*many, Goal("ankle_range_deg", GoalOf.LEFT, 25.0, day)])
+    assert len(card.rows) == 4
+    assert "Ankle range, left: at least 25°" in page.panel.count.text()

@@ -1,6 +1,7 @@
 """Does columns.csv tell of every column of every table of a real analysis, and of no other?"""
 
 import csv
+import datetime
 import json
 from dataclasses import replace
 from pathlib import Path
@@ -12,9 +13,11 @@ from app.reports.differences import comparisons_of, rows_of, write_compared_cycl
 from app.reports.result_folder import TAKEN, VISITS, VISITS_CYCLES, describe_tables, write_results
 from core.alignment import AlignmentChange, PartChange, ProsthesisPart
 from core.analysis import analyse
+from core.goals import Goal, GoalOf
 from core.results import Analysis
 from core.samples import Session
 from core.targets import Target, TargetMeasure, TargetTally, with_tallies
+from core.timed.protocols import PlannedTest, TimedProtocol
 from devices.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
 
 Row = dict[str, str]
@@ -33,10 +36,13 @@ def visit() -> tuple[Session, Analysis]:
             condition=conditions.get(one.name, ""),
             note=note,
             alignment=turned if one.name == "walk 2" else None,
+            test=PlannedTest(TimedProtocol.TEN_METRES) if one.name == "walk 2" else None,
         )
         for one in session.recordings
     )
-    session = replace(session, recordings=recordings)
+    agreed = Goal("speed_m_s", GoalOf.WALK, 1.2, datetime.date(2026, 1, 5))
+    patient = replace(session.patient, goals=(agreed,))
+    session = replace(session, recordings=recordings, patient=patient, started="2026-02-01")
     return session, analyse(session)
 
 
@@ -69,7 +75,7 @@ def test_every_column_of_every_table_is_told_of_and_no_other(out: Path) -> None:
     assert files == {
         *("angles.csv", "events.csv", "strides.csv", "cycles.csv"),
         *("peaks.csv", "alignments.csv", "differences.csv", "compared_cycles.csv", "sides.csv", "targets.csv"),
-        *("fitting.csv", "fitting_means.csv"),
+        *("fitting.csv", "fitting_means.csv", "goals.csv", "timed_test.csv"),
     }
     assert (COLUMNS,) in TAKEN
 
@@ -93,6 +99,9 @@ def test_the_tables_of_an_earlier_visit_are_told_of_once_they_are_there(
     [
         ("alignments.csv", "turns", "turns", "positive: out", ""),
         ("alignments.csv", "in_words", "", "", ""),
+        ("timed_test.csv", "turn_deg", "deg", "positive: to the left", ""),
+        ("timed_test.csv", "cadence_steps_min", "steps/min", "", ""),
+        ("timed_test.csv", "missing", "", "", ""),
         ("angles.csv", "left_knee_deg", "deg", "flexion positive", "zero sign"),
         ("angles.csv", "right_ankle_published_deg", "deg", "dorsiflexion positive", "zero sign"),
         ("angles.csv", "left_knee_sd_deg", "deg", "", ""),

@@ -2,12 +2,24 @@
 
 import datetime
 import math
+from dataclasses import replace
 from uuid import UUID
 
 import pytest
 
 from app.reports.course import Course
-from app.reports.course_lanes import CourseLane, CourseVisit, LaneKind, conditions_of_visits, lanes
+from app.reports.course_lanes import (
+    KNEE_LANE,
+    SPEED_LANE,
+    STANCE_LANE,
+    CourseLane,
+    CourseVisit,
+    LaneKind,
+    conditions_of_visits,
+    lane_kinds,
+    lanes,
+    without_lane,
+)
 from app.reports.course_words import (
     LatestVisit,
     NextStep,
@@ -21,7 +33,9 @@ from app.reports.course_words import (
     since_last_in_words,
     visit_in_words,
 )
+from app.reports.goals import reached_at
 from core.body import Joint, Side
+from core.goals import Goal, GoalOf
 from core.verdicts.measurement_error import Difference, ErrorSource, Judgement
 from core.verdicts.model import Verdict
 from tests.app.course_material import course, unsure, walked
@@ -52,28 +66,28 @@ def test_conditions_are_lines_of_their_own_and_never_joined() -> None:
     both = course((walked(speed_m_s=0.8), SHOES), (walked("walk 2", speed_m_s=0.9), STICK))
     visits = [visit(1, both), visit(2, shoes(speed_m_s=1.0)), visit(3, both)]
     assert conditions_of_visits(visits) == {SHOES: 3, STICK: 2}
-    speed = lane(lanes(visits), LaneKind.SPEED)
+    speed = lane(lanes(visits), SPEED_LANE)
     assert [line.condition for line in speed.lines] == [SHOES, STICK]
     assert [[point.visit for point in line.points] for line in speed.lines] == [[0, 1, 2], [0, 2]]
     (change,) = speed.changes  # of the condition that was walked most often
     assert change.line.condition == SHOES
-    only = lane(lanes(visits, STICK), LaneKind.SPEED)
+    only = lane(lanes(visits, STICK), SPEED_LANE)
     assert [line.condition for line in only.lines] == [STICK]
     assert only.changes[0].line.condition == STICK
 
 
 def test_the_knee_is_the_affected_sides_else_each_sides() -> None:
-    affected = lane(lanes([visit(1, shoes())]), LaneKind.KNEE)
+    affected = lane(lanes([visit(1, shoes())]), KNEE_LANE)
     assert [line.side for line in affected.lines] == [Side.LEFT]
     nobody = course((walked(), SHOES), affected=None)
-    each = lane(lanes([visit(1, nobody), visit(2, nobody)]), LaneKind.KNEE)
+    each = lane(lanes([visit(1, nobody), visit(2, nobody)]), KNEE_LANE)
     assert [line.side for line in each.lines] == [Side.LEFT, Side.RIGHT]
     assert each.band is None  # of which leg would it be?
 
 
 def test_a_visit_that_cannot_be_read_is_a_gap_and_the_change_counts_from_the_first_that_can() -> None:
     visits = [visit(1, gated()), visit(2, shoes(40.0)), visit(3, gated()), visit(4, shoes(60.0))]
-    knee = lane(lanes(visits), LaneKind.KNEE)
+    knee = lane(lanes(visits), KNEE_LANE)
     points = knee.lines[0].points
     assert [point.is_told for point in points] == [False, True, False, True]
     assert points[0].verdict is Verdict.WITHHELD
@@ -91,10 +105,10 @@ def test_a_visit_that_cannot_be_read_is_a_gap_and_the_change_counts_from_the_fir
 
 def test_a_last_visit_that_cannot_be_read_has_no_difference() -> None:
     visits = [visit(1, shoes(40.0)), visit(2, gated())]
-    knee = lane(lanes(visits), LaneKind.KNEE)
+    knee = lane(lanes(visits), KNEE_LANE)
     (change,) = knee.changes
     assert change.since_first is None
-    assert last_in_words(change, LaneKind.KNEE) == "not readable"
+    assert last_in_words(change, KNEE_LANE) == "not readable"
     assert "since" not in lane_in_words(knee, visits)
 
 
@@ -111,19 +125,19 @@ def test_one_visit_makes_no_trend_and_two_do() -> None:
     assert nothing_between([visit(1, shoes())]) == "A second visit makes a trend."
     assert nothing_between([visit(1, shoes()), visit(2, shoes())]) == ""
     assert nothing_between([visit(1, Course(None, ()))]) == "No visit has a walk yet."
-    (change,) = lane(lanes([visit(1, shoes())]), LaneKind.SPEED).changes
+    (change,) = lane(lanes([visit(1, shoes())]), SPEED_LANE).changes
     assert (change.since_first, change.since_last) == (None, None)
 
 
 def test_a_lane_says_every_value_with_its_day_and_unit() -> None:
     visits = [visit(5, shoes(speed_m_s=0.71, stance_percent=56.0)), visit(10, shoes(speed_m_s=1.12))]
     found = lanes(visits)
-    said = lane_in_words(lane(found, LaneKind.SPEED), visits)
+    said = lane_in_words(lane(found, SPEED_LANE), visits)
     assert said == (
         "Walking speed: 0.71 metres per second on 20 Jun, 1.12 metres per second on 20 Nov. "
         "+0.41 since 20 Jun, larger than error (0.20 †)."
     )
-    stance = lane_in_words(lane(found, LaneKind.STANCE), visits)
+    stance = lane_in_words(lane(found, STANCE_LANE), visits)
     assert stance == (
         "Stance of the left leg less that of the right: −4.0 percent of the stride on 20 Jun, "
         "0.0 percent of the stride on 20 Nov. +4.0 since 20 Jun, not judged."
@@ -136,18 +150,18 @@ def test_a_lane_says_every_value_with_its_day_and_unit() -> None:
 
 def test_with_two_conditions_each_value_has_its_own() -> None:
     visits = [visit(1, course((walked(), SHOES), (walked("walk 2"), "")))]
-    said = lane_in_words(lane(lanes(visits), LaneKind.SPEED), visits)
+    said = lane_in_words(lane(lanes(visits), SPEED_LANE), visits)
     assert said == (
         "Walking speed, shoes: 1.00 metres per second on 20 Feb. "
         "Walking speed, no condition stated: 1.00 metres per second on 20 Feb."
     )
-    nothing = lane_in_words(lane(lanes([visit(1, None)]), LaneKind.SPEED), [visit(1, None)])
+    nothing = lane_in_words(lane(lanes([visit(1, None)]), SPEED_LANE), [visit(1, None)])
     assert nothing == "Walking speed: no value."
 
 
 def test_visits_of_several_years_have_them_in_their_days() -> None:
     visits = [visit(1, shoes(), 2025), visit(1, shoes(), 2026)]
-    assert "on 20 Feb 2025" in lane_in_words(lane(lanes(visits), LaneKind.SPEED), visits)
+    assert "on 20 Feb 2025" in lane_in_words(lane(lanes(visits), SPEED_LANE), visits)
 
 
 def difference(
@@ -170,8 +184,8 @@ def difference(
     ],
 )
 def test_each_judgement_has_its_words(found: Difference, said: str) -> None:
-    assert judged_in_words(found, LaneKind.KNEE) == said
-    assert since_last_in_words(found, LaneKind.KNEE) == f"last visit +3°, {said.split(' (', maxsplit=1)[0]}"
+    assert judged_in_words(found, KNEE_LANE) == said
+    assert since_last_in_words(found, KNEE_LANE) == f"last visit +3°, {said.split(' (', maxsplit=1)[0]}"
 
 
 def test_what_is_drawn_is_explained_and_nothing_else() -> None:
@@ -203,3 +217,56 @@ def test_what_is_next_is_the_first_that_holds() -> None:
     assert next_step(None, latest(55), TODAY) is None
     assert next_step(None, latest(1, has_walk=False, has_report=False), TODAY) is None
     assert next_step(None, None, TODAY) is None
+
+
+def goal(column: str, of: GoalOf, value: float, day: datetime.date = TODAY) -> Goal:
+    return Goal(column, of, value, day, is_at_most=of is GoalOf.BETWEEN)
+
+
+def test_lanes_with_goals_come_first_and_the_usual_ones_fill_the_room() -> None:
+    assert lane_kinds() == (SPEED_LANE, KNEE_LANE, STANCE_LANE)
+    stride = goal("stride_length_m", GoalOf.RIGHT, 1.3)
+    assert lane_kinds([stride]) == (LaneKind("stride_length_m"), SPEED_LANE, KNEE_LANE)
+    assert lane_kinds([replace(stride, ended=TODAY)]) == lane_kinds()
+    both = [goal(KNEE_LANE.column, GoalOf.LEFT, 55.0), goal(SPEED_LANE.column, GoalOf.WALK, 1.2)]
+    assert lane_kinds(both) == (SPEED_LANE, KNEE_LANE, STANCE_LANE)
+    many = [goal(f"{name}_deg", GoalOf.LEFT, 20.0) for name in ("knee_range", "ankle_range", "ankle_rocker")]
+    assert len(lane_kinds([*both, *many])) == 4
+    assert without_lane([*both, *many]) == (many[-1],)
+
+
+def test_a_lane_holds_its_goals_and_the_leg_that_they_are_of() -> None:
+    visits = [visit(1, shoes(knee_deg=40.0)), visit(2, shoes(knee_deg=50.0))]
+    right = goal(KNEE_LANE.column, GoalOf.RIGHT, 72.0)
+    knee = lane(lanes(visits, goals=[right]), KNEE_LANE)
+    assert (knee.goals, knee.goal_values) == ((right,), [72.0])
+    assert max(knee.values) == 72.0
+    assert [line.side for line in knee.lines] == [Side.LEFT, Side.RIGHT]
+    assert lane_in_words(knee, visits).endswith("Goal: Knee, stance to swing, right: at least 72°.")
+    before = replace(right, agreed=datetime.date(2026, 3, 19))  # the day before the last visit
+    told = lane_in_words(lane(lanes(visits, goals=[before]), KNEE_LANE), visits)
+    assert told.endswith("right: at least 72°. Short of it by more than the error (9.3°).")
+    same_day = replace(right, agreed=datetime.date(2026, 3, 20))
+    assert "Short" not in lane_in_words(lane(lanes(visits, goals=[same_day]), KNEE_LANE), visits)
+    apart = goal(STANCE_LANE.column, GoalOf.BETWEEN, 2.0)
+    stance = lane(lanes(visits, goals=[apart]), STANCE_LANE)
+    assert stance.goal_values == [2.0, -2.0]
+    assert lane(lanes(visits), KNEE_LANE).goals == ()
+
+
+def test_a_goal_that_is_reached_is_next_after_the_report_and_before_a_long_time() -> None:
+    reached = reached_at([goal(SPEED_LANE.column, GoalOf.WALK, 0.7)], shoes(speed_m_s=1.0))
+    found = next_step(None, replace(latest(90), reached=reached), TODAY)
+    assert found == NextStep(
+        "goal reached on 25 Aug: Walking speed: at least 0.70\N{NO-BREAK SPACE}m/s; "
+        "measured 1.00\N{NO-BREAK SPACE}m/s, beyond error.",
+        "Goals",
+    )
+    near = reached_at([goal(SPEED_LANE.column, GoalOf.WALK, 0.95)], shoes(speed_m_s=1.0))
+    said = next_step(None, replace(latest(), reached=near), TODAY)
+    assert said is not None
+    assert said.sentence.endswith("inside error, not told from the goal.")
+    unwritten = next_step(None, replace(latest(has_report=False), reached=reached), TODAY)
+    assert unwritten is not None
+    assert unwritten.verb == "Open"
+    assert reached_at([goal(SPEED_LANE.column, GoalOf.WALK, 1.05)], shoes(speed_m_s=1.0)) == ()

@@ -1,6 +1,7 @@
 """What was typed is kept, found, corrected with its history, merged, taken back, and gone when it has to be."""
 
 import datetime
+import json
 import math
 from collections.abc import Iterator
 from dataclasses import replace
@@ -31,6 +32,7 @@ from app.storage.stored import (
 from core.alignment import AlignmentChange, PartChange, ProsthesisPart
 from core.body import Joint, Side, Site
 from core.findings import Finding, Severity
+from core.goals import Goal, GoalOf, held, ordered, with_goal
 from core.samples import Patient, RateKind, Recording, RecordingKind, SensorInfo, Session
 
 DATA_KEY = bytes(range(32))
@@ -46,6 +48,7 @@ FULL = Patient(
     prosthetic_side="left",
     unknown={"since": datetime.date(2020, 2, 29), "nested": {"list": [1, 2.5, "x"]}},
 )
+GOAL = Goal("speed_m_s", GoalOf.WALK, 1.2, datetime.date(2026, 1, 5), "H. Keller", note="\N{SNOWMAN}")
 WALK = Recording("walk 1", RecordingKind.WALKING, "walk_1", {}, condition="alignment A", note="\N{SNOWMAN}")
 SENSORS = {
     Site.LEFT_SHANK: PlacedSensor("S1", SensorInfo(serial="S1", rate_hz=100.0, rate_kind=RateKind.AVERAGED)),
@@ -357,6 +360,28 @@ def test_what_was_told_of_a_recording_is_corrected_and_taken_back(library: Libra
     found = library.recordings.find(walk.id)
     assert found is not None
     assert found.details == WALK
+
+
+def test_a_goal_that_is_replaced_stays_in_the_history_and_comes_back(library: Library, patient: StoredPatient) -> None:
+    agreed = library.patients.change(patient, replace(FULL, goals=(GOAL,)))
+    assert library.patients.get(patient.id).details.goals == (GOAL,)
+    more = replace(GOAL, value=1.3, agreed=GOAL.agreed + datetime.timedelta(days=7))
+    replaced = library.patients.change(agreed, replace(FULL, goals=with_goal(agreed.details.goals, more)))
+    assert held(replaced.details.goals) == (more,)
+    assert [goal.value for goal in replaced.details.goals] == [1.2, 1.3]
+    latest, first = library.corrections.of_patient(patient.id)
+    assert [change.field for change in (*latest.changes, *first.changes)] == ["goals", "goals"]
+    assert json.loads(library.audit.entries(f"patient:{patient.id}")[-1].details)["fields"] == ["goals"]
+    library.corrections.undo(latest.id)
+    assert library.patients.get(patient.id).details.goals == (GOAL,)
+    assert library.patients.search()[0].details.goals == (GOAL,)
+
+
+def test_a_double_brings_its_goals(library: Library) -> None:
+    knee = Goal("knee_range_deg", GoalOf.LEFT, 55.0, GOAL.agreed)
+    kept = library.patients.create(Patient(code="P-1", goals=(knee,)))
+    double = library.patients.create(Patient(code="P-2", goals=(GOAL,)))
+    assert library.patients.merge(kept, double).details.goals == ordered((knee, GOAL))
 
 
 def test_doubles_are_merged_and_parted_again(library: Library, patient: StoredPatient, visit: StoredSession) -> None:

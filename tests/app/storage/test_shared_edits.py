@@ -1,5 +1,6 @@
 """Two stations edit the same: different fields are merged, the same field is contested, and the history has both."""
 
+import datetime
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from uuid import UUID
@@ -12,6 +13,7 @@ from app.storage.library import Library
 from app.storage.stored import BEGINNING, LibraryError, Limits, Operator, PlacedSensor, Role
 from app.storage.three_way import Values
 from core.body import Joint, Side, Site
+from core.goals import Goal, GoalOf
 from core.samples import Patient, Recording, RecordingKind, SensorInfo, Session
 from tests.app.storage.conftest import DATA_KEY, MakeEngine
 
@@ -44,6 +46,9 @@ def stations(library: Library, make_engine: MakeEngine) -> Iterator[TwoStations]
         yield TwoStations(library, theirs, patient.id, visit.id, walk.id)
 
 
+DAY = datetime.date(2026, 9, 30)
+
+
 def history(stations: TwoStations) -> list[tuple[str, str, object, object, bool]]:
     """Operator, field, old and new value of each change, oldest first, and whether it was taken back."""
     return [
@@ -61,6 +66,19 @@ def test_different_fields_are_merged_and_it_is_told_what_the_other_changed(stati
     assert edited.contests == ()
     assert [(one.field, one.value, one.by) for one in edited.others] == [("height_m", 1.80, "B. Berger")]
     assert stations.ours.patients.get(stations.patient_id).version == 3
+
+
+def test_two_who_agree_on_two_goals_lose_neither_and_of_one_figure_are_asked(stations: TwoStations) -> None:
+    speed = Goal("speed_m_s", GoalOf.WALK, 1.2, DAY, "hk")
+    knee, more = Goal("knee_range_deg", GoalOf.LEFT, 55.0, DAY, "bb"), replace(speed, value=1.4, by="bb")
+    upon = patient_fields(FULL)
+    stations.theirs.edits.patient(stations.patient_id, upon, patient_fields(replace(FULL, goals=(knee,))))
+    edited = stations.ours.edits.patient(stations.patient_id, upon, patient_fields(replace(FULL, goals=(speed,))))
+    assert set(edited.stored.details.goals) == {speed, knee}
+    assert [one.field for one in edited.others] == ["goals.knee_range_deg.left"]
+    edited = stations.theirs.edits.patient(stations.patient_id, upon, patient_fields(replace(FULL, goals=(knee, more))))
+    assert [one.field for one in edited.contests] == ["goals.speed_m_s.both"]
+    assert set(stations.ours.patients.get(stations.patient_id).details.goals) == {speed, knee}
 
 
 def test_the_same_said_by_both_is_no_conflict_and_no_correction(stations: TwoStations) -> None:

@@ -1,5 +1,7 @@
 """Nothing of either side is lost when what both changed is brought together."""
 
+import datetime
+
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -15,12 +17,15 @@ from app.storage.stored import Limits
 from app.storage.three_way import Values, rebased, three_way
 from core.alignment import AlignmentChange, PartChange, ProsthesisPart
 from core.body import Joint, Side
+from core.goals import Goal, GoalOf, with_goal
 from core.samples import Patient, Recording, RecordingKind, Session
+from core.timed.protocols import PlannedTest, TimedProtocol
 
 WORDS = st.sampled_from(["", "stick", "frame", "none"])
 NUMBERS = st.one_of(st.none(), st.sampled_from([1.5, 1.6, 1.7]))
 TIMES = st.lists(st.sampled_from([1.0, 2.0, 3.0, 4.0]), unique=True).map(lambda times_s: tuple(sorted(times_s)))
 FIELDS = st.fixed_dictionaries({"aids": WORDS, "height_m": NUMBERS, "is_kept": st.booleans(), "left_out_s.left": TIMES})
+DAY = datetime.date(2026, 9, 30)
 ASKED = ("aids", "height_m", "is_kept")
 
 
@@ -89,7 +94,12 @@ def test_a_side_is_one_word_of_two_columns() -> None:
 
 
 def test_fields_and_back_are_the_same() -> None:
-    patient = Patient("P-1", 1970, "female", 1.7, 60.0, "knee", "stick", "none", "both", {"x": 1})
+    goals: tuple[Goal, ...] = (
+        Goal("speed_m_s", GoalOf.WALK, 1.2, DAY, "hk"),
+        Goal("stance_percent", GoalOf.BETWEEN, 2.0, DAY, is_at_most=True),
+    )
+    goals = with_goal(goals, Goal("speed_m_s", GoalOf.WALK, 1.3, DAY, "bb"))
+    patient = Patient("P-1", 1970, "female", 1.7, 60.0, "knee", "stick", "none", "both", {"x": 1}, goals)
     assert with_patient_fields(Patient(unknown={"x": 1}), patient_fields(patient)) == patient
     told = Session((), surface="grass", zero_rad={Joint.LEFT_KNEE: 0.0}, turned_sign={Joint.LEFT_ANKLE: -1})
     limits = Limits(frozenset({Side.LEFT}), cannot_stand=True)
@@ -97,7 +107,14 @@ def test_fields_and_back_are_the_same() -> None:
     assert with_session_fields(Session(()), "", Limits(), values) == (told, "words", limits)
     turned = AlignmentChange("A", (PartChange(ProsthesisPart.KNEE_UNIT, turns=-0.5),))
     walk = Recording(
-        "walk 1", RecordingKind.WALKING, "", {}, left_out_s={Side.LEFT: (1.0, 2.0)}, note="slow", alignment=turned
+        "walk 1",
+        RecordingKind.WALKING,
+        "",
+        {},
+        left_out_s={Side.LEFT: (1.0, 2.0)},
+        note="slow",
+        alignment=turned,
+        test=PlannedTest(TimedProtocol.UP_AND_GO, end_key_s=9.0),
     )
     blank = Recording("walk 1", RecordingKind.STANDING, "", {})
     assert with_recording_fields(blank, recording_fields(walk)) == walk

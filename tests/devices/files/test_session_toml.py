@@ -1,6 +1,7 @@
 """Is every key of `session.toml` understood, and a wrong one refused in words?"""
 
 import re
+import tomllib
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ import pytest
 from core.alignment import AlignmentChange, PartChange, ProsthesisPart
 from core.body import Joint, Site
 from core.samples import Patient, RateKind, SensorInfo
+from core.timed.protocols import PlannedTest, TimedProtocol
 from devices.files.refusal import FileRefusedError
 from devices.files.session_toml import default_sensor, parse, render, unknown_keys
 
@@ -18,6 +20,24 @@ name = "walk 1"
 kind = "walking"
 folder = "walk_1"
 """
+
+
+GOAL = {"measure": "speed_m_s", "of": "both", "value": 1.2, "agreed": "2026-01-05", "by": "hk"}
+
+
+def test_goals_are_read_and_written_and_what_is_none_stays_as_it_was() -> None:
+    head = 'format = "gaitwright-session/1"\n[patient]\ncode = "P-1"\n'
+    recording = '[[recordings]]\nname = "walk 1"\nkind = "walking"\nfolder = "walk_1"\n'
+    goals = '[[patient.goals]]\nmeasure = "speed_m_s"\nof = "both"\nvalue = 1.2\nagreed = "2026-01-05"\nby = "hk"\n'
+    session, plans = parse(head + goals + recording)
+    (goal,) = session.patient.goals
+    assert (goal.column, goal.of, goal.value, goal.agreed.isoformat(), goal.by) == tuple(GOAL.values())
+    assert tomllib.loads(render(session, plans))["patient"]["goals"] == [GOAL]
+    other = goals.replace("speed_m_s", "hop_height_m")
+    kept, plans = parse(head + other + recording)
+    assert kept.patient.goals == ()
+    assert tomllib.loads(render(kept, plans))["patient"]["goals"] == [GOAL | {"measure": "hop_height_m"}]
+    assert [finding.numbers["name"] for finding in unknown_keys(kept)] == ["goals"]
 
 
 def test_every_key_of_the_format_is_read() -> None:
@@ -165,4 +185,28 @@ def test_what_another_program_calls_alignment_is_unknown_and_stays(other: str) -
     session, plans = parse(f"{TOML}alignment = {other}\n")
     assert plans[0].recording.alignment is None
     assert list(plans[0].recording.unknown) == ["alignment"]
+    assert parse(render(session, plans)) == (session, plans)
+
+
+def test_which_test_a_walk_is_is_read_and_written_again_with_its_keys() -> None:
+    session, plans = parse(TOML + 'test = "10 m"\ntest_start_s = 3\ntest_end_s = 12.25\n')
+    assert plans[0].recording.test == PlannedTest(TimedProtocol.TEN_METRES, 3.0, 12.25)
+    assert plans[0].recording.unknown == {}
+    assert parse(render(session, plans)) == (session, plans)
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        'test = "100 m"',
+        "test = 10",
+        "test_end_s = 3.0",
+        'test = "10 m"\ntest_start_s = 5.0\ntest_end_s = 4.0',
+        'test = "10 m"\ntest_end_s = "later"',
+    ],
+)
+def test_a_test_that_is_none_of_ours_is_unknown_and_stays(other: str) -> None:
+    session, plans = parse(f"{TOML}{other}\n")
+    assert plans[0].recording.test is None
+    assert set(plans[0].recording.unknown) == {line.split(" = ")[0] for line in other.split("\n")}
     assert parse(render(session, plans)) == (session, plans)

@@ -1,11 +1,15 @@
 """The answer to a walk: each kind has a walk in which it must come, and one in which it must not."""
 
+import datetime
+from dataclasses import replace
+
 import pytest
 
 from app.reports.patient_report.answer import Answer, Outcome, answer_of
 from app.reports.patient_report.facts import Facts
 from app.reports.patient_report.request import AnalysedVisit, ReportRequest
-from core.body import Joint, Side
+from core.body import LEG_JOINTS, Joint, Side
+from core.goals import Goal, GoalOf
 from core.results import Analysis
 from tests.app.changed_analysis import recalibrated, rewalked, walk_of, with_few_strides
 from tests.app.reports.patient_report.test_what_stands_out import said, with_more
@@ -79,7 +83,7 @@ def test_the_screen_and_the_report_say_the_same(request_of_demonstration: Report
         assert any(sentence.startswith(first) for sentence in said(request_of_demonstration, changed))
 
 
-@pytest.mark.parametrize("joints", [tuple(Joint), (Joint.LEFT_KNEE, Joint.LEFT_ANKLE), (Joint.LEFT_KNEE,)])
+@pytest.mark.parametrize("joints", [LEG_JOINTS, (Joint.LEFT_KNEE, Joint.LEFT_ANKLE), (Joint.LEFT_KNEE,)])
 def test_where_no_angle_can_be_compared_it_is_said_before_what_times_tell(
     request_of_demonstration: ReportRequest, analysis: Analysis, joints: tuple[Joint, ...]
 ) -> None:
@@ -88,3 +92,20 @@ def test_where_no_angle_can_be_compared_it_is_said_before_what_times_tell(
     has_pair = joints == (Joint.LEFT_KNEE,)  # the ankles
     assert found.first.startswith("No angle can be compared.") is not has_pair
     assert found.first.startswith("No difference is larger than its error.") is has_pair
+
+
+def test_a_goal_agreed_before_is_answered_and_one_agreed_on_the_day_is_not(
+    request_of_demonstration: ReportRequest, analysis: Analysis
+) -> None:
+    session = request_of_demonstration.visit.session
+
+    def then(agreed: str) -> str:
+        goal = Goal("speed_m_s", GoalOf.WALK, 3.0, datetime.date.fromisoformat(agreed))
+        told = replace(session, started="2026-11-20", patient=replace(session.patient, goals=(goal,)))
+        return answer_of(Facts(AnalysedVisit(told, analysis), walk_of(analysis))).then
+
+    assert "Goal: Walking speed: at least 3.00\u00a0m/s; measured 1.18\u00a0m/s, short of it by more" in then(
+        "2026-11-19"
+    )
+    assert "Goal" not in then("2026-11-20")
+    assert "Goal" not in then("2026-11-21")

@@ -9,16 +9,18 @@ from uuid import UUID
 
 import pytest
 
-from app.reports.course import Course
+from app.reports.course import KNEE, Course
 from app.reports.course_lanes import CourseVisit
 from app.reports.patient_report.blocks import Block
 from app.reports.patient_report.document import facts_of, report_data
-from app.reports.patient_report.request import ReportRequest
+from app.reports.patient_report.request import AnalysedVisit, ReportRequest
 from app.reports.patient_report.trend_chart import TrendValue, trend_chart
 from app.reports.patient_report.trend_page import trend_page
 from core.body import Joint, Side
+from core.goals import Goal, GoalOf
 from tests.app.course_material import course, unsure, walked
 
+LEGS = (GoalOf.LEFT, GoalOf.RIGHT)
 DAYS = ("2026-09-02", "2026-09-16", "2026-09-30", "2026-10-28", "2026-11-25")
 
 
@@ -115,3 +117,71 @@ def test_a_chart_says_its_values_and_joins_none_over_a_gap(value: float) -> None
     assert "withheld" not in drawn.svg
     joins = [svg.count('stroke-width="1.2"') for svg in (drawn.svg, broken.svg)]
     assert joins == [2, 0]
+
+
+def with_goals(request: ReportRequest, *goals: Goal) -> ReportRequest:
+    """Of a visit on the last of the days."""
+    session = replace(request.visit.session, started=DAYS[-1])
+    told = replace(session, patient=replace(session.patient, goals=goals))
+    return replace(request, visit=AnalysedVisit(told, request.visit.analysis))
+
+
+def knee_goal(value: float, agreed: str = DAYS[1]) -> Goal:
+    return Goal(KNEE, GoalOf.LEFT, value, datetime.date.fromisoformat(agreed), "H. Keller")
+
+
+def test_a_goal_is_dotted_with_who_and_when_and_a_sentence_says_how_the_last_visit_stands(
+    request_of_demonstration: ReportRequest,
+) -> None:
+    seen = visits(*(walk(knee_deg=knee_deg) for knee_deg in (31.0, 36.0, 39.0, 45.0, 52.0)))
+    blocks = page(with_goals(request_of_demonstration, knee_goal(41.0)), seen)
+    assert sentences(blocks)[-1] == (
+        "Goal: Knee, stance to swing, left: at least 41°; measured 52.0°, reached by more than the error (9.3°). "
+        "First reached at visit 4."
+    )
+    (drawn,) = (block["pictures"] for block in blocks if block["kind"] == "figures")
+    assert "goal L 41°, agreed 16 Sep" in str(drawn)
+    assert "Keller" in str(drawn)
+    inside = sentences(page(with_goals(request_of_demonstration, knee_goal(55.0)), seen))[-1]
+    assert inside.endswith("short of it inside the error (9.3°), so not told from the goal.")
+
+
+def test_a_goal_agreed_on_the_day_of_the_visit_is_drawn_and_said_to_be_nothing(
+    request_of_demonstration: ReportRequest,
+) -> None:
+    seen = visits(*(walk(knee_deg=knee_deg) for knee_deg in (31.0, 36.0, 39.0, 45.0, 52.0)))
+    blocks = page(with_goals(request_of_demonstration, knee_goal(41.0, DAYS[-1])), seen)
+    assert not any(one.startswith("Goal") for one in sentences(blocks))
+    assert "goal L 41°" in str(blocks)
+    withheld = visits(*(walk(knee_deg=52.0, is_withheld=number == 4) for number in range(5)))
+    blocks = page(with_goals(request_of_demonstration, knee_goal(41.0)), withheld)
+    assert not any(one.startswith("Goal") for one in sentences(blocks))
+
+
+def test_a_measure_with_a_goal_has_a_chart_of_its_own_and_no_more_than_four_are_drawn(
+    request_of_demonstration: ReportRequest,
+) -> None:
+    seen = visits(walk(), walk())
+    stride = Goal("stride_length_m", GoalOf.RIGHT, 1.3, datetime.date.fromisoformat(DAYS[0]))
+    (drawn,) = (
+        block["pictures"]
+        for block in page(with_goals(request_of_demonstration, stride), seen)
+        if block["kind"] == "figures"
+    )
+    assert isinstance(drawn, list)
+    assert len(drawn) <= 4
+    assert "Stride length, m" in str(drawn)
+    assert "Stride length" not in str(page(request_of_demonstration, seen))
+
+
+def test_two_goals_of_one_chart_have_a_line_each_and_of_many_five_are_said(
+    request_of_demonstration: ReportRequest,
+) -> None:
+    seen = visits(walk(), walk(), walk())
+    agreed = datetime.date.fromisoformat(DAYS[0])
+    every = [Goal(column, of, 20.0, agreed) for column in (KNEE, "knee_range_deg", "ankle_range_deg") for of in LEGS]
+    blocks = page(with_goals(request_of_demonstration, *every), seen)
+    assert sum(one.startswith("Goal") for one in sentences(blocks)) == 5
+    (drawn,) = (block["pictures"] for block in blocks if block["kind"] == "figures")
+    lines = re.findall(r'y="([\d.]+)"[^>]*>· · · goal ([LR]) 20', str(drawn))
+    assert lines[:2] == [("17.00", "L"), ("27.00", "R")]

@@ -1,5 +1,6 @@
 """The sentences of page one: each has a case in which it must come, and one in which it must not."""
 
+import datetime
 from dataclasses import replace
 
 import numpy as np
@@ -19,6 +20,7 @@ from app.reports.patient_report.what_stands_out import (
     unit_and_decimals,
 )
 from core.body import Joint, Side
+from core.goals import Goal, GoalOf
 from core.results import Analysis, ZeroKind
 from core.verdicts.gates import judged
 from core.verdicts.quantities import QUANTITIES, QuantityClass
@@ -127,6 +129,33 @@ def test_stance_that_lasts_longer_on_one_leg(
     request = of_a_child(request_of_demonstration, analysis)  # who has no band
     told = [one for one in said(request) if one.startswith("Stance is ")]
     assert bool(told) is is_told
+
+
+def with_goal_of(request: ReportRequest, day: str, of: GoalOf = GoalOf.BETWEEN) -> ReportRequest:
+    """With a goal of stance that was agreed on a day."""
+    session = request.visit.session
+    goal = Goal("stance_percent", of, 60.0, datetime.date.fromisoformat(day), is_at_most=True)
+    told = replace(session, patient=replace(session.patient, goals=(goal,)))
+    return replace(request, visit=AnalysedVisit(told, request.visit.analysis))
+
+
+def test_a_measure_chosen_before_the_walk_is_told_from_one_error_on_and_never_one_chosen_after(
+    request_of_demonstration: ReportRequest,
+) -> None:
+    """3.2 points of stance lie between the error, 2.6, and what a sentence needs otherwise, 3.9."""
+    analysis = with_more(request_of_demonstration.visit.analysis, Side.LEFT, "stance_percent", 3.2)
+    request = of_a_child(request_of_demonstration, analysis)  # who has no band; measured on 20 November
+    less = with_more(request_of_demonstration.visit.analysis, Side.LEFT, "stance_percent", 2.0)
+
+    def is_told(one: ReportRequest) -> bool:
+        return any(sentence.startswith("Stance is ") for sentence in said(one))
+
+    assert not is_told(request)
+    assert is_told(with_goal_of(request, "2026-11-19"))
+    assert is_told(with_goal_of(request, "2026-11-19", GoalOf.LEFT))
+    assert not is_told(with_goal_of(request, "2026-11-20"))
+    assert not is_told(with_goal_of(request, "2026-11-21"))
+    assert not is_told(with_goal_of(of_a_child(request_of_demonstration, less), "2026-11-19"))
 
 
 @pytest.mark.parametrize(("more", "is_told"), [(1.0, False), (4.0, True)])

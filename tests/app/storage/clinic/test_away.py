@@ -1,5 +1,6 @@
 """What a station records while the server does not answer goes to the others once, wherever it is broken off."""
 
+import datetime
 import json
 import shutil
 from dataclasses import replace
@@ -18,6 +19,7 @@ from app.storage.recovery import adopt_home, find_interrupted, recover
 from app.storage.stored import LibraryError, NotAllowedError, Role
 from app.workers.library_holder import LibraryHolder
 from app.workers.library_state import NotOpened, OpenedState
+from core.goals import Goal, GoalOf, ordered
 from core.samples import Patient, Session
 from tests.app.storage.clinic.conftest import PASSPHRASE, silent
 from tests.app.storage.clinic.test_stations import found, read, record
@@ -69,6 +71,21 @@ def test_a_patient_whom_the_clinic_knows_keeps_what_it_says(stations: Stations) 
     assert after is not None
     assert (after.id, after.details) == (before.id, before.details)
     assert second.library.sessions.get(session_id).patient_id == before.id
+
+
+def test_a_goal_agreed_without_the_server_is_added_to_the_clinics(stations: Stations) -> None:
+    first, second = stations
+    known = second.library.patients.find("DEMO-1")
+    assert known is not None
+    day = datetime.date(2026, 9, 30)
+    theirs, ours = Goal("speed_m_s", GoalOf.WALK, 1.2, day), Goal("knee_range_deg", GoalOf.LEFT, 55.0, day)
+    second.library.patients.change(known, replace(known.details, goals=(theirs,)))
+    with begin_away(first) as opened:
+        opened.library.patients.create(Patient(code="DEMO-1", goals=(ours,)))
+    bring_away_home(first)
+    after = second.library.patients.find("DEMO-1")
+    assert after is not None
+    assert after.details.goals == ordered((theirs, ours))
 
 
 def test_a_deleted_patient_who_is_measured_is_one_again(stations: Stations) -> None:

@@ -1,5 +1,6 @@
 """A session folder goes into the library and comes out again with every bit, key and column, or without any name."""
 
+import datetime
 import json
 import math
 from collections.abc import Mapping
@@ -21,8 +22,9 @@ from app.storage.journal.header import JournalRefusedError
 from app.storage.opened import OpenedLibrary
 from app.storage.pseudonyms import AGE, Pseudonyms, Typed, age_in_words
 from app.storage.stored import Action, LibraryError, RecordingState
-from core.body import Joint, Site
+from core.body import LEG_JOINTS, LEG_SITES, Joint, Site
 from core.findings import Finding, Severity
+from core.goals import Goal, GoalOf
 from core.samples import ImuBlock, Patient, RateKind, Recording, RecordingKind, SensorInfo, Session
 from devices.files.session_folder import read_session, write_session
 from devices.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
@@ -186,8 +188,8 @@ def sessions(draw: st.DrawFn) -> Session:
         recordings=recordings,
         patient=Patient(code=f"P-{uuid4()}", sex=draw(WORDS), unknown=draw(TABLES)),
         sensors=draw(st.dictionaries(st.sampled_from(Site), infos, max_size=6)),
-        zero_rad=draw(st.dictionaries(st.sampled_from(Joint), st.floats(-3, 3), max_size=4)),
-        turned_sign=draw(st.dictionaries(st.sampled_from(Joint), st.sampled_from([1, -1]), max_size=4)),
+        zero_rad=draw(st.dictionaries(st.sampled_from(LEG_JOINTS), st.floats(-3, 3), max_size=4)),
+        turned_sign=draw(st.dictionaries(st.sampled_from(LEG_JOINTS), st.sampled_from([1, -1]), max_size=4)),
         started=draw(WORDS),
         operator=draw(WORDS),
         notes=draw(WORDS),
@@ -343,6 +345,25 @@ def test_a_known_patient_stays_as_the_library_knows_it(opened: OpenedLibrary, wa
     assert second.patient.details == first.patient.details
 
 
+def test_goals_come_with_a_new_patient_and_go_out_again_and_others_are_told_of(
+    opened: OpenedLibrary, walked: Session, tmp_path: Path
+) -> None:
+    goal = Goal("speed_m_s", GoalOf.WALK, 1.2, datetime.date(2026, 1, 5), "H. Keller", note="bus")
+    told = replace(small(walked), patient=replace(walked.patient, goals=(goal,)))
+    first = import_session(opened, told, silent, room=ANY_ROOM)
+    assert first.patient.details.goals == (goal,)
+    assert import_session(opened, told, silent, room=ANY_ROOM).differing == ()
+    other = replace(goal, value=1.4)
+    second = import_session(opened, replace(told, patient=replace(told.patient, goals=(other,))), silent, room=ANY_ROOM)
+    assert second.differing == ("goals",)
+    assert second.patient.details.goals == (goal,)
+    for name, is_identified in (("whole", True), ("nameless", False)):
+        export_session(opened, first.session_id, tmp_path / name, {}, silent, is_identified=is_identified)
+    assert read_session(tmp_path / "whole").patient.goals == (goal,)
+    (nameless,) = read_session(tmp_path / "nameless").patient.goals
+    assert (nameless.key, nameless.value, nameless.by, nameless.note) == (goal.key, 1.2, "", "")
+
+
 def test_a_destroyed_recording_is_not_exported_and_a_missing_file_is_said(
     opened: OpenedLibrary, walked: Session, tmp_path: Path
 ) -> None:
@@ -379,3 +400,13 @@ def test_what_happened_to_a_recordings_file_is_told(opened: OpenedLibrary, walke
     visit = opened.library.sessions.get(imported.session_id)
     recovered = Finding("recording_recovered", Severity.INFO, "free motion")
     assert session_with_samples(opened, visit, {}, silent).findings == (changed, recovered)
+
+
+def test_a_session_with_a_pelvis_goes_in_and_out(opened: OpenedLibrary) -> None:
+    settings = WalkerSettings(sites=(*LEG_SITES, Site.PELVIS), recordings=(Standing(), Walk(strides=2)))
+    session = simulate(settings).session
+    again = in_and_out(opened, session)
+    assert set(again.sensors) == {*LEG_SITES, Site.PELVIS}
+    for one, other in zip(again.recordings, session.recordings, strict=True):
+        assert set(one.imu) == {*LEG_SITES, Site.PELVIS}
+        assert same_bits(one.imu[Site.PELVIS].acc_m_s2, other.imu[Site.PELVIS].acc_m_s2)

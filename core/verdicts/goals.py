@@ -1,0 +1,79 @@
+"""How a value stands to its goal, and whether that is more than its error: a goal is a number and has none itself.
+
+The error is that of a difference from a mean as sure: between visits for a figure of one leg or of the walk, between
+the legs for what they differ by. It stands beside the value wherever that is told, so that who reads both can follow;
+for a goal, which is without error itself, it is more than is needed, by up to the root of two.
+"""
+
+import math
+from enum import StrEnum
+
+from core.goals import Goal, GoalOf
+from core.verdicts.measurement_error import ComparisonKind, whisker
+from core.verdicts.stride_means import MeanOfStrides
+
+
+class GoalStanding(StrEnum):
+    """How a value stands to a goal; the words of goals.csv.
+
+    SHORT: short of it by more than the error. SHORT_INSIDE and REACHED_INSIDE: short of it, or at it and beyond, and
+    inside the error, so that the value is not told from the goal. REACHED: at it or beyond it by more than the error.
+    NOT_JUDGED: the value is told and its error is not. UNKNOWN: there is no value that may be told.
+    """
+
+    SHORT = "short"
+    SHORT_INSIDE = "short_inside_error"
+    REACHED_INSIDE = "reached_inside_error"
+    REACHED = "reached"
+    NOT_JUDGED = "not_judged"
+    UNKNOWN = "unknown"
+
+    @property
+    def is_reached(self) -> bool:
+        """Whether the value is at the goal or beyond it, judged against an error."""
+        return self in (GoalStanding.REACHED, GoalStanding.REACHED_INSIDE)
+
+
+def beyond(goal: Goal, value: float) -> float:
+    """By how much a value is beyond its goal, in the goal's unit; negative where it is short of it.
+
+    Between the legs the size of the difference counts, whichever leg has more.
+
+    Returns
+    -------
+    float
+        In the unit of the goal's column.
+    """
+    measured = abs(value) if goal.of is GoalOf.BETWEEN else value
+    return goal.value - measured if goal.is_at_most else measured - goal.value
+
+
+def standing(goal: Goal, value: float, error: float) -> GoalStanding:
+    """How a value stands to its goal.
+
+    Parameters
+    ----------
+    value
+        In the unit of the goal's column; NaN where none may be told.
+    error
+        What a difference has to exceed to be real, in the same unit; NaN where it is not known.
+    """
+    if not math.isfinite(value):
+        return GoalStanding.UNKNOWN
+    if not (math.isfinite(error) and error > 0):
+        return GoalStanding.NOT_JUDGED
+    more = beyond(goal, value)
+    if abs(more) > error:
+        return GoalStanding.REACHED if more > 0 else GoalStanding.SHORT
+    return GoalStanding.REACHED_INSIDE if more >= 0 else GoalStanding.SHORT_INSIDE
+
+
+def error_of_visit(column: str, found: MeanOfStrides) -> float:
+    """What a change between visits has to exceed from a mean as sure as this one; NaN where no error is known.
+
+    Returns
+    -------
+    float
+        In the unit of the column.
+    """
+    return 2.0 * whisker(column, ComparisonKind.VISITS, found)
