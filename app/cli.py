@@ -26,6 +26,7 @@ from app.logs import log_folder, start_logging, version_of
 from app.query_command import add_query_arguments, query
 from app.report_command import add_report_arguments, make
 from app.terminal import Progress, finding_lines, one_of, positive
+from app.wording import languages, use_language
 
 if TYPE_CHECKING:
     from app.analysed_folder import AnalysisChoices
@@ -59,9 +60,12 @@ def main(argv: Sequence[str] | None = None) -> int:
             stream.reconfigure(errors="backslashreplace")  # a terminal without a degree sign is no reason to stop
     if argv is None:
         _begin_program()
-    arguments = list(sys.argv[1:] if argv is None else argv)
+    of_language = _Parser(prog="gaitwright", add_help=False, allow_abbrev=False)
+    _add_language(of_language)
+    spoken, arguments = of_language.parse_known_args(sys.argv[1:] if argv is None else argv)
     if not arguments or (len(arguments) == 1 and _is_folder(arguments[0])):
-        return _open_window(arguments)
+        return _open_window(arguments, spoken.lang)
+    use_language(spoken.lang or "en")
     wanted = _parser().parse_args(arguments)
     try:
         return _run(wanted)
@@ -118,6 +122,7 @@ def _parser() -> argparse.ArgumentParser:
         epilog="Research use. Not a medical device.",
     )
     parser.add_argument("--version", action="version", version=f"gaitwright {version_of('gaitwright')}")
+    _add_language(parser)
     commands = parser.add_subparsers(title="subcommands", metavar="", required=True)
     _add_analyse(commands.add_parser("analyse", help="compute the angles of a session"))
     _add_demo(commands.add_parser("demo", help="simulate a patient and analyse the session"))
@@ -142,6 +147,15 @@ def _parser() -> argparse.ArgumentParser:
     _add_audit(commands.add_parser("audit", help="see whether a library's audit was changed"))
     _add_devices(commands.add_parser("devices", help="list the sensors that are heard, and how drivers were proved"))
     return parser
+
+
+def _add_language(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--lang",
+        choices=languages(),
+        default="",
+        help="the language of the window, kept for its next start, and of reports and findings",
+    )
 
 
 def _add_analyse(parser: argparse.ArgumentParser) -> None:
@@ -353,10 +367,10 @@ def _is_folder(argument: str) -> bool:
     return argument not in SUBCOMMANDS and Path(argument).is_dir()
 
 
-def _open_window(arguments: list[str]) -> int:
+def _open_window(arguments: list[str], language: str) -> int:
     variables = ("DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM")
     if sys.platform.startswith("linux") and not any(os.environ.get(name) for name in variables):
         return _say_last("There is no screen here. See gaitwright --help for what works without one.", REFUSED)
     from app.main_window import open_window
 
-    return open_window(arguments)
+    return open_window(arguments, language)

@@ -3,6 +3,7 @@
 import signal
 import sys
 import time
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 from uuid import UUID
@@ -32,6 +33,7 @@ from app.settings import Scheme, Settings
 from app.storage.idle_lock import IdleLock
 from app.theme import ThemeNotifier, load_fonts
 from app.widgets.focus_ring import FocusRing
+from app.wording import use_language
 from app.workers.background import Background
 from app.workers.garbage import GarbageCollector
 from app.workers.library_controller import LibraryController
@@ -50,6 +52,7 @@ SMALLEST_SIZE = (640, 480)
 DROP_EDGE = 2.5
 POLL_MS = 1000
 SWITCH_S = 0.001  # a frame needs Python several times, and waits so long each time while an analysis runs beside it
+IN_ANOTHER_LANGUAGE = 90  # what the event loop ends with where the window is to be opened anew
 PREPARE_AFTER_MS = 200  # the first frame goes before
 MAKE_EVERY_MS = 300  # of what is made before it is needed; what the user does comes between
 COMPACT_BELOW = (1180, 720)
@@ -506,13 +509,16 @@ class _DropFrame(QWidget):
         painter.drawRect(self.rect().adjusted(2, 2, -3, -3))
 
 
-def open_window(argv: list[str]) -> int:
+def open_window(argv: list[str], language: str = "") -> int:
     """Open the application, with the session folder named in `argv` if one is, and stay until it is closed.
 
     Parameters
     ----------
     argv
         What stood behind the program's name.
+    language
+        What to speak from now on, as "de"; empty: what was chosen last. Another one chosen in the settings opens the
+        window anew, which is locked then: every word of the old one was written in the language before.
     """
     signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C in the terminal ends it; Python would wait for the event loop
     sys.setswitchinterval(SWITCH_S)
@@ -522,17 +528,28 @@ def open_window(argv: list[str]) -> int:
     app.setApplicationName("Gaitwright")
     app.setStyle("Fusion")
     load_fonts()
+    settings, folders = Settings(own_settings()), [word for word in app.arguments()[1:] if not word.startswith("-")]
+    settings.language = language or settings.language
+    settings.language_changed.connect(partial(app.exit, IN_ANOTHER_LANGUAGE))
+    while (code := _show_window(app, settings, folders)) == IN_ANOTHER_LANGUAGE:
+        folders = []
+    return code
+
+
+def _show_window(app: QApplication, settings: Settings, folders: list[str]) -> int:
+    use_language(settings.language)
     library = default_folder()
-    window = MainWindow(ThemeNotifier(app), Settings(own_settings()), library, library.with_name("seen"))
+    window = MainWindow(ThemeNotifier(app), settings, library, library.with_name("seen"))
     window.show()
     garbage = GarbageCollector(window, lambda: window.preparing.is_busy)
     window.preparing.done.connect(garbage.pass_over_imported)
     QTimer.singleShot(PREPARE_AFTER_MS, window.prepare)
-    folders = [argument for argument in app.arguments()[1:] if not argument.startswith("-")]
     if folders:
         window.open_folder(Path(folders[0]))
     code = app.exec()
+    window.close()
     window.finish()
+    window.deleteLater()
     return code
 
 

@@ -4,6 +4,8 @@ from enum import StrEnum
 
 from PySide6.QtCore import QObject, QSettings, Signal
 
+from app.wording import languages
+
 FROM, TO = 0.8, 2.0
 
 
@@ -17,6 +19,7 @@ class Settings(QObject):
     """Typed access; whatever a damaged file holds counts as not set."""
 
     changed = Signal()
+    language_changed = Signal()
 
     def __init__(self, kept: QSettings, parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -44,6 +47,18 @@ class Settings(QObject):
     @scale.setter
     def scale(self, scale: float) -> None:
         self._put("scale", str(scale))
+
+    @property
+    def language(self) -> str:
+        """What is spoken on the screen, as "de"."""
+        language = str(self._kept.value("language", ""))
+        return language if language in languages() else "en"
+
+    @language.setter
+    def language(self, language: str) -> None:
+        if language != self.language:
+            self._put("language", language)
+            self.language_changed.emit()
 
     @property
     def is_from_behind(self) -> bool:

@@ -19,6 +19,8 @@ DOMAIN = "gaitwright"
 LOCALE = Path(__file__).parents[1] / "resources" / "locale"
 _catalogue = gettext.NullTranslations()
 _language = "en"
+# each in its own words, for who does not understand those in sight
+LANGUAGES = {"en": "English", "de": "Deutsch"}
 
 SENTENCES = {
     # what the reader noticed
@@ -286,6 +288,8 @@ NAMES = {
         "stop": "stopping",
         "outlier": "unlike the others",
         "strap_slipped": "after a strap slipped",
+        "stairs_up": "up stairs",
+        "stairs_down": "down stairs",
         "left_out_by_hand": "left out by hand",
     },
     "peak": {
@@ -315,6 +319,11 @@ def use_language(language: str) -> None:
         _catalogue = PseudoLanguage()
     else:
         _catalogue = gettext.translation(DOMAIN, LOCALE, languages=[language], fallback=True)
+
+
+def languages() -> tuple[str, ...]:
+    """Give the languages there are, English first, as "de"."""
+    return ("en", *sorted(file.parts[-3] for file in LOCALE.glob(f"*/LC_MESSAGES/{DOMAIN}.mo")))
 
 
 def spoken_in(language: str) -> Callable[[str], str]:
@@ -380,10 +389,13 @@ def name_of(part: Site | Joint) -> str:
         Site.RIGHT_THIGH: tr("R thigh"),
         Site.RIGHT_SHANK: tr("R shank"),
         Site.RIGHT_FOOT: tr("R foot"),
+        Site.PELVIS: tr("pelvis"),
         Joint.LEFT_KNEE: tr("left knee"),
         Joint.LEFT_ANKLE: tr("left ankle"),
         Joint.RIGHT_KNEE: tr("right knee"),
         Joint.RIGHT_ANKLE: tr("right ankle"),
+        Joint.LEFT_HIP: tr("left hip"),
+        Joint.RIGHT_HIP: tr("right hip"),
     }
     return names[part]
 
@@ -404,6 +416,11 @@ def place(where: str) -> str:
 def capitalised(text: str) -> str:
     """Begin as a sentence begins; the rest keeps its letters, as a sensor's name must."""
     return text[:1].upper() + text[1:]
+
+
+def within_sentence(name: str) -> str:
+    """Give a name that begins with a capital as it stands inside a sentence; German nouns keep theirs."""
+    return name if _language == "de" else name[:1].lower() + name[1:]
 
 
 def joined(names: Sequence[str]) -> str:

@@ -10,7 +10,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from core.body import Segment, Side, Site
+from core.body import LEG_SEGMENTS, Side, Site
 from core.findings import Finding, Severity
 from core.robust import robust_sd
 from core.samples import FloatArray, Recording, RecordingKind
@@ -69,7 +69,9 @@ def about_clocks(drifts: Mapping[tuple[str, Site], float]) -> list[Finding]:
 
 def _drifts(tracks: SensorTracks, recording: Recording, side: Side) -> dict[Site, float]:
     """How much faster than its leg's the clocks run that do, each as a share of time."""
-    worn = [site for site in (Site(f"{side}_{segment}") for segment in Segment) if tracks.is_usable(recording, site)]
+    worn = [
+        site for site in (Site(f"{side}_{segment}") for segment in LEG_SEGMENTS) if tracks.is_usable(recording, site)
+    ]
     stretches = {site: _track(tracks, recording, site) for site in worn}
     known = [(site, track) for site, track in stretches.items() if track is not None]
     total, fast = 0.0, [0.0]

@@ -153,14 +153,14 @@ def measure(
                 if not geometry.is_hinge:  # the joint's accelerations know better than two filters that have just begun
                     angle += share * float(np.median(wrap(hinge_angle(pair, j1, j2, geometry.unknowns) - angle)))
             for name, values in found.items():
-                _place(angles[name], values, pair, time_s, clock_offset_s, block)
+                place(angles[name], values, pair, time_s, clock_offset_s, block)
             chosen = np.flatnonzero(pair.is_moving & pair.is_measured)[:: max(1, round(WITNESS_STEP_S / pair.step_s))]
             off_axis = off_axis_rate(pair, j1, heading)
             rung, rates = ringing(off_axis, pair.step_s)[chosen], (pair.g1[chosen] @ j1, pair.g2[chosen] @ j2)
             witnesses.append((found["twist"][chosen], off_axis[chosen], rung, *rates))
         for pair in _north_pairs(tracks, recording, joint, block, geometry.lag_s):
             values = np.unwrap(-angle_from_orientations(pair.earth_from_1, pair.earth_from_2, j1, j2))
-            _place(angles["orientation"], values, pair, time_s, clock_offset_s, block)
+            place(angles["orientation"], values, pair, time_s, clock_offset_s, block)
     joined = [np.concatenate(parts) for parts in zip(*witnesses, strict=True)] if witnesses else []
     for name in ("twist", "published", "orientation"):
         unwrap_over_gaps(angles[name])
@@ -192,10 +192,20 @@ def _north_pairs(tracks: SensorTracks, recording: Recording, joint: Joint, block
     return paired(sides[0], sides[1], lag_s)
 
 
-def _place(
+def place(
     into: FloatArray, values: FloatArray, pair: Pair, time_s: FloatArray, clock_offset_s: float, block: Block
 ) -> None:
-    """Write a pair's values at the stamps they belong to, where both sensors were heard."""
+    """Write a pair's values at the stamps they belong to, where both sensors were heard.
+
+    Parameters
+    ----------
+    into, time_s : (n,)
+        What is written into, and the stamps of the recording.
+    values : (m,)
+        At the samples of the pair.
+    clock_offset_s
+        What brings the proximal sensor's clock to that of `time_s`.
+    """
     start_s = float(pair.time_s[0]) + clock_offset_s
     first = int(np.searchsorted(time_s, max(start_s - 0.25 * pair.step_s, block.core_from_s)))
     end_s = float(pair.time_s[-1]) + clock_offset_s

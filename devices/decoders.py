@@ -11,7 +11,14 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from devices.source import StreamDecoder
 
-BYTE_DRIVERS = ("ximu3", "witmotion", "csv", "xsens-mti", "shimmer3")  # those of `devices.catalogue.DRIVERS` with bytes
+BYTE_DRIVERS = (
+    "ximu3",
+    "witmotion",
+    "csv",
+    "xsens-mti",
+    "shimmer3",
+    "movella-dot",
+)  # those of `devices.catalogue.DRIVERS` with bytes
 
 
 def _new_decoder(driver: str) -> "StreamDecoder":

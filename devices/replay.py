@@ -192,6 +192,11 @@ class ReplaySource:
                 return None
             return self._clips[-1].end_s - now_s if self._by_kind[kind] else 0.0
 
+    def play_next(self, recording: Recording) -> None:
+        """Play this when something of its kind is asked for next, and nothing else of its kind from now on."""
+        with self._lock:
+            self._by_kind[recording.kind] = [recording]
+
     def _next_clip(self, start_s: float) -> _Clip:
         recording = self._next(self._asked)
         if not (self._finishes and self._asked is RecordingKind.FREE_MOTION):

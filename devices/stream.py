@@ -6,7 +6,7 @@ finds does not depend on how the bytes were cut.
 """
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from typing import Protocol
@@ -15,13 +15,17 @@ import numpy as np
 
 from core.samples import FloatArray, ImuBlock, RecordingKind
 from devices.channels import Channel
-from devices.clock import LiveClock, Ordered, put_in_order
+from devices.clock import Ordered, put_in_order
 from devices.host_clock import host_time_ns
 from devices.live import Keep, SensorDetails
-from devices.source import DecodedSensor, SourceInfo
+from devices.live_clock import LiveClock
+from devices.source import DecodedSensor, SharedClock, SourceInfo
 
 Row = tuple[float, ...]
 """Seconds of the sensor's clock, then angular rate in rad/s (3) and specific force in m/s2 (3)."""
+
+_Clock = tuple[tuple[str, float] | None, int]
+"""The clock that a sensor runs by: its name and turn where it is shared, and how often its own has begun anew."""
 
 COLUMNS = 7
 WAITS_S = 0.02
@@ -67,8 +71,8 @@ class Framer(Protocol):
         """Nothing follows: take what was held back for what might follow."""
 
 
-class SensorProtocol(Protocol):
-    """What is particular about one maker's sensors."""
+class Framing(Protocol):
+    """What makes samples of one maker's bytes."""
 
     @property
     def driver(self) -> str: ...
@@ -78,6 +82,10 @@ class SensorProtocol(Protocol):
 
     def framer(self, info: SourceInfo) -> Framer:
         """A new framer for what is sent under `info`."""
+
+
+class SensorProtocol(Framing, Protocol):
+    """What is particular about one maker's sensors that are spoken with through a channel."""
 
     def greet(self, channel: Channel) -> tuple[SourceInfo, SensorDetails]:
         """Find out who is there, and set it up as wanted.
@@ -93,7 +101,13 @@ class SensorProtocol(Protocol):
 
 
 def decoded(
-    sensor: str, heard: Heard, host_s: Sequence[float], step_s: float | None = None, begins: Sequence[int] = ()
+    sensor: str,
+    heard: Heard,
+    host_s: Sequence[float],
+    step_s: float | None = None,
+    begins: Sequence[int] = (),
+    clock: tuple[str, float] | None = None,
+    anew: Collection[int] = (),
 ) -> DecodedSensor:
     """Put what was heard of one sensor in order, its rows having arrived at `host_s` (n,); see `put_in_order`.
 
@@ -103,6 +117,10 @@ def decoded(
         When each row arrived, by the host's clock.
     step_s
         Between two samples, where it is known.
+    clock
+        The name of the clock that it shares with other sensors, and after how many seconds it begins anew.
+    anew
+        See `put_in_order`.
 
     Returns
     -------
@@ -110,7 +128,8 @@ def decoded(
         SI units, sensor axes, stamps by the host's clock.
     """
     rows = np.array(heard.rows, dtype=float).reshape(-1, COLUMNS)
-    ordered = put_in_order(rows[:, 0], np.array(host_s, dtype=float), step_s, begins)
+    arrived_s = np.array(host_s, dtype=float)
+    ordered = put_in_order(rows[:, 0], arrived_s, step_s, begins, anew)
     block = ImuBlock(
         sensor=sensor,
         time_s=ordered.time_s,
@@ -118,23 +137,30 @@ def decoded(
         acc_m_s2=rows[ordered.rows, 4:7],
         q_earth_from_sensor=_orientation(heard.orientations, ordered),
     )
-    return DecodedSensor(block, replace(ordered.counts, damaged=ordered.counts.damaged + heard.damaged))
+    shared = SharedClock(clock[0], ordered.device_s, arrived_s[ordered.rows], clock[1]) if clock else None
+    return DecodedSensor(block, replace(ordered.counts, damaged=ordered.counts.damaged + heard.damaged), shared)
 
 
 class Decoder:
     """The `StreamDecoder` of every protocol: all samples in order, each once, stamped by the host's clock."""
 
-    def __init__(self, protocol: SensorProtocol) -> None:
+    def __init__(self, protocol: Framing) -> None:
         self._protocol = protocol
         self._framer: Framer | None = None
         self._info = SourceInfo(protocol.driver, protocol.version)
         self._heard = Heard()
         self._host_s: list[float] = []
         self._begins: list[int] = []
+        self._anew: list[int] = []
+        self._clocks: list[_Clock] = []
 
     def begin(self, source: SourceInfo) -> None:
         self._end()
         self._begins.append(len(self._host_s))
+        clock = _clock(source)
+        if clock != (self._clocks or [clock])[-1]:
+            self._anew.append(len(self._host_s))
+        self._clocks.append(clock)
         self._info, self._framer = source, self._protocol.framer(source)
 
     def feed(self, data: bytes, host_time_s: float) -> None:
@@ -146,7 +172,9 @@ class Decoder:
         self._end()
         if not self._info.sensors:
             return {}
-        one = decoded(self._info.sensors[0], self._heard, self._host_s, _step_s(self._info), self._begins)
+        shared = None if self._anew else self._clocks[-1][0]  # it was another after it was lost: its own
+        step_s = _step_s(self._info)
+        one = decoded(self._info.sensors[0], self._heard, self._host_s, step_s, self._begins, shared, self._anew)
         return {one.block.sensor: one}
 
     def _take(self, host_time_s: float) -> None:
@@ -319,6 +347,13 @@ def listen(channel: Channel, framer: Framer, found: Callable[[Heard], bytes], wi
 def _step_s(info: SourceInfo) -> float | None:
     rate_hz = info.settings.get("rate_hz")
     return 1.0 / rate_hz if isinstance(rate_hz, int | float) and rate_hz > 0 else None
+
+
+def _clock(info: SourceInfo) -> _Clock:
+    name, turn_s = info.settings.get("clock"), info.settings.get("turn_s", 0.0)
+    begun = info.settings.get("clock_begun", 0)
+    shared = (name, float(turn_s)) if isinstance(name, str) and isinstance(turn_s, int | float) else None
+    return shared, begun if isinstance(begun, int) else 0
 
 
 def _orientation(rows: Sequence[Row], ordered: Ordered) -> FloatArray | None:

@@ -112,6 +112,7 @@ def sensor_poses(
     ride: Ride,
     rng: np.random.Generator,
     following: FloatArray | None = None,
+    wobble: float = 1.0,
 ) -> tuple[FloatArray, FloatArray]:
     """Earth from sensor (n, 3, 3) and place (n, 3) on the fine clock; chance makes the wobble of real tissue alone.
 
@@ -121,6 +122,8 @@ def sensor_poses(
     ----------
     following : (n, 3, 3) or None
         Rotation of sensor and tissue against their segment.
+    wobble
+        How much of real tissue's slow wobble there is.
 
     Returns
     -------
@@ -133,13 +136,13 @@ def sensor_poses(
         segment = segment @ following
     if tissue is Tissue.RIGID:
         return segment @ mounting.segment_from_sensor, origin + segment @ mounting.place_m
-    turn, shift = _tissue_motion(leg, site.segment, tissue, ride, rng)
+    turn, shift = _tissue_motion(leg, site.segment, tissue, ride, rng, wobble)
     rotation = segment @ _small_rotation(turn) @ mounting.segment_from_sensor
     return rotation, origin + np.einsum("nij,nj->ni", segment, mounting.place_m + shift)
 
 
 def _tissue_motion(
-    leg: LegMotion, segment: Segment, tissue: Tissue, ride: Ride, rng: np.random.Generator
+    leg: LegMotion, segment: Segment, tissue: Tissue, ride: Ride, rng: np.random.Generator, wobble: float
 ) -> tuple[FloatArray, FloatArray]:
     """The sensor against its segment, in segment axes: rotation vectors (n, 3) and shifts (n, 3).
 
@@ -161,7 +164,7 @@ def _tissue_motion(
     drives = np.stack([*(REAL_RIDE * drive for drive in follows), ring], axis=-1)
     moving = _is_moving(leg)[:, None]
     usual = REAL_WALK_WOBBLE if len(contacts_s) else REAL_FREE_WOBBLE
-    slow = usual * (_liveliness(leg) if len(contacts_s) else 1.0)
+    slow = wobble * usual * (_liveliness(leg) if len(contacts_s) else 1.0)
     fast = REAL_JITTER * REAL_SHARE[segment] / share * usual / REAL_WALK_WOBBLE
     turn, shift = (
         drives @ directions

@@ -157,6 +157,9 @@ def lead(application: Application, stops: Sequence[Stop], out: Path, looks: Sequ
             application.ask(f"look {looks[0]}")
         for deed in stop.does:
             _do(application, stop, deed)
+        for files, words in stop.leaves:
+            if not any(words in file.read_text("utf-8") for file in application.home.glob(files)):
+                raise TourError(f"{stop.name}: no file {files} says “{words}”.")
     if stopwatch_s > MOST_S:
         raise TourError(f"The session took {stopwatch_s:.0f} s of the application's stopwatch, {MOST_S:.0f} s at most.")
     return stopwatch_s

@@ -113,6 +113,7 @@ class SettingsController(QObject):
 
     def _connect(self) -> None:
         page = self.page
+        page.language_chosen.connect(self._on_language_chosen)
         page.scheme_chosen.connect(self._on_scheme_chosen)
         page.scale_chosen.connect(self._on_scale_chosen)
         page.side_chosen.connect(self._on_side_chosen)
@@ -134,8 +135,15 @@ class SettingsController(QObject):
     def _show_screen(self) -> None:
         kept = self._settings
         self.page.show_screen(
-            kept.scheme, self._look.theme.scale, is_from_behind=kept.is_from_behind, has_sound=kept.has_sound
+            kept.language,
+            kept.scheme,
+            self._look.theme.scale,
+            is_from_behind=kept.is_from_behind,
+            has_sound=kept.has_sound,
         )
+
+    def _on_language_chosen(self, language: str) -> None:
+        self._settings.language = language
 
     def _on_scheme_chosen(self, scheme: str) -> None:
         self._settings.scheme = Scheme(scheme)

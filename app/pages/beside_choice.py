@@ -5,6 +5,7 @@ from enum import Enum, auto
 
 from PySide6.QtCore import Qt
 
+from app.reports.agreed import agreed_with
 from app.reports.beside import beside_last_visit, beside_walk, walks_alone
 from app.reports.comparison import Comparison, Part
 from app.reports.patient_report.request import AnalysedVisit
@@ -36,7 +37,8 @@ class BesideChoice(Choice):
 
     def show_visit(self, visit: AnalysedVisit) -> None:
         """Take the walks of this session; `offer` follows."""
-        self._visit, self._walks = visit, walks_alone(visit.analysis, visit.session.recordings)
+        agreed = agreed_with(visit.session)
+        self._visit, self._walks = visit, walks_alone(visit.analysis, visit.session.recordings, agreed)
 
     def offer(self, shown: str, *, has_visits: bool) -> None:
         """Offer what the recording of this name can stand beside; what was chosen stays, where it can."""

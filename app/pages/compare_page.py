@@ -1,10 +1,12 @@
 """What left the measurement error? Walks, visits or legs on the same axes, and their differences."""
 
 from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QVBoxLayout, QWidget
+from PySide6.QtGui import QKeySequence, QShortcut
+from PySide6.QtWidgets import QApplication, QGridLayout, QHBoxLayout, QVBoxLayout, QWidget
 
 from app.charts.axes import joint_of
 from app.charts.cycles import Band, SideCycle
@@ -88,6 +90,8 @@ class ComparePage(Themed):
         self._affected_words = ""
         self._analysis: Analysis | None = None
         self._who = NOBODY
+        self._chosen: tuple[str, ...] = ()  # letters, before the last was turned
+        self._pressed = ""  # the letter that was asked for last
         self._has_visits = self._is_simulated = self._is_compact = self._is_spacious = False
         self._has_view, self._is_reading = True, False
         self.comparison: Comparison | None = None
@@ -234,6 +238,10 @@ class ComparePage(Themed):
         self.kinds.currentIndexChanged.connect(self._on_kind_changed)
         self.bases.currentIndexChanged.connect(self._show)
         self.view.chosen.connect(self._show_parts)
+        for digit in range(1, 10):
+            for keys, is_second in ((f"{digit}", False), (f"Shift+{digit}", True)):  # asleep while the page is hidden
+                shortcut = QShortcut(QKeySequence(keys), self)
+                shortcut.activated.connect(partial(self.choose_pair, digit - 1, is_second=is_second))
 
     def _place_words(self) -> None:
         """Put what is said over all of the page, or, where that is low, into the card, which scrolls."""
@@ -310,7 +318,7 @@ class ComparePage(Themed):
         self._left.replaceWidget(self.chips, chips)
         self.chips.hide()
         self.chips.deleteLater()
-        self.chips = chips
+        self.chips, self._chosen, self._pressed = chips, chips.chosen, ""
 
     def _words_of(self, parts: Sequence[Part]) -> list[tuple[str, str]]:
         """Visits by their day; of many without their strides, so that the curves keep their room."""
@@ -338,7 +346,35 @@ class ComparePage(Themed):
         self.bases.setEnabled(len(shown) > 1)
 
     def _on_turned(self) -> None:
+        before, self._chosen = self._chosen, self.chips.chosen
+        turned = set(before) ^ set(self._chosen)
+        if turned and QApplication.keyboardModifiers() & Qt.KeyboardModifier.ShiftModifier:
+            letters = [part.letter for part in self._parts()]
+            self.choose_pair(letters.index(turned.pop()), is_second=True)
+            return
         self._offer_bases(self._parts())
+        self._show()
+
+    def choose_pair(self, number: int, *, is_second: bool) -> None:
+        """Show two alone: the one of this number from 0 against the one it was changed from, or the first.
+
+        `is_second`: it is the one that what is shown stands against.
+        """
+        parts = self._parts()
+        if self.kind is Contrast.SIDES or not 0 <= number < len(parts) or len(parts) < 2:
+            return
+        part = parts[number]
+        if is_second:
+            shown = next((one for one in parts if one.letter == self._pressed and one is not part), None)
+            against, part = part, shown or next(one for one in reversed(parts) if one is not part)
+        else:
+            against = Comparison(self.kind, parts).base_of(part)
+            against = against if against is not part else parts[1 if number == 0 else 0]
+        self._pressed = part.letter
+        self.chips.choose([part.letter, against.letter])
+        self._chosen = self.chips.chosen
+        self._offer_bases(parts)
+        self.bases.setCurrentIndex(self.bases.findData(against.letter))
         self._show()
 
     def _show(self) -> None:

@@ -9,7 +9,7 @@ from app.reports.comparison import Compared, Measure, Part, Reservation, SideRow
 from app.reports.patient_report.numbers_in_words import DAGGER, NOTHING, fixed, signed
 from app.reports.walk_figures import reason_in_words
 from app.widgets.chip import LETTERS
-from app.wording import capitalised, later, side_name, tr
+from app.wording import capitalised, later, side_name, tr, within_sentence
 from core.body import Joint, Side
 from core.verdicts.measurement_error import Difference, Judgement
 from core.verdicts.model import Verdict
@@ -99,7 +99,7 @@ def sentence(row: Compared) -> str:
     measure = tr(row.measure.name)
     return pattern.format(
         side=capitalised(side_name(row.side)),
-        measure=measure if row.measure.is_of_walk else measure[0].lower() + measure[1:],
+        measure=measure if row.measure.is_of_walk else within_sentence(measure),
         change=change_in_words(row.difference.difference, row.measure),
         first=row.against.letter,
         last=row.part.letter,

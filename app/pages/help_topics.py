@@ -23,6 +23,7 @@ class Topic(StrEnum):
     WALKING = "walking"
     RESULTS = "results"
     REPORT = "report"
+    GOALS = "goals"
     QUESTIONS = "questions"
     ACCURACY = "accuracy"
     STATIONS = "stations"
@@ -33,6 +34,7 @@ class Topic(StrEnum):
     SENSORS_CSV = "sensors-csv"
     SENSORS_XSENS_MTI = "sensors-xsens-mti"
     SENSORS_SHIMMER3 = "sensors-shimmer3"
+    SENSORS_MOVELLA_DOT = "sensors-movella-dot"
     SENSORS_LSL = "sensors-lsl"
 
 
@@ -46,6 +48,7 @@ def topic_title(topic: Topic) -> str:
         Topic.WALKING: tr("Walking"),
         Topic.RESULTS: tr("Results"),
         Topic.REPORT: tr("Report"),
+        Topic.GOALS: tr("Goals"),
         Topic.QUESTIONS: tr("Questions"),
         Topic.ACCURACY: tr("Accuracy"),
         Topic.STATIONS: tr("Several stations"),
@@ -56,6 +59,7 @@ def topic_title(topic: Topic) -> str:
         Topic.SENSORS_CSV: tr("Lines of numbers"),
         Topic.SENSORS_XSENS_MTI: tr("Xsens MTi"),
         Topic.SENSORS_SHIMMER3: "Shimmer3",
+        Topic.SENSORS_MOVELLA_DOT: tr("Movella DOT"),
         Topic.SENSORS_LSL: tr("Lab Streaming Layer"),
     }[topic]
 

@@ -8,11 +8,10 @@ from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QKeyEvent
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QVBoxLayout, QWidget
 
 from app.icons import Icon
-from app.plots.lane_plot import ConditionMark, DateAxis, LanePlot
-from app.reports.course_lanes import CourseLane, CourseVisit, LaneChange, LaneKind
+from app.measure_names import measure_name, unit_name
+from app.plots.lane_plot import ConditionMark, DateAxis, DatedPlot, LanePlot
+from app.reports.course_lanes import CourseLane, CourseVisit, LaneChange, LaneKind, lane_kinds
 from app.reports.course_words import (
-    NAMES,
-    UNITS,
     change_in_words,
     day_of,
     judged_in_words,
@@ -21,8 +20,10 @@ from app.reports.course_words import (
     last_in_words,
     nothing_between,
     since_last_in_words,
+    told_goals,
     visit_in_words,
 )
+from app.reports.goals import brief_standing, goal_mark
 from app.reports.visits import condition_in_words
 from app.theme import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
@@ -61,7 +62,7 @@ class CourseCard(Card):
         self.lanes: tuple[CourseLane, ...] = ()
         self.number: int | None = None
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-        self.rows = {kind: LaneRow(look, kind) for kind in LaneKind}
+        self.rows: dict[LaneKind, LaneRow] = {}
         self.axis = DateAxis(look)
         self.note = Text(look, size=12, tone="ink2", wraps=True)
         self.compute = Button(look, tr("Compute"), ButtonKind.SECONDARY, height=36)
@@ -74,9 +75,8 @@ class CourseCard(Card):
             room.setLayout(layout)
             self.column.addWidget(room, stretch)
         self.column.addLayout(self._foot)
-        for plot in (*(row.plot for row in self.rows.values()), self.axis):
-            plot.pointed.connect(self.point_at)
-            plot.opened.connect(self._open)
+        self._join(self.axis)
+        self._show_kinds(lane_kinds())
         self.compute.clicked.connect(self.computing_wished)
         self.set_room(NARROW_BELOW)
 
@@ -85,6 +85,7 @@ class CourseCard(Card):
     ) -> None:
         """Show lanes over visits, which are in order of time; `conditions` in the order of their marks."""
         self.visits, self.lanes, self.number = tuple(visits), tuple(lanes), None
+        self._show_kinds([lane.kind for lane in lanes])
         for lane in lanes:
             self.rows[lane.kind].show_lane(lane, visits, conditions)
         self.axis.show_visits(visits)
@@ -119,6 +120,27 @@ class CourseCard(Card):
         else:
             super().keyPressEvent(event)
 
+    def _show_kinds(self, kinds: Sequence[LaneKind]) -> None:
+        """Have a row for each lane, in their order; those that stay keep their place on the screen."""
+        if list(kinds) == list(self.rows):
+            return
+        for row in self.rows.values():
+            for part in row.parts:
+                self._grid.removeWidget(part)
+        for kind in [kind for kind in self.rows if kind not in kinds]:
+            for part in self.rows.pop(kind).parts:
+                part.hide()
+                part.deleteLater()
+        for kind in [kind for kind in kinds if kind not in self.rows]:
+            self.rows[kind] = LaneRow(self._look, kind)
+            self._join(self.rows[kind].plot)
+        self.rows = {kind: self.rows[kind] for kind in kinds}
+        self._lay()
+
+    def _join(self, plot: DatedPlot) -> None:
+        plot.pointed.connect(self.point_at)
+        plot.opened.connect(self._open)
+
     def _open(self, number: int) -> None:
         self.visit_opened.emit(self.visits[number].id)
 
@@ -140,6 +162,13 @@ class CourseCard(Card):
         if is_narrow == self._is_narrow:
             return
         self._is_narrow = is_narrow
+        self._lay()
+
+    def _lay(self) -> None:
+        """Put the rows into the grid, and the axis under them."""
+        is_narrow = bool(self._is_narrow)
+        for at in range(self._grid.rowCount()):
+            self._grid.setRowStretch(at, 0)
         for number, row in enumerate(self.rows.values()):
             at = 2 * number
             row.set_narrow(is_narrow)
@@ -148,6 +177,7 @@ class CourseCard(Card):
             self._grid.addWidget(row.plot, at + 1 if is_narrow else at, 0 if is_narrow else 1, 1, 2 if is_narrow else 1)
             self._grid.setRowStretch(at, 0 if is_narrow else 1)
             self._grid.setRowStretch(at + 1, 1 if is_narrow else 0)
+        self._grid.removeWidget(self.axis)
         self._grid.addWidget(self.axis, 2 * len(self.rows), 0 if is_narrow else 1, 1, 2 if is_narrow else 1)
         self._grid.setColumnStretch(0, 1 if is_narrow else 0)
         self._grid.setColumnStretch(1, 0 if is_narrow else 1)
@@ -172,6 +202,10 @@ class LaneRow:
         self.changes = _Words(look, CHANGES)
         self._look = look
 
+    @property
+    def parts(self) -> tuple[QWidget, ...]:
+        return self.label, self.plot, self.changes
+
     def set_narrow(self, is_narrow: bool) -> None:
         self.label.set_brief(is_narrow)
         self.changes.set_brief(is_narrow)
@@ -179,8 +213,13 @@ class LaneRow:
     def show_lane(self, lane: CourseLane, visits: Sequence[CourseVisit], conditions: Sequence[str]) -> None:
         self.plot.show_lane(lane, visits, conditions)
         self.label.clear()
-        self.label.add(Text(self._look, tr(NAMES[lane.kind]), weight=SEMIBOLD, wraps=True))
-        self.label.add(Text(self._look, tr(UNITS[lane.kind]), size=12, tone="ink2"))
+        name = measure_name(self.kind.column, is_between=self.kind.is_between)
+        self.label.add(Text(self._look, name, weight=SEMIBOLD, wraps=True))
+        for goal in lane.goals:
+            mark = Text(self._look, f"\N{MIDDLE DOT}\N{MIDDLE DOT}\N{MIDDLE DOT} {goal_mark(goal)}", 12, SEMIBOLD)
+            mark.setAccessibleName(goal_mark(goal))
+            self.label.add(mark, is_brief=True)
+        self.label.add(Text(self._look, unit_name(self.kind.column), size=12, tone="ink2"))
         self.changes.clear()
         values = QWidget()
         row = QHBoxLayout(values)
@@ -193,7 +232,13 @@ class LaneRow:
         row.addStretch(1)
         self.changes.add(values)
         for one in lane.changes:
+            self._add_goals(lane, one, visits)
             self._add_change(one, visits, has_sides=len(lane.changes) > 1)
+
+    def _add_goals(self, lane: CourseLane, one: LaneChange, visits: Sequence[CourseVisit]) -> None:
+        """How the last value stands to goals that were agreed before it."""
+        for found in told_goals(lane, one, visits):
+            self.changes.add(Text(self._look, brief_standing(found.standing), 12, wraps=True))
 
     def _value(self, one: LaneChange) -> Text:
         """Type follows trust: bold what is read, regular what is to be read with care, small what cannot be."""
@@ -230,6 +275,7 @@ class _Words(Themed):
         super().__init__()
         self._look, self._width, self._is_brief = look, width, False
         self._parts: list[QWidget] = []
+        self._few: list[QWidget] = []
         self._column = QVBoxLayout(self)
         self._column.setContentsMargins(0, 0, 0, 0)
         self._column.setSpacing(0)
@@ -241,11 +287,14 @@ class _Words(Themed):
             self._column.removeWidget(part)
             part.hide()
             part.deleteLater()
-        self._parts = []
+        self._parts, self._few = [], []
 
-    def add(self, part: QWidget) -> None:
+    def add(self, part: QWidget, *, is_brief: bool = False) -> None:
+        """`is_brief`: it is shown where words are to be few, too, as the first one is."""
         self._column.insertWidget(self._column.count() - 1, part)
         self._parts.append(part)
+        if is_brief or len(self._parts) == 1:
+            self._few.append(part)
         self._show()
 
     def add_marked(self, words: str, *, is_marked: bool) -> None:
@@ -265,8 +314,8 @@ class _Words(Themed):
         self._on_look_changed()
 
     def _show(self) -> None:
-        for number, part in enumerate(self._parts):
-            part.setVisible(number == 0 or not self._is_brief)
+        for part in self._parts:
+            part.setVisible(part in self._few or not self._is_brief)
         self._fit()
 
     def _on_look_changed(self) -> None:
@@ -277,7 +326,7 @@ class _Words(Themed):
 
     def _fit(self) -> None:
         """Ask for the height that the words take in this width: a lane beside them is not to squeeze them."""
-        shown = self._parts[:1] if self._is_brief else self._parts
+        shown = self._few if self._is_brief else self._parts
         width = self._look.theme.px(self._width)
         heights = [
             part.heightForWidth(width) if part.hasHeightForWidth() else part.sizeHint().height() for part in shown

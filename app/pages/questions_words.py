@@ -2,7 +2,7 @@
 
 from app.study.groups import AGE_EDGES, CHILDREN_UNDER, LEAST_SESSIONS, SPEED_EDGES, GroupAnswer, Grouping, GroupRow
 from app.study.measures import measure_words
-from app.wording import joined, tr, tr_n
+from app.wording import joined, tr, tr_n, within_sentence
 
 MINUS = "\N{MINUS SIGN}"
 
@@ -126,8 +126,7 @@ def figure(value: float, decimals: int) -> str:
 
 
 def _in_sentence(grouping: Grouping) -> str:
-    word = grouping_word(grouping)
-    return word[:1].lower() + word[1:]
+    return within_sentence(grouping_word(grouping))
 
 
 def _age_band(low: int) -> str:

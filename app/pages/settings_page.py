@@ -16,10 +16,10 @@ from app.widgets.card import Card
 from app.widgets.choice import Choice
 from app.widgets.field import Field
 from app.widgets.segmented import Segmented
+from app.widgets.tall_page import TallPage
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.widgets.toggle import Toggle
-from app.wording import tr
+from app.wording import LANGUAGES, languages, tr
 
 COLUMN = 720
 FRONT, BEHIND = "front", "behind"
@@ -46,9 +46,10 @@ class DeletedLine:
     is_patient: bool
 
 
-class SettingsPage(Themed):
+class SettingsPage(TallPage):
     """The parts about a library are hidden where they mean nothing: in the demonstration, and for who may not."""
 
+    language_chosen = Signal(str)
     scheme_chosen = Signal(str)
     scale_chosen = Signal(float)
     side_chosen = Signal(bool)  # from behind
@@ -70,25 +71,25 @@ class SettingsPage(Themed):
         self._look, self._shortest, self._roles = look, shortest, roles
         self._own: tuple[str, ...] = ()
         self._title = Text(look, tr("Settings"), size=26, weight=SEMIBOLD)
-        self._column = QVBoxLayout(self)
-        self._column.addWidget(self._title)
+        self.column.addWidget(self._title)
         self._build_screen()
         self._build_access()
         self._build_backup()
         self.station = StationCard(look)
         self.more_stations = MoreStationsCard(look)
         for card in (self.station, self.more_stations):
-            self._column.addWidget(card)
+            self.column.addWidget(card)
         self._build_deleted()
         self._build_clinic()
         self._build_operators()
-        self._column.addStretch(1)
+        self.column.addStretch(1)
         self._connect()
         self._on_look_changed()
 
     @property
     def tab_order(self) -> list[QWidget]:
         return [
+            *self.language.segments,
             *self.scheme.segments,
             self.scale,
             *self.side.segments,
@@ -103,9 +104,10 @@ class SettingsPage(Themed):
         ]
 
     def focus(self) -> None:
-        self.scheme.focus()
+        self.language.focus()
 
-    def show_screen(self, scheme: str, scale: float, *, is_from_behind: bool, has_sound: bool) -> None:
+    def show_screen(self, language: str, scheme: str, scale: float, *, is_from_behind: bool, has_sound: bool) -> None:
+        self.language.choose(language)
         self.scheme.choose(scheme)
         nearest = min(range(len(SCALES)), key=lambda k: abs(SCALES[k] - scale))
         self.scale.setCurrentIndex(nearest)
@@ -188,6 +190,7 @@ class SettingsPage(Themed):
 
     def _build_screen(self) -> None:
         look = self._look
+        self.language = Segmented(look, tr("Language"), [(key, LANGUAGES[key], "") for key in languages()])
         self.scheme = Segmented(
             look,
             tr("Light or dark"),
@@ -202,6 +205,7 @@ class SettingsPage(Themed):
         self.sound = Toggle(look, tr("Sounds"), "", is_on=True)
         self._screen = self._card(tr("Screen and sound"))
         for label, control in (
+            (tr("Language"), self.language),
             (tr("Light or dark"), self.scheme),
             (tr("Size of everything"), self.scale),
             (tr("The patient is seen"), self.side),
@@ -304,6 +308,7 @@ class SettingsPage(Themed):
         self._add_left(self.operators_card, self.add)
 
     def _connect(self) -> None:
+        self.language.chosen.connect(self.language_chosen)
         self.scheme.chosen.connect(self.scheme_chosen)
         self.scale.activated.connect(self._on_scale_chosen)
         self.side.chosen.connect(self._on_side_chosen)
@@ -380,7 +385,7 @@ class SettingsPage(Themed):
     def _card(self, title: str) -> Card:
         card = Card(self._look, padding=20, spacing=10)
         card.column.addWidget(Text(self._look, title, size=16, weight=SEMIBOLD, wraps=True))
-        self._column.addWidget(card)
+        self.column.addWidget(card)
         return card
 
     def _add_left(self, card: Card, *widgets: QWidget) -> None:
@@ -443,8 +448,8 @@ class SettingsPage(Themed):
     def _on_look_changed(self) -> None:
         px = self._look.theme.px
         self.setMaximumWidth(px(COLUMN + 48))
-        self._column.setContentsMargins(px(24), px(16), px(24), px(20))
-        self._column.setSpacing(px(16))
+        self.column.setContentsMargins(px(24), px(16), px(24), px(20))
+        self.column.setSpacing(px(16))
         self.operator_rows.setSpacing(px(4))
         self.deleted_rows.setSpacing(px(4))
 

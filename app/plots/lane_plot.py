@@ -10,7 +10,8 @@ from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QFontMetrics, QMouseEvent, QPainter, QPaintEvent, QPen, QPolygonF
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.reports.course_lanes import CourseLane, CourseVisit, LaneKind, LaneLine, LanePoint
+from app.measure_names import least_span
+from app.reports.course_lanes import CourseLane, CourseVisit, LaneLine, LanePoint
 from app.reports.course_words import day_of
 from app.theme import ThemeNotifier
 from app.tokens import Theme
@@ -25,7 +26,6 @@ LEAST_HEIGHT, DATES = 66, 26
 DOT, CAP, TICK = 5, 5, 4
 STEPS = (1, 2, 5, 10)
 MOST_STEPS = 2
-LEAST_SPAN = {LaneKind.SPEED: 0.4, LaneKind.KNEE: 20.0, LaneKind.STANCE: 6.0}  # smaller changes are not blown up
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +42,7 @@ class LaneScale:
         """Round all that is drawn, and not less than what is worth a lane."""
         values = lane.values or [0.0]
         middle = (min(values) + max(values)) / 2
-        half = max(max(values) - min(values), LEAST_SPAN[lane.kind]) / 2
+        half = max(max(values) - min(values), least_span(lane.kind.column)) / 2
         power = math.floor(math.log10(2 * half / MOST_STEPS))
         step = next(one * 10.0**power for one in STEPS if one * 10.0**power >= 2 * half / MOST_STEPS - 1e-9)
         low, high = math.floor((middle - half) / step + 1e-6), math.ceil((middle + half) / step - 1e-6)
@@ -169,6 +169,9 @@ class LanePlot(DatedPlot):
         for tick in LaneScale.of(self.lane).ticks:
             painter.drawLine(QPointF(plot.left(), self.y_of(tick)), QPointF(plot.right(), self.y_of(tick)))
         self.paint_pointer(painter)
+        painter.setPen(_goal_pen(theme))
+        for value in self.lane.goal_values:
+            painter.drawLine(QPointF(plot.left(), self.y_of(value)), QPointF(plot.right(), self.y_of(value)))
         for line in reversed(self.lane.lines):  # where marks lie on one another, the first condition's is seen whole
             self._paint_line(painter, line)
         for text in self.painted_texts():
@@ -284,6 +287,12 @@ def paint_mark(painter: QPainter, theme: Theme, at: QPointF, mark: int, colour: 
     else:
         painter.drawEllipse(at, radius, radius)
     painter.setBrush(Qt.BrushStyle.NoBrush)
+
+
+def _goal_pen(theme: Theme) -> QPen:
+    pen = theme.pen(theme.colours.ink, 1.75)
+    pen.setStyle(Qt.PenStyle.DotLine)
+    return pen
 
 
 def _line_pen(theme: Theme, side: Side | None, colour: QColor, mark: int) -> QPen:

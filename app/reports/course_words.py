@@ -7,33 +7,25 @@ from dataclasses import dataclass
 from uuid import UUID
 
 from app.dates import day_in_words, short_date
-from app.reports.course_lanes import DECIMALS, CourseLane, CourseVisit, LaneChange, LaneKind, LaneLine, LanePoint
+from app.measure_names import decimals, goal_in_words, short_unit, spoken_name, spoken_value
+from app.reports.course_lanes import CourseLane, CourseVisit, LaneChange, LaneKind, LaneLine, LanePoint, walked_at
+from app.reports.goals import GoalFigure, beyond_in_words, in_course, standing_in_words
+from app.reports.goals import value_in_words as value_in_words_of_goal
 from app.reports.patient_report.numbers_in_words import DAGGER, dagger_note, fixed, signed
 from app.reports.visits import condition_in_words
-from app.wording import joined, later, name_of, side_name, tr, tr_n
+from app.wording import capitalised, joined, name_of, side_name, tr, tr_n
 from core.body import Joint
 from core.verdicts.measurement_error import Difference, ErrorSource, Judgement
 
 LONG_AGO = datetime.timedelta(weeks=8)
 
-NAMES = {
-    LaneKind.SPEED: later("Walking speed"),
-    LaneKind.KNEE: later("Knee, stance to swing"),
-    LaneKind.STANCE: later("Stance L \N{MINUS SIGN} R"),
-}
-SPOKEN = {LaneKind.STANCE: later("Stance of the left leg less that of the right")}
-UNITS = {LaneKind.SPEED: later("m/s"), LaneKind.KNEE: later("degrees"), LaneKind.STANCE: later("% of stride")}
-SPOKEN_UNITS = {
-    LaneKind.SPEED: later("{value} metres per second"),
-    LaneKind.KNEE: later("{value} degrees"),
-    LaneKind.STANCE: later("{value} percent of the stride"),
-}
-SHORT_UNITS = {LaneKind.SPEED: "m/s", LaneKind.KNEE: "°", LaneKind.STANCE: "%"}
-
 
 @dataclass(frozen=True, slots=True)
 class NextStep:
-    """What is to be done next, and the session that it is about; `verb` is empty where nothing is pressed."""
+    """What is to be done next, and the session that it is about; `verb` is empty where nothing is pressed.
+
+    Without a session, what is pressed leads to the goals.
+    """
 
     sentence: str
     verb: str = ""
@@ -42,13 +34,14 @@ class NextStep:
 
 @dataclass(frozen=True, slots=True)
 class LatestVisit:
-    """What is known of the latest visit. `withheld`: joints that could not be read."""
+    """What is known of the latest visit. `withheld`: joints that could not be read; `reached`: goals that were."""
 
     id: UUID
     day: datetime.date
     withheld: tuple[Joint, ...]
     has_walk: bool
     has_report: bool
+    reached: tuple[GoalFigure, ...] = ()
 
 
 def day_of(number: int, visits: Sequence[CourseVisit]) -> str:
@@ -59,11 +52,11 @@ def day_of(number: int, visits: Sequence[CourseVisit]) -> str:
 
 
 def value_in_words(value: float, kind: LaneKind) -> str:
-    return fixed(value, DECIMALS[kind])
+    return fixed(value, decimals(kind.column))
 
 
 def change_in_words(found: Difference, kind: LaneKind) -> str:
-    return signed(found.difference, DECIMALS[kind]) + ("°" if kind is LaneKind.KNEE else "")
+    return signed(found.difference, decimals(kind.column)) + ("°" if kind.column.endswith("_deg") else "")
 
 
 def last_in_words(one: LaneChange, kind: LaneKind) -> str:
@@ -71,15 +64,14 @@ def last_in_words(one: LaneChange, kind: LaneKind) -> str:
     last = one.line.points[-1]
     if not last.is_told:
         return tr("not readable")
-    value, unit = value_in_words(last.value, kind), SHORT_UNITS[kind]
-    return value + unit if unit == "°" else f"{value}\N{NO-BREAK SPACE}{unit}"
+    return value_in_words(last.value, kind) + short_unit(kind.column)
 
 
 def judged_in_words(found: Difference, kind: LaneKind) -> str:
     """Whether a change is larger than its error; the dagger marks an error whose source could not be read."""
     if not found.error > 0:
         return _verdict(found)
-    error = fixed(found.error, max(1, DECIMALS[kind])) + (f" {DAGGER}" if found.is_unverified else "")
+    error = fixed(found.error, max(1, decimals(kind.column))) + (f" {DAGGER}" if found.is_unverified else "")
     if ErrorSource.SPEED in found.sources:
         return tr("{verdict} ({error}; the speed differs)").format(verdict=_verdict(found), error=error)
     return tr("{verdict} ({error})").format(verdict=_verdict(found), error=error)
@@ -105,6 +97,7 @@ def key_in_words(lanes: Sequence[CourseLane]) -> str:
     changes = [found for lane in lanes for one in lane.changes if (found := one.since_first) is not None]
     said = [tr("Whisker: half of the error of a change.")] if has_whiskers else []
     said += [tr("Grey: first visit \N{PLUS-MINUS SIGN} error.")] if any(lane.band for lane in lanes) else []
+    said += [tr("Dotted: goal.")] if any(lane.goals for lane in lanes) else []
     if any(found.is_unverified for found in changes):
         said.append(dagger_note())
     return " ".join(said)
@@ -112,16 +105,28 @@ def key_in_words(lanes: Sequence[CourseLane]) -> str:
 
 def lane_in_words(lane: CourseLane, visits: Sequence[CourseVisit]) -> str:
     """All of a lane, for who hears it: every value with its day, then what has changed."""
-    name = tr(SPOKEN.get(lane.kind, NAMES[lane.kind]))
+    name = spoken_name(lane.kind.column, is_between=lane.kind.is_between)
+    agreed = [tr("Goal: {wanted}.").format(wanted=goal_in_words(goal)) for goal in lane.goals]
     if not lane.lines:
-        return tr("{name}: no value.").format(name=name)
+        return " ".join([tr("{name}: no value.").format(name=name), *agreed])
     conditions = {line.condition for line in lane.lines}
     said = []
     for line in lane.lines:
         values = [_spoken(point, lane.kind, visits) for point in line.points]
         said.append(f"{_head(lane.kind, line, has_condition=len(conditions) > 1)}: {', '.join(values)}.")
     said += [words for one in lane.changes if (words := _change_in_words(one, lane.kind, visits))]
-    return " ".join(said)
+    told = [found for one in lane.changes for found in told_goals(lane, one, visits)]
+    agreed += [f"{capitalised(standing_in_words(found))}." for found in told]
+    return " ".join([*said, *agreed])
+
+
+def told_goals(lane: CourseLane, one: LaneChange, visits: Sequence[CourseVisit]) -> list[GoalFigure]:
+    """How the last value of a line stands to its goals, of those alone that were agreed before the visit's day."""
+    walked = walked_at(visits, one.line)
+    if walked is None:
+        return []
+    day = visits[one.line.points[-1].visit].day
+    return [in_course(goal, walked) for goal in lane.goals if goal.of.side is one.line.side and goal.agreed < day]
 
 
 def visit_in_words(number: int, lanes: Sequence[CourseLane], visits: Sequence[CourseVisit]) -> str:
@@ -134,7 +139,7 @@ def visit_in_words(number: int, lanes: Sequence[CourseLane], visits: Sequence[Co
                 if point.visit == number:
                     value = tr("not readable")
                     if point.is_told:
-                        value = tr(SPOKEN_UNITS[lane.kind]).format(value=value_in_words(point.value, lane.kind))
+                        value = spoken_value(lane.kind.column, value_in_words(point.value, lane.kind))
                     said.append(f"{_head(lane.kind, line, has_condition=len(conditions) > 1)}: {value}")
     if visits[number].course is None:
         said = [tr("not computed yet")]
@@ -155,7 +160,7 @@ def nothing_between(visits: Sequence[CourseVisit]) -> str:
 
 
 def next_step(recovered: NextStep | None, latest: LatestVisit | None, today: datetime.date) -> NextStep | None:
-    """The first that holds: a recovered walk, a joint that cannot be read, no report, a long time without a visit."""
+    """The first that holds: a recovered walk, a joint not read, no report, a goal reached, long without a visit."""
     if recovered is not None or latest is None:
         return recovered
     day = short_date(latest.day)
@@ -165,9 +170,25 @@ def next_step(recovered: NextStep | None, latest: LatestVisit | None, today: dat
         return NextStep(said.format(joints=names, day=day), tr("Look"), latest.id)
     if latest.has_walk and not latest.has_report:
         return NextStep(tr("write the report of {day}.").format(day=day), tr("Open"), latest.id)
+    if latest.reached:
+        return NextStep(reached_in_words(latest.reached, day), tr("Goals"))
     if (ago := today - latest.day) >= LONG_AGO:
         return NextStep(tr("the last visit was {weeks} weeks ago.").format(weeks=ago.days // 7))
     return None
+
+
+def reached_in_words(reached: Sequence[GoalFigure], day: str) -> str:
+    """Which goal was reached on a day, and whether by more than the error; of several the surest, and how many more."""
+    first, *others = reached
+    said = tr("goal reached on {day}: {goal}; measured {value}, {standing}.").format(
+        day=day,
+        goal=goal_in_words(first.goal),
+        value=value_in_words_of_goal(first),
+        standing=beyond_in_words(first.standing),
+    )
+    if not others:
+        return said
+    return f"{said} {tr_n('{count} more.', '{count} more.', len(others)).format(count=len(others))}"
 
 
 def recovered_step(session_id: UUID, day: datetime.date | None) -> NextStep:
@@ -180,7 +201,7 @@ def recovered_step(session_id: UUID, day: datetime.date | None) -> NextStep:
 
 def _head(kind: LaneKind, line: LaneLine, *, has_condition: bool) -> str:
     """Of what and whom values are told."""
-    name = tr(SPOKEN.get(kind, NAMES[kind]))
+    name = spoken_name(kind.column, is_between=kind.is_between)
     who = [side_name(line.side)] if line.side is not None else []
     who += [condition_in_words(line.condition)] if has_condition else []
     return ", ".join([name, *who])
@@ -190,7 +211,7 @@ def _spoken(point: LanePoint, kind: LaneKind, visits: Sequence[CourseVisit]) -> 
     day = day_of(point.visit, visits)
     if not point.is_told:
         return tr("not readable on {day}").format(day=day)
-    value = tr(SPOKEN_UNITS[kind]).format(value=value_in_words(point.value, kind))
+    value = spoken_value(kind.column, value_in_words(point.value, kind))
     return tr("{value} on {day}").format(value=value, day=day)
 
 
@@ -200,4 +221,6 @@ def _change_in_words(one: LaneChange, kind: LaneKind, visits: Sequence[CourseVis
         return ""
     said = tr("{change} since {day}, {judged}.")
     day = day_of(one.first, visits)
-    return said.format(change=signed(found.difference, DECIMALS[kind]), day=day, judged=judged_in_words(found, kind))
+    return said.format(
+        change=signed(found.difference, decimals(kind.column)), day=day, judged=judged_in_words(found, kind)
+    )

@@ -12,7 +12,7 @@ from app.reports.columns import COLUMNS, HEADER, KNOWN, column_of, names_in, uni
 
 METADATA = "csv-metadata.json"  # the name that the recommendation looks for beside a table
 CONTEXT = ["http://www.w3.org/ns/csvw", {"@language": "en"}]
-BOOLEANS = ("used", "unverified")
+BOOLEANS = ("used", "unverified", "agreed_before", "chosen_before")
 
 
 def write_metadata(folder: Path, recordings: Sequence[str]) -> None:

@@ -66,7 +66,7 @@ def why(found: Assessment) -> str:
 def all_that_is_said(analysis: Analysis) -> Iterator[Said]:
     """Every verdict of every recording: joints, then, of a walk, legs and what compares them."""
     for recording in analysis.recordings:
-        for joint in Joint:
+        for joint in recording.verdicts.told_joints:
             of_joint = recording.verdicts.joint(joint)
             for name in ("shape", "height", "sign"):
                 yield Said(recording.name, joint.replace("_", " "), name, getattr(of_joint, name))

@@ -239,7 +239,7 @@ class Correction:
 
 @dataclass(frozen=True, slots=True)
 class AnalysedRecording:
-    """One recording as an analysis saw it. `samples` is the SHA-256 of each site's, in their order."""
+    """One recording as an analysis saw it. `samples`: the SHA-256 of each site's, in order; `test`: as in its row."""
 
     name: str
     folder: str
@@ -247,6 +247,7 @@ class AnalysedRecording:
     is_kept: bool
     is_restrapped_before: bool
     samples: tuple[tuple[Site, str], ...]
+    test: str = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -25,7 +25,7 @@ from app.widgets.chip import paint_chip
 from app.widgets.icons import IconMark
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD, Text
 from app.widgets.themed import Themed
-from app.wording import tr
+from app.wording import tr, within_sentence
 from core.body import Side
 
 HEIGHT = 48
@@ -150,7 +150,7 @@ class Field(Themed):
         sides = {Side.LEFT: tr("Left"), Side.RIGHT: tr("Right"), None: ""}
         label = self._label
         if self._side is not None and label:
-            label = f"{sides[self._side]} {label[0].lower()}{label[1:]}"
+            label = f"{sides[self._side]} {within_sentence(label)}"
         state = self._wrong.text() or (tr("optional") if self._is_optional else "")
         self._box.setAccessibleName(", ".join(filter(None, [label, self._box.unit, state])))
 

@@ -10,7 +10,7 @@ from app.widgets.chip import LETTERS
 from app.widgets.table import TableColumn, TableRow
 from app.widgets.table_cells import CENTRE, EMPTY, RIGHT, TextCell
 from app.widgets.text import SEMIBOLD
-from app.wording import capitalised, later, side_name, tr, tr_n
+from app.wording import capitalised, later, side_name, tr, tr_n, within_sentence
 from core.body import Side
 from core.gait.spatiotemporal import MeanAndSd
 from core.verdicts.model import Verdict
@@ -74,7 +74,7 @@ def _cell(
 
 def _in_words(words: str, row: Figure, heading: str, who: str) -> str:
     """Say a cell with its row, its side and its unit, for who hears one cell at a time."""
-    name = " ".join(filter(None, [heading, row.name[0].lower() + row.name[1:]]))
+    name = " ".join(filter(None, [heading, within_sentence(row.name)]))
     said = f"{words} {row.unit}" if words else tr("no value")
     if words.endswith(CARE_MARK):
         said = f"{words.removesuffix(CARE_MARK).rstrip()} {row.unit}, {verdict_word(Verdict.CARE)}"

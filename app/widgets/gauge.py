@@ -14,7 +14,7 @@ from app.theme import ThemeNotifier
 from app.tokens import CARD_RADIUS
 from app.widgets.chip import paint_chip
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD
-from app.wording import name_of, tr
+from app.wording import capitalised, name_of, tr
 from core.body import Joint, Side
 from core.calibration.certainty import AXIS_FLOOR_HUMAN_RAD
 from core.live.excitation import ExcitationState, Wanted
@@ -399,7 +399,7 @@ class Gauge(QWidget):
     def _name(self) -> None:
         """Left knee, axis 11°, under 1.5° needed, centre 34 mm, under 10 mm needed, move now."""
         face = self._face
-        parts = [name_of(self._joint).capitalize()]
+        parts = [capitalised(name_of(self._joint))]
         if face.axis is None and face.centre is not None:
             parts.append(tr("axis found while walking"))
         for name, measure in ((tr("axis"), face.axis), (tr("centre"), face.centre)):
@@ -430,7 +430,7 @@ _ICONS: dict[GaugeState, Icon | None] = {
 def state_word(state: GaugeState) -> str:
     """Say a state as the gauge does."""
     return {
-        GaugeState.OPEN: tr("Open"),
+        GaugeState.OPEN: tr("To do"),
         GaugeState.NOW: tr("Now"),
         GaugeState.ENOUGH: tr("Enough motion"),
         GaugeState.CENTRE: tr("Enough motion for its centre"),

@@ -16,7 +16,7 @@ from app.widgets.text import SEMIBOLD
 from app.widgets.themed import Themed
 from app.widgets.tile_widget import TileWidget
 from app.wording import tr
-from core.body import Segment, Side, Site
+from core.body import LEG_SEGMENTS, Side, Site
 
 TILE = 56
 COMPACT_TILE = 44
@@ -189,7 +189,7 @@ class SensorStrip(Themed):
 def _order(is_from_behind: bool) -> list[Site]:
     """Give the sites from left to right: the patient faces you, so the right leg stands at the left."""
     first, second = (Side.LEFT, Side.RIGHT) if is_from_behind else (Side.RIGHT, Side.LEFT)
-    return [Site(f"{side}_{segment}") for side in (first, second) for segment in Segment]
+    return [Site(f"{side}_{segment}") for side in (first, second) for segment in LEG_SEGMENTS]
 
 
 def _is_bad(tile: SensorTile | None) -> bool:

@@ -102,7 +102,7 @@ class TileWidget(QWidget):
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         self._paint_frame(painter)
-        paint_chip(painter, self._chip(), self._tile.site.side, theme)
+        paint_chip(painter, self._chip(), self._tile.site.leg_side, theme)
         self._paint_marks(painter, QColor(c.caution_ink if self._tile.is_bad else c.ink2))
         for text in self.painted_texts():
             text.paint(painter, c)

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-from PySide6.QtCore import QPointF, QRectF
+from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QPainter, QPainterPath
 
 from app.tokens import Theme
@@ -22,7 +22,7 @@ class TrendCell(TableCell):
     """Values at `places` between 0 and 1, over `band` in grey; `edges` are the values below and above.
 
     NaN is a gap: neighbours are joined, what lies on either side of a gap is not. The last value is the larger point,
-    so that its absence is seen. `side` gives the colour and the dashes of a leg.
+    so that its absence is seen. `side` gives the colour and the dashes of a leg. `goals` are dotted lines.
     """
 
     places: tuple[float, ...]
@@ -31,6 +31,7 @@ class TrendCell(TableCell):
     band: tuple[float, float] | None = None
     side: Side | None = None
     spoken: str = ""
+    goals: tuple[float, ...] = ()
 
     @property
     def said(self) -> str:
@@ -53,6 +54,12 @@ class TrendCell(TableCell):
         if self.band is not None:
             low, high = (self._y(value, room, theme) for value in self.band)
             painter.fillRect(QRectF(room.left(), high, room.width(), low - high), QColor(theme.colours.band_2sd))
+        dotted = theme.pen(theme.colours.ink, 1.25)
+        dotted.setStyle(Qt.PenStyle.DotLine)
+        painter.setPen(dotted)
+        for value in self.goals:
+            height = self._y(value, room, theme)
+            painter.drawLine(QPointF(room.left(), height), QPointF(room.right(), height))
         points = self.points(room, theme)
         colour = QColor(theme.colours.ink) if self.side is None else theme.curve(self.side)
         pen = theme.pen(colour, LINE) if self.side is None else theme.side_pen(self.side, LINE)

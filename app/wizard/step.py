@@ -75,6 +75,16 @@ class Step(QObject):
         return ""
 
     @property
+    def folds_sensors(self) -> bool:
+        """Whether the page needs the room of the sensors' tiles now."""
+        return False
+
+    @property
+    def takes_clicker(self) -> bool:
+        """Whether every key of a presenter's clicker is to mean what Space does, for as long as this holds."""
+        return False
+
+    @property
     def topic(self) -> str:
         """The page of the manual that F1 opens."""
         raise NotImplementedError

@@ -215,7 +215,8 @@ class Visit(QObject):
     @property
     def choices(self) -> tuple[SourceChoice, ...]:
         """What this patient's sensors can be heard through."""
-        return tuple(choice for choice in self.known_choices if self.may_simulate or not choice.is_simulated)
+        offered = [choice for choice in self.known_choices if self.may_simulate or not choice.is_simulated]
+        return tuple(choice.for_sides(self.prosthetic_sides) for choice in offered)
 
     def begin_session(self) -> None:
         """Make the session's row, once the patient has one; `changed` follows."""
@@ -658,7 +659,7 @@ def _by_hand(told: Session) -> tuple[dict[Joint, float], dict[Joint, int]]:
 
 def opposite(site: Site) -> Site:
     """The same place on the other leg."""
-    return Site(f"{site.side.other}_{site.segment}")
+    return Site(f"{site.leg_side.other}_{site.segment}")
 
 
 def _every_field_of(session: StoredSession) -> dict[str, Value]:

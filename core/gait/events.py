@@ -109,9 +109,9 @@ class FootEvents:
 
     Attributes
     ----------
-    length_m, height_m, turn_rad
-        How far the swing carried the foot over the floor, how high the sensor (not the toe) rose, how far the foot
-        turned about the vertical; NaN from a shank.
+    length_m, height_m, climb_m, turn_rad
+        How far the swing carried the foot over the floor, how high the sensor (not the toe) rose, how much higher the
+        foot came to stand, how far it turned about the vertical; NaN from a shank.
     is_certain
         False where the contacts themselves are in doubt: the foot's pitch contradicts its way.
     is_measured
@@ -126,6 +126,7 @@ class FootEvents:
     full_contact_s: FloatArray
     length_m: FloatArray
     height_m: FloatArray
+    climb_m: FloatArray
     turn_rad: FloatArray
     is_certain: BoolArray
     is_measured: BoolArray
@@ -254,6 +255,7 @@ def _as_events(motion: FootMotion, timing: Timing, is_measured: BoolArray) -> Fo
         full_contact_s=times[:, FULL_CONTACT],
         length_m=np.linalg.norm(motion.travel_m, axis=1),
         height_m=motion.height_m,
+        climb_m=motion.climb_m,
         turn_rad=motion.turn_rad,
         is_certain=np.full(len(swings), motion.is_direction_certain),
         is_measured=is_heard,

@@ -50,6 +50,7 @@ def gait_of_shank(shank: OrientedTrack) -> FootEvents:
         full_contact_s=unknown,
         length_m=unknown,
         height_m=unknown,
+        climb_m=unknown,
         turn_rad=np.diff(heading, prepend=heading[:1]),
         is_certain=np.ones(len(peaks), dtype=bool),
         is_measured=missing[np.ceil(on).astype(int) + 1] == missing[np.floor(off).astype(int)],

@@ -12,6 +12,7 @@ from core.samples import FloatArray
 MEMORY = 100  # looks whose scatter says what a look is worth
 MIN_LOOKS = 20
 UNKNOWN_RAD = np.pi
+LOST_RAD, LOST_S = np.deg2rad(8.0), 1.2  # what is seen so far off on the same side for longer than a stride is true
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,6 +58,7 @@ class SlowDrift:
         self._covariance = (sd_rad**2, 0.0, self._wandering.slope_rad_s**2)  # of angle, of both, of slope
         self._errors: deque[float] = deque(maxlen=MEMORY)
         self._is_unknown, self._first = sd_rad >= UNKNOWN_RAD, []
+        self._off_since_s, self._off_sign = np.inf, 0.0  # since when it is seen far off, and on which side
 
     def turn(self, by_rad: float) -> None:
         """What was called angle is now called angle + by."""
@@ -101,6 +103,9 @@ class SlowDrift:
         angle, both, slope = self._covariance
         length = max(abs(seen) ** 0.5, 1e-9)
         error_rad = float(np.angle(seen * np.exp(-1j * self._angle)))
+        if self._is_lost(time_s, error_rad):
+            self.restart(time_s, self._angle + error_rad, UNKNOWN_RAD)
+            return
         self._errors.append(length * error_rad)
         scale = self._looks.first_scale
         if len(self._errors) >= MIN_LOOKS:
@@ -114,6 +119,13 @@ class SlowDrift:
         self._angle += gain * angle * error_rad
         self._slope += gain * both * error_rad
         self._covariance = angle - gain * angle**2, both - gain * angle * both, slope - gain * both**2
+
+    def _is_lost(self, time_s: float, error_rad: float) -> bool:
+        """Whether the angle has been elsewhere for so long that no movement explains it: something jumped unseen."""
+        sign = float(np.sign(error_rad)) if abs(error_rad) > LOST_RAD else 0.0
+        if sign != self._off_sign:
+            self._off_since_s, self._off_sign = time_s, sign
+        return sign != 0.0 and time_s - self._off_since_s > LOST_S
 
 
 def _middle(looks: list[complex]) -> complex:

@@ -50,11 +50,15 @@ class LiveFoot:
 
 @dataclass(frozen=True, slots=True)
 class WalkingState:
-    """What the samples since the last state have told; a side is in `feet` if a foot sensor is worn there."""
+    """What the samples since the last state have told; a side is in `feet` if a foot sensor is worn there.
+
+    `turned` are the new samples themselves, on an even clock, with their orientations.
+    """
 
     joints: Mapping[Joint, LiveJoint] = field(default_factory=dict)
     feet: Mapping[Side, LiveFoot] = field(default_factory=dict)
     slips: tuple[Slip, ...] = ()
+    turned: Mapping[Site, OrientedSamples] = field(default_factory=dict)
 
 
 class LiveWalk:
@@ -96,7 +100,7 @@ class LiveWalk:
         }
         self._straps = {joint: _StrapWatch(calibration[joint], sensors[joint.proximal].step_s) for joint in known}
         self._feet = {
-            site.side: _LiveFoot(_pitch_axis(site.side, calibration), _clock_offset_s(site.side, lags_s))
+            site.leg_side: _LiveFoot(_pitch_axis(site.leg_side, calibration), _clock_offset_s(site.leg_side, lags_s))
             for site in sensors
             if site.segment is Segment.FOOT
         }
@@ -123,7 +127,7 @@ class LiveWalk:
         feet = {
             side: foot.update(turned.get(Site(f"{side}_{Segment.FOOT}"), NOTHING)) for side, foot in self._feet.items()
         }
-        return WalkingState(joints, feet, self._slips)
+        return WalkingState(joints, feet, self._slips, turned)
 
     def recalibrate(self, joint: Joint, calibration: JointCalibration) -> None:
         """Go over to another calibration of a joint without a jump: an ankle's, once STRIDES_FOR_ANKLE are in."""

@@ -27,7 +27,7 @@ def assess_target(
     prosthetic_sides
         Whose foot rolls on where a heel would rise: its stance is compared with nothing.
     """
-    feet = {one.side for one in worn if one.segment is Segment.FOOT}
+    feet = {one.leg_side for one in worn if one.segment is Segment.FOOT}
     if measure is TargetMeasure.CADENCE:
         return READ if feet else NOT_MEASURED
     if side not in feet:

@@ -548,10 +548,28 @@ def test_an_unknown_subcommand_is_named_with_those_there_are(capsys: pytest.Capt
     assert line.startswith("gaitwright: invalid choice: 'nonsense' (choose from ")
 
 
+def test_a_language_is_taken_before_anything_else(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    opened: list[tuple[list[str], str]] = []
+
+    def note(arguments: list[str], language: str) -> int:
+        opened.append((arguments, language))
+        return 0
+
+    monkeypatch.setattr(cli, "_open_window", note)
+    assert cli.main(["--lang", "de"]) == 0
+    assert opened == [([], "de")]
+    with pytest.raises(SystemExit, match="2"):
+        cli.main(["--lang", "fr"])
+    assert "invalid choice: 'fr'" in capsys.readouterr().err
+
+
 def test_a_session_folder_alone_opens_the_window(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     opened: list[list[str]] = []
 
-    def note(arguments: list[str]) -> int:
+    def note(arguments: list[str], language: str) -> int:
+        assert not language
         opened.append(arguments)
         return 0
 

@@ -21,6 +21,7 @@ from app.home import session_screen
 from app.home.entry import SHORTEST
 from app.library_commands import default_folder
 from app.main_window import MainWindow
+from app.pages.settings_page import SettingsPage
 from app.settings import Scheme, Settings
 from app.storage import keys
 from app.storage.database.ids import uuid7
@@ -502,6 +503,30 @@ def is_cut(widget: QWidget) -> bool:
         need = widget.minimumSizeHint()
         return need.width() > widget.width() or need.height() > widget.height()
     return False
+
+
+def test_the_language_is_kept_and_only_another_one_is_told(qtbot: QtBot, settings: Settings) -> None:
+    assert settings.language == "en"
+    with qtbot.assertNotEmitted(settings.language_changed):
+        settings.language = "en"
+    with qtbot.waitSignal(settings.language_changed, timeout=WAIT_MS):
+        settings.language = "de"
+    assert settings.language == "de"
+    settings.language = "fr"
+    assert settings.language == "en", "there is no catalogue of it"
+
+
+def test_a_language_chosen_in_the_settings_is_set(
+    qtbot: QtBot, open_window: Open, folder: Path, settings: Settings
+) -> None:
+    window = open_window(folder)
+    logged_in(qtbot, window)
+    assert window.home is not None
+    window.home.show_settings()
+    (page,) = window.findChildren(SettingsPage)
+    assert page.language.choice == "en"
+    page.language.segments[1].click()
+    assert settings.language == "de"
 
 
 @pytest.mark.parametrize("language", ["en", "pseudo"])

@@ -9,7 +9,6 @@ from pathlib import Path
 from string import Formatter
 
 import pytest
-from babel.messages.pofile import read_po
 
 from app.pseudo_language import lengthened
 from app.wording import SENTENCES, later, name_of, sentence, tr, tr_n, use_language
@@ -233,21 +232,3 @@ def test_each_compiled_catalogue_is_that_of_its_translator(monkeypatch: pytest.M
     assert [one.parts[-3] for one in found] == ["de"]
     for one in found:
         assert one.with_suffix(".mo").read_bytes() == catalogue.compiled(one), "run packaging/catalogue.py"
-
-
-def test_a_translation_is_of_a_sentence_that_is_said_and_leaves_its_figures(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.syspath_prepend(ROOT / "packaging")
-    catalogue = importlib.import_module("catalogue")
-
-    def figures(message: str) -> set[str | None]:
-        return {field for _, field, *_ in Formatter().parse(message) if field}
-
-    sentences = {str(one.id) for one in catalogue.gathered() if isinstance(one.id, str)}
-    for file in catalogue.translations():
-        with file.open("rb") as content:
-            for message in read_po(content):
-                if message.id and isinstance(message.id, str):
-                    assert message.id in sentences
-                    assert isinstance(message.string, str)
-                    assert message.string
-                    assert figures(message.string) == figures(message.id)

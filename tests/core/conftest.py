@@ -93,7 +93,7 @@ class Person:
 
     def pose(self, kind: RecordingKind, site: Site, t: FloatArray) -> Pose:
         """Rotation earth from sensor and place in the earth (n, 3)."""
-        turned, origin = self._bones(kind, site.side, t)[site.segment]
+        turned, origin = self._bones(kind, site.leg_side, t)[site.segment]
         return turned * self.mounting(site), origin + turned.apply(PLACE_M[site.segment])
 
     def samples(self, kind: RecordingKind, site: Site, t: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -9,7 +9,8 @@ from core.body import Joint, Side, Site, ankle_of, knee_of
 from core.samples import FloatArray
 from devices.walker import NO_ERRORS, Manner, SimulatedSession, Walk, WalkerSettings, simulate
 from devices.walker_body import HEEL_M, TOE_M, make_leg
-from devices.walker_gait import plan_walk, walk_leg
+from devices.walker_gait import walk_leg
+from devices.walker_plan import plan_walk
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 

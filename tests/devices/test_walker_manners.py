@@ -7,8 +7,9 @@ from core.body import Joint, Side
 from core.samples import FloatArray
 from devices.walker import NO_ERRORS, Manner, Walk, WalkerSettings, simulate
 from devices.walker_body import HEEL_M, TOE_M, make_leg
-from devices.walker_gait import plan_walk, walk_leg
+from devices.walker_gait import walk_leg
 from devices.walker_motion import LegMotion
+from devices.walker_plan import plan_walk
 
 MANNERS = [Manner.FLAT, Manner.STIFF, Manner.DRAGGING, Manner.TOE_FIRST]
 STEP_S = 0.002

@@ -10,6 +10,7 @@ from app.charts.drawing import MM, Picture
 from app.charts.on_paper import compared_look, draw
 from app.charts.stride_chart import NOT_KNOWN, StrideChart
 from app.gates_in_words import verdict_word
+from app.reports.agreed import agreed_with
 from app.reports.comparison import (
     MEASURES,
     Compared,
@@ -101,7 +102,7 @@ def _condition_typed(condition: str) -> str:
 def _condition(visit: AnalysedVisit, name: str, chosen: Sequence[str]) -> Part:
     """All walks of this one's condition; this one alone where several of them are chosen."""
     shown = visit.shown_names[name]
-    for part in conditions_of(visit.analysis, visit.session.recordings):
+    for part in conditions_of(visit.analysis, visit.session.recordings, agreed=agreed_with(visit.session)):
         names = {walk.name for walk in part.walks}
         if name in names:
             is_only = len(names.intersection(chosen)) == 1

@@ -102,7 +102,7 @@ def _sources(facts: Facts) -> list[str]:
             "Values and SD are read from the mean curve, which has no SD of range."
         )
         speed = fixed(curves.speed_m_s, 2)
-        said.append(pattern.format(n=curves.n, group=curves.group, speed=speed, source=curves.source))
+        said.append(pattern.format(n=curves.n, group=tr(curves.group), speed=speed, source=curves.source))
     if values is not None:
         pattern = tr(
             "[2] Time and distance: {group}, optical markers and force plates; class “{speed_class}” of the Froude "
@@ -110,7 +110,7 @@ def _sources(facts: Facts) -> list[str]:
         )
         said.append(
             pattern.format(
-                group=values.group,
+                group=tr(values.group),
                 speed_class=values.speed_class,
                 speed=fixed(values.speed_m_s, 2),
                 n=values.n,

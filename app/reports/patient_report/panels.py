@@ -16,7 +16,7 @@ from app.reports.patient_report import quality
 from app.reports.patient_report.facts import KINDS, Facts, joint_of
 from app.reports.patient_report.numbers_in_words import fixed
 from app.reports.reference_bands import OTHER_AGES, WHY_NO_BAND
-from app.wording import capitalised, joined, name_of, side_name, tr
+from app.wording import capitalised, joined, name_of, side_name, tr, within_sentence
 from core.body import Joint, Side
 from core.norms import NoBand
 from core.verdicts.model import Verdict
@@ -64,7 +64,7 @@ def small_title(facts: Facts, kind: str, *, is_about_mean: bool = False) -> str:
         "ankle": tr("ankle, degrees from the mean (dorsiflexion +)"),
     }
     title = title_of(facts, kind)
-    return short[kind] if is_about_mean or facts.has_no_zero(kind) else title[:1].lower() + title[1:]
+    return short[kind] if is_about_mean or facts.has_no_zero(kind) else within_sentence(title)
 
 
 def band_of(facts: Facts, kind: str, sides: Sequence[Side]) -> Band | None:
@@ -234,7 +234,7 @@ def not_drawn(facts: Facts, kind: str) -> list[str]:
     """Say of each leg whose curve is missing why it is."""
     said = []
     for side in Side:
-        joint = f"{side_name(side)} " + (tr("knee") if kind == "knee" else tr("ankle"))
+        joint = name_of(joint_of(kind, side))
         if not np.isfinite(facts.mean_curve_deg(side, kind)).any() and not len(facts.strides_deg(side, kind)):
             found = facts.verdicts.joint(joint_of(kind, side))
             is_withheld = Verdict.WITHHELD in (found.shape.verdict, found.sign.verdict)
@@ -260,7 +260,7 @@ def curve_alt(facts: Facts, kind: str, sides: Sequence[Side]) -> str:
         off = facts.value(side, "stance_percent")
         if is_mean_enough(off.n):
             numbers.append(tr("toe\u2011off at {percent} %").format(percent=fixed(off.mean, 0)))
-        said.append(f"{side_name(side).capitalize()}: {', '.join(numbers)}.")
+        said.append(f"{capitalised(side_name(side))}: {', '.join(numbers)}.")
     return " ".join([tr("SIMULATED.")] * facts.is_simulated + said)
 
 

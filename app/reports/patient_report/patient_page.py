@@ -21,6 +21,8 @@ from app.reports.patient_report.plain_text import isolated, shortened, typed
 from app.reports.patient_report.request import ReportRequest
 from app.wording import later, spoken_in
 from core.body import Side
+from core.goals import GoalOf
+from core.verdicts.goals import GoalStanding
 from core.verdicts.measurement_error import Difference
 from core.verdicts.model import Verdict
 from core.verdicts.quantities import assessment_of_both
@@ -53,6 +55,15 @@ ALIKE = later("So we cannot say that your knees differ.")
 SPEED_NOW = later("You now walk {now} metres in a second. At the first visit it was {first}.")
 SPEED_ALONE = later("You walk {now} metres in a second.")
 BY_ITSELF = later("When people walk faster, their knees bend a little more by themselves.")
+GOALS_OF = {
+    (KNEE, GoalOf.LEFT): later("Bend of your left knee"),
+    (KNEE, GoalOf.RIGHT): later("Bend of your right knee"),
+    (SPEED, GoalOf.WALK): later("Walking speed"),
+}
+AT_LEAST = later("{what}: at least {value}. We agreed this on {day}.")
+AT_MOST = later("{what}: at most {value}. We agreed this on {day}.")
+DEGREES, METRES = later("{value} degrees"), later("{value} metres in a second")
+REACHED = later("You have reached it.")
 LIMITS = later(
     "The sensors do not see pain or strength, and they cannot say how you will walk in a month. Your therapist puts "
     "this together with everything else."
@@ -95,6 +106,7 @@ def patient_page(request: ReportRequest, facts: Facts) -> Block:
         "question": say(later("How far does your knee bend when you swing the leg forward?")),
         "simulated": say(later("SIMULATED DATA, not a person")) if facts.is_simulated else "",
         "agreed": say(later("What we agreed")),
+        "goals": _goals(facts, say, request.patient_language),
         "questions": _questions(request, say),
     }
     if not math.isfinite(shown):
@@ -209,6 +221,26 @@ def _speed(facts: Facts, first: _First | None, say: Say, language: str) -> str:
 
 def _one_decimal(value: float, language: str) -> str:
     return f"{value:.1f}".replace(".", "," if language == "de" else ".")
+
+
+def _goals(facts: Facts, say: Say, language: str) -> list[str]:
+    """What was agreed of the measures that this page tells of; that it is reached only of what is read without care."""
+    said = []
+    for found in facts.goals:
+        goal = found.goal
+        what = GOALS_OF.get(goal.key)
+        if what is None:
+            continue
+        is_angle = goal.column == KNEE
+        value = f"{goal.value:g}".replace(".", "," if language == "de" else ".")
+        words = say(AT_MOST if goal.is_at_most else AT_LEAST).format(
+            what=say(what),
+            value=say(DEGREES if is_angle else METRES).format(value=value),
+            day=day_and_month(goal.agreed, say),
+        )
+        is_read = found.verdict is Verdict.READ and found in facts.told_goals
+        said.append(f"{words} {say(REACHED)}" if is_read and found.standing is GoalStanding.REACHED else words)
+    return said
 
 
 def _questions(request: ReportRequest, say: Say) -> str:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from app.gates_in_words import GateWords, gate_words
 from app.reports.patient_report.facts import Facts
 from app.reports.patient_report.numbers_in_words import NOTHING, fixed
-from app.wording import NAMES, capitalised, joined, name_of, side_name, tr, tr_n
+from app.wording import NAMES, capitalised, joined, name_of, side_name, tr, tr_n, within_sentence
 from core.body import Joint, Side, Site
 from core.findings import Finding
 from core.gait.strides import Reason
@@ -90,7 +90,7 @@ def _reasons(verdicts: Verdicts) -> Iterator[tuple[Place, GateReason]]:
 
 def _named(gate: str, where: str) -> str:
     """What of a place a gate is about, where that is not all of it."""
-    inside = where[:1].lower() + where[1:]
+    inside = within_sentence(where)
     if gate in HEIGHT_GATES:
         return tr("Height of {joints}").format(joints=inside)
     return tr("All of {joints} but the range").format(joints=inside) if gate == "sign" else where

@@ -27,6 +27,8 @@ LETTERS = {  # on the rail; each is told in words under the heading
     Reason.OUTLIER: "u",
     Reason.SLIPPED: "x",
     Reason.BY_HAND: "h",
+    Reason.STAIRS_UP: "↑",
+    Reason.STAIRS_DOWN: "↓",
 }
 
 

@@ -406,7 +406,7 @@ class FreeMotionStep(Step):
         if chains is not None:
             session = self._visit.session
             placed = session.placements[-1].site_of if session is not None and session.placements else {}
-            self._side.look(chains, {name: site.side for name, site in placed.items()} | self._sides_told)
+            self._side.look(chains, {name: site.leg_side for name, site in placed.items()} | self._sides_told)
             self._show_question()
 
     def _show_question(self) -> None:

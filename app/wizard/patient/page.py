@@ -88,7 +88,9 @@ class PatientPage(Themed):
             look, tr("Sex"), [("female", tr("Female"), ""), ("male", tr("Male"), ""), ("", tr("Not told"), "")]
         )
         self.birth_year = NumberField(look, tr("Birth year"), low=1900, high=self._year, is_optional=True)
-        self.height_cm = NumberField(look, tr("Height"), low=30, high=280, decimals=1, unit=tr("cm"), is_optional=True)
+        self.height_cm = NumberField(
+            look, tr("Body height"), low=30, high=280, decimals=1, unit=tr("cm"), is_optional=True
+        )
         self.mass_kg = NumberField(look, tr("Mass"), low=1, high=500, decimals=1, unit=tr("kg"), is_optional=True)
         self.side = Segmented(
             look,

@@ -15,10 +15,13 @@ from app.acquisition.acquisition import Acquisition
 from app.known_columns import known_columns
 from app.wizard.worn_sensors import SourceChoice
 from app.wording import later, tr, tr_n
+from core.body import Side
+from devices.bluetooth import BluetoothMissingError, own_radio
 from devices.catalogue import DRIVERS
 from devices.live import SourceRefusedError
 from devices.lsl import GROUP, PORT
 from devices.networks import THIS_COMPUTER, own_addresses
+from devices.prosthesis_user import ProsthesisUser
 from devices.replay import demonstration
 from devices.search import search, search_streams
 
@@ -87,7 +90,13 @@ class Sources(Sequence[SourceChoice]):
             return self._search()
 
     def _every(self) -> tuple[SourceChoice, ...]:
-        demonstration = SourceChoice(DEMONSTRATION, tr("Simulated patient"), _demonstration, is_simulated=True)
+        demonstration = SourceChoice(
+            DEMONSTRATION,
+            tr("Simulated patient"),
+            _demonstration,
+            is_simulated=True,
+            make_prosthetic=_prosthesis_user,
+        )
         anew = SourceChoice(SEARCH, tr("Search for sensors"), self._open_all)
         streams = [_of_streams(address) for address in self._networks]
         return (demonstration, *self._of_drivers(), *self._of_lines(), anew, *streams)
@@ -126,13 +135,30 @@ class Sources(Sequence[SourceChoice]):
             )
         if len(found.passed) == 1:  # then it is this one that is meant
             raise found.passed[0].refusal
-        raise SourceRefusedError(
-            later("No sensor was found"), later("Plug in the receiver or switch the sensors on, then search again")
+        raise SourceRefusedError(later("No sensor was found"), _remedy(found.deaf))
+
+
+def _remedy(deaf: SourceRefusedError | None) -> str:
+    """What to do where no sensor was found, and Bluetooth LE was `deaf`."""
+    if isinstance(deaf, BluetoothMissingError):
+        return later(
+            "Plug in the receiver or switch the sensors on, then search again; sensors with Bluetooth LE need "
+            "Gaitwright's extra bluetooth"
         )
+    if deaf is not None:
+        return later(
+            "Plug in the receiver or switch the sensors on, then search again; sensors with Bluetooth LE are heard "
+            "once Bluetooth is switched on"
+        )
+    return later("Plug in the receiver or switch the sensors on, then search again")
 
 
 def _demonstration() -> Acquisition:
     return Acquisition([demonstration()])
+
+
+def _prosthesis_user(side: Side) -> Acquisition:
+    return Acquisition([ProsthesisUser(side)])
 
 
 def _networks() -> Sequence[str]:
@@ -170,4 +196,4 @@ def _opening(sensors: "Sequence[FoundSensor]") -> Acquisition:
 
 
 def _search() -> "SearchResult":
-    return search(columns=known_columns())
+    return search(columns=known_columns(), radio=own_radio())

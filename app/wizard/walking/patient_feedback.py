@@ -21,7 +21,7 @@ from app.patient_screen.window import PatientWindow
 from app.sounds import Sound
 from app.theme import ThemeNotifier
 from app.wording import tr
-from core.body import Joint, Segment, Side, Site, knee_of
+from core.body import LEG_SEGMENTS, Joint, Segment, Side, Site, knee_of
 from core.results import JointCalibration
 from core.targets import Target, TargetMeasure, TargetTally, shown_value
 from core.verdicts.live_targets import assess_target
@@ -228,7 +228,7 @@ def _is_gated(target: Target, view: "WalkingReadout", worn: Collection[Site]) ->
         heard = {site for site in feet if site in worn} - doubtful
         return not heard
     if target.measure is TargetMeasure.KNEE_SWING_PEAK:
-        return bool(doubtful & {Site(f"{target.side}_{segment}") for segment in Segment})
+        return bool(doubtful & {Site(f"{target.side}_{segment}") for segment in LEG_SEGMENTS})
     if target.measure is TargetMeasure.FOOT_STRIKE:
         return Site(f"{target.side}_{Segment.FOOT}") in doubtful
     return bool(doubtful & feet)

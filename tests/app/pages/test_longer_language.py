@@ -38,7 +38,7 @@ from app.wizard.walking.page import WalkingPage
 from app.wizard.walking.readout import LiveLane, LiveTrace, PhaseSpan, WalkingReadout
 from app.wizard.walking.walk_list import WalkRow, WalkState
 from app.wording import tr
-from core.body import Joint, Side, Site
+from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site
 from core.findings import Finding, Severity
 from core.gait.phases import Phase
 from core.samples import ImuBlock, Patient, SensorInfo
@@ -199,7 +199,7 @@ def patient(look: ThemeNotifier) -> QWidget:
 def sensors(look: ThemeNotifier) -> QWidget:
     page = SensorsPage(look)
     page.show_sources([SourceOption("serial", tr("Serial ports"), "6"), SourceOption("replay", tr("Replay"))], "serial")
-    rows = [SensorRow(f"0A0{k}", "x-IMU3", 100.0, 0.8, site) for k, site in enumerate(list(Site)[:4])]
+    rows = [SensorRow(f"0A0{k}", "x-IMU3", 100.0, 0.8, site) for k, site in enumerate(LEG_SITES[:4])]
     rows += [SensorRow("0A31", "x-IMU3", 0.0, 0.08, Site.RIGHT_SHANK, silent_s=3.2, can_identify=True)]
     rows += [SensorRow("0A2C", "x-IMU3", 98.0, None, None, lost_share=0.024, can_identify=True)]
     page.show_sensors(rows)
@@ -243,7 +243,7 @@ def standing(phase: StandPhase, **more: object) -> Callable[[ThemeNotifier], QWi
     def make(look: ThemeNotifier) -> QWidget:
         page = StandStillPage(look)
         page.show_zero({Joint.LEFT_KNEE: 12.0})
-        page.show_state(StandStillView(phase, 1.2, movement_deg_s=dict.fromkeys(Site, 0.4), **more))  # type: ignore[arg-type]  # of a test
+        page.show_state(StandStillView(phase, 1.2, movement_deg_s=dict.fromkeys(LEG_SITES, 0.4), **more))  # type: ignore[arg-type]  # of a test
         return page
 
     return make
@@ -257,7 +257,7 @@ def free_motion(look: ThemeNotifier) -> QWidget:
     enough = GaugeFace(
         GaugeState.ENOUGH, GaugeMeasure("0.8", "°", "1.5°", 1.0, True), GaugeMeasure("6", "mm", "10 mm", 1.0, True)
     )
-    faces = dict.fromkeys(Joint, enough) | {Joint.LEFT_KNEE: open_face}
+    faces = dict.fromkeys(LEG_JOINTS, enough) | {Joint.LEFT_KNEE: open_face}
     hint = Hint(tr("Circle the left lower leg"), tr("Change direction."))
     page.show_state(FreeMotionFace(faces, hint, 7.3, Site.LEFT_SHANK))
     return page
@@ -272,7 +272,9 @@ def walking(*rows: WalkRow) -> Callable[[ThemeNotifier], QWidget]:
         trace = LiveTrace(time_s, np.full(500, 0.4), is_provisional=True)
         lane = LiveLane((PhaseSpan(Phase.SWING, 1.0, None),))
         page.show_view(
-            WalkingReadout(5.0, dict.fromkeys(Joint, trace), dict.fromkeys(Side, lane), dict.fromkeys(Side, 14), 101.4)
+            WalkingReadout(
+                5.0, dict.fromkeys(LEG_JOINTS, trace), dict.fromkeys(Side, lane), dict.fromkeys(Side, 14), 101.4
+            )
         )
         return page
 

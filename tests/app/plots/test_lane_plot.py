@@ -11,7 +11,7 @@ from pytestqt.qtbot import QtBot
 
 from app.plots.lane_plot import APART, INSET, DateAxis, LanePlot, LaneScale
 from app.reports.course import Course
-from app.reports.course_lanes import CourseVisit, LaneKind, lanes
+from app.reports.course_lanes import KNEE_LANE, CourseVisit, lanes
 from app.reports.course_words import day_of
 from app.theme import ThemeNotifier
 from core.body import Joint
@@ -32,7 +32,7 @@ def knee_plot(qtbot: QtBot, look: ThemeNotifier, *visits: CourseVisit, height: i
     plot = LanePlot(look)
     qtbot.addWidget(plot)
     plot.resize(400, height)
-    found = next(one for one in lanes(visits) if one.kind is LaneKind.KNEE)
+    found = next(one for one in lanes(visits) if one.kind is KNEE_LANE)
     plot.show_lane(found, visits, list(dict.fromkeys(line.condition for line in found.lines)))
     return plot
 

@@ -26,7 +26,8 @@ def events(first_s: float, count: int = STRIDES) -> FootEvents:
     nothing = np.full(count, np.nan)
     yes = np.ones(count, dtype=bool)
     each = np.ones((count, 4), dtype=np.int64), np.full((count, 4), 0.01)
-    return FootEvents(start_s, start_s + 0.2, start_s + 0.6, start_s + 0.72, nothing, nothing, nothing, yes, yes, *each)
+    swing = start_s, start_s + 0.2, start_s + 0.6, start_s + 0.72
+    return FootEvents(*swing, nothing, nothing, nothing, nothing, yes, yes, *each)
 
 
 def gait(first_s: float, count: int = STRIDES) -> SideGait:

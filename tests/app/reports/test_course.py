@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from app.reports.comparison import Comparison, Contrast, conditions_of
+from app.reports.comparison import CADENCE, Comparison, Contrast, conditions_of
 from app.reports.course import (
     KNEE,
     OF_A_LEG,
@@ -113,13 +113,13 @@ def test_two_strides_are_no_mean() -> None:
 
 
 def test_stance_between_the_legs_is_told_where_both_are() -> None:
-    found = only(course((walked(stance_percent=64.0), "shoes"))).stance_between_legs
+    found = only(course((walked(stance_percent=64.0), "shoes"))).between_legs(STANCE)
     assert found is not None
     assert found.difference == pytest.approx(4.0)
     assert found.exceeds
     one_leg = walked()
     one_leg = replace(one_leg, gait={Side.LEFT: one_leg.gait[Side.LEFT]})
-    assert only(course((one_leg, "shoes"))).stance_between_legs is None
+    assert only(course((one_leg, "shoes"))).between_legs(STANCE) is None
 
 
 def test_the_toe_off_of_a_prosthesis_is_remembered_so_that_stance_is_not_judged() -> None:
@@ -127,7 +127,7 @@ def test_the_toe_off_of_a_prosthesis_is_remembered_so_that_stance_is_not_judged(
     left = replace(walk.gait[Side.LEFT], is_toe_off_biased=True)
     biased = judged_walk(replace(walk, gait={**walk.gait, Side.LEFT: left}))
     kept = course_from_json(course_in_json(course((biased, "shoes"))))
-    found = only(kept).stance_between_legs
+    found = only(kept).between_legs(STANCE)
     assert found is not None
     assert found.judgement is Judgement.NO_PUBLISHED_FIGURE
 
@@ -138,7 +138,7 @@ def test_what_is_kept_is_what_was_found() -> None:
     written = json.dumps(course_in_json(found), allow_nan=False)
     read = course_from_json(json.loads(written))
     assert repr(read) == repr(found)
-    assert [one.column for one in read.conditions[0].figures] == [SPEED, *OF_A_LEG, *OF_A_LEG]
+    assert [one.column for one in read.conditions[0].figures] == [SPEED, CADENCE, *OF_A_LEG, *OF_A_LEG]
     assert read.conditions[0].figure(STANCE, Side.RIGHT) is not None
 
 

@@ -65,7 +65,8 @@ def strides(length_m: FloatArray, reasons: list[Reason]) -> Strides:
     nothing = np.full(len(length_m), np.nan)
     bout = np.zeros(len(length_m), dtype=np.int64)
     return Strides(
-        start, start + 0.1, start + 0.5, start + 0.7, start + 1.1, length_m, nothing, nothing, bout, tuple(reasons)
+        *(start, start + 0.1, start + 0.5, start + 0.7, start + 1.1, length_m),
+        *(nothing, nothing, nothing, bout, tuple(reasons)),
     )
 
 

@@ -136,6 +136,7 @@ def walk(length_m: FloatArray, stride_s: FloatArray | None = None) -> FootEvents
         full_contact_s=contact + 0.1,
         length_m=np.concatenate([[length_m[0]], length_m]),
         height_m=np.full(n, 0.1),
+        climb_m=np.zeros(n),
         turn_rad=np.zeros(n),
         is_certain=np.ones(n, dtype=bool),
         is_measured=np.ones(n, dtype=bool),

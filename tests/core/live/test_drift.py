@@ -35,6 +35,21 @@ def test_an_angle_that_was_lost_is_found_again_and_its_looks_stay_worth_what_the
     assert np.rad2deg(np.abs(error[-30:]).max()) < 2.0
 
 
+def test_what_jumped_unseen_is_found_within_two_seconds_and_makes_no_slope() -> None:
+    drift = SlowDrift(WANDERING, LOOKS)
+    drift.restart(0.0, 0.0, np.deg2rad(5.0))
+    angle = np.where(np.arange(60) < 5, 0.0, 1.0)  # at a time when the slope is not known yet
+    error = followed(drift, angle) - angle
+    assert np.rad2deg(np.abs(error[30:]).max()) < 1.0
+
+
+def test_what_sways_with_each_stride_is_not_taken_for_lost() -> None:
+    drift = SlowDrift(WANDERING, LOOKS)
+    drift.restart(0.0, 0.0, np.deg2rad(1.0))
+    swaying = np.deg2rad(25.0) * np.sin(2 * np.pi * 0.1 * np.arange(300) / 2.0)  # strides of two seconds
+    assert np.rad2deg(np.abs(followed(drift, swaying)).max()) < 8.0
+
+
 def test_a_shock_at_the_start_is_outvoted() -> None:
     drift = SlowDrift(WANDERING, ObservationModel(0.5, 0.3, 0.3, begins_with=5))
     drift.restart(0.0, 0.0, UNKNOWN_RAD)

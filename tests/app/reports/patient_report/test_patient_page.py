@@ -8,7 +8,7 @@ from uuid import UUID
 import numpy as np
 import pytest
 
-from app.reports.course import course_of
+from app.reports.course import KNEE, course_of
 from app.reports.course_lanes import CourseVisit
 from app.reports.patient_report import patient_page as module
 from app.reports.patient_report.document import facts_of, report_data
@@ -16,6 +16,7 @@ from app.reports.patient_report.patient_page import patient_page
 from app.reports.patient_report.request import AnalysedVisit, ReportRequest
 from app.wording import spoken_in
 from core.body import Joint, Side
+from core.goals import Goal, GoalOf
 from core.results import Analysis
 from tests.app.changed_analysis import recalibrated
 from tests.app.course_material import course, unsure, walked
@@ -121,3 +122,38 @@ def test_the_page_is_added_where_a_language_was_chosen(request_of_demonstration:
     kinds = [page[0]["kind"] for page in report_data(english(request_of_demonstration))["pages"]]
     assert kinds[-1] == "patient"
     assert "patient" not in [page[0]["kind"] for page in report_data(request_of_demonstration)["pages"]]
+
+
+def goals_on_page(request: ReportRequest, *goals: Goal, is_withheld: bool = False) -> list[str]:
+    session = replace(request.visit.session, started="2026-11-23T09:00:00+01:00")
+    told = replace(session, patient=replace(session.patient, goals=goals))
+    found = request.visit.analysis
+    if is_withheld:
+        found = recalibrated(found, (Joint.LEFT_KNEE,), axis_sd_rad=None)
+    asked = replace(request, visit=AnalysedVisit(told, found))
+    page = patient_page(asked, facts_of(asked))["goals"]
+    assert isinstance(page, list)
+    return [str(one) for one in page]
+
+
+def test_what_was_agreed_is_said_plainly_and_reached_only_where_it_is_by_more_than_the_error(
+    request_of_demonstration: ReportRequest,
+) -> None:
+    """The demonstration's left knee bends by 61 degrees."""
+    day = datetime.date(2026, 9, 30)
+    low, near = (Goal(KNEE, GoalOf.LEFT, value, day) for value in (50.0, 60.0))
+    words = "Bend of your left knee: at least 50 degrees. We agreed this on 30 September."
+    request = english(request_of_demonstration)
+    assert goals_on_page(request, low) == [f"{words} You have reached it."]
+    assert goals_on_page(request, low, is_withheld=True) == [words]
+    assert goals_on_page(request, replace(low, agreed=datetime.date(2026, 11, 23))) == [
+        words.replace("30 September", "23 November")
+    ]
+    assert goals_on_page(request, near) == [words.replace("50", "60")]
+    stance = Goal("stance_percent", GoalOf.LEFT, 60.0, day)
+    assert goals_on_page(request, stance) == []  # the page tells nothing of it
+    german = replace(request_of_demonstration, patient_language="de")
+    speed = Goal("speed_m_s", GoalOf.WALK, 1.5, day)
+    assert goals_on_page(german, speed) == [
+        "Ganggeschwindigkeit: mindestens 1,5 Meter in einer Sekunde. Das haben wir am 30. September vereinbart."
+    ]

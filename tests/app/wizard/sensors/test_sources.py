@@ -1,5 +1,6 @@
 """What is found is listed by its driver and opened, and the screen never waits for a search."""
 
+import re
 import threading
 import time
 
@@ -8,6 +9,9 @@ from pytestqt.qtbot import QtBot
 
 from app.wizard.sensors import sources as sources_module
 from app.wizard.sensors.sources import DEMONSTRATION, SEARCH, Sources, choices
+from core.alignment import NetChange, ProsthesisPart
+from core.body import Side
+from devices.bluetooth import BluetoothMissingError
 from devices.live import LiveSource, SourceRefusedError
 from devices.ports import PortInfo
 from devices.replay import ReplaySource
@@ -140,3 +144,32 @@ def test_streams_are_asked_for_by_a_choice_only_that_says_whom(monkeypatch: pyte
     assert asked == ["127.0.0.1"]
     network.make().close()
     assert asked == ["127.0.0.1", "192.0.2.9"]
+
+
+@pytest.mark.parametrize(
+    ("sides", "is_user"), [((), False), ((Side.LEFT,), True), ((Side.RIGHT,), True), ((Side.LEFT, Side.RIGHT), False)]
+)
+def test_a_patient_with_one_prosthesis_is_simulated_with_it(sides: tuple[Side, ...], is_user: bool) -> None:
+    simulated = Sources(lambda: SearchResult(()))[0].for_sides(sides)
+    assert simulated.key == DEMONSTRATION
+    assert (simulated.make != Sources(lambda: SearchResult(()))[0].make) is is_user
+    if sides == (Side.LEFT,):
+        acquisition = simulated.make()
+        acquisition.set_up([NetChange(ProsthesisPart.PYLON, height_mm=3.0)])  # who is simulated with none hears nothing
+        assert acquisition.is_simulated
+        acquisition.close()
+
+
+@pytest.mark.parametrize(
+    ("deaf", "said"),
+    [
+        (None, "search again$"),
+        (BluetoothMissingError("a", "b"), "need Gaitwright's extra bluetooth$"),
+        (SourceRefusedError("a", "b"), "once Bluetooth is switched on$"),
+    ],
+)
+def test_where_nothing_is_found_it_says_what_bluetooth_lacks(deaf: SourceRefusedError | None, said: str) -> None:
+    sources = Sources(lambda: SearchResult(deaf=deaf))
+    with pytest.raises(SourceRefusedError, match="No sensor was found") as refused:
+        sources[-1].make()
+    assert re.search(said, refused.value.remedy)

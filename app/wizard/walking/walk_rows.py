@@ -1,0 +1,58 @@
+"""The walks of a session as the list on the page shows them, and what is said of the one that is asked about."""
+
+import math
+from typing import TYPE_CHECKING
+
+from app.storage.stored import RecordingState
+from app.wizard.walk_messages import clock
+from app.wizard.walking.walk_list import WalkRow, WalkState
+from app.wizard.walking.walk_notice import length_s, strides_of
+from app.wording import tr
+from core.body import Side
+from core.samples import RecordingKind
+
+if TYPE_CHECKING:
+    from app.wizard.recordings import Ongoing, SessionRecording, SessionRecordings
+    from app.wizard.visit import Visit
+
+LETTERS = {Side.LEFT: "L", Side.RIGHT: "R"}
+
+
+def ongoing_walk(recordings: "SessionRecordings") -> "Ongoing | None":
+    """The walk that is being recorded."""
+    ongoing = recordings.ongoing
+    return ongoing if ongoing is not None and ongoing.details.kind is RecordingKind.WALKING else None
+
+
+def rows_of(visit: "Visit") -> tuple[WalkRow, ...]:
+    """All walks of the session in the order of recording, the one that goes on last."""
+    recordings = visit.recordings
+    names = recordings.shown_names
+    strapped_last = {recording.id for recording in recordings.since_strapped}
+    rows = []
+    for recording in recordings.walks:
+        state = WalkState.KEPT if recording.details.is_kept else WalkState.DISCARDED
+        if not recording.is_decided:
+            is_recovered = recording.stored.state is RecordingState.RECOVERED
+            state = WalkState.RECOVERED if is_recovered else WalkState.ASKING
+        strides = max(strides_of(visit, recording).values(), default=None)
+        name, is_old = names[recording.details.name], recording.id not in strapped_last
+        rows.append(WalkRow(str(recording.id), name.letter, name.words, state, strides, is_old))
+    ongoing = ongoing_walk(recordings)
+    if ongoing is not None:
+        name = names[ongoing.details.name]
+        rows.append(WalkRow("", name.letter, name.words, WalkState.RECORDING))
+    return tuple(rows)
+
+
+def facts_of(visit: "Visit", recording: "SessionRecording", cadence_steps_min: float) -> str:
+    """Of the walk that is asked about: its strides, its cadence where it is known, its length."""
+    strides = strides_of(visit, recording)
+    said = []
+    if strides:
+        counts = ", ".join(f"{letter} {strides[side]}" for side, letter in LETTERS.items() if side in strides)
+        said.append(tr("Strides: {counts}").format(counts=counts))
+    if math.isfinite(cadence_steps_min):
+        said.append(tr("{cadence:.0f} steps/min").format(cadence=cadence_steps_min))
+    said.append(clock(length_s(recording)))
+    return " · ".join(said)

@@ -1,0 +1,184 @@
+"""Is every sentence there in German, with the figures, spaces and marks of the English one?"""
+
+import importlib
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from string import Formatter
+
+import pytest
+from babel.messages.pofile import read_po
+
+from app.wording import (
+    SENTENCES,
+    capitalised,
+    languages,
+    name_of,
+    sentence,
+    spoken_language,
+    tr_n,
+    use_language,
+    within_sentence,
+)
+from core.body import Joint
+from core.findings import Finding, Severity
+
+ROOT = Path(__file__).parents[2]
+GERMAN = ROOT / "resources" / "locale" / "de" / "LC_MESSAGES" / "gaitwright.po"
+TEMPLATE = ROOT / "resources" / "locale" / "gaitwright.pot"
+
+# written alike in both, looked at one by one
+ALIKE = {
+    *("plantar", "dorsal", "April", "August", "September", "November", "Goniometer, {joint}", "Software", "Name"),
+    *("Parquet", "Patient", "Passphrase", "Esc", "Xsens MTi", "Lab Streaming Layer", "Bias, °", "Band", "Band [1]"),
+    *("Band [2]", "Band: {count} {group}, {speed_m_s:.2f} m/s, {source}.", "still", "CSV", "XLSX", "OpenSim", "FHIR"),
+    *(
+        "Rerun",
+        "Letter",
+        "Rate",
+        "Sensor",
+        "x-io x-IMU3",
+        "Shimmer3, LogAndStream",
+        "Timed-up-and-go-Test",
+        "Movella DOT",
+        "Movella DOT, Bluetooth LE",
+    ),
+    "{count}\N{NO-BREAK SPACE}in\N{NO-BREAK SPACE}{part}",
+}
+UNITS = {"mm", "cm", "kg", "Hz", "SD", "min"}
+ENGLISH = re.compile(r"\b(the|of|is|are|and|not|with|from|that|it|to|by|for|has|which|this|your|left|right)\b")
+NAMED_ALIKE = {"rate of turn", "Timed-up-and-go"}  # a setting of other programs; a test, in German clinics too
+SHORTENED = {"Jan", "Feb", "Apr", "Aug", "Sep", "Oct", "Nov", "Dec"}  # with a point behind them
+
+
+@dataclass(frozen=True, slots=True)
+class Told:
+    english: str
+    german: str
+
+
+@cache
+def read(file: Path) -> dict[tuple[str, ...], tuple[str, ...]]:
+    """Give the messages of a catalogue, each with one form or two."""
+    with file.open("rb") as content:
+        found = read_po(content, abort_invalid=True)
+    return {as_forms(one.id): as_forms(one.string) for one in found if one.id}
+
+
+def as_forms(text: str | tuple[str, ...] | list[str] | None) -> tuple[str, ...]:
+    return (text,) if isinstance(text, str) else tuple(text or ())
+
+
+def pairs() -> Iterator[Told]:
+    for english, german in read(GERMAN).items():
+        yield from (Told(one, other) for one, other in zip(english, german, strict=True))
+
+
+def fields(message: str) -> list[tuple[str, str | None]]:
+    return sorted((field, form) for _, field, form, _ in Formatter().parse(message) if field)
+
+
+def outer_spaces(message: str) -> tuple[str, str]:
+    return message[: len(message) - len(message.lstrip())], message[len(message.rstrip()) :]
+
+
+def last_mark(message: str) -> str:
+    last = message.rstrip()[-1:]
+    return last if last in ".?:,;!" else ""
+
+
+def words_of(message: str) -> set[str]:
+    without = re.sub(r"\{[^}]*\}", "", message)
+    return set(re.findall(r"[^\W\d_]{2,}", without)) - UNITS
+
+
+@pytest.fixture
+def german() -> Iterator[None]:
+    use_language("de")
+    yield
+    use_language("en")
+
+
+def test_every_sentence_is_there_and_no_other() -> None:
+    assert read(GERMAN).keys() ^ read(TEMPLATE).keys() == set()
+    assert [pair for pair in pairs() if not pair.german.strip()] == []
+
+
+def test_one_and_many_keep_their_two_forms() -> None:
+    assert [english for english, german in read(GERMAN).items() if len(english) != len(german)] == []
+    assert max(map(len, read(GERMAN))) == 2
+
+
+def test_its_figures_are_those_of_the_english_sentence() -> None:
+    assert [pair for pair in pairs() if fields(pair.english) != fields(pair.german)] == []
+
+
+def test_its_outer_spaces_and_last_marks_are_kept() -> None:
+    told = [pair for pair in pairs() if pair.english not in SHORTENED]
+    assert [pair for pair in told if outer_spaces(pair.english) != outer_spaces(pair.german)] == []
+    assert [pair for pair in told if last_mark(pair.english) != last_mark(pair.german)] == []
+
+
+def test_what_must_not_be_broken_is_not_in_either() -> None:
+    assert [p for p in pairs() if p.english.count("\N{NO-BREAK SPACE}") != p.german.count("\N{NO-BREAK SPACE}")] == []
+    assert [pair for pair in pairs() if pair.english.count("\n") != pair.german.count("\n")] == []
+
+
+def test_quotation_marks_are_german_and_closed() -> None:
+    low, high = "\N{DOUBLE LOW-9 QUOTATION MARK}", "\N{LEFT DOUBLE QUOTATION MARK}"
+    wrong = "\N{RIGHT DOUBLE QUOTATION MARK}"
+    assert [pair for pair in pairs() if pair.german.count(low) != pair.german.count(high) or wrong in pair.german] == []
+    assert [p for p in pairs() if p.english.count(high) != p.german.count(low) and low not in p.german] == []
+
+
+def test_nothing_is_left_in_english() -> None:
+    assert [p.german for p in pairs() if p.english == p.german and words_of(p.english) and p.english not in ALIKE] == []
+    told = [re.sub("|".join(NAMED_ALIKE), "", re.sub(r"\{[^}]*\}", "", pair.german)) for pair in pairs()]
+    assert [german for german in told if ENGLISH.search(german)] == []
+
+
+def test_figures_written_in_a_sentence_have_a_comma() -> None:
+    in_german = re.compile(r"(?<![\d.{:/])\d+\.\d+(?![\d.]*[}\d/])")
+    assert [pair.german for pair in pairs() if in_german.search(pair.german)] == []
+
+
+def test_a_key_that_is_shown_is_the_one_that_is_pressed() -> None:
+    """Letters that also are shortcuts stay; names of keys are those on a German keyboard."""
+    said = {pair.english: pair.german for pair in pairs()}
+    assert {key: said[key] for key in ("Q", "F", "G", "E", "F1", "Esc")} == {
+        key: key for key in ("Q", "F", "G", "E", "F1", "Esc")
+    }
+    keys = {english: german for english, german in said.items() if re.fullmatch(r"Ctrl [A-Z]", english)}
+    assert keys
+    assert {english.replace("Ctrl", "Strg") for english in keys} == set(keys.values())
+
+
+@pytest.mark.usefixtures("german")
+def test_german_is_spoken_once_it_is_chosen() -> None:
+    assert languages() == ("en", "de")
+    assert spoken_language() == "de"
+    assert name_of(Joint.LEFT_KNEE) == "Knie links"
+    assert tr_n("{count} stride", "{count} strides", 1).format(count=1) == "1 Doppelschritt"
+    assert tr_n("{count} stride", "{count} strides", 2).format(count=2) == "2 Doppelschritte"
+    assert sentence(Finding("simulated", Severity.INFO, "")).startswith("Diese Daten sind simuliert.")
+
+
+@pytest.mark.usefixtures("german")
+def test_a_noun_keeps_its_capital_inside_a_sentence() -> None:
+    assert within_sentence("Knie, Bewegungsumfang") == "Knie, Bewegungsumfang"
+    use_language("en")
+    assert within_sentence("Knee range") == "knee range"
+    assert capitalised(within_sentence("Knee range")) == "Knee range"
+
+
+def test_every_finding_has_its_german_sentence() -> None:
+    said = {pair.english: pair.german for pair in pairs()}
+    assert [key for key, english in SENTENCES.items() if said.get(english, english) == english] == []
+
+
+def test_the_catalogue_is_compiled_anew(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(ROOT / "packaging")
+    catalogue = importlib.import_module("catalogue")
+    assert GERMAN.with_suffix(".mo").read_bytes() == catalogue.compiled(GERMAN), "run packaging/catalogue.py"
