@@ -132,7 +132,7 @@ KEYBOARD: tuple[Stop, ...] = (
     Stop(
         "06-patient",
         at_step("PatientStep"),
-        ("type DEMO-7", "to Birth year", "type 1990", "to Height", "type 178", "to Mass", "type 74"),
+        ("type DEMO-7", "to Birth year", "type 1990", "to Body height", "type 178", "to Mass", "type 74"),
         lingers_s=1.0,
     ),
     Stop("07-patient-typed", offers("Put on sensors"), ("press Return",), lingers_s=1.0),
