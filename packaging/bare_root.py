@@ -98,7 +98,7 @@ def why_not() -> str:
 @contextmanager
 def bare_root(folder: Path) -> Iterator[BareRoot]:
     """Make a root in `folder`, which is gone afterwards; what is made from is kept beside it for the next time."""
-    base = folder.with_name(f"{folder.name}-{RELEASE}.tar")
+    base = folder.with_name(f"{RELEASE}.tar")
     if not base.exists():
         say("Making a bare Debian.")
         _make(folder, base)
@@ -138,13 +138,16 @@ def _make(folder: Path, base: Path) -> None:
     if CERTIFICATES.is_file():
         (folder / CERTIFICATES.parent.relative_to("/")).mkdir(parents=True, exist_ok=True)
         shutil.copyfile(CERTIFICATES, folder / CERTIFICATES.relative_to("/"))
-    subprocess.run(["tar", "--create", "--numeric-owner", "--file", base, "--directory", folder, "."], check=True)
+    beside = base.with_suffix(".new")
+    subprocess.run(["tar", "--create", "--numeric-owner", "--file", beside, "--directory", folder, "."], check=True)
+    beside.replace(base)
     _clear(folder)
 
 
 def _mirror() -> str:
     """Where this machine's apt has its packages from."""
-    files = [Path("/etc/apt/sources.list"), *Path("/etc/apt/sources.list.d").glob("*")]
+    files = [Path("/etc/apt/sources.list"), *Path("/etc/apt/sources.list.d").glob("*.sources")]
+    files += sorted(Path("/etc/apt/sources.list.d").glob("*.list"))
     text = "\n".join(file.read_text(encoding="utf-8") for file in files if file.is_file())
     found = re.search(r"^(?:URIs:|deb(?: \[[^]]*\])?)\s+(\S+)", text, re.MULTILINE)
     if found is None:

@@ -1,4 +1,4 @@
-"""Is the README enough? Its two commands in a Debian that has Python and nothing else: `python3 packaging/try_readme.py`
+"""Is the README enough? `python3 packaging/try_readme.py` gives its two commands in a Debian that has only Python.
 
 As a new user would: what is committed here, unpacked; the first command, to the first report; then the second, every
 check and every test but the long ones. Told are the times; recordings of people are not there, so their tests are
