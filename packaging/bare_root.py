@@ -19,7 +19,6 @@ OF_NETWORK = (
     "HTTP_PROXY",
     "HTTPS_PROXY",
     "NO_PROXY",
-    "PIP_CERT",
     "PIP_INDEX_URL",
     "PIP_DEFAULT_TIMEOUT",
     "SSL_CERT_FILE",
@@ -27,7 +26,7 @@ OF_NETWORK = (
 NEEDED = ("debootstrap", "chroot", "mount")
 USER, USER_ID = "clinician", 1000
 MOUNTED = ("/proc", "/sys", "/dev", "/tmp")
-CERTIFICATES = Path("/etc/ssl/certs/ca-certificates.crt")
+CERTIFICATES = Path("/usr/local/share/of-this-network.crt")  # where no package of Debian's writes
 OF_APT = re.compile(
     r"/(var/(lib|cache|log)/(apt|dpkg|debconf)|var/log|var/cache|run|root|etc/ld\.so\.cache|proc|sys|dev|tmp)\b"
 )
@@ -54,6 +53,7 @@ class BareRoot:
         home = "/root" if is_root else str(self.home)
         clean = ["env", "-i", "PATH=/usr/local/bin:/usr/bin:/bin:/usr/sbin:/sbin", "LANG=C.UTF-8", f"HOME={home}"]
         kept = [f"{name}={value}" for name, value in os.environ.items() if name.upper() in OF_NETWORK]
+        kept += [f"PIP_CERT={CERTIFICATES}"] if self.outside(CERTIFICATES).is_file() else []
         inside = ["sh", "-c", 'cd "$HOME" && exec "$@"', "sh", *words]
         return ["chroot", *user, str(self.folder), *clean, *kept, *inside]
 
@@ -114,6 +114,8 @@ def bare_root(folder: Path) -> Iterator[BareRoot]:
         shutil.copyfile("/etc/resolv.conf", folder / "etc/resolv.conf")
         root = BareRoot(folder)
         root.run("useradd", "--uid", str(USER_ID), "--create-home", USER, is_root=True)
+        if own := os.environ.get("PIP_CERT"):
+            shutil.copyfile(own, root.outside(CERTIFICATES))
         yield root
 
 
@@ -135,9 +137,6 @@ def _make(folder: Path, base: Path) -> None:
     for settings in Path("/etc/apt/apt.conf.d").iterdir():  # how this network is reached
         if "Acquire::" in settings.read_text(encoding="utf-8"):
             shutil.copy(settings, sources / "apt.conf.d")
-    if CERTIFICATES.is_file():
-        (folder / CERTIFICATES.parent.relative_to("/")).mkdir(parents=True, exist_ok=True)
-        shutil.copyfile(CERTIFICATES, folder / CERTIFICATES.relative_to("/"))
     beside = base.with_suffix(".new")
     subprocess.run(["tar", "--create", "--numeric-owner", "--file", beside, "--directory", folder, "."], check=True)
     beside.replace(base)
