@@ -34,6 +34,7 @@ def main(arguments: list[str]) -> None:
     wanted = parser.parse_args(arguments)
     python = make_environment(WORK / "environment")
     folder = freeze(python, is_with_tour=wanted.with_tour)
+    (WORK / "version.txt").write_text(f"{VERSION}\n", encoding="ascii")  # for windows.iss
     wanted.out.mkdir(parents=True, exist_ok=True)
     bill = wanted.out / f"gaitwright-{VERSION}.cdx.json"
     run([str(python), ROOT / "packaging" / "bundle_parts.py", WORK / "work" / "gaitwright", folder, bill])
