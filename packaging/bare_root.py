@@ -110,7 +110,7 @@ def bare_root(folder: Path) -> Iterator[BareRoot]:
         for place in MOUNTED:
             inside = folder / place.lstrip("/")
             subprocess.run(["mount", "--rbind", "--make-rslave", place, inside], check=True)
-            stack.callback(subprocess.run, ["umount", "--recursive", "--lazy", inside])
+            stack.callback(_unmount, inside)
         shutil.copyfile("/etc/resolv.conf", folder / "etc/resolv.conf")
         root = BareRoot(folder)
         root.run("useradd", "--uid", str(USER_ID), "--create-home", USER, is_root=True)
@@ -154,9 +154,13 @@ def _mirror() -> str:
     return found[1]
 
 
+def _unmount(place: Path) -> None:
+    subprocess.run(["umount", "--recursive", "--lazy", place], stderr=subprocess.DEVNULL)
+
+
 def _clear(folder: Path) -> None:
     """Remove it, unless something is still mounted in it."""
     for line in Path("/proc/self/mountinfo").read_text(encoding="utf-8").splitlines():
         if line.split()[4].startswith(f"{folder.resolve()}/"):
-            subprocess.run(["umount", "--recursive", "--lazy", line.split()[4]], stderr=subprocess.DEVNULL)
+            _unmount(Path(line.split()[4]))
     subprocess.run(["rm", "-rf", "--one-file-system", str(folder)], check=True)

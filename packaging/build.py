@@ -63,7 +63,16 @@ def make_environment(place: Path) -> Path:
     say(f"Making {place}.")
     shutil.rmtree(place, ignore_errors=True)
     run([sys.executable, "-m", "venv", place])
-    pip = [python, "-m", "pip", "--disable-pip-version-check", "install", "--quiet", "--no-deps", "--no-compile"]
+    pip: list[str | Path] = [
+        python,
+        "-m",
+        "pip",
+        "--disable-pip-version-check",
+        "install",
+        "--quiet",
+        "--no-deps",
+        "--no-compile",
+    ]
     run([*pip, "--only-binary", ":all:", "--require-hashes", "--requirement", LOCK])
     # in place: a copy would keep what was removed here since
     run([*pip, "--no-build-isolation", "--editable", ROOT])

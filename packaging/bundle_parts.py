@@ -117,9 +117,13 @@ def part_of(name: str) -> Part:
     """
     one = metadata.distribution(name)
     told = one.metadata
+
+    def first(field: str) -> str:
+        return str((told.get_all(field) or ("",))[0]).strip()
+
     names = [line.rpartition(" :: ")[2] for line in told.get_all("Classifier") or () if line.startswith("License ::")]
-    said = (told.get("License") or "").strip()
-    licence = told.get("License-Expression") or (said if said and "\n" not in said else "") or ", ".join(names)
+    said = first("License")
+    licence = first("License-Expression") or (said if said and "\n" not in said else "") or ", ".join(names)
     licence = licence or LICENCES.get(name, "")
     homes = [value.partition(", ")[2] for value in told.get_all("Project-URL") or ()]
     texts = [
@@ -130,7 +134,7 @@ def part_of(name: str) -> Part:
     texts += sorted((TEXTS_OF_OURS / re.sub("[-_.]+", "-", name).lower()).glob("*"))
     if not texts or not licence:
         raise PartsError(f"{name} {one.version}: no licence or no text of it. Put its text into {TEXTS_OF_OURS}.")
-    return Part(name, one.version, licence, told.get("Home-page") or next(iter(homes), ""), tuple(texts))
+    return Part(name, one.version, licence, first("Home-page") or next(iter(homes), ""), tuple(texts))
 
 
 def part_of_python() -> Part:

@@ -83,7 +83,7 @@ def test_one_program_holds_a_file_on_windows_and_others_still_read_all_of_it(
 
 def test_a_folder_is_synced_where_that_can_be(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     synced: list[int] = []
-    monkeypatch.setattr(files.os, "fsync", synced.append)
+    monkeypatch.setattr(os, "fsync", synced.append)
     files.sync_folder(tmp_path)
     assert len(synced) == 1
     monkeypatch.setattr(files, "os", SimpleNamespace(name="nt"))  # which opens no folder
@@ -116,7 +116,12 @@ def test_a_journal_is_synced_without_fdatasync_and_asks_its_folder_for_room_on_w
         journal.sync()
         assert len(synced) == 1
         asked: list[object] = []
-        monkeypatch.setattr("shutil.disk_usage", lambda place: asked.append(place) or SimpleNamespace(free=5))
+
+        def usage(place: object) -> SimpleNamespace:
+            asked.append(place)
+            return SimpleNamespace(free=5)
+
+        monkeypatch.setattr("shutil.disk_usage", usage)
         monkeypatch.setattr(os, "name", "nt")
         assert journal.free_bytes() == 5
         assert asked == [tmp_path]
@@ -155,7 +160,12 @@ def test_workers_are_started_afresh_where_there_is_no_server_that_makes_them(
     asked: list[str] = []
     give = multiprocessing.get_context
     monkeypatch.setattr(multiprocessing, "get_all_start_methods", lambda: there)
-    monkeypatch.setattr(multiprocessing, "get_context", lambda kind: asked.append(kind) or give(kind))
+
+    def noted(kind: str) -> object:
+        asked.append(kind)
+        return give(kind)
+
+    monkeypatch.setattr(multiprocessing, "get_context", noted)
     executors.ProcessExecutor(1).shutdown()
     assert asked == [used]
 
@@ -195,10 +205,8 @@ def test_the_programs_own_output_may_be_missing(monkeypatch: pytest.MonkeyPatch)
     # a program with a window has none on Windows
     monkeypatch.setattr(sys, "stdout", None)
     monkeypatch.setattr(sys, "stderr", None)
-    opened: list[object] = []
-    monkeypatch.setattr(cli, "_open_window", lambda arguments, language: opened.append(arguments) or 0)
-    assert cli.main([]) == 0
-    assert opened == [[]]
+    monkeypatch.setattr(cli, "_open_window", lambda arguments, _language: 7 + len(arguments))
+    assert cli.main([]) == 7
 
 
 # the viewer, sounds, motion
@@ -299,7 +307,7 @@ def test_windows_is_asked_whether_things_may_move(wanted: int, took_ms: int, mon
 
 @pytest.mark.usefixtures("windows")
 def test_own_addresses_are_asked_by_name_on_windows(monkeypatch: pytest.MonkeyPatch) -> None:
-    told = ("here", [], ["192.0.2.9", "127.0.0.1", "192.0.2.9"])
+    told: tuple[str, list[str], list[str]] = ("here", [], ["192.0.2.9", "127.0.0.1", "192.0.2.9"])
     monkeypatch.setattr(socket, "gethostbyname_ex", lambda _name: told)
     assert networks.own_addresses() == ("192.0.2.9",)
 
@@ -315,7 +323,7 @@ def test_a_port_that_somebody_named_is_there_where_it_is_no_file(
     system: str, found: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv(ports.MORE_PORTS, "COM7")
-    monkeypatch.setattr(ports.listing, "comports", list)
+    monkeypatch.setattr("serial.tools.list_ports.comports", list)
     monkeypatch.setattr(ports, "os", SimpleNamespace(name=system, environ=os.environ, pathsep=os.pathsep))
     assert tuple(port.device for port in ports.list_ports()) == found
 
