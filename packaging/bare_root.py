@@ -80,9 +80,10 @@ class BareRoot:
         return self.run("env", "DEBIAN_FRONTEND=noninteractive", "apt-get", "-y", "-q", *words, is_root=True)
 
     def files(self) -> frozenset[str]:
-        """Every file but what apt and dpkg keep for themselves, with the time it was changed where that tells."""
+        """Every file but what apt and dpkg keep for themselves."""
+        shared = [word for place in MOUNTED for word in ("-path", f".{place}", "-prune", "-o")]
         found = subprocess.run(
-            ["find", ".", "-xdev", "-printf", "/%P\n"], cwd=self.folder, stdout=subprocess.PIPE, text=True
+            ["find", ".", *shared, "-printf", "/%P\n"], cwd=self.folder, check=True, stdout=subprocess.PIPE, text=True
         )
         return frozenset(line for line in found.stdout.splitlines() if not OF_APT.match(line))
 

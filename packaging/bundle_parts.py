@@ -30,6 +30,7 @@ LICENCES = {
     "ezc3d": "MIT",
     "sqlcipher3": "Zlib; SQLCipher: BSD-3-Clause",
 }  # by their texts; they do not say it in words
+HOMES = ("homepage", "home", "repository", "source", "source code", "github")
 COPYRIGHT = Path("/usr/share/doc")  # Debian's
 TOOL_INSIDE = "pyinstaller"  # what starts the program is its own
 
@@ -125,7 +126,8 @@ def part_of(name: str) -> Part:
     said = first("License")
     licence = first("License-Expression") or (said if said and "\n" not in said else "") or ", ".join(names)
     licence = licence or LICENCES.get(name, "")
-    homes = [value.partition(", ")[2] for value in told.get_all("Project-URL") or ()]
+    urls = [value.partition(", ") for value in told.get_all("Project-URL") or ()]
+    homes = [url for label, _, url in urls if label.lower() in HOMES] + [url for _, _, url in urls]
     texts = [
         Path(str(one.locate_file(file)))
         for file in one.files or ()
