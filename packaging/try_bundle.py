@@ -146,9 +146,13 @@ def open_and_close(root: BareRoot, program: str, display: str) -> None:
         say(f"The window is there {time.monotonic() - began_s:.1f} s after its start.")
         time.sleep(3.0)
         PICTURES.mkdir(parents=True, exist_ok=True)
-        picture = str(PICTURES / "window.png")
-        subprocess.run(["import", "-window", found.stdout.split()[0], picture], env=environment, check=True)
-        subprocess.run(["xdotool", "key", "--window", found.stdout.split()[0], "alt+F4"], env=environment, check=True)
+        number = found.stdout.split()[0]
+        for does in (
+            ("import", "-window", number, str(PICTURES / "window.png")),
+            ("xdotool", "windowactivate", "--sync", number),
+            ("xdotool", "key", "alt+F4"),
+        ):
+            subprocess.run(does, env=environment, check=True)
         if process.wait(timeout=30) != 0:
             raise TrialError(f"The window ended with {process.returncode}.")
     finally:
