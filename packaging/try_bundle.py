@@ -17,14 +17,14 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
 import tour
 from bare_root import USER_ID, BareRoot, bare_root, why_not
 from setup_environment import ROOT, say
-from tour_stops import TOURS
+from tour_stops import MOUSE, REVIEWED, Stop
 
 sys.path.insert(1, str(ROOT))
 from tests.safety.no_network import ALONE, calls_in
@@ -129,7 +129,7 @@ def use(root: BareRoot, program: str, place: Path) -> None:
     with tour.own_display() as display:
         open_and_close(root, program, display)
     with told("tour: the demonstration to its saved report"):
-        lead(root, place, "mouse")
+        lead(root, place, MOUSE)
 
 
 def open_and_close(root: BareRoot, program: str, display: str) -> None:
@@ -161,7 +161,7 @@ def open_and_close(root: BareRoot, program: str, display: str) -> None:
             process.wait()
 
 
-def lead(root: BareRoot, place: Path, name: str, trace: Path | None = None) -> None:
+def lead(root: BareRoot, place: Path, stops: Sequence[Stop], trace: Path | None = None) -> None:
     """Lead a tour with the program that `build.py --with-tour` made, which runs in the installed folder."""
     guide = root.outside(place) / "gaitwright-tour"
     shutil.copy(DIST / "gaitwright-tour", guide)
@@ -173,14 +173,14 @@ def lead(root: BareRoot, place: Path, name: str, trace: Path | None = None) -> N
                 for place in (pictures, pictures / LOOK[0].replace(" ", "-")):
                     place.mkdir()
                     os.chown(place, USER_ID, USER_ID)
-                stopwatch_s = tour.lead(application, TOURS[name], pictures, LOOK)
-                saved = [file.name for file in application.home.rglob("report*.pdf")]
-                shutil.copytree(pictures, PICTURES / name, dirs_exist_ok=True)
+                stopwatch_s = tour.lead(application, stops, pictures, LOOK)
+                saved = [file.name for file in application.home.rglob("*.pdf")]
+                shutil.copytree(pictures, PICTURES, dirs_exist_ok=True)
     finally:
         guide.unlink()
     if not saved:
         raise TrialError("The tour left no report.")
-    say(f"{name}: {len(TOURS[name])} stops, {stopwatch_s:.0f} s of the application's stopwatch; saved: {saved}")
+    say(f"{len(stops)} stops, {stopwatch_s:.0f} s of the application's stopwatch; saved: {saved}")
 
 
 def root_command(root: BareRoot, display: str, program: str) -> list[str]:
@@ -207,7 +207,7 @@ def main() -> None:
     parser.add_argument("--inside", nargs=2, help=argparse.SUPPRESS)
     wanted = parser.parse_args()
     if wanted.inside:
-        lead(BareRoot(Path(wanted.inside[0])), INSTALLED, "review", Path(wanted.inside[1]))
+        lead(BareRoot(Path(wanted.inside[0])), INSTALLED, REVIEWED, Path(wanted.inside[1]))
         return
     if reason := why_not():
         sys.exit(f"This cannot be tried here: {reason}.")
