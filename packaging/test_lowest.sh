@@ -15,4 +15,4 @@ if [ ! -x "$place/bin/pytest" ]; then
     "$place/bin/python" -m pip install --quiet --no-deps --no-build-isolation --editable .
 fi
 export QT_QPA_PLATFORM=offscreen PYTHONPYCACHEPREFIX="$PWD/$place/bytecode"
-exec "$place/bin/pytest" --numprocesses=2 --dist=loadfile "$@"
+exec "$place/bin/pytest" --numprocesses=2 --max-worker-restart=2 --dist=loadfile "$@"
