@@ -45,10 +45,7 @@ def make_archive(folder: Path, version: str, out: Path) -> Path:
     """Pack the folder, with what to do with it, into one archive, and give that."""
     name = f"gaitwright-{version}"
     archive = out / f"{name}-linux-{platform.machine()}.tar.zst"
-    shutil.copyfile(INSTALLERS / "archive.txt", folder / "README.txt")
-    libraries = " ".join(depends()).replace("libglib2.0-0 | ", "")
-    text = (folder / "README.txt").read_text(encoding="utf-8").replace("{libraries}", libraries)
-    (folder / "README.txt").write_text(text, encoding="utf-8")
+    (folder / "README.txt").write_text(readme(), encoding="utf-8")
     subprocess.run(
         [
             *("tar", "--create", "--file", archive, "--use-compress-program", f"zstd -{LEVEL} -T0 -q"),
@@ -58,6 +55,12 @@ def make_archive(folder: Path, version: str, out: Path) -> Path:
         check=True,
     )
     return archive
+
+
+def readme() -> str:
+    """Tell what to do with the archive, and which libraries Debian of the day of the build calls how."""
+    names = " ".join(name.partition(" | ")[0] for name in depends())
+    return (INSTALLERS / "archive.txt").read_text(encoding="utf-8").replace("{libraries}", names)
 
 
 def make_deb(folder: Path, version: str, out: Path) -> Path:
