@@ -8,6 +8,7 @@ skipped. Needs debootstrap and to be root.
 import argparse
 import os
 import re
+import resource
 import subprocess
 import sys
 import time
@@ -28,18 +29,28 @@ def try_start(root: BareRoot) -> None:
     RuntimeError
         It took too long, or there is no report.
     """
-    began_s = time.monotonic()
+    began_s, worked_s = time.monotonic(), work_s()
     root.run("sh", "-c", "cd gaitwright && python3 packaging/start.py", is_root=True)
-    took_s = time.monotonic() - began_s
+    took_s, load = time.monotonic() - began_s, os.getloadavg()[0]
     report = root.folder / "root/gaitwright/gaitwright-demo/report.pdf"
     if not report.is_file() or not report.read_bytes().startswith(b"%PDF"):
         raise RuntimeError("There is no report.")
-    say(f"start.py, to the first report: {took_s:.0f} s, load {os.getloadavg()[0]:.0f}.")
-    if took_s > FIRST_REPORT_S:
+    say(f"start.py, to the first report: {took_s:.0f} s, {work_s() - worked_s:.0f} s of work, load {load:.0f}.")
+    if took_s > FIRST_REPORT_S and load <= (os.cpu_count() or 1):  # else others' work is measured
         raise RuntimeError(f"That is more than {FIRST_REPORT_S:.0f} s.")
+    size = subprocess.run(
+        ["du", "-sm", root.folder / "root/gaitwright/.venv"], stdout=subprocess.PIPE, text=True
+    ).stdout
+    say(f".venv: {size.split()[0]} MB.")
     began_s = time.monotonic()
     root.run("sh", "-c", "cd gaitwright && python3 packaging/start.py demo --out again", is_root=True)
     say(f"Once more: {time.monotonic() - began_s:.0f} s.")
+
+
+def work_s() -> float:
+    """Processor time of all that was started here and has ended."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
 
 
 def try_tests(root: BareRoot) -> None:
