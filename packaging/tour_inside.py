@@ -20,9 +20,9 @@ SETTLE_MS = 150
 def run() -> int:
     """Open the window as always, and answer whoever leads the tour."""
     if getattr(sys, "frozen", False):  # into the folder that is installed: `installers/gaitwright.spec`
-        from app.__main__ import become_child
+        from app.__main__ import begin_frozen
 
-        become_child()
+        begin_frozen()
     else:
         sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
     from PySide6.QtCore import QObject, Qt, Signal

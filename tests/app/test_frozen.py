@@ -28,6 +28,7 @@ def program(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     file.chmod(0o755)
     monkeypatch.setattr(sys, "frozen", True, raising=False)
     monkeypatch.setattr(sys, "executable", str(file))
+    monkeypatch.setenv("PYINSTALLER_RESET_ENVIRONMENT", "")  # what is set meanwhile is taken back
     return file
 
 
@@ -47,6 +48,7 @@ def test_foreign_files_are_read_by_the_program_itself(tmp_path: Path) -> None:
 
 def test_who_is_started_as_a_child_never_comes_to_the_command_line(monkeypatch: pytest.MonkeyPatch) -> None:
     done: list[str] = []
+    monkeypatch.setenv("PYINSTALLER_RESET_ENVIRONMENT", "")
     monkeypatch.setattr(sys, "frozen", True, raising=False)
     monkeypatch.setattr(sys, "argv", ["gaitwright", child.WORD, "1000"])
     monkeypatch.setattr(child, "main", lambda: done.append("read"))
@@ -59,11 +61,29 @@ def test_who_is_started_as_a_child_never_comes_to_the_command_line(monkeypatch: 
 
 @pytest.mark.parametrize("is_frozen", [True, False])
 def test_any_other_word_is_a_command(is_frozen: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PYINSTALLER_RESET_ENVIRONMENT", "")
     monkeypatch.setattr(sys, "frozen", is_frozen, raising=False)
     monkeypatch.setattr(sys, "argv", ["gaitwright", "demo"])
     monkeypatch.setattr(child, "main", lambda: pytest.fail("it is no child"))
     monkeypatch.setattr("app.cli.main", lambda: 7)
     assert opening.begin() == 7
+
+
+@pytest.mark.parametrize("before", [None, "/opt/theirs"])
+def test_other_programs_get_the_systems_libraries_and_ours_begin_anew(
+    before: str | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sys, "frozen", True, raising=False)
+    monkeypatch.setattr(sys, "argv", ["gaitwright", "demo"])
+    monkeypatch.setattr("app.cli.main", lambda: 0)
+    monkeypatch.setenv("LD_LIBRARY_PATH", "/opt/gaitwright/_internal")
+    monkeypatch.setenv("PYINSTALLER_RESET_ENVIRONMENT", "")
+    if before:
+        monkeypatch.setenv("LD_LIBRARY_PATH_ORIG", before)
+    opening.begin()
+    assert os.environ.get("LD_LIBRARY_PATH") == before
+    assert "LD_LIBRARY_PATH_ORIG" not in os.environ
+    assert os.environ["PYINSTALLER_RESET_ENVIRONMENT"] == "1"
 
 
 def test_the_word_is_no_subcommand_and_no_option() -> None:
