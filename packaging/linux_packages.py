@@ -17,11 +17,11 @@ PLACE = Path("opt/gaitwright")
 LEVEL = 12  # of zstd: more takes minutes for a few per cent
 FORMERLY = {"libglib2.0-0": "libglib2.0-0 | libglib2.0-0t64"}  # what later releases call it
 OTHERS = ("libstdc++6", "libgcc-s1", "libx11-6", "libxcb1", "libfreetype6", "zlib1g")
+# for Rerun's viewer, which looks for them when it starts, and for names in any script
 RECOMMENDED = (
-    "libgl1-mesa-dri",
-    "mesa-vulkan-drivers",
+    *("libgl1-mesa-dri", "mesa-vulkan-drivers", "libvulkan1", "libx11-xcb1", "libxcursor1", "libxi6", "libxrandr2"),
     "fonts-noto-core",
-)  # for Rerun's viewer and names in any script
+)
 CONTROL = """\
 Package: gaitwright
 Version: {version}
