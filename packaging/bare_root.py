@@ -113,6 +113,8 @@ def bare_root(folder: Path) -> Iterator[BareRoot]:
             subprocess.run(["mount", "--rbind", "--make-rslave", place, inside], check=True)
             stack.callback(_unmount, inside)
         shutil.copyfile("/etc/resolv.conf", folder / "etc/resolv.conf")
+        # every installed system has it, a bare one asks a server of names for localhost
+        (folder / "etc/hosts").write_text("127.0.0.1 localhost\n::1 localhost ip6-localhost\n", encoding="ascii")
         root = BareRoot(folder)
         root.run("useradd", "--uid", str(USER_ID), "--create-home", USER, is_root=True)
         if own := os.environ.get("PIP_CERT"):

@@ -34,6 +34,7 @@ PLACE = ROOT / "build" / "try" / "root"
 AS_ROOT_ALONE = [word for word in ALONE if word != "--map-root-user"]  # who has no other user to become
 INSTALLED = Path("/opt/gaitwright")
 LOOK = ["light 1280x800@100"]
+CALLS = ROOT / "build" / "try" / "calls"  # what strace noted, to look into
 WINDOW_S = 60.0
 PICTURES = ROOT / "build" / "try" / "pictures"
 OF_OTHERS = re.compile(r"/(home|etc/ssl/certs|usr/local/share/ca-certificates|var/lib/systemd)\b")
@@ -97,7 +98,8 @@ def try_alone(root: BareRoot) -> None:
             check=True,
             timeout=900.0,
         )
-        text = trace.read_text(encoding="utf-8", errors="replace")
+        shutil.copy(trace, CALLS)
+    text = CALLS.read_text(encoding="utf-8", errors="replace")
     calls = calls_in(text)
     families = ", ".join(f"{family} {count}" for family, count in calls.families.items())
     bound = sorted({line.partition("bind(")[2] for line in text.splitlines() if "bind(" in line and "AF_INET" in line})
@@ -106,8 +108,9 @@ def try_alone(root: BareRoot) -> None:
         raise TrialError("\n".join(calls.outside))
     if not calls.families["AF_UNIX"]:
         raise TrialError("strace saw nothing")
-    if any("127.0.0.1" not in line and '"::1"' not in line for line in bound):
-        raise TrialError(f"It can be called from elsewhere: {bound}")
+    strangers = [line for line in bound if "127.0.0.1" not in line and '"::1"' not in line and "10000" not in line]
+    if strangers:  # sensors announce themselves at port 10000
+        raise TrialError(f"It can be called from elsewhere: {strangers}")
 
 
 TRIALS: dict[str, Callable[[BareRoot], None]] = {"package": try_package, "archive": try_archive, "alone": try_alone}
