@@ -266,6 +266,7 @@ def test_the_viewer_keeps_its_settings_with_us_on_each_system(
     for one in started:
         for name in ("XDG_CONFIG_HOME", "APPDATA", "LOCALAPPDATA"):
             assert Path(one.environment[name]).is_relative_to(tmp_path)
+        assert one.environment["HTTPS_PROXY"].startswith("http://127.0.0.1:")  # else it asks for a newer one of itself
         assert (one.environment.get("HOME") == one.environment["APPDATA"]) == is_home_ours
 
 
