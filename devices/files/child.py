@@ -22,7 +22,7 @@ READ, REFUSED, MEMORY, UNFORESEEN = "read", "refused", "memory", "unforeseen"
 
 
 def main() -> None:
-    """Read what is asked for on the standard input until nobody asks any more; the last argument is the memory in bytes."""
+    """Read what is asked for on the standard input until nobody asks any more; the last argument: memory in bytes."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl C reaches all of a terminal; who asks ends this process
     asking, answering = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
     nowhere = os.open(os.devnull, os.O_RDWR)
