@@ -46,6 +46,7 @@ SCREEN = "2000x1200x24"
 WINDOW = "1280x800@100"
 THEMES = ("light", "dark")
 TRACED = ("-f", "--seccomp-bpf", "-e", "trace=connect,sendto,sendmsg,sendmmsg,bind", "-e", "signal=none")
+INSIDE = (sys.executable, str(Path(__file__).resolve().with_name("tour_inside.py")))
 MOST_S = 300.0  # of the application's stopwatch
 LOOK_EVERY_S = 0.2
 MOST_TABS = 60  # more stops than any page has
@@ -113,8 +114,8 @@ def main(arguments: list[str]) -> None:
     looks = [f"{theme} {size}" for size in wanted.sizes for theme in themes]
     for tour in [wanted.tour] if wanted.tour else list(TOURS):
         with ExitStack() as stack:
-            display = stack.enter_context(_display())
-            application = stack.enter_context(_application(display, wanted.trace))
+            display = stack.enter_context(own_display())
+            application = stack.enter_context(running(display, [*tracer(wanted.trace), *INSIDE]))
             try:
                 stopwatch_s = lead(application, TOURS[tour], wanted.out.resolve(), looks)
             except TourError as end:
@@ -178,6 +179,10 @@ def _do(application: Application, stop: Stop, deed: str) -> None:
             _tab_to(application, stop, words)
         case "click":
             application.hand("mousemove", *_place_of(application, stop, words), "click", "1")
+        case "await":
+            _await_window(application, stop, words)
+        case "raise":
+            application.hand("search", "--onlyvisible", "--name", words, "windowactivate", "--sync")
         case "drag":
             what, _, where = words.partition(" to ")
             _drag(application, _place_of(application, stop, what), _place_of(application, stop, where))
@@ -200,6 +205,16 @@ def _tab_to(application: Application, stop: Stop, name: str) -> None:
         application.hand("key", "Tab")
         time.sleep(KEY_PAUSE_S)
     raise TourError(f"{stop.name}: Tab never comes to “{name}”.\n{_in_words(application.seen())}")
+
+
+def _await_window(application: Application, stop: Stop, title: str) -> None:
+    """Wait for a window of another program of ours."""
+    until_s = time.monotonic() + stop.patience_s
+    environment = {**os.environ, "DISPLAY": application.display}
+    while subprocess.run(["xdotool", "search", "--onlyvisible", "--name", title], env=environment).returncode != 0:
+        if time.monotonic() > until_s:
+            raise TourError(f"{stop.name}: no window is called “{title}”.\n{_in_words(application.seen())}")
+        time.sleep(LOOK_EVERY_S)
 
 
 def _drag(application: Application, start: tuple[str, str], end: tuple[str, str]) -> None:
@@ -244,7 +259,7 @@ def _in_words(seen: Seen) -> str:
 
 
 @contextmanager
-def _display() -> "Iterator[str]":
+def own_display() -> "Iterator[str]":
     """Give a display that nobody else uses, with a window manager."""
     read, write = os.pipe()
     server = subprocess.Popen(
@@ -267,7 +282,11 @@ def _display() -> "Iterator[str]":
 
 
 @contextmanager
-def _application(display: str, trace: Path | None) -> "Iterator[Application]":
+def running(display: str, program: Sequence[str], owner: int | None = None) -> "Iterator[Application]":
+    """The application, started by `program`, on a display, with a home of its own that is gone afterwards.
+
+    `owner` is the user whose home it is, where `program` begins by becoming another.
+    """
     with tempfile.TemporaryDirectory(prefix="gaitwright-tour-") as folder:
         places = {
             name: str(Path(folder) / name.lower())
@@ -276,9 +295,11 @@ def _application(display: str, trace: Path | None) -> "Iterator[Application]":
         environment = {**os.environ, **places, "DISPLAY": display, "QT_QPA_PLATFORM": "xcb"}
         for place in places.values():
             Path(place).mkdir()
-        tracer = [] if trace is None else ["strace", *TRACED, "-o", str(trace.resolve())]
+        if owner is not None:
+            for place in (folder, *places.values()):
+                os.chown(place, owner, owner)
         process = subprocess.Popen(
-            [*tracer, sys.executable, str(Path(__file__).resolve().with_name("tour_inside.py"))],
+            program,
             cwd=places["HOME"],  # where dialogs begin
             env=environment,
             stdin=subprocess.PIPE,
@@ -293,6 +314,10 @@ def _application(display: str, trace: Path | None) -> "Iterator[Application]":
             process.wait(timeout=PATIENCE_S)
         finally:
             _end(process)
+
+
+def tracer(trace: Path | None) -> list[str]:
+    return [] if trace is None else ["strace", *TRACED, "-o", str(trace.resolve())]
 
 
 def _end(process: "subprocess.Popen[Any]") -> None:

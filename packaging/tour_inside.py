@@ -19,7 +19,12 @@ SETTLE_MS = 150
 
 def run() -> int:
     """Open the window as always, and answer whoever leads the tour."""
-    sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+    if getattr(sys, "frozen", False):  # into the folder that is installed: `installers/gaitwright.spec`
+        from app.__main__ import begin_frozen
+
+        begin_frozen()
+    else:
+        sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
     from PySide6.QtCore import QObject, Qt, Signal
 
     from app.main_window import open_window
@@ -64,8 +69,6 @@ def _answer(command: str) -> None:
 
 def _take_look(window: Any, theme: str, size: str) -> None:
     """Show the window in this theme and size, and let it settle."""
-    from PySide6.QtTest import QTest
-
     look, (side, scale) = window._look, size.split("@")
     width, height = (int(one) for one in side.split("x"))
     if (look.theme.is_dark, look.theme.scale) != (theme == "dark", int(scale) / 100):
@@ -73,8 +76,16 @@ def _take_look(window: Any, theme: str, size: str) -> None:
         look.set_scale(int(scale) / 100)
     if (window.width(), window.height()) != (width, height):
         window.resize(width, height)
-        QTest.qWait(SETTLE_MS)
-    QTest.qWait(SETTLE_MS)
+        _settle()
+    _settle()
+
+
+def _settle() -> None:
+    from PySide6.QtCore import QEventLoop, QTimer
+
+    loop = QEventLoop()
+    QTimer.singleShot(SETTLE_MS, loop.quit)
+    loop.exec()
 
 
 def _picture_of(window: Any) -> "QPixmap":

@@ -40,7 +40,8 @@ class Stop:
     does
         One after the other: "press Return" (keys as xdotool names them), "type P-1" ("{home}" is the tour's own
         folder), "copy key" (types the recovery key that is shown), "to Stop" (presses Tab until a control whose name
-        begins with Stop has the focus), "click Stop", "drag 0A09 to L thigh".
+        begins with Stop has the focus), "click Stop", "drag 0A09 to L thigh", "await Rerun" (another program's window,
+        by its title), "raise Gaitwright" (before all others).
     lingers_s
         Before the pictures, for what moves.
     leaves
@@ -294,4 +295,17 @@ TIMED: tuple[Stop, ...] = (  # ten metres, timed by the motion, then sit to stan
     Stop("61-where", offers("Save"), ("press ctrl+a", "type {home}/results", "press Return"), lingers_s=1.0),
     Stop("62-saved", says("Saved as"), lingers_s=2.0, leaves=(("results*/**/timed_test.csv", "10 m"),)),
 )
-TOURS = {"keyboard": (*KEYBOARD, *SECOND_BY_KEYS), "mouse": (*MOUSE, *SECOND_BY_MOUSE), "bench": BENCH, "timed": TIMED}
+REVIEWED: tuple[Stop, ...] = (  # the demonstration up to its results, which Rerun shows then, and its report
+    *(stop for stop in MOUSE if stop.name < "13a"),
+    Stop("51-results", offers("Legs", "Review in Rerun"), ("click Review in Rerun", "await Rerun"), patience_s=90.0),
+    Stop("52-rerun", offers("Legs", "Review in Rerun"), ("raise Gaitwright",), lingers_s=20.0),
+    Stop("53-report", offers("Go to the report"), ("click Go to the report",), lingers_s=1.0),
+    *(stop for stop in MOUSE if stop.name.startswith("14")),
+)
+TOURS = {
+    "keyboard": (*KEYBOARD, *SECOND_BY_KEYS),
+    "mouse": (*MOUSE, *SECOND_BY_MOUSE),
+    "bench": BENCH,
+    "timed": TIMED,
+    "review": REVIEWED,
+}
