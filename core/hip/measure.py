@@ -204,6 +204,8 @@ def _hip(
         lag_s=lag_s,
         standing_from=frames.standing_from,
         centres_apart_m=None,
+        frame_proximal=frames.pelvis,
+        frame_distal=frames.thighs[side],
     )
     return HipAngle(flexion, sd, abduction, identification)
 
