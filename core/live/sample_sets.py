@@ -88,7 +88,18 @@ _PRODUCTS_TO_MATRIX = _products_to_matrix()
 
 
 def matrices_of(q: FloatArray) -> FloatArray:
-    """Rotation matrices (n, 3, 3) of quaternions (n, 4) of about unit length; for one, ten times as fast as SciPy."""
+    """Rotation matrices of quaternions of about unit length; for one, ten times as fast as SciPy.
+
+    Parameters
+    ----------
+    q : (n, 4)
+        Scalar first.
+
+    Returns
+    -------
+    (n, 3, 3)
+        Takes vectors as the quaternion does.
+    """
     products = q[:, :, None] * (q / np.sum(q**2, axis=1, keepdims=True))[:, None, :]
     return (products.reshape(-1, 16) @ _PRODUCTS_TO_MATRIX).reshape(-1, 3, 3)
 

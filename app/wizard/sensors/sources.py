@@ -108,7 +108,7 @@ class Sources(Sequence[SourceChoice]):
         )
         anew = SourceChoice(SEARCH, tr("Search for sensors"), self._open_all)
         streams = [_of_streams(address) for address in self._networks]
-        return (demonstration, with_pelvis, *self._of_drivers(), *self._of_lines(), anew, *streams)
+        return (demonstration, *self._of_drivers(), *self._of_lines(), anew, *streams, with_pelvis)
 
     def _of_drivers(self) -> list[SourceChoice]:
         found = self._found

@@ -1,4 +1,4 @@
-"""Six sensors on, and each known: heard through a source, and told where they are worn."""
+"""Six sensors on, or seven, and each known: heard through a source, and told where they are worn."""
 
 import datetime
 from enum import Enum, auto
@@ -106,7 +106,7 @@ class SensorsStep(Step):
             return tr("not for this patient")
         if sensors.is_left_to_motion and not sensors.site_of:
             return tr("left to the motion")
-        return tr("{count} of 6 worn").format(count=len(sensors.site_of))
+        return tr("{count} of {most} worn").format(count=len(sensors.site_of), most=len(sensors.places))
 
     @property
     def state(self) -> StepState:
@@ -193,7 +193,8 @@ class SensorsStep(Step):
             return BarState(primary=other, others=(demonstration,), note=reason)
         if (silent := self._silent_site) is not None:
             again = BarAction(tr("Reconnect {site}").format(site=name_of(silent)), tr("Enter"), Icon.REPEAT)
-            lost = tr(" and ").join(name_of(one) for one in LEG_JOINTS if silent in (one.proximal, one.distal))
+            joints = (*LEG_JOINTS, *sensors.hips)
+            lost = tr(" and ").join(name_of(one) for one in joints if silent in (one.proximal, one.distal))
             without = BarAction(tr("Go on without {joints}").format(joints=lost), is_wished=False)
             return BarState(primary=again, others=(without,) if sensors.joints else ())
         if sensors.is_left_to_motion:
@@ -201,7 +202,7 @@ class SensorsStep(Step):
         if not sensors.joints:
             note = tr("Two sensors that share a joint are needed: thigh and shank, or shank and foot.")
             return BarState(primary=BarAction(go_on, tr("Enter"), is_enabled=False), note=note)
-        is_whole = len(sensors.site_of) == len(LEG_SITES)
+        is_whole = set(LEG_SITES) <= sensors.sensor_at.keys()  # a pelvis is for whoever wants hips
         return BarState(primary=BarAction(go_on, tr("Enter"), is_wished=is_whole), note=sensors.price_of_missing())
 
     def on_primary(self) -> None:

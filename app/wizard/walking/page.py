@@ -208,6 +208,10 @@ class WalkingPage(Themed):
     def set_simulated(self, is_simulated: bool) -> None:
         self.charts.set_simulated(is_simulated)
 
+    def set_hips(self, has_hips: bool) -> None:
+        """Keep a place for the hips above the knees, or none."""
+        self.charts.set_hips(has_hips)
+
     def set_compact(self, is_compact: bool) -> None:
         if is_compact != self._is_compact:
             self._is_compact = is_compact
