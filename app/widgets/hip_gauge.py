@@ -95,7 +95,7 @@ class HipGauge(QWidget):
         words_left, words_right = left + name_width + px(12), box.right()
         if face.heading is not None and not face.note:
             figure = face.heading.figure + (face.heading.unit if face.heading.figure != UNKNOWN else "")
-            width = QFontMetrics(value).horizontalAdvance("88°") + px(2)
+            width = max(map(QFontMetrics(value).horizontalAdvance, ("88°", "8.8°"))) + px(2)
             at = QRectF(box.right() - width, 0, width, box.height())
             texts.append(PaintedText(figure, at, value, "ink", RIGHT))
             words_right = at.left() - px(10)

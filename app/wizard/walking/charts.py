@@ -4,7 +4,7 @@ import math
 
 from PySide6.QtCore import QRectF, QSize
 from PySide6.QtGui import QColor, QPainter, QPaintEvent
-from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QSpacerItem, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QSpacerItem, QWidget
 
 from app.charts.axes import ANKLE_DEG, KNEE_DEG, degrees_in_words
 from app.plots.phase_lanes import Swatch
@@ -35,8 +35,7 @@ class WalkingCharts(Card):
         self._simulated: list[Text] = []  # over each joint's curves and the phases: one may be cut out alone
         self._provisional = Text(look, size=12, weight=MEDIUM, tone="ink2")
         self._hip_note = Text(look, size=12, weight=MEDIUM, tone="ink2")
-        self._hip = QWidget()  # all of it, to be hidden at once
-        self._hip_column = QVBoxLayout(self._hip)
+        self._hip_head = QWidget()  # to be hidden at once
         self._has_hips = False
         self._keys = {side: SideKey(look, side) for side in Side}
         self._is_compact = False
@@ -59,7 +58,8 @@ class WalkingCharts(Card):
     def set_hips(self, has_hips: bool) -> None:
         """Show the hips' curves, or leave their place to the others."""
         self._has_hips = has_hips
-        self._hip.setVisible(has_hips)
+        self._hip_head.setVisible(has_hips)
+        self.hip.setVisible(has_hips)
         self._hip_line.setVisible(has_hips and not self._is_compact)
 
     def set_compact(self, is_compact: bool) -> None:
@@ -102,7 +102,7 @@ class WalkingCharts(Card):
             self._provisional.setText(said)
 
     def _say_of_hips(self, provisional: list[Side], are_known: bool) -> None:
-        words = tr("{sides} provisional") if self._is_compact else tr("{sides} provisional until the walk shows them")
+        words = tr("{sides} provisional") if self._is_compact else tr("{sides} provisional until the walk has shown it")
         said = words.format(sides=", ".join(LETTERS[side] for side in provisional)) if provisional else ""
         if not are_known:
             said = tr("not known yet") if self._is_compact else tr("not known before the first strides")
@@ -113,9 +113,8 @@ class WalkingCharts(Card):
         hip = self._head(Text(self._look, tr("Hip"), size=16, weight=SEMIBOLD), tr("flexion + (°)"))
         hip.addStretch(1)
         hip.addWidget(self._hip_note)
-        self._hip_column.setContentsMargins(0, 0, 0, 0)
-        self._hip_column.addLayout(hip)
-        self._hip_column.addWidget(self.hip, 1)
+        hip.setContentsMargins(0, 0, 0, 0)
+        self._hip_head.setLayout(hip)
         knee = self._head(Text(self._look, tr("Knee"), size=16, weight=SEMIBOLD), tr("flexion + (°)"))
         knee.addStretch(1)
         knee.addLayout(self._key_row)
@@ -142,7 +141,8 @@ class WalkingCharts(Card):
             self._legend.addLayout(pair)
             self._legend_pairs.append(pair)
         phases.addLayout(self._legend)
-        self.column.addWidget(self._hip, HIP_SHARE)
+        self.column.addWidget(self._hip_head)
+        self.column.addWidget(self.hip, HIP_SHARE)
         self.column.addWidget(self._hip_line)
         self.column.addLayout(knee)
         self.column.addWidget(self.knee, KNEE_SHARE)
@@ -171,7 +171,6 @@ class WalkingCharts(Card):
         px = self._look.theme.px
         for head in self._heads:
             head.setSpacing(px(8))
-        self._hip_column.setSpacing(px(self._spacing))
         self._key_row.setSpacing(px(20))
         self._legend.setSpacing(px(6))
         for gap in self._legend_gaps:
