@@ -21,11 +21,13 @@ from core.hip.measure import MAX_3D_SD_RAD
 from core.live.hip_heading import HipHeadingState
 
 HEADING_FROM_DEG = 60.0  # where the ring begins
-HEIGHT, COMPACT_HEIGHT = 64, 52
-RING, COMPACT_RING = 40, 32
+HEIGHT, COMPACT_HEIGHT, LEAST_HEIGHT = 64, 52, 20
+RING = 40
 WIDTH = 7.0  # of the ring
 CHIP = 24
 VALUE = 30
+LOW_BELOW = 40  # without a ring, in small letters
+LOW_CHIP, LOW_VALUE = 16, 14
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +59,7 @@ class HipGauge(QWidget):
         self._look, self._joint = look, joint
         self._face = HipFace()
         self._is_compact = False
-        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Maximum)
         self._name()
 
     @property
@@ -81,15 +83,25 @@ class HipGauge(QWidget):
         return QSize(px(300), px(COMPACT_HEIGHT if self._is_compact else HEIGHT))
 
     def minimumSizeHint(self) -> QSize:
-        return self.sizeHint()
+        px = self._look.theme.px
+        return QSize(px(300), px(LEAST_HEIGHT))
+
+    @property
+    def _is_low(self) -> bool:
+        return self.height() < self._look.theme.px(LOW_BELOW)
+
+    @property
+    def _chip(self) -> int:
+        return self._look.theme.px(LOW_CHIP if self._is_low else CHIP)
 
     def painted_texts(self) -> list[PaintedText]:
         """Give what is painted now, each in its box."""
         theme, face = self._look.theme, self._face
         px = theme.px
         box = QRectF(self.rect()).adjusted(px(14), 0, -px(14), 0)
-        left = box.left() + self._ring().width() + px(12) + px(CHIP + 8)
-        name, value = theme.font(18, SEMIBOLD), theme.font(VALUE, SEMIBOLD)
+        left = self._chip_left() + self._chip + px(8)
+        name = theme.font(14 if self._is_low else 18, SEMIBOLD)
+        value = theme.font(LOW_VALUE if self._is_low else VALUE, SEMIBOLD)
         name_width = QFontMetrics(name).horizontalAdvance(joint_name(self._joint)) + px(2)
         texts = [PaintedText(joint_name(self._joint), QRectF(left, 0, name_width, box.height()), name, "ink")]
         words_left, words_right = left + name_width + px(12), box.right()
@@ -99,7 +111,8 @@ class HipGauge(QWidget):
             at = QRectF(box.right() - width, 0, width, box.height())
             texts.append(PaintedText(figure, at, value, "ink", RIGHT))
             words_right = at.left() - px(10)
-        words, room = theme.font(14, SEMIBOLD if face.is_met or face.is_now else MEDIUM), words_right - words_left
+        weight = SEMIBOLD if face.is_met or face.is_now else MEDIUM
+        words, room = theme.font(12 if self._is_low else 14, weight), words_right - words_left
         said = self.said
         height = height_for(said, words, round(room))
         at = QRectF(words_left, (box.height() - height) / 2, room, height)
@@ -123,18 +136,21 @@ class HipGauge(QWidget):
         half, radius = pen.widthF() / 2, CARD_RADIUS * theme.scale
         painter.drawRoundedRect(QRectF(self.rect()).adjusted(half, half, -half, -half), radius, radius)
         painter.setBrush(Qt.BrushStyle.NoBrush)
-        ring = self._ring()
-        self._paint_ring(painter, ring)
-        chip = theme.px(CHIP)
-        at = QRectF(ring.right() + theme.px(12), (self.height() - chip) / 2, chip, chip)
-        paint_chip(painter, at, self._joint.side, theme)
+        if not self._is_low:
+            self._paint_ring(painter, self._ring())
+        chip = self._chip
+        paint_chip(painter, QRectF(self._chip_left(), (self.height() - chip) / 2, chip, chip), self._joint.side, theme)
         for text in self.painted_texts():
             text.paint(painter, c)
 
     def _ring(self) -> QRectF:
         px = self._look.theme.px
-        side = px(COMPACT_RING if self._is_compact else RING)
+        side = min(px(RING), self.height() - px(16))
         return QRectF(px(14), (self.height() - side) / 2, side, side)
+
+    def _chip_left(self) -> float:
+        px = self._look.theme.px
+        return px(14) if self._is_low else self._ring().right() + px(12)
 
     def _paint_ring(self, painter: QPainter, room: QRectF) -> None:
         theme, face, side = self._look.theme, self._face, self._joint.side
