@@ -171,7 +171,8 @@ class SensorsPage(Themed):
                 self.sources.addItem(words if option.note else option.name, option.key)
             self.sources.setCurrentIndex(self.sources.findData(chosen))
         self.sources.updateGeometry()
-        self.nothing.show_options(options[:OFFERED_AT_ONCE])
+        usual = [option for option in options if not option.is_last][:OFFERED_AT_ONCE]
+        self.nothing.show_options([*usual, *(option for option in options if option.is_last)])
         for before, after in pairwise(
             [self.sources, *self.nothing.buttons, self.searching.stop, *self.stored.tab_order]
         ):

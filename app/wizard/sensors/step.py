@@ -25,7 +25,7 @@ from app.wizard.sensors.page import SensorsPage, Way
 from app.wizard.sensors.replays import Replays
 from app.wizard.sensors.sensor_row import SensorRow
 from app.wizard.sensors.source_pages import SourceOption
-from app.wizard.sensors.sources import SEARCH
+from app.wizard.sensors.sources import SEARCH, WITH_PELVIS
 from app.wizard.step import Step
 from app.wizard.worn_sensors import SourceChoice
 from app.wording import name_of, tr, tr_n
@@ -279,7 +279,7 @@ class SensorsStep(Step):
     def _show_sources(self) -> None:
         """Offer what there is for this patient: what was found, what is simulated, and what is played at the moment."""
         visit, sensors = self._visit, self._visit.sensors
-        options = [SourceOption(choice.key, choice.name) for choice in visit.choices]
+        options = [SourceOption(one.key, one.name, is_last=one.key == WITH_PELVIS) for one in visit.choices]
         if visit.may_simulate:
             options.append(SourceOption(REPLAY, tr("Replay of a stored session")))
         chosen = sensors.choice
@@ -288,7 +288,8 @@ class SensorsStep(Step):
             note = tr("{count} found").format(count=found) if found else ""
             keys = [option.key for option in options]
             at = keys.index(chosen.key) if chosen.key in keys else len(options)
-            options[at : at + 1] = [SourceOption(chosen.key, chosen.name, note)]
+            options[at : at + 1] = [SourceOption(chosen.key, chosen.name, note, chosen.key == WITH_PELVIS)]
+        options.sort(key=lambda option: option.is_last)
         page = self.page
         page.show_sources(options, chosen.key if chosen is not None else "")
         asks = next((choice.asks for choice in visit.choices if choice.key == self._told_of), ("", ""))
