@@ -1,4 +1,7 @@
-"""Where does a tour stop, what must the screen say there, and what is done? By keyboard, by mouse, and at the bench."""
+"""Where does a tour stop, what must the screen say there, and what is done?
+
+By keyboard, by mouse, at the bench, and with a seventh sensor on the pelvis.
+"""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -302,10 +305,29 @@ REVIEWED: tuple[Stop, ...] = (  # the demonstration up to its results, which Rer
     Stop("53-report", offers("Go to the report"), ("click Go to the report",), lingers_s=1.0),
     *(stop for stop in MOUSE if stop.name.startswith("14")),
 )
+SOURCE = next(k for k, stop in enumerate(KEYBOARD) if stop.name == "07a-source")
+PELVIS: tuple[Stop, ...] = (  # seven sensors, by keys
+    *KEYBOARD[:SOURCE],
+    Stop("51-source", at_step("SensorsStep"), ("to Simulated patient, seven", "press Return"), lingers_s=1.0),
+    Stop("52-sensors", offers("Movement decides"), (*PLACED_BY_KEYS, "press 7"), lingers_s=5.0),
+    Stop("53-placed", says("All seven are worn"), ("press Return",), lingers_s=1.0),
+    Stop("54-stand-still", at_step("StandStillStep"), ("press space",), lingers_s=1.0),
+    Stop("55-standing", is_recording, lingers_s=1.5),
+    Stop("56-lunges", lambda seen: at_step("FreeMotionStep")(seen) and seen.is_recording, lingers_s=5.0),
+    Stop("57-free-motion", at_step("FreeMotionStep"), lingers_s=6.0),
+    *(replace(stop, name=f"58{stop.name[2:]}") for stop in walk(1, ("press 1", "press space"), "press space")),
+    Stop("59-keep", offers("Keep 1"), ("press k",), lingers_s=1.0),
+    Stop("60-kept", offers("Results"), ("press Return",), lingers_s=1.0),
+    Stop("61-results", offers("Legs", "Data"), ("press ctrl+7",), lingers_s=2.0, patience_s=60.0),
+    Stop("62-report", at_step("ReportStep"), ("press ctrl+s",), lingers_s=2.0),
+    Stop("63-where", offers("Save"), ("press ctrl+a", "type {home}/results", "press Return"), lingers_s=1.0),
+    Stop("64-saved", says("Saved as"), lingers_s=2.0, leaves=(("results*/**/angles.csv", "left_hip_deg"),)),
+)
 TOURS = {
     "keyboard": (*KEYBOARD, *SECOND_BY_KEYS),
     "mouse": (*MOUSE, *SECOND_BY_MOUSE),
     "bench": BENCH,
     "timed": TIMED,
     "review": REVIEWED,
+    "pelvis": PELVIS,
 }

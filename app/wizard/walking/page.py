@@ -41,6 +41,7 @@ FIGURE_WIDE, FIGURE_COMPACT = 72, 36
 NARROW_BELOW = 660  # of the page: a question stands above its answers, a word above its figure
 WIDE_FROM = 1400  # of the page
 MOST_WIDTH = 1600
+HIPS_FROM = 680  # of the page
 SECONDS, SECONDS_WIDE = 8.0, 12.0
 DESCRIBED_EVERY_S = 1.0  # who listens is not told every frame
 ANY_WIDTH = 16777215  # what Qt calls no limit
@@ -73,7 +74,7 @@ class WalkingPage(Themed):
     def __init__(self, look: ThemeNotifier, entry: ChangeEntry | None = None) -> None:
         super().__init__()
         self._look = look
-        self._is_compact = self._has_bench = self._has_test = self._has_result = False
+        self._is_compact = self._has_bench = self._has_test = self._has_result = self._has_hips = False
         self.bench = BenchView(look, entry or ChangeEntry())
         self.rows: tuple[WalkRow, ...] = ()
         self._asked: WalkRow | None = None
@@ -208,6 +209,11 @@ class WalkingPage(Themed):
     def set_simulated(self, is_simulated: bool) -> None:
         self.charts.set_simulated(is_simulated)
 
+    def set_hips(self, has_hips: bool) -> None:
+        """Keep a place for the hips above the knees, or none."""
+        self._has_hips = has_hips
+        self._fit()
+
     def set_compact(self, is_compact: bool) -> None:
         if is_compact != self._is_compact:
             self._is_compact = is_compact
@@ -316,6 +322,9 @@ class WalkingPage(Themed):
         px = self._look.theme.px
         is_wide = self.width() >= px(WIDE_FROM) and not self._is_compact
         self.charts.set_seconds(SECONDS_WIDE if is_wide else SECONDS)
+        # between walks what comes next needs the room more
+        is_high = self.is_recording or self._is_compact or self.height() >= px(HIPS_FROM)
+        self.charts.set_hips(self._has_hips and is_high)
         self.figures.set_size(FIGURE_COMPACT if self._is_compact else FIGURE_WIDE if is_wide else FIGURE)
         is_narrow = self.width() < px(NARROW_BELOW)
         self.stopped.set_narrow(is_narrow)

@@ -208,3 +208,51 @@ def test_the_button_is_yellow_while_a_sensor_is_bad(look: ThemeNotifier, qtbot: 
         assert button.grab().toImage().pixelColor(button.width() - 6, 8) == QColor(colour)
         assert button.accessibleName() == sentence(tiles)
         assert words_cut(button) == []
+
+
+SEVEN = {site: tile(site) for site in Site}
+
+
+def test_a_seventh_tile_stands_between_the_legs_only_while_the_pelvis_wears_a_sensor(strip: SensorStrip) -> None:
+    strip.show_tiles(fine())
+    settle()
+    six = strip.grab().toImage()
+    assert Site.PELVIS not in strip.widgets
+    strip._show(SEVEN)
+    settle()
+    order = sorted(strip.widgets, key=lambda site: strip.widgets[site].x())
+    assert order[3] is Site.PELVIS
+    assert {widget.y() for widget in strip.widgets.values()} == {8}
+    assert strip.widgets[Site.PELVIS].accessibleName() == "Pelvis, 100 Hz · 0.0 % lost, moving"
+    assert words_cut(strip) == []
+    assert strip.grab().toImage() != six
+    strip._show(fine())
+    settle()
+    assert strip.grab().toImage() == six
+
+
+@pytest.mark.parametrize("width", [320, 640, 896, 1064, 1680])
+@pytest.mark.parametrize("is_compact", [False, True])
+def test_seven_tiles_have_room_and_lie_over_none(strip: SensorStrip, width: int, is_compact: bool) -> None:
+    strip.set_compact(is_compact)
+    strip._show(SEVEN | {Site.PELVIS: tile(Site.PELVIS, silent_s=3.0)})
+    strip.resize(width, strip.height())
+    settle()
+    places = [widget.geometry() for widget in strip.widgets.values()]
+    assert len(places) == 7
+    assert not any(one.intersects(other) for k, one in enumerate(places) for other in places[:k])
+    assert max(place.bottom() for place in places) < strip.height()
+
+
+def test_arrows_go_over_the_pelvis(strip: SensorStrip) -> None:
+    strip._show(SEVEN)
+    strip.widgets[Site.RIGHT_FOOT].setFocus()
+    QTest.keyClick(strip.widgets[Site.RIGHT_FOOT], Qt.Key.Key_Right)
+    assert strip.widgets[Site.PELVIS].hasFocus()
+    strip._show(fine())  # taken off
+    assert [widget.focusPolicy() for widget in strip.widgets.values()].count(Qt.FocusPolicy.StrongFocus) == 1
+
+
+def test_a_silent_pelvis_is_named_in_the_sentence() -> None:
+    assert sentence(SEVEN) == "7 sensors, all heard"
+    assert sentence(SEVEN | {Site.PELVIS: tile(Site.PELVIS, silent_s=3.2)}) == "Pelvis: silent 3 s"
