@@ -7,7 +7,7 @@ import numpy as np
 
 from core.body import Segment, Side, Site
 from core.findings import Finding, Severity
-from core.gait.cycles import ANKLE_WINDOWS, KNEE_WINDOWS
+from core.gait.cycles import PEAK_WINDOWS
 from core.gait.strides import Reason
 from core.norms import MIN_STRIDES_FOR_MEAN, MIN_STRIDES_FOR_SD
 from core.results import RecordingAnalysis, SideGait
@@ -89,6 +89,6 @@ def _about_peaks(walk: RecordingAnalysis, gait: SideGait) -> Iterator[Finding]:
         is_known = gait.strides.is_used & np.isfinite(cycles).all(axis=1)
         if np.count_nonzero(is_known) < MIN_STRIDES_FOR_MEAN or not walk.verdicts.joint(joint).sign.is_told:
             continue
-        for window in KNEE_WINDOWS if joint.is_knee else ANKLE_WINDOWS:
+        for window in PEAK_WINDOWS[joint.kind]:
             if not np.isfinite(gait.parameters[f"{window.name}_rad"][is_known]).any():
                 yield Finding("no_peak", Severity.INFO, f"{walk.name}, {joint}", {"peak": window.name})

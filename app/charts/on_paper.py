@@ -130,7 +130,7 @@ def places_of(frame: Frame, chart: StrideChart) -> list[MarkPlace]:
     for deviation in chart.deviations:
         ends = [(float(frame.x(point.percent)), float(frame.y(point.angle_deg))) for point in deviation.points]
         size = PER_LETTER * SIZE_OF_WORDS * len(deviation.size), 2 * NUMBER_RADIUS
-        places.append(place_mark(ground, ends, [size], USUAL_EMPTY_PERCENT[deviation.is_knee]))
+        places.append(place_mark(ground, ends, [size], USUAL_EMPTY_PERCENT[deviation.kind]))
     return places
 
 

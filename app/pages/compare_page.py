@@ -8,7 +8,6 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QKeySequence, QShortcut
 from PySide6.QtWidgets import QApplication, QGridLayout, QHBoxLayout, QVBoxLayout, QWidget
 
-from app.charts.axes import joint_of
 from app.charts.cycles import Band, SideCycle
 from app.icons import Icon
 from app.pages.compared_card import ComparedCard, scrolling
@@ -46,7 +45,7 @@ from app.widgets.segmented import Segmented
 from app.widgets.text import Text
 from app.widgets.themed import Themed
 from app.wording import later, tr
-from core.body import Side
+from core.body import JointKind, Side
 from core.gait.cycles import POINTS
 from core.norms import AgeAndHeight, ReferenceCurves
 from core.results import Analysis
@@ -104,11 +103,10 @@ class ComparePage(Themed):
         )
         self.chips = Chips(look, tr("What is compared"), [("", " ")])
         self.nothing = Text(look, size=16, wraps=True)
-        self.frames: dict[tuple[Side, bool], ComparedFrame] = {}
-        for is_knee in (True, False):
+        self.frames: dict[tuple[Side, JointKind], ComparedFrame] = {}
+        for kind in JointKind:
             for side in Side:
-                chart = ComparedChart(look, is_knee=is_knee)
-                self.frames[side, is_knee] = ComparedFrame(look, chart, side, is_knee)
+                self.frames[side, kind] = ComparedFrame(look, ComparedChart(look, kind), side, kind)
         self.side_charts = CycleCharts(look, reference_curves())
         self._mark = IconMark(look, Icon.WARNING, size=20)
         self.conclusion = Text(look, size=14, wraps=True)
@@ -208,8 +206,8 @@ class ComparePage(Themed):
         self._grid_room, self._grid = QWidget(), QGridLayout()
         self._grid_room.setLayout(self._grid)
         self._grid.setContentsMargins(0, 0, 0, 0)
-        for (side, is_knee), frame in self.frames.items():
-            self._grid.addWidget(frame, 0 if is_knee else 1, 0 if side is Side.LEFT else 1)
+        for (side, kind), frame in self.frames.items():
+            self._grid.addWidget(frame, list(JointKind).index(kind), 0 if side is Side.LEFT else 1)
         self._charts = QWidget()
         self._left = QVBoxLayout(self._charts)
         self._left.setContentsMargins(0, 0, 0, 0)
@@ -402,25 +400,26 @@ class ComparePage(Themed):
         self.comparison = found = Comparison(self.kind, chosen, base, self._is_simulated)
         self.side_rows = ()
         curves, sides = self._band(found.against)
-        for (side, is_knee), frame in self.frames.items():
-            joint = joint_of(side, is_knee)
+        has_hips = any(joint.is_hip for joint in found.joints)
+        for (side, kind), frame in self.frames.items():
+            joint = kind.of(side)
             worn = [part for part in chosen if joint in part.joints]
             is_about_mean = not all(part.verdicts.joint(joint).height.is_told for part in worn if part.is_drawn(joint))
             is_about_mean |= len(worn) > 1 and not found.has_one_zero(joint)
             drawn = [part.curve(joint, is_about_mean=is_about_mean) for part in worn]
-            is_beside_band, kind = curves is not None and side in sides, "knee" if is_knee else "ankle"
+            is_beside_band = curves is not None and side in sides
             frame.chart.band = Band(*curves.mean_and_sd_deg(kind)) if curves is not None and is_beside_band else None
             notes = [tr(OTHER_ZERO)] if is_about_mean else []
             notes += [withheld_in_words(part, joint) for part in worn if not part.is_drawn(joint)]
             frame.show_curves(drawn, " ".join(notes), self._is_simulated, is_about_mean=is_about_mean)
-            frame.setVisible(side in found.sides)
+            frame.setVisible(side in found.sides and (kind is not JointKind.HIP or has_hips))
         visits = self._of_visits
         pattern = tr("Change from {letter}") if visits is None else tr("Change from {letter}, {condition}")
         condition = "" if visits is None else condition_in_words(visits.condition)
         title = pattern.format(letter=found.against.letter, condition=condition)
         told = [row for row in found.changes if row.is_told]
         is_borrowed = any(found.error_kind(part) is not ComparisonKind.ATTACHED for part in found.others)
-        is_borrowed &= any(not joint.is_knee for joint in found.joints)
+        is_borrowed &= any(joint.kind is JointKind.ANKLE for joint in found.joints)
         self.error.setText(error_in_words([row.difference for row in told], is_borrowed=is_borrowed))
         worth = [sentence(row) for row in sorted(told, key=weight) if row.difference.is_worth_a_sentence]
         latest = found.latest if self.kind is Contrast.VISITS else None
@@ -446,7 +445,9 @@ class ComparePage(Themed):
         self.side_charts.show_cycles(cycles, verdicts, self._is_simulated)
         told = [row for row in self.side_rows if row.is_told]
         differences = [row.difference for row in told]
-        self.error.setText(error_in_words(differences, is_borrowed=any(not joint.is_knee for joint in part.joints)))
+        self.error.setText(
+            error_in_words(differences, is_borrowed=any(joint.kind is JointKind.ANKLE for joint in part.joints))
+        )
         worth = [row for row in sorted(told, key=side_weight) if row.difference.is_worth_a_sentence]
         said = conclusion([side_sentence(row, first, second) for row in worth], differences)
         self._say(said, parts[:1], is_marked=bool(worth))

@@ -12,6 +12,8 @@ from app.reports.walk_figures import (
     by_hand_in_words,
     few_strides_in_words,
     peak_figures,
+    pelvis_figures,
+    pelvis_in_words,
     reason_in_words,
     side_cycle,
     strides_in_words,
@@ -36,10 +38,11 @@ GROUPS = (
     later("42 adults, 24 young and 18 older, barefoot, overground"),
 )
 SPEED_WORDS = {"slow": later("slow"), "comfortable": later("comfortable"), "fast": later("fast")}
-KIND_WORDS = {"knee": later("Knee"), "ankle": later("Ankle")}
+KIND_WORDS = {"hip": later("Hip"), "pelvis": later("Pelvis"), "knee": later("Knee"), "ankle": later("Ankle")}
 NO_SPEED = later("This walk: speed not known, or withheld.")
 NO_SIDE = later("No band: a prosthetic leg is not compared with other people's.")
 CARE = later("{mark} read with care.")
+HIP_BAND = later("At the hip it is laid at the height of the curves and tells their shape alone.")
 
 
 class CyclePage(QWidget):
@@ -92,10 +95,11 @@ class CyclePage(QWidget):
         self.charts.show_cycles(cycles, {joint: recording.verdicts.joint(joint) for joint in joints}, is_simulated)
         strides = {side: strides_used(gait) for side, gait in recording.gait.items()}
         rows: list[str | Figure] = []
-        for kind, figures in peak_figures(recording, curves).items():
+        for kind, figures in {**peak_figures(recording, curves), **pelvis_figures(recording)}.items():
             rows += [tr(KIND_WORDS[kind]), *figures]
         told = " ".join(strides_in_words(side, gait) for side, gait in recording.gait.items())
-        reasons = [told, few_strides_in_words(recording), *_why_withheld(recording, joints), *_care_in_words(rows)]
+        reasons = [told, few_strides_in_words(recording), *_why_withheld(recording, joints)]
+        reasons += [*pelvis_in_words(recording), *_care_in_words(rows)]
         self.peaks.show_figures(rows, strides, " ".join(filter(None, reasons)))
         figures = time_distance_figures(recording, values, sides_with_band)
         by_hand = by_hand_in_words(recording)
@@ -104,6 +108,8 @@ class CyclePage(QWidget):
         group = _group_in_words(values, bands.why_no_values if sides_with_band else None)
         said = [by_hand, group, only, *_care_in_words(figures)]
         self.time_distance.show_figures(figures, strides, " ".join(filter(None, said)))
+        if curves is not None and any(joint.is_hip for joint in joints):
+            only = " ".join(filter(None, [only, tr(HIP_BAND)]))
         self.band_words = band_in_words(bands, both_sides(recording).speed_m_s, sides_with_band, only)
 
 
