@@ -39,6 +39,7 @@ GROUPS = (
 )
 SPEED_WORDS = {"slow": later("slow"), "comfortable": later("comfortable"), "fast": later("fast")}
 KIND_WORDS = {"hip": later("Hip"), "pelvis": later("Pelvis"), "knee": later("Knee"), "ankle": later("Ankle")}
+LEG_KINDS, HIP_KINDS = ("knee", "ankle"), ("hip", "pelvis")
 NO_SPEED = later("This walk: speed not known, or withheld.")
 NO_SIDE = later("No band: a prosthetic leg is not compared with other people's.")
 CARE = later("{mark} read with care.")
@@ -46,7 +47,7 @@ HIP_BAND = later("At the hip it is laid at the height of the curves and tells th
 
 
 class CyclePage(QWidget):
-    """The charts, and whose band it is; `peaks` and `time_distance` are cards that the page places."""
+    """The charts, and whose band it is; `peaks`, `time_distance` and `hips` are cards that the page places."""
 
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
@@ -60,12 +61,13 @@ class CyclePage(QWidget):
         column.addWidget(self.by_hand)
         self.peaks = FiguresCard(look, tr("Peaks and ranges"), tr("mean ± SD (°)"))
         self.time_distance = FiguresCard(look, tr("Time and distance"), tr("mean ± SD"))
-        for card in (self.peaks, self.time_distance):
+        self.hips = FiguresCard(look, tr("Hip and pelvis"), tr("mean ± SD (°)"))
+        for card in (self.peaks, self.time_distance, self.hips):
             card.column.addStretch(1)
 
     @property
     def tables(self) -> list[QWidget]:
-        return [self.peaks.table, self.time_distance.table]
+        return [self.peaks.table, self.time_distance.table, self.hips.table]
 
     def set_room(self, has_two_charts: bool) -> None:
         """Put the charts side by side where that is the better use of the page."""
@@ -94,13 +96,15 @@ class CyclePage(QWidget):
         self.charts.set_band(curves)
         self.charts.show_cycles(cycles, {joint: recording.verdicts.joint(joint) for joint in joints}, is_simulated)
         strides = {side: strides_used(gait) for side, gait in recording.gait.items()}
-        rows: list[str | Figure] = []
-        for kind, figures in {**peak_figures(recording, curves), **pelvis_figures(recording)}.items():
-            rows += [tr(KIND_WORDS[kind]), *figures]
+        of_joints = peak_figures(recording, curves)
+        of_hips = _under_heads({**of_joints, **pelvis_figures(recording)}, HIP_KINDS)
+        rows = _under_heads(of_joints, LEG_KINDS)
         told = " ".join(strides_in_words(side, gait) for side, gait in recording.gait.items())
         reasons = [told, few_strides_in_words(recording), *_why_withheld(recording, joints)]
-        reasons += [*pelvis_in_words(recording), *_care_in_words(rows)]
+        reasons += _care_in_words(rows)
         self.peaks.show_figures(rows, strides, " ".join(filter(None, reasons)))
+        self.hips.show_figures(of_hips, strides, " ".join([*pelvis_in_words(recording), *_care_in_words(of_hips)]))
+        self.hips.setVisible(bool(of_hips))
         figures = time_distance_figures(recording, values, sides_with_band)
         by_hand = by_hand_in_words(recording)
         self.by_hand.setText(by_hand)
@@ -111,6 +115,14 @@ class CyclePage(QWidget):
         if curves is not None and any(joint.is_hip for joint in joints):
             only = " ".join(filter(None, [only, tr(HIP_BAND)]))
         self.band_words = band_in_words(bands, both_sides(recording).speed_m_s, sides_with_band, only)
+
+
+def _under_heads(figures: Mapping[str, Sequence[Figure]], kinds: Sequence[str]) -> list[str | Figure]:
+    """The rows of these kinds that there are, each under its name."""
+    rows: list[str | Figure] = []
+    for kind in kinds:
+        rows += [tr(KIND_WORDS[kind]), *figures[kind]] if kind in figures else []
+    return rows
 
 
 def _why_withheld(recording: RecordingAnalysis, joints: Sequence[Joint]) -> list[str]:

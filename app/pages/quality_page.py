@@ -10,6 +10,7 @@ from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QScrollArea, QSi
 
 from app.gates_in_words import verdict_word
 from app.icons import VERDICT_ICONS, Icon, paint_icon
+from app.pages.compared_card import scrolling
 from app.reports.patient_report.data_quality import DataQuality, QualityLine
 from app.theme import ThemeNotifier
 from app.widgets.body_figure import SENSOR, BodyFigure, SensorMark
@@ -146,8 +147,13 @@ class QualityPage(Themed):
         order.addWidget(self.in_order, 1)
         self._order_card.column.addLayout(order)
         self._figures_card = Card(self._look)
-        self._figures_card.column.addWidget(self.facts)
-        self._figures_card.column.addWidget(self.hip_facts)
+        tables = QWidget()
+        found = QVBoxLayout(tables)
+        found.setContentsMargins(0, 0, 0, 0)
+        for table in (self.facts, self.hip_facts):
+            found.addWidget(table)
+        found.addStretch(1)
+        self._figures_card.column.addWidget(scrolling(tables), 2)
         self._figures_card.column.addWidget(Text(self._look, tr("Everything noticed"), size=16, weight=SEMIBOLD))
         self._figures_card.column.addWidget(self.findings, 1)
         self._doors = QGridLayout()
@@ -311,5 +317,6 @@ class JointsFigure(BodyFigure):
             paint_icon(painter, VERDICT_ICONS[verdict], mark, c.caution_ink if is_grave else c.ink)
             painter.setPen(QColor(c.ink))
             side = Qt.AlignmentFlag.AlignLeft if is_right else Qt.AlignmentFlag.AlignRight
-            words = QRectF(0, box.top() - px(18), self.width(), px(16))
+            # beside the hips the letters of both legs stand
+            words = QRectF(0, box.bottom() + px(2) if joint.is_hip else box.top() - px(18), self.width(), px(16))
             painter.drawText(words, side | Qt.AlignmentFlag.AlignVCenter, verdict_word(verdict))

@@ -45,6 +45,8 @@ from core.samples import FloatArray, RecordingKind
 
 RESULT, PUBLISHED, ORIENTATION, BOTH = "result", "published", "orientation", "both"
 
+LEG_KINDS = (JointKind.KNEE, JointKind.ANKLE)  # whose charts are always there
+
 # the views
 ANSWER, COMPARE, WHOLE, STRIDES = "answer", "compare", "whole", "strides"
 WALK, RECORDING = later("Whole walk"), later("Whole recording")
@@ -53,6 +55,7 @@ ANSWER_PX = 22
 RECORDINGS = (146, 280)  # px: the narrowest and the widest that their box becomes
 BOTTOM = 44  # px high: the row that closes the answer
 BESIDE_TABLE, WITHHELD, NOTE = 484, 40, 24  # px high: all else on a page, a withheld curve, strides left out by hand
+PELVIS = 56  # px high: above the legs
 ANSWER_ICONS = {
     Outcome.DIFFERS: Icon.WARNING,
     Outcome.NOTHING: Icon.READ,
@@ -198,6 +201,7 @@ class ResultPage(Themed):
         frames = self.cycles.charts.frames
         is_withheld = any(panel.text for frame in frames for panel in frame.withheld.values())
         taken = BESIDE_TABLE + (WITHHELD if is_withheld else 0) + (NOTE if self.cycles.by_hand.text() else 0)
+        taken += PELVIS if self.show_legs.isChecked() and len(frames) > len(LEG_KINDS) else 0
         self.differs.set_room(self._height - taken)
 
     def focus(self) -> None:
@@ -284,7 +288,10 @@ class ResultPage(Themed):
         self._tables = QBoxLayout(QBoxLayout.Direction.LeftToRight, self._figures)
         self._tables.setContentsMargins(0, 0, 0, 0)
         self._tables.addWidget(self.cycles.peaks, 1)
-        self._tables.addWidget(self.cycles.time_distance, 1)
+        right = QVBoxLayout()
+        right.addWidget(self.cycles.time_distance, 1)
+        right.addWidget(self.cycles.hips, 1)
+        self._tables.addLayout(right, 1)
         self._columns = QHBoxLayout()
         for widget, share in (
             (self._curves, 1),
@@ -434,9 +441,13 @@ class ResultPage(Themed):
         self.legs.setVisible(has_legs)
         if not has_legs:
             self.cycles.charts.show_cursor({})
-        is_beside = self._room.has_two_charts and view == ANSWER and (self._room.is_spacious or not has_legs)
-        self.cycles.charts.set_side_by_side(is_beside)
-        self.cycles.charts.set_brief(self._room.is_compact or view == STRIDES)
+        room, charts = self._room, self.cycles.charts
+        has_hips = len(charts.frames) > len(LEG_KINDS)
+        is_beside = view == ANSWER and (has_hips or (room.has_two_charts and (room.is_spacious or not has_legs)))
+        is_crowded = has_hips and (has_legs or not room.is_spacious)
+        charts.set_side_by_side(is_beside)
+        charts.set_tight(is_tight=is_crowded, is_narrow=is_crowded and is_beside and (room.is_narrow or has_legs))
+        charts.set_brief(room.is_compact or view == STRIDES or is_crowded)
         self.cycles.set_notes_shown(is_answer)
         self.strides.setVisible(view == STRIDES)
         self._show_strides()
@@ -570,6 +581,7 @@ class ResultPage(Themed):
     def _on_legs_toggled(self, is_on: bool) -> None:
         if is_on:
             self._show_moving_legs()
+        self._fit_table()
         self._show_parts()
         if is_on:
             self.legs.setFocus()

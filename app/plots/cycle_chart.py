@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QMouseEvent, QPainter, QPaintEvent, QPixmap
-from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QSizePolicy
+from PySide6.QtWidgets import QBoxLayout, QGridLayout, QHBoxLayout, QSizePolicy
 
 from app.charts.axes import (
     degrees_in_words,
@@ -51,7 +51,7 @@ from core.norms import ReferenceCurves
 from core.samples import FloatArray
 from core.verdicts.model import JointVerdicts, Verdict
 
-LEAST_SIZE = (284, 144)
+LEAST_SIZE, TIGHT_SIZE = (284, 144), (160, 104)  # of two charts, or of three where there is little room
 EARLIER = (0, 2)  # the thin one of two curves, as in every comparison
 DOUBTS = {
     NO_ZERO: later("{sides}: no zero. Range and shape hold, height does not."),
@@ -153,6 +153,12 @@ class CycleCharts(Themed):
         for frame in self._frames:
             frame.set_brief(is_brief)
 
+    def set_tight(self, *, is_tight: bool, is_narrow: bool) -> None:
+        """Let three charts be small where there is little room; `is_narrow`: three beside each other."""
+        for frame in self._frames:
+            frame.chart.set_tight(is_tight)
+            frame.set_narrow(is_narrow)
+
     def set_side_by_side(self, is_side_by_side: bool) -> None:
         way = QBoxLayout.Direction.LeftToRight if is_side_by_side else QBoxLayout.Direction.TopToBottom
         self._box.setDirection(way)
@@ -186,13 +192,20 @@ class CycleFrame(Card):
         self._sign = Text(look, sign_in_words(kind), size=12, tone="ink2")
         head.addWidget(self._sign)
         head.addStretch(1)
+        self._chips = QHBoxLayout()
+        self._chips.setSpacing(8)
         for side in Side:
-            head.addWidget(self.chips[side])
+            self._chips.addWidget(self.chips[side])
+        self._head = QGridLayout()
+        self._head.setVerticalSpacing(2)
+        self._head.addLayout(head, 0, 0)
+        self._head.addLayout(self._chips, 0, 1)
+        self._head.setColumnStretch(0, 1)
         notes = QHBoxLayout()
         notes.setSpacing(8)
         notes.addWidget(self._mark, 0, Qt.AlignmentFlag.AlignTop)
         notes.addWidget(self._note, 1)
-        self.column.addLayout(head)
+        self.column.addLayout(self._head)
         self.column.addLayout(notes)
         self.column.addWidget(self.beside)
         for panel in self.withheld.values():
@@ -268,6 +281,12 @@ class CycleFrame(Card):
         self._sign.setVisible(not is_brief)
         for chip in self.chips.values():
             chip.set_brief(is_brief)
+
+    def set_narrow(self, is_narrow: bool) -> None:
+        """Put the chips under the title, where they have no room beside it."""
+        self._head.removeItem(self._chips)
+        place = (1, 0, 1, 2, Qt.AlignmentFlag.AlignLeft) if is_narrow else (0, 1, 1, 1, Qt.AlignmentFlag.AlignRight)
+        self._head.addLayout(self._chips, *place)
 
     def set_strides_shown(self, is_shown: bool) -> None:
         self.chart.has_strides = is_shown
@@ -378,6 +397,7 @@ class CycleChart(Themed):
         self.deviations: tuple[Deviation, ...] = ()
         self.gaps: tuple[Gap, ...] = ()
         self._picture: QPixmap | None = None
+        self._least = LEAST_SIZE
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
 
     @property
@@ -390,10 +410,14 @@ class CycleChart(Themed):
 
     def sizeHint(self) -> QSize:
         px = self._look.theme.px
-        return QSize(px(LEAST_SIZE[0]), px(LEAST_SIZE[1]))
+        return QSize(px(self._least[0]), px(self._least[1]))
 
     def minimumSizeHint(self) -> QSize:
         return self.sizeHint()
+
+    def set_tight(self, is_tight: bool) -> None:
+        self._least = TIGHT_SIZE if is_tight else LEAST_SIZE
+        self.updateGeometry()
 
     def show_cycles(
         self,

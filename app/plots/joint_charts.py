@@ -114,6 +114,8 @@ class JointCharts(Themed):
             frame.show_curves(self._time_s, {side: curves[joint] for side, joint in joints.items() if joint in curves})
         has_hips = any(joint.is_hip for joint in curves)
         self.hip.setVisible(has_hips)
+        for frame in self.frames:
+            frame.chart.set_of_three(has_hips)
         self.hip.set_moment_shown(has_hips)  # once is enough, on top
         self.knee.set_moment_shown(not has_hips)
         what = (

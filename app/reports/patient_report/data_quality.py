@@ -47,7 +47,7 @@ ALL_READ = {
 class QualityLine:
     """One thing that stands against a figure: `where` it is, `why`, and what `to_do`, which may be empty.
 
-    `side` is the leg whose free motion mends it, None where that does not. `is_between`: each leg alone can be read.
+    `side` is the leg whose free motion mends it, None where that does not. `is_aside`: each leg can be read.
     """
 
     verdict: Verdict
@@ -55,12 +55,12 @@ class QualityLine:
     why: str
     to_do: str
     side: Side | None = None
-    is_between: bool = False
+    is_aside: bool = False
 
     @property
     def is_grave(self) -> bool:
         """Whether it takes a joint or a leg away."""
-        return self.verdict is Verdict.WITHHELD and not self.is_between
+        return self.verdict is Verdict.WITHHELD and not self.is_aside
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,7 +109,7 @@ def _quality(first: str, then: str, lines: list[QualityLine], in_order: str) -> 
 def _of_cause(cause: Cause) -> QualityLine:
     sides = {place.side for place in cause.places if isinstance(place, Joint) and not place.is_hip}
     side = sides.pop() if cause.gate in FREE_MOTION_MENDS and len(sides) == 1 else None
-    return QualityLine(cause.verdict, cause.where, cause.words.why, cause.words.to_do, side, cause.is_between)
+    return QualityLine(cause.verdict, cause.where, cause.words.why, cause.words.to_do, side, cause.is_aside)
 
 
 def _of_finding(finding: Finding) -> QualityLine:
