@@ -46,6 +46,7 @@ STRIDE, ONLY_STRIDES = 0.32, 0.8
 
 BRACKET_WIDTH, BRACKET_CAP, NUMBER_RADIUS = 1.4, 2.5, 4.4
 LETTERS_FROM, LETTERS_APART = 24, 44  # percent of the stride
+NARROWEST = 27 * MM  # narrower, fewer labels fit below it
 NARROW, NARROW_FOOT = 60 * MM, 17.0  # narrower, what the axis is has no room, and stands above the charts
 HATCH_APART, LINE_OF_WORDS = 6.0, 8.6
 SIZE_OF_WORDS, PER_LETTER = 7.0, 0.6  # a letter's width on its height; an SVG cannot be asked
@@ -205,7 +206,7 @@ def _axes(frame: Frame, axis: Axis, *, is_narrow: bool) -> list[str]:
     parts = []
     for percent in range(0, 101, 10):
         x = float(frame.x(percent))
-        is_labelled = percent % 20 == 0
+        is_labelled = percent % (20 if frame.width >= NARROWEST else 50) == 0
         if is_labelled and 0 < percent < 100:
             parts.append(line(x, frame.top, x, frame.bottom, PAPER.grid, 0.25))
         parts.append(line(x, frame.bottom, x, frame.bottom + (4 if is_labelled else 2.5), PAPER.ink, 0.6))

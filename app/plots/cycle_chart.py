@@ -197,6 +197,7 @@ class CycleFrame(Card):
         for side in Side:
             self._chips.addWidget(self.chips[side])
         self._head = QGridLayout()
+        self._head.setHorizontalSpacing(8)
         self._head.setVerticalSpacing(2)
         self._head.addLayout(head, 0, 0)
         self._head.addLayout(self._chips, 0, 1)

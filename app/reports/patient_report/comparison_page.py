@@ -50,6 +50,7 @@ from core.verdicts.quantities import EXCURSIONS_BY_COLUMN, OF_HIPS
 
 CHANGES_LENGTH = 300  # letters: three lines of the table
 PLOT_WIDTH = 53 * MM  # with the table of three parts, or a line more of words, this fills a Letter page
+WITH_HIP_WIDTH = 44 * MM  # of three beside each other
 
 
 def comparison_of(request: ReportRequest) -> Comparison | None:
@@ -120,7 +121,9 @@ def comparison_page(comparison: Comparison, shown: Facts) -> list[Block]:
     title = tr("Comparison of visits") if comparison.kind is Contrast.VISITS else tr("Comparison of conditions")
     sides = [side for side in shown.first_and_second if side in comparison.sides]
     kinds = [kind for kind in JointKind if any(joint_of(kind, side) in comparison.joints for side in Side)]
-    pictures = [_panel(comparison, shown, side, kind) for kind in kinds for side in sides]
+    has_hips = JointKind.HIP in kinds  # three joints beside each other, a row for each leg
+    places = [(side, kind) for side in sides for kind in kinds] if has_hips else [(s, k) for k in kinds for s in sides]
+    pictures = [_panel(comparison, shown, side, kind) for side, kind in places]
     band = (
         panels.band_swatches()
         if any(_band(comparison, shown, kind, side) is not None for kind in kinds for side in comparison.sides)
@@ -132,7 +135,7 @@ def comparison_page(comparison: Comparison, shown: Facts) -> list[Block]:
         _parts_table(comparison),
         *_changes(comparison),
         *([legend(band, columns=3)] if band else []),
-        figures(pictures, columns=2),
+        figures(pictures, columns=3 if has_hips else 2),
         _table(comparison, shown, sides),
         note(" ".join(filter(None, [_how_judged(comparison), left_out_of_parts(comparison.parts)]))),
     ]
@@ -207,7 +210,7 @@ def _panel(comparison: Comparison, shown: Facts, side: Side, kind: str) -> Pictu
         is_simulated=comparison.is_simulated,
         alt=" ".join([tr("SIMULATED.")] * comparison.is_simulated + [panels.title_of(shown, kind) + ".", *alts]),
     )
-    return draw(chart, PLOT_WIDTH)
+    return draw(chart, WITH_HIP_WIDTH if any(joint.is_hip for joint in comparison.joints) else PLOT_WIDTH)
 
 
 def _title(shown: Facts, kind: str, side: Side, *, is_about_mean: bool) -> str:
@@ -304,7 +307,7 @@ def _measure(column: str) -> str:
     if column in of_leg:
         return of_leg[column]
     if column in OF_HIPS:
-        return f"{capitalised(measure_in_words(column))}, °"
+        return capitalised(measure_in_words(column))
     kind = tr("Knee") if column.startswith("knee") else tr("Ankle")
     if column in EXCURSIONS_BY_COLUMN:
         return f"{kind}: {panels.excursion_name(column)}"

@@ -11,7 +11,7 @@ from app.reports.patient_report.peaks_table import peaks_table
 from app.wording import tr
 from core.body import JointKind, Side
 
-PLOT_WIDTH, WITH_HIP_WIDTH = 72 * MM, 52 * MM  # two beside each other, or three
+PLOT_WIDTH, WITH_HIP_WIDTH = 72 * MM, 44 * MM  # two beside each other, or three
 
 
 def curves_page(facts: Facts) -> list[Block]:

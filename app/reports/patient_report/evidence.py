@@ -154,7 +154,7 @@ def hips_table(facts: Facts) -> list[Block]:
             "hip_heading",
             tr("Heading of pelvis and thigh, 1 SD"),
             lambda _, found: _degrees(math.degrees(found.heading_sd_rad)),
-            tr("at most {limit}° for abduction; flexion needs none").format(limit=fixed(LIMITS.hip_heading_sd_deg, 0)),
+            tr("at most {limit}°, of abduction alone").format(limit=fixed(LIMITS.hip_heading_sd_deg, 0)),
         ),
         (
             "plausible",

@@ -27,7 +27,7 @@ from core.verdicts.quantities import WINDOWS
 
 NOT_STATED = ("", "none")
 PLOT_WIDTH, ONE_LEG_WIDTH = 53 * MM, 68 * MM  # four panels, or two
-WITH_HIP_WIDTH, ONE_LEG_WITH_HIP_WIDTH = 43 * MM, 52 * MM  # six, or three
+WITH_HIP_WIDTH, ONE_LEG_WITH_HIP_WIDTH = 34 * MM, 50 * MM  # six, or three
 
 
 def first_page(request: ReportRequest, facts: Facts, comparison: Comparison | None) -> dict[str, object]:

@@ -209,7 +209,7 @@ def _row(facts: Facts, column: str) -> list[Cell | str]:
     cells += [value_cell(facts, side, column) for side in Side]
     is_any = any(facts.value(side, column).n for side in facts.sides_with_band)
     band, kind = facts.band(column) if is_any else None, column.split("_")[0]
-    group_range = facts.group_range_deg(kind) if is_any and column.endswith("_range_deg") else None
+    group_range = facts.group_range_deg(kind) if is_any and column == f"{kind}_range_deg" else None
     if band is not None:
         in_band = band_in_figures(band, 1)
         away = {side: facts.away_sd(side, column) for side in Side}
