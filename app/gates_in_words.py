@@ -55,7 +55,7 @@ WORDS = {
         later("A hip bends to {value} (limit {limit}): so deep, the sensor shows half of the pelvis's tilt.")
     ),
     "pelvis_tilt": GateWords(
-        later("The pelvis tilts by {value} over the stride: up to {limit} that is not told from the sensor's error.")
+        later("The pelvis tilts by {value} over the stride: up to {limit} that is not told from measurement error.")
     ),
     "sign": GateWords(
         later(

@@ -159,7 +159,9 @@ def _apart(found: HipIdentification) -> Fact:
     if found.centres_apart_m is None:
         return Fact(tr("one hip only"))
     least, most = LIMITS.hips_apart_m
-    return Fact(f"{100 * found.centres_apart_m:.0f} cm", not least <= found.centres_apart_m <= most)
+    return Fact(
+        tr("{apart} cm").format(apart=round(100 * found.centres_apart_m)), not least <= found.centres_apart_m <= most
+    )
 
 
 HIP_QUESTIONS: tuple[tuple[str, str, Callable[[HipIdentification], Fact]], ...] = (

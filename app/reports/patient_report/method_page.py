@@ -131,8 +131,7 @@ def _hips_method() -> tuple[str, str]:
         tr(
             "A sensor on the sacrum and those of the thighs tell how each thigh turns in the pelvis, from standing. "
             "Beside optical markers walking hips were 1 to 4° off after removing the mean, deep squats 6° (four "
-            "people, on whom the constants were set); heights read some 5° high. Abduction: 2.5° (1 SD). Rotation "
-            "of the hip is 4 to 10° off and not given."
+            "people, on whom the constants were set); heights read some 5° high. Abduction: 2.5° (1 SD)."
         ),
     )
 

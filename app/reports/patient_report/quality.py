@@ -87,6 +87,8 @@ def _reasons(verdicts: Verdicts) -> Iterator[tuple[Place, GateReason]]:
     for side, leg in verdicts.legs.items():
         yield from ((side, reason) for part in (leg.timing, leg.distance) for reason in part.reasons)
     for side, abduction in verdicts.abduction.items():
+        if verdicts.joint(hip_of(side)).shape.verdict is Verdict.WITHHELD:
+            continue  # with the hip, whose own reason is told
         yield from ((hip_of(side), reason) for reason in abduction.reasons)
     yield from ((None, reason) for reason in verdicts.between.reasons)
 
