@@ -91,7 +91,7 @@ class ComparePage(Themed):
         self._who = NOBODY
         self._chosen: tuple[str, ...] = ()  # letters, before the last was turned
         self._pressed = ""  # the letter that was asked for last
-        self._has_visits = self._is_simulated = self._is_compact = self._is_spacious = False
+        self._has_visits = self._is_simulated = self._is_compact = self._is_spacious = self._has_two_charts = False
         self._has_view, self._is_reading = True, False
         self.comparison: Comparison | None = None
         self.side_rows: tuple[SideRow, ...] = ()
@@ -176,8 +176,8 @@ class ComparePage(Themed):
         was_compact, was_spacious = self._is_compact, self._is_spacious
         self._is_compact, self._is_spacious, self._has_view = is_compact, is_spacious, has_view
         self.view.set_offered(CURVES, is_compact)
-        self.side_charts.set_side_by_side(is_compact and has_two_charts)
-        self.side_charts.set_brief(is_compact)
+        self._has_two_charts = has_two_charts
+        self._fit_side_charts()
         if is_compact != was_compact:
             self.view.choose(CURVES if is_compact else PLOT)
         self.card.set_room(is_compact, is_spacious)
@@ -443,6 +443,7 @@ class ComparePage(Themed):
         self.side_charts.set_band(curves if sides else None)
         verdicts = {joint: part.verdicts.joint(joint) for joint in part.joints}
         self.side_charts.show_cycles(cycles, verdicts, self._is_simulated)
+        self._fit_side_charts()
         told = [row for row in self.side_rows if row.is_told]
         differences = [row.difference for row in told]
         self.error.setText(
@@ -453,6 +454,15 @@ class ComparePage(Themed):
         self._say(said, parts[:1], is_marked=bool(worth))
         title = f"{self._affected_words}: {LETTERS[first]} {MINUS} {LETTERS[second]}"
         self.card.show_sides(self.side_rows, first, second, title, self.conclusion.text())
+
+    def _fit_side_charts(self) -> None:
+        """Three charts are small where there is little room."""
+        charts, is_compact = self.side_charts, self._is_compact
+        is_crowded = not charts.hip.isHidden() and not self._is_spacious
+        is_beside = is_compact and (self._has_two_charts or is_crowded)
+        charts.set_side_by_side(is_beside)
+        charts.set_tight(is_tight=is_crowded, is_narrow=is_crowded and is_beside)
+        charts.set_brief(is_compact or is_crowded)
 
     def _band(self, part: Part) -> tuple[ReferenceCurves | None, frozenset[Side]]:
         """The curves that a part may stand beside, and which of its legs."""

@@ -51,7 +51,7 @@ from core.norms import ReferenceCurves
 from core.samples import FloatArray
 from core.verdicts.model import JointVerdicts, Verdict
 
-LEAST_SIZE, TIGHT_SIZE = (284, 144), (160, 104)  # of two charts, or of three where there is little room
+LEAST_SIZE, TIGHT_SIZE = (284, 144), (160, 100)  # of two charts, or of three where there is little room
 EARLIER = (0, 2)  # the thin one of two curves, as in every comparison
 DOUBTS = {
     NO_ZERO: later("{sides}: no zero. Range and shape hold, height does not."),

@@ -115,7 +115,8 @@ class JointCharts(Themed):
         has_hips = any(joint.is_hip for joint in curves)
         self.hip.setVisible(has_hips)
         for frame in self.frames:
-            frame.chart.set_of_three(has_hips)
+            frame.set_of_three(has_hips)
+        self._on_look_changed()
         self.hip.set_moment_shown(has_hips)  # once is enough, on top
         self.knee.set_moment_shown(not has_hips)
         what = (
@@ -237,7 +238,7 @@ class JointCharts(Themed):
         self.view_changed.emit(self.is_whole, said.format_map(times))
 
     def _on_look_changed(self) -> None:
-        self._column.setSpacing(self._look.theme.px(12))
+        self._column.setSpacing(self._look.theme.px(12 if self.hip.isHidden() else 6))
 
 
 class ChartFrame(Card):
@@ -246,7 +247,7 @@ class ChartFrame(Card):
     def __init__(self, look: ThemeNotifier, chart: AngleChart, kind: JointKind) -> None:
         self.kind = kind
         self.chart = chart
-        self._is_narrow = self._is_wide = False
+        self._is_narrow = self._is_wide = self._is_of_three = False
         self._title = Text(look, title_in_words(kind), size=16, weight=SEMIBOLD)
         self._sign = Text(look, sign_in_words(kind), size=12, tone="ink2")
         self._simulated = Text(look, tr("SIMULATED"), size=12, weight=SEMIBOLD)
@@ -285,6 +286,12 @@ class ChartFrame(Card):
         """Put the readings under the title where they do not fit beside it and the words of a widened axis."""
         self._is_narrow, self._is_wide = is_narrow, is_wide
         self._place()
+
+    def set_of_three(self, is_of_three: bool) -> None:
+        """Let it be lower, where three charts share the room of two."""
+        self._is_of_three = is_of_three
+        self.chart.set_of_three(is_of_three)
+        self._on_look_changed()
 
     def set_moment_shown(self, is_shown: bool) -> None:
         self._moment.setVisible(is_shown)
@@ -353,6 +360,10 @@ class ChartFrame(Card):
 
     def _on_look_changed(self) -> None:
         super()._on_look_changed()
+        if self._is_of_three:
+            side, narrow = self._look.theme.px(16), self._look.theme.px(6)
+            self.column.setContentsMargins(side, narrow, side, narrow)
+            self.column.setSpacing(self._look.theme.px(2))
         self._reserve_room()
 
 
