@@ -124,8 +124,9 @@ def _withheld_columns(recording: RecordingAnalysis, table: str, side: str) -> se
         found |= {f"{joint}_mean_deg"} if _is_withheld(together((curve, said.height))) else set()
         found |= {f"{joint}_shape_deg"} if _is_withheld(curve) else set()
         found |= {f"{joint}_stride_sd_deg"} if _is_withheld(said.shape) else set()
-    for side, of_abduction in recording.verdicts.abduction.items() if table == "cycles" else ():
-        found |= {f"{hip_of(side)}_abduction_mean_deg"} if _is_withheld(of_abduction) else set()
+    for leg in recording.verdicts.abduction if table == "cycles" else ():
+        of_abduction = assessment_of(recording.verdicts, leg, "hip_abduction_peak_deg")
+        found |= {f"{hip_of(leg)}_abduction_mean_deg"} if _is_withheld(of_abduction) else set()
     return found
 
 
