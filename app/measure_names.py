@@ -10,6 +10,8 @@ NAMES = {
     "ankle_push_off_deg": later("Ankle push-off"),
     "ankle_rocker_deg": later("Ankle rocker"),
     "ankle_range_deg": later("Ankle range"),
+    "hip_range_deg": later("Hip range"),
+    "pelvis_obliquity_range_deg": later("Pelvis, obliquity range"),
     "stance_percent": later("Stance"),
     "stride_length_m": later("Stride length"),
     "speed_m_s": later("Walking speed"),

@@ -172,6 +172,9 @@ SENTENCES = {
         "the axis found lies {elevation_deg:.0f}° from horizontal, so flexion did not dominate the motion. Repeat "
         "free motion and bend this joint more."
     ),
+    "turns_contradict": (
+        "the feet tell {feet} turns in this test, the pelvis {pelvis}. Look which is right before the turns are used."
+    ),
     "clock_moved": (
         "the farther sensor's clock is {lag_ms:+.0f} ms off here and was not in the others. It has been "
         "corrected; with one receiver for all sensors it does not happen."

@@ -36,6 +36,8 @@ OF_LEGS = {
     "ankle_push_off_deg": 90.0,
     "ankle_rocker_deg": 90.0,
     "ankle_range_deg": 120.0,
+    "hip_range_deg": 140.0,
+    "pelvis_obliquity_range_deg": 60.0,
     "stance_percent": 95.0,
     "stride_length_m": 3.0,
 }

@@ -14,9 +14,11 @@ from core.body import Side, Site
 from core.samples import BoolArray, FloatArray, ImuBlock, Patient, Recording, RecordingKind, SensorInfo, Session
 from devices.walker_body import Leg, SensorErrors, Tissue, WalkerSettings, make_leg
 from devices.walker_bouts import Bout, CourseStep, PlannedBout, SeatChange, climb, plan_bout, sit, walk_bouts
+from devices.walker_course_pelvis import course_pelvis
 from devices.walker_gait import walk_leg
 from devices.walker_manners import gait_at
 from devices.walker_motion import Z_AXIS, LegMotion, rotation_about, smooth_step, sway_of
+from devices.walker_pelvis import PelvisMotion, pelvis_poses
 from devices.walker_plan import plan_standing
 from devices.walker_sensors import draw_faults, draw_mounting, draw_ride, make_clock, record, sensor_poses
 
@@ -162,10 +164,23 @@ def simulate_course(course: TimedCourse) -> SimulatedCourse:
     legs = {side: make_leg(settings, side) for side in Side}
     mountings = {site: draw_mounting(site, settings.mounting_sd_m, _rng(course, 3, site)) for site in course.sites}
     faults = {site: draw_faults(course.errors, _rng(course, 2, site)) for site in course.sites}
-    walked, truth, duration_s = _walk(course, legs)
+    walked, changes, truth, duration_s = _walk(course, legs)
     stood = _stand(course, legs)
+    of_pelvis: list[tuple[str, PelvisMotion, FloatArray, float]] = []
+    if Site.PELVIS in course.sites:
+        pelvis, stood = course_pelvis(stood, ())
+        of_pelvis.append(("standing", pelvis, np.empty(0), STANDING_S))
+        pelvis, walked = course_pelvis(walked, changes)
+        of_pelvis.append(("course", pelvis, truth.contacts_s, duration_s))
     imu: dict[str, dict[Site, ImuBlock]] = {"standing": {}, "course": {}}
     for site in course.sites:
+        if site is Site.PELVIS:
+            strap, chance = _rng(course, 10, site), _rng(course, 6, site)
+            for name, pelvis, hits_s, lasts_s in of_pelvis:
+                poses = pelvis_poses(pelvis, hits_s, mountings[site], course.tissue, strap, chance)
+                clock = make_clock(settings, site, lasts_s, chance)
+                imu[name][site] = record(settings, site, clock, pelvis.time_s, poses, faults[site], chance)[0]
+            continue
         ride = draw_ride(_rng(course, 4, site))
         for name, motions, lasts_s in (("standing", stood, STANDING_S), ("course", walked, duration_s)):
             chance = _rng(course, 5 if name == "course" else 6, site)
@@ -208,8 +223,10 @@ def _fine_clock(duration_s: float) -> FloatArray:
     return np.arange(-margin, int(np.ceil(duration_s * FINE_HZ)) + margin + 1) / FINE_HZ
 
 
-def _walk(course: TimedCourse, legs: Mapping[Side, Leg]) -> tuple[dict[Side, LegMotion], CourseTruth, float]:
-    """Both legs' poses on the fine clock, what is true of them, and how long the recording lasts."""
+def _walk(
+    course: TimedCourse, legs: Mapping[Side, Leg]
+) -> tuple[dict[Side, LegMotion], list[SeatChange], CourseTruth, float]:
+    """Both legs' poses on the fine clock, when they sit and rise, what is true of them, and how long it lasts."""
     rng = _rng(course, 8)
     start_s = round(rng.uniform(1.6, 3.0) * FINE_HZ) / FINE_HZ
     changes: list[SeatChange] = []
@@ -246,7 +263,7 @@ def _walk(course: TimedCourse, legs: Mapping[Side, Leg]) -> tuple[dict[Side, Leg
     motions = {side: sit(legs[side], motion, changes, phase_rad) for side, motion in motions.items()}
     compass = rotation_about(Z_AXIS, rng.uniform(0.0, 2.0 * np.pi, 1))[0]
     motions = {side: _turned(motion, compass) for side, motion in motions.items()}
-    return motions, replace(_truth(motions, planned, changes), climbs_m=climbs_m), duration_s
+    return motions, changes, replace(_truth(motions, planned, changes), climbs_m=climbs_m), duration_s
 
 
 def _climbed(motions: Mapping[Side, LegMotion], bout: Bout) -> tuple[dict[Side, LegMotion], dict[Side, FloatArray]]:

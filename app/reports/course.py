@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from app.reports.comparison import CADENCE, Part
+from app.reports.comparison import CADENCE, Measure, Part
 from app.reports.visits import by_condition
 from core.body import Joint, Side
 from core.goals import OF_LEGS
@@ -17,6 +17,7 @@ from core.results import Analysis
 from core.samples import Recording
 from core.verdicts.measurement_error import ComparisonKind, Difference, compare, whisker
 from core.verdicts.model import Assessment, GateReason, Verdict, together
+from core.verdicts.quantities import OF_HIPS
 from core.verdicts.stride_means import MeanOfStrides
 
 FORMAT = "gaitwright-course/2"
@@ -126,7 +127,7 @@ def change(
 def _condition(name: str, part: Part) -> CourseCondition:
     figures = [_of_walk(part, column) for column in (SPEED, CADENCE)]
     for side in part.sides:
-        for column in OF_A_LEG:
+        for column in (one for one in OF_A_LEG if one not in OF_HIPS or part.is_measured(side, Measure.of(one))):
             found = part.assessment(side, column)
             figures.append(_figure(column, side, part.mean(side, column, ComparisonKind.VISITS), found))
     withheld = []

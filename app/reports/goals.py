@@ -83,7 +83,9 @@ def _between(goal: Goal, found: Difference | None, verdict: Verdict) -> GoalFigu
 def _figure(goal: Goal, found: MeanOfStrides, assessment: Assessment) -> GoalFigure:
     if not (assessment.is_told and found.n >= MIN_STRIDES_FOR_MEAN and math.isfinite(found.mean)):
         return _nothing(goal, assessment.verdict)
-    is_biased = KINDS[goal.column] is QuantityKind.STANCE and assessment.is_toe_off_biased  # by how much, nobody knows
+    is_biased = (
+        KINDS.get(goal.column) is QuantityKind.STANCE and assessment.is_toe_off_biased
+    )  # by how much, nobody knows
     error = math.nan if is_biased else error_of_visit(goal.column, found)
     return GoalFigure(goal, found.mean, error, assessment.verdict)
 

@@ -16,6 +16,7 @@ from app.reports.patient_report.plain_text import plain, plain_lines
 from app.reports.patient_report.request import ReportRequest
 from app.reports.patient_report.time_page import is_evidence_beside_time
 from app.wording import sentence, tr
+from core.body import JointKind
 from core.calibration.certainty import AXIS_FLOOR_HUMAN_RAD, AXIS_FLOOR_WALKING_RAD
 from core.findings import Finding, Severity
 from core.norms import KNEE_OVERREAD
@@ -43,7 +44,7 @@ def words_page(request: ReportRequest, facts: Facts) -> list[Block]:
         heading(tr("How sure, how measured")),
         *([] if is_evidence_beside_time(facts) else evidence(facts)),
         *_remarks(request, facts),
-        {"kind": "two_columns", "columns": [_texts(method[:3]), _texts(method[3:])]},
+        {"kind": "two_columns", "columns": [_texts(method[:-2]), _texts(method[-2:])]},
         note(" ".join([*_sources(facts), _made(request.made_at)])),
         heading(tr("Clinician's words")),
         {
@@ -124,6 +125,17 @@ def _made(made_at: datetime) -> str:
     return tr("This report was made on {moment}.").format(moment=f"{made_at:%Y-%m-%d %H:%M %z}".strip())
 
 
+def _hips_method() -> tuple[str, str]:
+    return (
+        tr("Hips and pelvis"),
+        tr(
+            "A sensor on the sacrum and those of the thighs tell how each thigh turns in the pelvis, from standing. "
+            "Beside optical markers walking hips were 1 to 4° off after removing the mean, deep squats 6° (four "
+            "people, on whom the constants were set); heights read some 5° high. Abduction: 2.5° (1 SD)."
+        ),
+    )
+
+
 def _method(facts: Facts) -> list[tuple[str, str]]:
     from_walks = [found for found in facts.calibrated.values() if found.axis_source is AxisSource.WALKING]
     motion = (
@@ -141,6 +153,7 @@ def _method(facts: Facts) -> list[tuple[str, str]]:
                 "sensors, speed and stride length too."
             ).format(motion=motion),
         ),
+        *([_hips_method()] if facts.has_joint(JointKind.HIP) else []),
         (
             tr("Which strides"),
             tr(

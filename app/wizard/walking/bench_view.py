@@ -23,7 +23,7 @@ from app.wizard.walking.alignment_card import AlignmentCard, AlignmentRow
 from app.wizard.walking.bench import ChangeEntry
 from app.wizard.walking.bench_differences import BenchDifferences
 from app.wording import tr
-from core.body import Side, ankle_of, knee_of
+from core.body import JointKind, Side
 from core.verdicts.model import worst
 
 LIST, CURVES_LEAST, DIFFERENCES = 284, 308, 312
@@ -72,7 +72,7 @@ class BenchView(Themed):
         self.alignments = AlignmentCard(look, entry)
         self.differences = BenchDifferences(look)
         self._curves = QWidget()
-        self._frames: dict[tuple[Side, bool], ComparedFrame] = {}
+        self._frames: dict[tuple[Side, JointKind], ComparedFrame] = {}
         self._build()
         self.alignments.chosen.connect(self.chosen)
         self.alignments.told.connect(self.told)
@@ -112,27 +112,27 @@ class BenchView(Themed):
     def _show_curves(self, state: BenchState) -> None:
         marks = changes_on_curves(state.found) if state.found is not None else []
         has_one_zero = state.found is None or state.found.has_one_zero_throughout
-        for is_knee in (True, False):
+        for kind in (JointKind.KNEE, JointKind.ANKLE):
             for side in Side:
-                frame = self._frame(side, is_knee)
+                frame = self._frame(side, kind)
                 frame.setVisible(side is state.side)
-            joint = knee_of(state.side) if is_knee else ankle_of(state.side)
+            joint = kind.of(state.side)
             measured = [part for part in state.parts if joint in part.joints]
             curves = [part.curve(joint, is_about_mean=not has_one_zero) for part in measured if part.is_drawn(joint)]
             notes = [withheld_in_words(part, joint) for part in measured if not part.is_drawn(joint)]
-            frame = self._frame(state.side, is_knee)
+            frame = self._frame(state.side, kind)
             frame.chart.deviations = tuple(
-                one for one in marks if one.is_knee is is_knee and one.first.joint is joint and has_one_zero
+                one for one in marks if one.kind is kind and one.first.joint is joint and has_one_zero
             )
             frame.show_verdict(worst(part.verdicts.joint(joint).shape.verdict for part in state.parts))
             frame.show_curves(curves, " ".join(notes), state.is_simulated, is_about_mean=not has_one_zero)
 
-    def _frame(self, side: Side, is_knee: bool) -> ComparedFrame:
-        if (side, is_knee) not in self._frames:
-            frame = ComparedFrame(self._look, ComparedChart(self._look, is_knee=is_knee), side, is_knee)
-            self._frames[side, is_knee] = frame
+    def _frame(self, side: Side, kind: JointKind) -> ComparedFrame:
+        if (side, kind) not in self._frames:
+            frame = ComparedFrame(self._look, ComparedChart(self._look, kind), side, kind)
+            self._frames[side, kind] = frame
             self._curves_column.addWidget(frame, 1)
-        return self._frames[side, is_knee]
+        return self._frames[side, kind]
 
     def _build(self) -> None:
         self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
