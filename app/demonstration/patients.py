@@ -109,7 +109,6 @@ def _knee_replaced(now: datetime.datetime) -> SimulatedPatient:
     goals = (
         Goal("speed_m_s", GoalOf.WALK, 1.1, first, BY),
         Goal("knee_stance_to_swing_deg", GoalOf.LEFT, 55.0, first, BY),
-        Goal("stance_percent", GoalOf.BETWEEN, 3.0, first, BY, is_at_most=True),
     )
     patient = Patient(
         code=code,
@@ -118,7 +117,7 @@ def _knee_replaced(now: datetime.datetime) -> SimulatedPatient:
         height_m=1.66,
         mass_kg=74.0,
         device=tr("left knee replaced"),
-        aids=tr("stick until the third visit"),
+        aids=tr("stick at first"),
         affected_side="left",
         prosthetic_side="none",
         goals=ordered(goals),

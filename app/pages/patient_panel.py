@@ -62,7 +62,8 @@ class PatientPanel(Themed):
         self.goals = Button(look, tr("Goals"), ButtonKind.SECONDARY, Icon.GOAL, height=44)
         self.course = CourseCard(look)
         self.sessions = LineList(look, tr("Sessions"), is_opened_by_click=True, row=SESSION_ROW)
-        self.none_yet = Text(look, tr("No sessions yet."), tone="ink2", wraps=True)
+        self.none_yet = Text(look, tone="ink2", wraps=True)
+        self.say_none_yet(is_awaited=False)
         self.next = Text(look, wraps=True)
         self.go = Button(look, "", ButtonKind.QUIET, Icon.NEXT, height=36)
         self._build()
@@ -92,6 +93,13 @@ class PatientPanel(Themed):
         self.none_yet.setVisible(not lines)
         self.delete_session.setEnabled(self.sessions.line is not None)
         self._on_look_changed()
+
+    def say_none_yet(self, *, is_awaited: bool) -> None:
+        """What stands where sessions would, where there are none; `is_awaited`: they come by themselves."""
+        words = (
+            tr("This patient's visits are being recorded. They appear here.") if is_awaited else tr("No sessions yet.")
+        )
+        self.none_yet.setText(words)
 
     def show_course(self, visits: Sequence[CourseVisit], goals: Sequence[Goal] = ()) -> None:
         """Show the course over visits, which are in order of time; of the condition that is chosen, else of all."""
