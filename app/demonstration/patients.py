@@ -109,6 +109,7 @@ def _knee_replaced(now: datetime.datetime) -> SimulatedPatient:
     goals = (
         Goal("speed_m_s", GoalOf.WALK, 1.1, first, BY),
         Goal("knee_stance_to_swing_deg", GoalOf.LEFT, 55.0, first, BY),
+        Goal("sit_to_stand_time_s", GoalOf.WALK, 15.0, first, BY, is_at_most=True),
     )
     patient = Patient(
         code=code,
