@@ -134,6 +134,12 @@ def course_of(analysis: Analysis, recordings: Sequence[Recording]) -> Course:
     return Course(analysis.affected_side, tuple(conditions))
 
 
+def timed_tests_of(analysis: Analysis, recordings: Sequence[Recording]) -> tuple[CourseCondition, ...]:
+    """The timed tests of a visit alone, without what its walks tell besides."""
+    tested = _tests(analysis, recordings)
+    return tuple(CourseCondition(name, 0, (), tests=tests) for name, tests in tested.items())
+
+
 def _tests(analysis: Analysis, recordings: Sequence[Recording]) -> dict[str, tuple[CourseTest, ...]]:
     """The timed tests by condition, in the order of their definitions."""
     stated = {recording.name: recording.condition for recording in recordings}
