@@ -192,7 +192,7 @@ class TimedControl(QObject):
             if (found := self.earlier.latest(column, condition)) is not None:
                 visit, test = found
                 value = fixed(test.found.mean, decimals(column)) + short_unit(column)
-                said[protocol] = tr("{day}: {value}").format(day=short_date(visit.day), value=value)
+                said[protocol] = f"{short_date(visit.day)}: {value}"
         return said
 
     def next_words(self, label: str) -> str:
