@@ -8,17 +8,15 @@ import datetime
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from app.storage.sessions import NO_LIMITS
 from app.storage.stored import Limits
-from app.storage.unit_of_work import DEMO
 from app.wording import tr
 from core.alignment import AlignmentChange, PartChange, ProsthesisPart, net_of
 from core.body import Side, Site
 from core.goals import Goal, GoalOf, ordered
 from core.samples import Patient
 from core.timed.protocols import TimedProtocol
-from devices.prosthesis_user import BUILT, setting_of
-from devices.prosthesis_user import SPEED_M_S as PROSTHESIS_SPEED_M_S
+from devices.fitted_prosthesis import BUILT, setting_of
+from devices.fitted_prosthesis import SPEED_M_S as PROSTHESIS_SPEED_M_S
 from devices.walker_body import (
     PEOPLE,
     CourseKind,
@@ -32,6 +30,7 @@ from devices.walker_body import (
     WalkerSettings,
 )
 
+DEMO = "DEMO"  # how codes begin that simulated recordings may be kept for, as the library has it
 BY = "Demonstration"
 STRIDES = 14
 AT = datetime.time(11, 20)
@@ -54,7 +53,7 @@ class SimulatedVisit:
     started: datetime.datetime
     settings: WalkerSettings
     told: Mapping[str, ToldOfWalk]
-    limits: Limits = NO_LIMITS
+    limits: Limits = field(default_factory=Limits)
     is_reported: bool = True
 
 

@@ -30,6 +30,8 @@ if TYPE_CHECKING:  # what computes is imported once a demonstration is opened
 
 Keep = Callable[[bytes], None]
 
+PRELOADED = ("app.demonstration.recording", "app.batch.again", "devices.replay")  # and with them all that computes
+
 _log = logging.getLogger(__name__)
 
 
@@ -80,7 +82,7 @@ class FillingDemonstration(QObject):
         self.stop()
         if not state.is_demonstration:
             return
-        from app.batch.executors import PRELOADED, ProcessExecutor, processors
+        from app.batch.executors import ProcessExecutor, processors
         from app.demonstration.patients import simulated_patients
 
         patients = simulated_patients(datetime.datetime.now().astimezone())

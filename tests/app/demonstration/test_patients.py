@@ -10,7 +10,7 @@ from core.alignment import changed_between
 from core.body import Side
 from core.goals import GoalOf
 from core.timed.protocols import TimedProtocol
-from devices.prosthesis_user import BUILT
+from devices.fitted_prosthesis import BUILT
 from devices.walker import FreeMotion, Standing, TimedCourse, Walk
 
 NOW = datetime.datetime(2026, 11, 24, 15, 0, tzinfo=datetime.UTC)
