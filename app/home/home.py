@@ -14,6 +14,7 @@ from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QStackedWidget, 
 from app.home.analysing_again import AnalysingAgain
 from app.home.computing_courses import ComputingCourses
 from app.home.deleting import Deleting
+from app.home.filling_demonstration import FillingDemonstration
 from app.home.goals import GoalsOfPatient
 from app.home.importing import Importing
 from app.home.library_notices import LibraryNotices
@@ -90,6 +91,7 @@ class Home(Themed):
         self.toast = Toast(look, self)
         self.deleting = Deleting(controller, self)
         self.computing = ComputingCourses(controller, self)
+        self.filling = FillingDemonstration(look, controller, self)
         self._build()
         self._connect()
         self._go_to(self.page)
@@ -141,6 +143,7 @@ class Home(Themed):
 
     def finish(self) -> None:
         """Wait for what runs, when the window was closed."""
+        self.filling.stop()
         if self._questions is not None:
             self._questions.finish()
 
@@ -178,6 +181,7 @@ class Home(Themed):
             )
         self.notices.show(state)
         self.recovering.begin(state)
+        self.filling.begin(state)
         self.refresh()
         self._go_to(self.page)
 
@@ -189,6 +193,7 @@ class Home(Themed):
         if self._goals is not None:
             self._goals.forget()
         self.importing.forget()
+        self.filling.stop()
         if self._questions is not None:
             self._questions.forget()
         self._patients.clear()
@@ -248,6 +253,7 @@ class Home(Themed):
         column.setSpacing(0)
         column.addLayout(self._banner_row)
         column.addWidget(self._pages, 1)
+        column.addWidget(self.filling.strip)
         column.addWidget(self.bar)
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
@@ -298,6 +304,8 @@ class Home(Themed):
         self.computing.progressed.connect(self._on_progressed)
         self.computing.left.connect(self._on_computing_left)
         self.computing.told.connect(self.banner.tell)
+        self.filling.changed.connect(self.refresh)
+        self.filling.told.connect(self.banner.tell)
         self.toast.undone.connect(self.deleting.undo)
         self.deleting.done.connect(self._on_deleted)
         self.deleting.undone.connect(self.refresh)
@@ -449,6 +457,8 @@ class Home(Themed):
             return  # somebody may be moving in what stands there
         now = datetime.datetime.now().astimezone()
         self._reading = reading
+        is_awaited = self.patient is not None and self.filling.is_awaited(self.patient.details.code)
+        self.page.panel.say_none_yet(is_awaited=is_awaited)
         self.page.show_sessions(reading.lines(now), reading.visits(now), reading.next_step(now), reading.goals)
 
     def _on_computing_wished(self) -> None:

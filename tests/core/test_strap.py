@@ -14,7 +14,18 @@ from core.results import Method
 from core.samples import ImuBlock, RateKind, Session
 from core.sensors import SensorTracks
 from core.strap import Slip, Turns, slips, turns_over
-from devices.walker import FreeMotion, SimulatedSession, Standing, Tissue, Walk, WalkerSettings, simulate
+from core.timed.protocols import PlannedTest, TimedProtocol
+from devices.walker import (
+    CourseKind,
+    FreeMotion,
+    SimulatedSession,
+    Standing,
+    TimedCourse,
+    Tissue,
+    Walk,
+    WalkerSettings,
+    simulate,
+)
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
@@ -179,3 +190,23 @@ def test_walking_again_slower_is_no_slip_and_a_slip_between_the_walks_is_told(se
 def part_of(block: ImuBlock, from_s: float, to_s: float) -> ImuBlock:
     keep = (block.time_s >= from_s) & (block.time_s < to_s)
     return replace(block, time_s=block.time_s[keep], gyr_rad_s=block.gyr_rad_s[keep], acc_m_s2=block.acc_m_s2[keep])
+
+
+def test_rising_from_a_chair_is_no_slip_and_what_slips_meanwhile_shows_in_the_next_walk() -> None:
+    rises = TimedCourse(CourseKind.SIT_TO_STAND, seed=1, rise_s=1.4, name="rises")
+    recordings = (Standing(), FreeMotion(), Walk(WALK, strides=12), rises, Walk("walk 2", strides=12))
+    session = simulate(WalkerSettings(seed=5, recordings=recordings, tissue=Tissue.SOFT)).session
+
+    def told(test: PlannedTest | None, session: Session) -> list[str]:
+        taken = tuple(replace(one, test=test) if one.name == "rises" else one for one in session.recordings)
+        findings = analyse(replace(session, recordings=taken)).findings
+        return [finding.where.split(",")[0] for finding in findings if finding.key == "strap_slipped"]
+
+    rising = PlannedTest(TimedProtocol.SIT_TO_STAND)
+    assert "rises" in told(None, session)
+    assert told(rising, session) == []
+    *before, last = session.recordings
+    up = before[0].imu[Site.RIGHT_SHANK].acc_m_s2.mean(axis=0)
+    turn = Rotation.from_rotvec(np.deg2rad(20.0) * up / np.linalg.norm(up)).as_matrix()
+    imu = {**last.imu, Site.RIGHT_SHANK: turned(last.imu[Site.RIGHT_SHANK], turn, -np.inf)}
+    assert told(rising, replace(session, recordings=(*before, replace(last, imu=imu)))) == ["walk 2"]

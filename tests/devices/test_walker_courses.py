@@ -7,8 +7,8 @@ import pytest
 
 from core.body import Side, Site
 from core.samples import FloatArray
-from devices.walker_body import NO_ERRORS
-from devices.walker_courses import CourseKind, SimulatedCourse, TimedCourse, draw_course, simulate_course
+from devices.walker_body import NO_ERRORS, CourseKind, TimedCourse
+from devices.walker_courses import SimulatedCourse, draw_course, simulate_course
 
 UP_AND_GO = TimedCourse(CourseKind.UP_AND_GO, seed=3, errors=NO_ERRORS, hesitates=True)
 

@@ -122,7 +122,7 @@ def report_data(request: ReportRequest) -> dict[str, Any]:
     pages: list[list[Block]] = [
         *of_walk,
         words_page(request, facts),
-        *([tests] if (tests := timed_page(request)) else []),
+        *([tests] if (tests := timed_page(request, facts)) else []),
         *([comparison_page(comparison, facts)] if comparison is not None else []),
         *([alone] if (alone := not_compared_page(request)) else []),
         *([course] if (course := trend_page(request.course, condition, facts)) else []),

@@ -1,6 +1,7 @@
 """How does the patient walk now, and what becomes of each walk? Live curves and steps, and the next walk's label."""
 
 import math
+from collections.abc import Mapping
 
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QResizeEvent
@@ -178,8 +179,14 @@ class WalkingPage(Themed):
             if self._has_test:
                 self.timed.setFocus()
 
-    def show_tests(self, protocol: TimedProtocol | None, state: TimedResult | None) -> None:
-        """Show which test comes next, and what came of the latest in the place of the curves; None: it was no test."""
+    def show_tests(
+        self, protocol: TimedProtocol | None, state: TimedResult | None, before: Mapping[TimedProtocol, str]
+    ) -> None:
+        """Show which test comes next, and what came of the latest in the place of the curves; None: it was no test.
+
+        `before`: what came of each at an earlier visit.
+        """
+        self.next.test.show_before(before)
         self.next.test.show_choice(protocol)
         self._has_result = state is not None
         if state is not None:

@@ -162,6 +162,7 @@ class WalkingStep(Step):
 
     def enter(self) -> None:
         self._is_in_sight = True
+        self._timed.earlier.read()
         self._begin_estimator()
         self.page.set_simulated(self._visit.is_simulated)
         self.page.set_hips(bool(self._visit.sensors.hips))
@@ -547,7 +548,7 @@ class WalkingStep(Step):
         self._page.show_walks(rows_of(self._visit), facts)
         self._page.show_bench(self._bench.state() if self._is_bench and ongoing is None else None)
         self._page.show_labels(labels_for(self._visit.patient.details, conditions), self._label)
-        self._page.show_tests(self._timed.protocol, self._timed.result())
+        self._page.show_tests(self._timed.protocol, self._timed.result(), self._timed.before(self._label))
         self.changed.emit()
 
     # what the page and the visit tell
@@ -579,6 +580,7 @@ class WalkingStep(Step):
     @Slot(str)
     def _on_label_chosen(self, label: str) -> None:
         self._label = label
+        self.page.next.test.show_before(self._timed.before(label))
         self.changed.emit()
 
     @Slot()
