@@ -9,11 +9,12 @@ PATIENCE_S = 30.0
 @dataclass(frozen=True, slots=True)
 class Seen:
     """What the application tells of itself: screen and step by their classes, the control that has the focus, and the
-    enabled controls in sight by their accessible names, each with its middle on the display."""
+    enabled controls in sight by their accessible names, each with its middle on the display. All in English, too,
+    whatever is spoken; a word that may stand for several stands there as each of them."""
 
     screen: str
     step: str
-    focus: str
+    focus: tuple[str, ...]
     is_recording: bool
     banner: str
     stopwatch_s: float
@@ -81,8 +82,8 @@ def has_walked(strides: int) -> Callable[[Seen], bool]:
     def counted(seen: Seen) -> bool:
         if not seen.is_recording or "Strides" not in seen.words:
             return False
-        figure = seen.words[seen.words.index("Strides") + 1]
-        return figure.isdigit() and int(figure) >= strides
+        behind = seen.words[seen.words.index("Strides") :]
+        return int(next((words for words in behind if words.isdigit()), 0)) >= strides
 
     return counted
 

@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QApplication, QLabel, QWidget
 from pytestqt.qtbot import QtBot
 
 from app.pages.help_page import HelpPage
-from app.pages.help_topics import Topic, TopicGroup, group_title
+from app.pages.help_topics import Topic, TopicGroup, group_title, topic_title
 from app.theme import ThemeNotifier
 from tests.app.watchdog import Watchdog
 

@@ -1,0 +1,62 @@
+"""What a tour reads on the screen, told in English whatever language is spoken: its stops are written once.
+
+Used by `tour_inside.py`.
+"""
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+from babel.messages.pofile import read_po
+
+CATALOGUES = Path(__file__).resolve().parents[1] / "resources" / "locale"
+FIELD = re.compile(r"\{(\w+)(?::[^}]*)?\}")
+
+
+@dataclass(frozen=True, slots=True)
+class FieldMessage:
+    """A message with fields: what it looks like where they are filled in, their names in its order, and in English."""
+
+    pattern: re.Pattern[str]
+    names: tuple[str, ...]
+    english: str
+
+
+def in_english(said: str, language: str) -> tuple[str, ...]:
+    """Give all that `said` may mean, as it stands there first: one word may stand for several English ones."""
+    return tuple(dict.fromkeys([said, *_meant(said, language)])) if language != "en" else (said,)
+
+
+def _meant(said: str, language: str) -> Iterator[str]:
+    whole, with_fields = _catalogue(language)
+    yield from whole.get(said, ())
+    first, comma, rest = said.partition(", ")  # a name with its unit and state behind it
+    if comma:
+        yield from (f"{one}, {rest}" for one in _meant(first, language))
+    for message in with_fields:
+        if found := message.pattern.fullmatch(said):
+            told = {
+                name: next(_meant(one, language), one) for name, one in zip(message.names, found.groups(), strict=True)
+            }
+            text, *rest = FIELD.split(message.english)
+            yield text + "".join(told.get(name, "") + after for name, after in zip(rest[::2], rest[1::2], strict=True))
+
+
+@cache
+def _catalogue(language: str) -> tuple[dict[str, list[str]], tuple[FieldMessage, ...]]:
+    """Read whole messages, and those with fields that say more than these."""
+    whole: dict[str, list[str]] = {}
+    with_fields = []
+    with (CATALOGUES / language / "LC_MESSAGES" / "gaitwright.po").open("rb") as file:
+        messages = [(one.id, one.string) for one in read_po(file) if one.id]
+    for one, two in messages:
+        forms = zip([one] if isinstance(one, str) else one, [two] if isinstance(two, str) else two or (), strict=False)
+        for english, other in forms:
+            whole.setdefault(other, []).append(english)
+            text, *rest = FIELD.split(other)
+            if rest and re.search(r"\w{4,}", FIELD.sub(" ", other)):
+                pattern = re.escape(text) + "".join(f"(.+){re.escape(after)}" for after in rest[1::2])
+                with_fields.append(FieldMessage(re.compile(pattern), tuple(rest[::2]), english))
+    return whole, tuple(with_fields)
