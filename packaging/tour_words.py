@@ -35,6 +35,9 @@ def _meant(said: str, language: str) -> Iterator[str]:
     first, comma, rest = said.partition(", ")  # a name with its unit and state behind it
     if comma:
         yield from (f"{one}, {rest}" for one in _meant(first, language))
+    several = re.split(r"(?<=\.) ", said)
+    if len(several) > 1:
+        yield " ".join(next(_meant(one, language), one) for one in several)
     for message in with_fields:
         if found := message.pattern.fullmatch(said):
             told = {
@@ -55,8 +58,8 @@ def _catalogue(language: str) -> tuple[dict[str, list[str]], tuple[FieldMessage,
         forms = zip([one] if isinstance(one, str) else one, [two] if isinstance(two, str) else two or (), strict=False)
         for english, other in forms:
             whole.setdefault(other, []).append(english)
-            text, *rest = FIELD.split(other)
+            before, *rest = FIELD.split(other)
             if rest and re.search(r"\w{4,}", FIELD.sub(" ", other)):
-                pattern = re.escape(text) + "".join(f"(.+){re.escape(after)}" for after in rest[1::2])
+                pattern = re.escape(before) + "".join(f"(.+){re.escape(after)}" for after in rest[1::2])
                 with_fields.append(FieldMessage(re.compile(pattern), tuple(rest[::2]), english))
     return whole, tuple(with_fields)
