@@ -22,7 +22,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -35,18 +35,20 @@ if TYPE_CHECKING:
 
 HELP = Path(__file__).resolve().parents[1] / "resources" / "help"
 PICTURES = HELP / "pictures"
-MANUAL = {
-    "27-home-again": "home",
-    "07-patient-typed": "patient",
-    "07c-placed": "sensors",
-    "08b-standing": "stand-still",
-    "09-free-motion": "free-motion",
-    "10b-walking": "walking",
-    "13a-results": "results",
-    "13e-compare": "compare",
-    "26a-report": "report",
-    "34-b-against-a": "bench",
-    "53-running": "timed-test",
+MANUAL = {  # which stop of a tour becomes which picture
+    "keyboard": {
+        "07-patient-typed": "patient",
+        "07c-placed": "sensors",
+        "08b-standing": "stand-still",
+        "09-free-motion": "free-motion",
+        "10b-walking": "walking",
+        "13a-results": "results",
+        "13e-compare": "compare",
+        "26a-report": "report",
+        "27-home-again": "home",
+    },
+    "bench": {"34-b-against-a": "bench"},
+    "timed": {"53-running": "timed-test"},
 }
 PROGRAMS = {"Xvfb": "xvfb", "openbox": "openbox", "xdotool": "xdotool", "convert": "imagemagick"}  # Debian's packages
 SCREEN = "2000x1200x24"
@@ -132,18 +134,18 @@ def main(arguments: list[str]) -> None:
             except TourError as end:
                 sys.exit(str(end))
         if wanted.manual:
-            _give_pictures(wanted.out, PICTURES if wanted.lang == "en" else HELP / wanted.lang / "pictures")
+            _give_pictures(
+                wanted.out, MANUAL.get(tour, {}), PICTURES if wanted.lang == "en" else HELP / wanted.lang / "pictures"
+            )
         print(f"{len(TOURS[tour])} stops by {tour} alone, {stopwatch_s:.0f} s of the application's stopwatch.")
 
 
-def _give_pictures(out: Path, pictures: Path) -> None:
+def _give_pictures(out: Path, wanted: Mapping[str, str], pictures: Path) -> None:
     """With a palette of 256 colours, more than the pages have, they are a third as large."""
     pictures.mkdir(parents=True, exist_ok=True)
-    for stop, picture in MANUAL.items():
+    for stop, picture in wanted.items():
         for theme, suffix in (("light", ""), ("dark", "-dark")):
             taken, given = out / f"{theme}-{WINDOW}" / f"{stop}.png", pictures / f"{picture}{suffix}.png"
-            if not taken.exists():  # of another tour
-                continue
             subprocess.run(["convert", taken, "-dither", "None", "-colors", "256", f"PNG8:{given}"], check=True)
 
 

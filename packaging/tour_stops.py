@@ -72,6 +72,10 @@ def says(words: str) -> Callable[[Seen], bool]:
     return lambda seen: seen.says(words)
 
 
+def shows_pages(seen: Seen) -> bool:
+    return at_step("ReportStep")(seen) and any(words.endswith(" pages") for words in seen.words)
+
+
 def is_recording(seen: Seen) -> bool:
     return seen.is_recording
 
@@ -204,7 +208,7 @@ SECOND_BY_KEYS: tuple[Stop, ...] = (  # the same patient comes back: nothing is 
     Stop("24d-keep", offers("Keep 1"), ("press k",), lingers_s=1.0),
     Stop("24e-kept", offers("Results"), ("press Return",), lingers_s=1.0),
     Stop("25a-results", offers("Legs", "Data"), ("press ctrl+7",), lingers_s=2.0, patience_s=60.0),
-    Stop("26a-report", at_step("ReportStep"), ("press ctrl+s",), lingers_s=2.0),
+    Stop("26a-report", shows_pages, ("press ctrl+s",), lingers_s=2.0, patience_s=60.0),
     Stop("26b-where", offers("Save"), ("press ctrl+a", "type {home}/second", "press Return"), lingers_s=1.0),
     Stop("26c-saved", says("Saved as"), ("to Step 7", "press Down", "press Return"), lingers_s=1.0),
     Stop("27-home-again", offers("New session"), lingers_s=2.0),
@@ -284,7 +288,7 @@ TIMED: tuple[Stop, ...] = (  # ten metres, timed by the motion, then sit to stan
     *KEYBOARD[:BENCH_UP_TO],
     Stop("51-choose", offers("Barefoot"), ("press t",), lingers_s=1.0, patience_s=90.0),
     Stop("52-chosen", says("Next: 10-metre walk"), ("press space",), lingers_s=1.0),
-    Stop("53-running", is_recording, lingers_s=6.0, patience_s=60.0),
+    Stop("53-running", is_recording, lingers_s=8.0, patience_s=60.0),
     Stop("54-over", lambda seen: not seen.is_recording, ("press k",), lingers_s=2.0, patience_s=60.0),
     Stop("55-kept", offers("Results"), (*pressed("t", 4), "press space"), lingers_s=2.0),
     Stop("56-seated", is_recording, ("press Escape",), lingers_s=4.0, patience_s=60.0),

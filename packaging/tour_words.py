@@ -43,8 +43,8 @@ def _meant(said: str, language: str) -> Iterator[str]:
             told = {
                 name: next(_meant(one, language), one) for name, one in zip(message.names, found.groups(), strict=True)
             }
-            text, *rest = FIELD.split(message.english)
-            yield text + "".join(told.get(name, "") + after for name, after in zip(rest[::2], rest[1::2], strict=True))
+            parts = FIELD.split(message.english)  # texts, and between them the fields' names
+            yield "".join(told.get(part, "") if k % 2 else part for k, part in enumerate(parts))
 
 
 @cache
@@ -55,8 +55,10 @@ def _catalogue(language: str) -> tuple[dict[str, list[str]], tuple[FieldMessage,
     with (CATALOGUES / language / "LC_MESSAGES" / "gaitwright.po").open("rb") as file:
         messages = [(one.id, one.string) for one in read_po(file) if one.id]
     for one, two in messages:
-        forms = zip([one] if isinstance(one, str) else one, [two] if isinstance(two, str) else two or (), strict=False)
-        for english, other in forms:
+        forms = [(one,), (two,)] if isinstance(one, str) else [tuple(one), tuple(two or ())]
+        for english, other in zip(*forms, strict=False):
+            if not isinstance(other, str):
+                continue
             whole.setdefault(other, []).append(english)
             before, *rest = FIELD.split(other)
             if rest and re.search(r"\w{4,}", FIELD.sub(" ", other)):

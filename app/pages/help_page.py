@@ -31,7 +31,7 @@ from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD, Text
 from app.widgets.themed import Themed
 from app.wording import tr, tr_n
 
-LIST_WIDTH = 248
+LIST_WIDTH = 264
 ROW = 44
 PADDING = 12
 SHORTEST_SEARCH = 2

@@ -263,6 +263,7 @@ class HelpReader(QTextBrowser):
             level, is_in_table = block.blockFormat().headingLevel(), cursor.currentTable() is not None
             form = QTextBlockFormat(block.blockFormat())
             height = LINE_PERCENT if not level and not is_in_table else TIGHT_LINE_PERCENT
+            height = 100 if _has_picture(block) else height
             form.setLineHeight(height, QTextBlockFormat.LineHeightTypes.ProportionalHeight.value)
             form.setTopMargin(theme.px(20) if level > 1 else 0)
             form.setBottomMargin(0 if is_in_table else theme.px(4 if block.textList() is not None else 10))
@@ -271,18 +272,21 @@ class HelpReader(QTextBrowser):
             block = block.next()
 
     def _set_letters(self, block: QTextBlock, heading: QFont | None) -> None:
-        """Give a heading its size, and what is bold the weight that is bundled."""
+        """Give a heading its size, what is bold the weight that is bundled, and a link its line."""
         pieces, parts = [], block.begin()
         while not parts.atEnd():
             piece = parts.fragment()
-            pieces.append((piece.position(), piece.length(), piece.charFormat().fontWeight()))
+            form = piece.charFormat()
+            pieces.append((piece.position(), piece.length(), form.fontWeight() > MEDIUM, form.isAnchor()))
             parts += 1
         cursor = QTextCursor(self.document())
-        for start, length, weight in pieces:
-            if heading is None and weight <= MEDIUM:
+        for start, length, is_bold, is_link in pieces:
+            if heading is None and not is_bold and not is_link:
                 continue
             letters = QTextCharFormat()
-            letters.setFont(heading or self._look.theme.font(BODY, SEMIBOLD))
+            if heading is not None or is_bold:
+                letters.setFont(heading or self._look.theme.font(BODY, SEMIBOLD))
+            letters.setFontUnderline(is_link)
             cursor.setPosition(start)
             cursor.setPosition(start + length, QTextCursor.MoveMode.KeepAnchor)
             cursor.mergeCharFormat(letters)
@@ -323,3 +327,13 @@ class HelpReader(QTextBrowser):
         self._set_text()
         self.mark(self._wanted)
         self.verticalScrollBar().setValue(at)
+
+
+def _has_picture(block: QTextBlock) -> bool:
+    """Whether a picture stands in the block, whose line is as high as it."""
+    parts = block.begin()
+    while not parts.atEnd():
+        if parts.fragment().charFormat().isImageFormat():
+            return True
+        parts += 1
+    return False
