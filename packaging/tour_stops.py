@@ -238,6 +238,14 @@ def pressed(key: str, times: int) -> tuple[str, ...]:
     return (f"press {key}",) * times
 
 
+def part_chosen(number: int) -> tuple[str, ...]:
+    """By its place in the list and not by its first letter, which every language has another of."""
+    return ("to Part", "press Home", *pressed("Down", number))
+
+
+FRONT_SCREW, KNEE_UNIT, PYLON = 0, 9, 10
+
+
 BENCH: tuple[Stop, ...] = (  # three alignments of one prosthesis, by keys
     *(
         replace(stop, does=(*stop.does, *PROSTHETIC)) if stop.name == "06-patient" else stop
@@ -249,9 +257,9 @@ BENCH: tuple[Stop, ...] = (  # three alignments of one prosthesis, by keys
         "32-a-kept",
         offers("A again"),
         (
-            *("to Part", "press p", "to Height", *pressed("plus", 3), "to Part", "press f"),
+            *(*part_chosen(PYLON), "to Height", *pressed("plus", 3), *part_chosen(FRONT_SCREW)),
             *("to Angle", *pressed("plus", 4), "to Turn", *pressed("plus", 4), "to Shift", *pressed("plus", 4)),
-            *("to Part", "press k", "to Turn", *pressed("plus", 12)),
+            *(*part_chosen(KNEE_UNIT), "to Turn", *pressed("plus", 12)),
         ),
     ),
     Stop("33-b-told", offers("Walk with B"), ("press space",), lingers_s=1.0),
@@ -260,7 +268,7 @@ BENCH: tuple[Stop, ...] = (  # three alignments of one prosthesis, by keys
     Stop(
         "35-b-kept",
         offers("B again"),
-        ("to Part", "press k", "to Angle", *pressed("plus", 8), "press space"),
+        (*part_chosen(KNEE_UNIT), "to Angle", *pressed("plus", 8), "press space"),
         lingers_s=1.0,
     ),
     Stop("35a-c-walking", has_walked(STRIDES), ("press space",), patience_s=60.0),
@@ -276,9 +284,9 @@ BENCH: tuple[Stop, ...] = (  # three alignments of one prosthesis, by keys
         says("Saved as"),
         lingers_s=2.0,
         leaves=(
-            ("results*/**/alignments.csv", "Alignment B,Alignment A,foot_front_screw,2,0.5,4,"),
-            ("results*/**/alignments.csv", "Alignment B,Alignment A,knee_unit,,1.5,,"),
-            ("results*/**/alignments.csv", "Alignment C,Alignment B,knee_unit,4,,,"),
+            ("results*/**/alignments.csv", " A,foot_front_screw,2,0.5,4,"),
+            ("results*/**/alignments.csv", " A,knee_unit,,1.5,,"),
+            ("results*/**/alignments.csv", " B,knee_unit,4,,,"),
             ("results*/**/summary.json", "foot_front_screw"),
             ("results*/**/differences.csv", "foot_heel_rise_deg"),
         ),

@@ -32,9 +32,10 @@ def in_english(said: str, language: str) -> tuple[str, ...]:
 def _meant(said: str, language: str) -> Iterator[str]:
     whole, with_fields = _catalogue(language)
     yield from whole.get(said, ())
-    first, comma, rest = said.partition(", ")  # a name with its unit and state behind it
-    if comma:
-        yield from (f"{one}, {rest}" for one in _meant(first, language))
+    for between in (": ", ", "):  # a name with its value, or its unit and state, behind it
+        first, found_between, rest = said.partition(between)
+        if found_between:
+            yield from (f"{one}{between}{rest}" for one in _meant(first, language))
     several = re.split(r"(?<=\.) ", said)
     if len(several) > 1:
         yield " ".join(next(_meant(one, language), one) for one in several)
