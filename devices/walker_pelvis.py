@@ -123,7 +123,13 @@ def hip_m(pelvis: PelvisMotion, side: Side) -> FloatArray:
 
 
 def hung(motion: LegMotion, at_m: FloatArray) -> LegMotion:
-    """A leg carried to where its hip is (n, 3), m."""
+    """A leg carried to where its hip is.
+
+    Parameters
+    ----------
+    at_m : (n, 3)
+        Where the hip's centre is, m, earth axes.
+    """
     return replace(motion, origins_m=motion.origins_m + (at_m - motion.origins_m[0]))
 
 

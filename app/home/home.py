@@ -72,7 +72,7 @@ class Home(Themed):
     def __init__(self, look: ThemeNotifier, controller: LibraryController, settings: Settings) -> None:
         super().__init__()
         self._look, self._controller, self._settings = look, controller, settings
-        self._state: OpenedState | None = None
+        self.state: OpenedState | None = None
         self._patients: dict[UUID, stored.StoredPatient] = {}
         self._sessions_of: UUID | None = None  # the patient whose sessions are shown, or being read
         self._reading: PatientReading | None = None
@@ -154,8 +154,8 @@ class Home(Themed):
         made.restored.connect(self.refresh)
         made.moved.connect(self._on_moved)
         self.deleting.undone.connect(made.read_deleted)
-        if self._state is not None:
-            made.show_library(self._state)
+        if self.state is not None:
+            made.show_library(self.state)
         return made
 
     def _make_questions(self) -> Questions:
@@ -168,7 +168,7 @@ class Home(Themed):
 
     def show_library(self, state: OpenedState) -> None:
         """Show a library that was just opened, and bring back what was being recorded when it was last in use."""
-        self._state = state
+        self.state = state
         self.banner.hide()
         self.page.search.clear()
         self.page.forget_patients()
@@ -187,7 +187,7 @@ class Home(Themed):
 
     def clear(self) -> None:
         """Keep nothing of any patient, for whoever comes next."""
-        self._state = None
+        self.state = None
         if self._again is not None:
             self._again.page.forget()
         if self._goals is not None:
@@ -207,7 +207,7 @@ class Home(Themed):
         self.page.show_patient("", "")
 
     def _on_moved(self, state: OpenedState) -> None:
-        self._state = state
+        self.state = state
         self._show()
         self.refresh()
 
@@ -359,7 +359,7 @@ class Home(Themed):
     def _show(self) -> None:
         """Show what can be done from the page in sight."""
         current = self.current
-        is_demonstration = self._state is not None and self._state.is_demonstration
+        is_demonstration = self.state is not None and self.state.is_demonstration
         states = [current is self.page or self._has_goals, False, current is self.importing.page, self._is_asking]
         icons = (Icon.HOME, Icon.BACK if is_demonstration else Icon.PLAY, Icon.IMPORT, Icon.GROUPS)
         names = (
@@ -373,7 +373,7 @@ class Home(Themed):
             for name, is_current, icon in zip(names, states, icons, strict=True)
         )
         self.rail.show_rows(tuple(rows))
-        is_shared = self._state is not None and self._state.library.shared is not None
+        is_shared = self.state is not None and self.state.library.shared is not None
         note = tr("Everything stays on this computer, encrypted.")
         if is_shared:
             note = tr("The clinic's library, shared by its stations.")
@@ -548,7 +548,7 @@ class Home(Themed):
         elif number == QUESTIONS:
             self._go_to(self.questions.page)
             self.questions.begin()
-        elif self._state is not None and self._state.is_demonstration:
+        elif self.state is not None and self.state.is_demonstration:
             self.own_library_wished.emit()
         else:
             self.demonstration_wished.emit()

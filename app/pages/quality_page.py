@@ -46,7 +46,7 @@ class QualityPage(Themed):
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look = look
-        self._lines: tuple[QualityLine, ...] = ()
+        self.lines: tuple[QualityLine, ...] = ()
         self._can_repeat = False
         self._line_cards: list[LineCard] = []
         self.first = Text(look, size=SENTENCE_PX, weight=SEMIBOLD, wraps=True)
@@ -107,8 +107,8 @@ class QualityPage(Themed):
         self._order_card.setVisible(bool(found.in_order))
         self.strides.setText(strides)
         self.figure.show_joints(joints, worn)
-        if (found.lines, can_repeat) != (self._lines, self._can_repeat):
-            self._lines, self._can_repeat = found.lines, can_repeat
+        if (found.lines, can_repeat) != (self.lines, self._can_repeat):
+            self.lines, self._can_repeat = found.lines, can_repeat
             self._fill()
 
     def show_engineering(
@@ -189,7 +189,7 @@ class QualityPage(Themed):
             self._list.removeWidget(card)
             card.hide()
             card.deleteLater()
-        self._line_cards = [LineCard(self._look, line, can_repeat=self._can_repeat) for line in self._lines]
+        self._line_cards = [LineCard(self._look, line, can_repeat=self._can_repeat) for line in self.lines]
         for number, card in enumerate(self._line_cards):
             if card.repeat is not None:
                 card.repeat.clicked.connect(partial(self.repeat_wished.emit, card.side))

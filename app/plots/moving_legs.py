@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt, QTimer, Signal
-from PySide6.QtGui import QColor, QHideEvent, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QPolygonF
+from PySide6.QtGui import QColor, QHideEvent, QKeyEvent, QMouseEvent, QPainter, QPaintEvent
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy
 
 from app.icons import Icon
@@ -14,6 +14,7 @@ from app.theme import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.chip import CHIP, LETTERS, paint_chip
+from app.widgets.limb import limb_outline
 from app.widgets.segmented import Segmented
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.themed import Themed
@@ -227,7 +228,7 @@ class _LegsPicture(Themed):
         top = QPointF(hip.x() + up * math.sin(tilt_rad), hip.y() - up * math.cos(tilt_rad))
         painter.setPen(theme.pen(theme.colours.control, 2))
         painter.setBrush(QColor(theme.colours.track))
-        painter.drawPolygon(_segment(hip, top, scale * PELVIS_HALF_M, scale * PELVIS_HALF_M))
+        painter.drawPolygon(limb_outline(hip, top, scale * PELVIS_HALF_M, scale * PELVIS_HALF_M))
 
     def _paint_leg(self, painter: QPainter, side: Side, points: list[QPointF], scale: float) -> None:
         theme = self._look.theme
@@ -235,7 +236,7 @@ class _LegsPicture(Themed):
         painter.setBrush(theme.pale(side))
         for k, (first, last) in enumerate(HALF_WIDTHS_M):
             if all(math.isfinite(one.x()) for one in points[k : k + 2]):
-                painter.drawPolygon(_segment(points[k], points[k + 1], scale * first, scale * last))
+                painter.drawPolygon(limb_outline(points[k], points[k + 1], scale * first, scale * last))
         painter.setBrush(QColor(theme.colours.surface))
         for joint in points[:3]:
             if math.isfinite(joint.x()):
@@ -291,14 +292,3 @@ class _LegsPicture(Themed):
     def _on_look_changed(self) -> None:
         self.updateGeometry()
         self.update()
-
-
-def _segment(first: QPointF, last: QPointF, wide: float, narrow: float) -> QPolygonF:
-    """The outline of a segment: round at both ends, as wide as its halves."""
-    way = math.atan2(last.y() - first.y(), last.x() - first.x())
-    outline = []
-    for centre, radius, begin in ((first, wide, way + math.pi / 2), (last, narrow, way - math.pi / 2)):
-        for k in range(13):
-            turn = begin + math.pi * k / 12
-            outline.append(QPointF(centre.x() + radius * math.cos(turn), centre.y() + radius * math.sin(turn)))
-    return QPolygonF(outline)

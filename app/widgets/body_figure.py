@@ -67,6 +67,11 @@ def paint_legs(
     painter.restore()
 
 
+def placing_of_legs(rect: QRectF) -> QTransform:
+    """From the drawing to the screen, as `paint_legs` draws the legs into `rect` where there is room for the pelvis."""
+    return _placing(LEGS, rect, is_from_behind=False)
+
+
 class BodyFigure(QWidget):
     """The whole person with large R and L, or the legs alone with their joints marked."""
 

@@ -66,7 +66,7 @@ class SensorStrip(Themed):
             if not self._later.isActive():
                 self._later.start(rest_ms)
         else:
-            self._show(dict(tiles))
+            self.show_at_once(dict(tiles))
 
     def set_compact(self, is_compact: bool) -> None:
         if is_compact != self._is_compact:
@@ -116,7 +116,7 @@ class SensorStrip(Themed):
             for text in self.painted_texts():
                 text.paint(painter, theme.colours)
 
-    def _show(self, tiles: dict[Site, SensorTile]) -> None:
+    def show_at_once(self, tiles: dict[Site, SensorTile]) -> None:
         before = self._tiles
         self._tiles, self._waiting = tiles, None
         self._since.restart()
@@ -232,7 +232,7 @@ class SensorStrip(Themed):
 
     def _on_later(self) -> None:
         if self._waiting is not None:
-            self._show(self._waiting)
+            self.show_at_once(self._waiting)
 
     def _on_look_changed(self) -> None:
         self._arrange()

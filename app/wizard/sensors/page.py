@@ -86,8 +86,8 @@ class SensorsPage(Themed):
         self._flash_end = QTimer(self)
         self._flash_end.setSingleShot(True)
         self._flash_end.setInterval(FLASH_MS)
-        self._title = Text(look, size=26, weight=SEMIBOLD, wraps=True)
-        self._subtitle = Text(look, "", 15, tone="ink2", wraps=True)
+        self.title = Text(look, size=26, weight=SEMIBOLD, wraps=True)
+        self.subtitle = Text(look, "", 15, tone="ink2", wraps=True)
         self._name(has_pelvis=False)
         self.sources = Choice(look, tr("Source of the sensors"))
         self.sources.setPlaceholderText(tr("Choose a source"))
@@ -153,7 +153,7 @@ class SensorsPage(Themed):
         self._is_compact = is_compact
         self.ways.set_brief(is_compact)
         self.list.set_narrow(is_compact)
-        self._subtitle.setVisible(not is_compact)
+        self.subtitle.setVisible(not is_compact)
         self._fit()
 
     def set_from_behind(self, is_from_behind: bool) -> None:
@@ -262,7 +262,7 @@ class SensorsPage(Themed):
         """Wear the selected sensor at place 1 to 7; returns whether there is such a place and a sensor."""
         if not self.list.selection or not 1 <= number <= len(Site) or self._in_sight is not self._lists:
             return False
-        self._assign(self.list.selection, list(Site)[number - 1])
+        self.assign(self.list.selection, list(Site)[number - 1])
         return True
 
     def identify_selected(self) -> bool:
@@ -288,8 +288,8 @@ class SensorsPage(Themed):
 
     def _build(self) -> None:
         words = QVBoxLayout()
-        words.addWidget(self._title)
-        words.addWidget(self._subtitle)
+        words.addWidget(self.title)
+        words.addWidget(self.subtitle)
         self._words = words
         self._head = QHBoxLayout()
         self._head.addLayout(words, 1)
@@ -323,10 +323,10 @@ class SensorsPage(Themed):
         self.nothing.chosen.connect(self.source_chosen)
         self.searching.stop.clicked.connect(self.stop_pressed)
         self.ways.chosen.connect(self._on_way_chosen)
-        self.places.dropped.connect(self._assign)
+        self.places.dropped.connect(self.assign)
         self.places.hovered.connect(self._on_hovered)
         self.places.pressed.connect(self._on_place_pressed)
-        self.list.assigned.connect(self._assign)
+        self.list.assigned.connect(self.assign)
         self.list.selected.connect(self._on_selected)
         self.list.identify_pressed.connect(self.identify_pressed)
         self.list.reconnect_pressed.connect(self.reconnect_pressed)
@@ -345,7 +345,7 @@ class SensorsPage(Themed):
         if had_focus:
             self.focus()
 
-    def _assign(self, sensor: str, site: Site | None) -> None:
+    def assign(self, sensor: str, site: Site | None) -> None:
         before = next((one.site for one in self._sensors if one.name == sensor), None)
         if site is None and before is not None:
             self._bared.add(before)
@@ -407,8 +407,8 @@ class SensorsPage(Themed):
         six, seven = tr("Six sensors, any way round"), tr("Seven sensors, any way round")
         legs = tr("Strap them on thigh, shank and foot. Direction does not matter.")
         pelvis = tr("On thigh, shank and foot, and on the sacrum, not on a waistband. Direction does not matter.")
-        self._title.setText(seven if has_pelvis else six)
-        self._subtitle.setText(pelvis if has_pelvis else legs)
+        self.title.setText(seven if has_pelvis else six)
+        self.subtitle.setText(pelvis if has_pelvis else legs)
 
     def _fit(self) -> None:
         """Lay figure and list side by side while both have room."""
@@ -457,7 +457,7 @@ class SensorsPage(Themed):
             self._wanted_next = site
             self._refresh()
         elif self.list.selection:
-            self._assign(self.list.selection, site)
+            self.assign(self.list.selection, site)
 
     def _on_selected(self, name: str) -> None:
         """Bring the row into sight that keys mean now."""

@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QVBoxLayout, QWidget
 
 from app.icons import Icon
@@ -60,7 +59,7 @@ class BenchView(Themed):
 
     def __init__(self, look: ThemeNotifier, entry: ChangeEntry) -> None:
         super().__init__()
-        self._look, self._is_compact = look, False
+        self._look, self._is_compact, self._room = look, False, 0
         self._mark = IconMark(look, Icon.WARNING, size=24)
         self.first = Text(look, size=20, weight=SEMIBOLD, wraps=True)
         self.then = Text(look, tone="ink2", wraps=True)
@@ -107,6 +106,15 @@ class BenchView(Themed):
         self._is_compact = is_compact
         self.alignments.set_compact(is_compact)
         self._on_look_changed()
+        self._arrange()
+
+    def fit(self, room: int) -> None:
+        """Arrange the cards for this width, px of the screen.
+
+        It is the page's and not the bench's own: inside the page's scroll area the cards widen the bench, so an
+        arrangement that went by its width could widen or narrow it into the other one, and back, without end.
+        """
+        self._room = room
         self._arrange()
 
     def _show_curves(self, state: BenchState) -> None:
@@ -162,7 +170,7 @@ class BenchView(Themed):
         list_width = max(px(LIST), self.alignments.minimumSizeHint().width())
         curves = max([px(CURVES_LEAST), *(frame.minimumSizeHint().width() for frame in self.frames)])
         changes = max(px(DIFFERENCES), self.differences.needed)
-        is_tabbed = self._is_compact or list_width + curves + changes + 2 * px(BETWEEN) > self.width()
+        is_tabbed = self._is_compact or list_width + curves + changes + 2 * px(BETWEEN) > self._room
         self.tabs.setVisible(is_tabbed)
         self._curves_column.setDirection(ACROSS if is_tabbed else DOWN)
         cards: tuple[tuple[str, QWidget, int], ...] = (
@@ -175,10 +183,6 @@ class BenchView(Themed):
             is_fixed = width and not is_tabbed
             card.setMinimumWidth(width if is_fixed else 0)
             card.setMaximumWidth(width if is_fixed else ANY_WIDTH)
-
-    def resizeEvent(self, event: QResizeEvent) -> None:
-        super().resizeEvent(event)
-        self._arrange()
 
     def _on_look_changed(self) -> None:
         px = self._look.theme.px

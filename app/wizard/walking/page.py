@@ -344,6 +344,7 @@ class WalkingPage(Themed):
         top = px(MARGIN_COMPACT if self._is_compact else 16)
         aside = max(margin, (self.width() - px(MOST_WIDTH)) // 2)
         self._column.setContentsMargins(aside, top, aside, top)
+        self.bench.fit(self.width() - 2 * aside - self._scroll.verticalScrollBar().sizeHint().width())
 
     def _name_next(self) -> None:
         """Say which letter the next walk gets: the one of its label, or the next."""

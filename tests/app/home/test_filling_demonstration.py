@@ -186,9 +186,9 @@ def test_who_leaves_the_demonstration_ends_what_goes_on_for_it(
 
 def test_a_library_of_ones_own_is_filled_by_nobody(qtbot: QtBot, home: Home) -> None:
     home.filling.stop()
-    state = home._state
+    state = home.state
     assert state is not None
-    own = OpenedLibrary(state.library.library, state.library.folder, object())  # type: ignore[arg-type]  # any key
+    own = OpenedLibrary(state.library.library, state.library.folder, object())  # type: ignore[arg-type]  # any key will do here
     HELD.clear()
     home.filling.begin(replace(state, library=own))
     assert HELD == []

@@ -181,7 +181,7 @@ def test_abduction_that_cannot_be_read_is_a_line_and_no_joint_is_withheld(page: 
     show(page, with_hip(hip_analysis(), *HIPS, heading_sd_rad=math.radians(7.0), is_3d=False))
     page.door.click()
     assert page.quality.first.text() == "All six joints can be read."
-    (line,) = page.quality._lines
+    (line,) = page.quality.lines
     assert line.where.startswith("Abduction of")
     assert line.verdict is Verdict.WITHHELD
 

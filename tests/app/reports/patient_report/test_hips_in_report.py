@@ -172,7 +172,7 @@ def test_the_first_page_has_six_panels_and_a_withheld_hip_says_why() -> None:
     request = hip_request(with_hip(hip_analysis(), Joint.LEFT_HIP, margin=1.2))
     page = first_page(request, hip_facts(request.visit.analysis), None)
     assert "Hip, knee and ankle over the stride" in said(page)
-    pictures = [panel["picture"] for panel in page["curves"]["panels"]]  # type: ignore[index]
+    pictures = [panel["picture"] for panel in page["curves"]["panels"]]  # type: ignore[index]  # a block is plain JSON
     assert len(pictures) == 6
     assert "Withheld" in pictures[0]["alt"]
     assert "Withheld" not in pictures[1]["alt"]

@@ -360,7 +360,7 @@ SEVENTH = "0A3E"
 def seven(*sites: Site | None, **changes: dict[str, object]) -> tuple[SensorRow, ...]:
     worn = sites[6] if len(sites) > 6 else None
     facts: dict[str, object] = {"rate_hz": 100.0, "battery": 0.8, "can_identify": True, "site": worn}
-    pelvis = SensorRow(SEVENTH, "x-IMU3", **(facts | changes.get(f"s{SEVENTH}", {})))  # type: ignore[arg-type]  # as `rows`
+    pelvis = SensorRow(SEVENTH, "x-IMU3", **(facts | changes.get(f"s{SEVENTH}", {})))  # type: ignore[arg-type]  # facts by name, as `rows` has them
     return (*rows(*sites[:6], **changes), pelvis)
 
 
@@ -371,8 +371,8 @@ def test_a_seventh_place_comes_and_goes_with_a_seventh_sensor(page: SensorsPage)
     page.show_sensors(seven())
     settle()
     assert page.places.tiles[Site.PELVIS].isVisible()
-    assert "Seven sensors" in page._title.text()
-    assert "sacrum" in page._subtitle.text()
+    assert "Seven sensors" in page.title.text()
+    assert "sacrum" in page.subtitle.text()
     assert page.list.rows["0A09"].accessibleDescription().startswith("1 to 7")
     page.show_sensors(rows())
     settle()
@@ -419,7 +419,7 @@ def test_what_is_said_of_a_pelvis_costs_the_hips_alone(page: SensorsPage) -> Non
     page.show_sensors(seven(*Site, s0A09={"silent_s": 4.0}))
     assert page.notice.text.endswith("go on without left knee and hip angles.")
     page.show_sensors(seven(*Site))
-    page._assign(SEVENTH, None)
+    page.assign(SEVENTH, None)
     page.show_sensors(seven(*LEG_SITES))
     assert page.notice.text == "No sensor on the pelvis: no hip angles. Knees, ankles and steps stay as they are."
 
