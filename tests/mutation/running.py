@@ -21,8 +21,14 @@ import pytest
 
 from tests.mutation.mutants import Mutant
 
-PACKAGES = ("app/exports", "devices", "core/gait", "core/calibration")
-TEST_FOLDERS = ("tests/core", "tests/devices", "tests/app/exports", "tests/app/reports")
+PACKAGES = (
+    *("app/exports", "devices", "core/gait", "core/calibration"),
+    *("core/verdicts", "app/reports/differences.py"),  # where a silent fault would be a wrong sentence
+)
+TEST_FOLDERS = (
+    *("tests/core", "tests/devices", "tests/app/exports", "tests/app/reports"),
+    *("tests/app/test_exported_doubt.py", "tests/app/test_compare_and_export.py"),
+)
 LEFT_BEHIND = (".git", ".venv", "build", "__pycache__", ".hypothesis", "*.egg-info", ".*_cache")
 MOST_SECONDS = 30.0  # of tests for one mutant; the mirror's and the shortest come first
 MOST_TESTS = 400
