@@ -22,6 +22,7 @@ ROOT = Path(__file__).resolve().parents[1]
 SAFETY = ROOT / "packaging" / "safety"
 TEMPLATE = ROOT / "resources" / "locale" / "gaitwright.pot"
 ID = re.compile(r"R-[A-Z]{2,3}-\d\d")
+TABLES = ("requirements.md", "risks.md", "use_errors.md")  # made here
 NODE = re.compile(r"tests/[\w/]+\.py::test_\w+")
 FILE = re.compile(r"\b(?:app|core|devices|packaging|resources|tests)/[\w/-]+\.(?:py|toml|md)\b")
 TO_COME = {"packaging/build.py"}  # of the installers
@@ -114,11 +115,20 @@ def tests_of(file: str) -> dict[str, FoundTest]:
     recorded = {RECORDINGS}
     while more := {name for name, arguments in asked.items() if arguments & recorded} - recorded:
         recorded |= more  # tests, and the file's fixtures that stand between
-    return {
-        name: FoundTest(any("endurance" in ast.unparse(mark) for mark in one.decorator_list), name in recorded)
+    marks = [node.value for node in body if isinstance(node, ast.Assign) and _names(node) == {"pytestmark"}]
+    is_all_long = any("endurance" in ast.unparse(mark) for mark in marks)
+    return {  # of a parametrised test some cases may be long: it is not
+        name: FoundTest(
+            is_all_long or any(ast.unparse(mark) == "pytest.mark.endurance" for mark in one.decorator_list),
+            name in recorded,
+        )
         for name, one in functions.items()
         if name.startswith("test_")
     }
+
+
+def _names(node: ast.Assign) -> set[str]:
+    return {target.id for target in node.targets if isinstance(target, ast.Name)}
 
 
 def find_test(node: str) -> FoundTest | None:
@@ -147,8 +157,8 @@ def faults_of_requirements(known: Sequence[Requirement], sources: set[str]) -> I
             yield f"{one.id}: the source {one.source!r} is not among the sources"
         yield from _missing(one.id, one.tests)
         tests = [found for test in one.tests if (found := find_test(test)) is not None]
-        if all(test.needs_recordings for test in tests):
-            yield f"{one.id}: no test holds it where the shared recordings are not at hand"
+        if all(test.needs_recordings or test.is_long for test in tests):
+            yield f"{one.id}: no test of the default run holds it where the shared recordings are not at hand"
         for run in one.runs:
             place = ROOT / run.replace(".", "/")
             if not place.with_suffix(".py").is_file() and not (place / "__main__.py").is_file():
@@ -179,8 +189,9 @@ def faults_of_use_errors(told: Sequence[UseError]) -> Iterator[str]:
 
 
 def faults_of_pages(known: set[str]) -> Iterator[str]:
-    """Tests, files and requirements that the pages name."""
-    for page in [*sorted(SAFETY.glob("*.md")), ROOT / "SECURITY.md"]:
+    """Tests, files and requirements that the pages written by hand name."""
+    by_hand = [page for page in sorted(SAFETY.glob("*.md")) if page.name not in TABLES]
+    for page in [*by_hand, ROOT / "SECURITY.md"]:
         text = page.read_text(encoding="utf-8")
         yield from _missing_ones(page.name, NODE.findall(text))
         gone = {file for file in FILE.findall(text) if not (ROOT / file).is_file()} - TO_COME
@@ -228,11 +239,8 @@ def level(risk: tuple[int, int]) -> int:
 def pages() -> dict[str, str]:
     """Give the tables by their file's name."""
     known = {one.id: one for one in requirements()}
-    return {
-        "requirements.md": _requirements_page(list(known.values())),
-        "risks.md": _risks_page(risks(), known),
-        "use_errors.md": _use_errors_page(use_errors()),
-    }
+    made = _requirements_page(list(known.values())), _risks_page(risks(), known), _use_errors_page(use_errors())
+    return dict(zip(TABLES, made, strict=True))
 
 
 def _requirements_page(known: Sequence[Requirement]) -> str:

@@ -34,7 +34,9 @@ def test_a_requirement_that_leads_nowhere_is_named(tables: ModuleType) -> None:
     wrong = {
         f"{known.id} has no test": replace(known, tests=()),
         f"{known.id}: there is no test {gone}": replace(known, tests=(*known.tests, gone)),
-        f"{known.id}: no test holds it where the shared recordings are not at hand": replace(known, tests=(recorded,)),
+        f"{known.id}: no test of the default run holds it where the shared recordings are not at hand": replace(
+            known, tests=(recorded,)
+        ),
         f"{known.id}: there is no script tests.safety.nothing": replace(known, runs=("tests.safety.nothing",)),
         f"{known.id}: the source 'hearsay' is not among the sources": replace(known, source="hearsay"),
         "R1 is no id, such as R-REC-01": replace(known, id="R1"),

@@ -4,9 +4,9 @@
     python -m tests.safety.broken_controls R-GAT R-DIF-05     # those whose id begins so
 
 A requirement names its tests (`packaging/safety/requirements.toml`); that they pass shows that the control is there
-only if they fail where it is not. `broken_controls.toml` says how each is taken away. The requirement's tests are run as
-they are first, and then with the control broken: one has to fail. Long tests and shared recordings are left out, so that
-what is shown holds for every run of the default tests.
+only if they fail where it is not. `broken_controls.toml` says how each is taken away. The requirement's tests are run
+as they are first, and then with the control broken: one has to fail. Long tests and shared recordings are left out, so
+that what is shown holds for every run of the default tests.
 """
 
 import argparse

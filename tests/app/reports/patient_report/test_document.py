@@ -134,20 +134,6 @@ def test_the_pages_stand_in_their_order(report: bytes) -> None:
         assert "Gaitwright 1.2.3" in page
 
 
-def test_every_page_names_its_patient_and_the_day(request_of_alignments: ReportRequest) -> None:
-    """So that no sheet of a report gets into another patient's file."""
-    visit = request_of_alignments.visit
-    patient = replace(visit.session.patient, code="P-0815")
-    session = replace(visit.session, patient=patient, started="2026-03-04T10:00:00+01:00")
-    wanted = replace(request_of_alignments, visit=AnalysedVisit(session, visit.analysis), patient_language="de")
-    pages = texts(make_report(wanted))
-    assert len(pages) == 6
-    for number, page in enumerate(pages, start=1):
-        head = re.sub("[\u2066-\u2069]", "", page)
-        assert "P-0815" in head, number
-        assert "2026" in head, number
-
-
 def test_one_walk_takes_four_pages(request_of_demonstration: ReportRequest) -> None:
     assert len(texts(make_report(request_of_demonstration))) == 4
 

@@ -4,6 +4,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from app.reports.patient_report.document import facts_of
 from app.reports.patient_report.how_measured import how_measured
@@ -104,9 +105,9 @@ def test_what_was_noticed_changes_what_is_said(request_of_demonstration: ReportR
 def test_the_calibration_is_that_of_the_walk(request_of_demonstration: ReportRequest) -> None:
     visit = request_of_demonstration.visit
 
-    def changed(**changes: object) -> dict[str, str]:
+    def changed(**changes: Any) -> dict[str, str]:
         calibrations = tuple(
-            Calibration(one.walks, {joint: replace(found, **changes) for joint, found in one.joints.items()})  # type: ignore[arg-type]  # any field
+            Calibration(one.walks, {joint: replace(found, **changes) for joint, found in one.joints.items()})
             for one in visit.analysis.calibrations
         )
         analysis = replace(visit.analysis, calibrations=calibrations)
