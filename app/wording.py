@@ -393,6 +393,9 @@ def later(message: str) -> str:
     return message
 
 
+PURPOSE = later("Research use. Not a medical device.")  # stays on every screen, page and export
+
+
 def filled(message: str, values: Mapping[str, object]) -> str:
     """Give what was refused elsewhere in the user's language, its braces filled; none are looked for without values."""
     said = tr(message)

@@ -18,6 +18,7 @@ import numpy as np
 from app.exports.figures import SIMULATED, status_in_ascii, told_abduction_deg, told_deg
 from app.reports.gait_csv import events_of
 from app.reports.status import NO_ZERO, WITH_HEIGHT, joint_status
+from app.wording import PURPOSE
 from core.body import Joint, JointKind
 from core.results import RecordingAnalysis
 from core.samples import FloatArray, IntArray
@@ -97,6 +98,7 @@ def write_c3d(recording: RecordingAnalysis, is_simulated: bool, path: Path) -> N
     c3d.add_parameter("MANUFACTURER", "SOFTWARE", ["gaitwright"])
     said = [f"{joint}: {status_in_ascii(recording, joint)}" for joint in status]
     c3d.add_parameter("PROCESSING", "STATUS", [shorten(text, LONGEST_TEXT, placeholder=" ...") for text in said])
+    c3d.add_parameter("PROCESSING", "USE", [PURPOSE])
     c3d.add_parameter("SUBJECTS", "IS_SIMULATED", [int(is_simulated)])
     if is_simulated:
         c3d.add_parameter("SUBJECTS", "NOTE", [SIMULATED])

@@ -17,7 +17,6 @@ from core.samples import FloatArray
 from core.verdicts.model import Assessment, Verdict
 from core.verdicts.quantities import OF_BOTH, OF_HIPS, PARAMETERS, assessment_of, assessment_of_both
 
-RESEARCH = "Research use. Not a medical device."
 SIMULATED = "SIMULATED: nobody was measured."
 UNITS = {  # by the end of a name, longer ends first
     "_steps_min": "steps/min",

@@ -12,8 +12,9 @@ from pathlib import Path
 
 import numpy as np
 
-from app.exports.figures import RESEARCH, SIMULATED, as_in_csv_deg, status_in_ascii, told_abduction_deg, told_deg
+from app.exports.figures import SIMULATED, as_in_csv_deg, status_in_ascii, told_abduction_deg, told_deg
 from app.reports.status import WITH_HEIGHT, joint_status
+from app.wording import PURPOSE
 from core.body import Joint
 from core.results import RecordingAnalysis
 from core.samples import FloatArray
@@ -55,7 +56,7 @@ def write_motion(recording: RecordingAnalysis, is_simulated: bool, path: Path) -
         "inDegrees=yes",
         "",
         *([SIMULATED] if is_simulated else []),
-        f"Made by gaitwright. {RESEARCH}",
+        f"Made by gaitwright. {PURPOSE}",
         "Knee flexion and ankle dorsiflexion are positive. What is named nowhere in this file was not measured.",
         *([OF_HIPS] if recording.hips else []),
         *(f"{COORDINATES[joint]} is {_said(recording, joint, joint in joints)}" for joint in measured),

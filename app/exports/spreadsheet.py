@@ -19,11 +19,11 @@ from openpyxl.styles import Font
 from openpyxl.worksheet._write_only import WriteOnlyWorksheet
 
 from app.alignment_words import since_in_words
-from app.exports.figures import RESEARCH, SIMULATED, reason_of, software, unit_of, walk_figures
+from app.exports.figures import SIMULATED, reason_of, software, unit_of, walk_figures
 from app.exports.pseudonymised import what_is_said
 from app.reports.gait_csv import gait_tables
 from app.reports.status import WITHHELD, all_that_is_said, why
-from app.wording import sentence
+from app.wording import PURPOSE, sentence
 from core.body import Side, hip_of
 from core.results import Analysis, RecordingAnalysis
 from core.samples import Session
@@ -73,7 +73,7 @@ def _about(session: Session, analysis: Analysis) -> list[list[Value]]:
     rows += [
         ["method", str(analysis.method)],
         ["software", software()],
-        ["use", RESEARCH],
+        ["use", PURPOSE],
     ]
     told = [row for row in rows if row[1] not in ("", None) or row[0] == SIMULATED]
     return [*told, ["What may be read", None], *_verdicts(analysis)]

@@ -13,6 +13,7 @@ from itertools import groupby
 import numpy as np
 
 from app.reports.status import NO_ZERO, WITH_HEIGHT, WITHHELD, all_that_is_said, is_slipped, joint_status, why
+from app.wording import PURPOSE
 from core.body import Joint, JointKind, Side
 from core.results import Analysis, RecordingAnalysis
 from core.samples import BoolArray, FloatArray, RecordingKind
@@ -76,7 +77,7 @@ def document(analysis: Analysis, timelines: Mapping[str, str]) -> str:
 
     Walks come first.
     """
-    lines = ["# What may be read"]
+    lines = ["# What may be read", "", PURPOSE]
     walks = {recording.name for recording in analysis.recordings if recording.kind is RecordingKind.WALKING}
     in_order = sorted(all_that_is_said(analysis), key=lambda one: one.recording not in walks)
     for recording, said in groupby(in_order, key=lambda one: one.recording):

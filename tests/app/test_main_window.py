@@ -506,6 +506,10 @@ def is_cut(widget: QWidget) -> bool:
     return False
 
 
+def test_the_window_says_what_it_is_for(open_window: Open) -> None:
+    assert open_window(None).windowTitle() == "Gaitwright – Research use. Not a medical device."
+
+
 def test_the_language_is_kept_and_only_another_one_is_told(qtbot: QtBot, settings: Settings) -> None:
     assert settings.language == "en"
     with qtbot.assertNotEmitted(settings.language_changed):

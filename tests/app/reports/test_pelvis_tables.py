@@ -2,6 +2,7 @@
 
 import csv
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,7 @@ from app.reports.columns import column_of
 from app.reports.result_folder import write_results
 from app.storage.analysis_content import packed, unpacked
 from core.body import LEG_SITES, Joint, Side, Site, hip_of
+from core.verdicts.gates import judged
 from core.verdicts.model import GateReason, Verdict
 from devices.files.session_folder import read_session, write_session
 from devices.walker import Tissue
@@ -143,10 +145,43 @@ def test_real_tissue_that_parts_the_hips_is_withheld_in_words() -> None:
     assert "0.29" in gate_sentence(gates["hips_apart"])
 
 
-@pytest.mark.parametrize("gate", HIP_GATES)
-def test_each_gate_of_a_hip_has_its_sentence(gate: str) -> None:
-    assert gate in WORDS
-    assert "0.31" in gate_sentence(GateReason(gate, Verdict.WITHHELD, 0.31, 0.28, "m"))
+@pytest.mark.parametrize(
+    ("wrong", "gate", "told"),
+    [
+        ({"margin": 1.4}, "pairing", "1.40"),
+        ({"disagreement": 0.31}, "hip_disagreement", "0.31"),
+        ({"centre_proximal_m": np.array([0.0, 0.0, 0.44])}, "hip_centre", "0.44 m"),
+        ({"centre_distal_m": np.array([0.03, 0.0, 0.0])}, "hip_centre", "0.03 m"),
+        ({"centres_apart_m": 0.31}, "hips_apart", "0.31 m"),
+        ({"centres_apart_m": -0.17}, "hips_apart", "-0.17 m"),  # the legs' sensors are swapped
+    ],
+)
+def test_a_hip_of_which_one_thing_is_wrong_is_withheld_in_words_and_the_other_hip_is_not(
+    wrong: dict[str, object], gate: str, told: str
+) -> None:
+    left, analysis = Joint.LEFT_HIP, analysed(late_s=0.04)[1]
+    walk = analysis.recordings[-1]
+    changed = replace(walk.hips[left], identification=replace(walk.hips[left].identification, **wrong))  # type: ignore[arg-type]  # fields by name
+    found = judged(replace(analysis, recordings=(replace(walk, hips={**walk.hips, left: changed}),))).recordings[-1]
+    shape = found.verdicts.joint(left).shape
+    assert shape.verdict is Verdict.WITHHELD
+    (reason,) = shape.reasons
+    assert reason.gate == gate
+    assert told in gate_sentence(reason).replace("\u00a0", " ")
+    assert found.verdicts.joint(Joint.RIGHT_HIP) == walk.verdicts.joint(Joint.RIGHT_HIP)
+    assert walk.verdicts.joint(left).shape.verdict is Verdict.READ
+    assert found.verdicts.pelvis == walk.verdicts.pelvis  # one sound hip is enough for it
+
+
+def test_where_no_hip_can_be_read_there_is_no_pelvis() -> None:
+    analysis = analysed(late_s=0.04)[1]
+    walk = analysis.recordings[-1]
+    hips = {
+        joint: replace(hip, identification=replace(hip.identification, margin=1.4)) for joint, hip in walk.hips.items()
+    }
+    found = judged(replace(analysis, recordings=(replace(walk, hips=hips),))).recordings[-1]
+    assert found.verdicts.pelvis.verdict is Verdict.WITHHELD
+    assert {reason.gate for reason in found.verdicts.pelvis.reasons} == {"pairing"}
 
 
 @pytest.mark.parametrize("gate", OF_DEGREES)
@@ -161,3 +196,7 @@ def test_what_was_not_found_says_what_it_takes(gate: str) -> None:
     words = gate_words(GateReason(gate, Verdict.WITHHELD))
     assert words.why
     assert words.to_do
+
+
+def test_every_gate_of_a_hip_has_its_words() -> None:
+    assert set(HIP_GATES) <= set(WORDS)
