@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from app.wording import later, tr
+from app.wording import figure_text, later, tr
 from core.verdicts.model import GateReason, Verdict
 
 VERDICTS = {
@@ -161,6 +161,6 @@ def _figure(value: float | None, unit: str) -> str:
     if value is None:
         return tr("unknown")
     if not unit:
-        return f"{value:.0f}" if value == round(value) else f"{value:.2f}"
-    number = f"{value:.{DECIMALS[unit]}f}"
+        return f"{value:.0f}" if value == round(value) else figure_text(value, ".2f")
+    number = figure_text(value, f".{DECIMALS[unit]}f")
     return f"{number}°" if unit == "deg" else f"{number}\N{NO-BREAK SPACE}{unit}"
