@@ -2,6 +2,7 @@
 
     python -m tests.benchmarks.live_speed                      CPU beside VQF, on the same stream
     python -m tests.benchmarks.live_speed --hours 8            memory, fed as fast as it goes
+    python -m tests.benchmarks.live_speed --seven              CPU with a sensor on the pelvis over CPU without it
 
 Six sensors at 200 Hz, four joints, both feet, in blocks of 33 ms: the walking estimator with angles, certainty, phases
 and straps, and the free motion with excitation and lags. VQF (doi 10.1016/j.inffus.2022.10.014) is fed the same blocks,
@@ -20,7 +21,7 @@ import numpy as np
 from vqf import VQF
 
 from core.analysis import analyse
-from core.body import Site
+from core.body import LEG_SITES, Side, Site
 from core.calibration.rest import rest_of
 from core.live.free_motion import LiveFreeMotion
 from core.live.sensors import LiveSensor
@@ -32,6 +33,7 @@ from devices.walker import Standing, Tissue, Walk, WalkerSettings, simulate
 RATE_HZ = 200.0
 BLOCK_S = 0.033
 MINUTE_S = 60.0
+WARM_MINUTES = 3  # until what is computed once, and caches, is behind
 
 Blocks = list[dict[Site, ImuBlock]]
 
@@ -110,6 +112,38 @@ def compare(minutes: int) -> None:
         print(f"| {name} | {share:.1f} | {p50:.2f}, {p99:.2f}, {worst:.1f} | {np.median(ratios):.1f} |")
 
 
+def compare_seven(minutes: int) -> None:
+    """The same walk and free motion with and without the pelvis, minute by minute in turn, after three of each."""
+    recordings = (Standing(), Walk("walk 1", strides=54, turn_rad=np.pi), FreeMotionRecording(duration_s=MINUTE_S))
+    made = WalkerSettings(seed=0, sites=tuple(Site), recordings=recordings, tissue=Tissue.SOFT, rate_hz=RATE_HZ)
+    session = simulate(made).session
+    analysis, sensors = analyse(session), sensors_of(session)
+    hips = {joint: hip.identification for joint, hip in analysis.recordings[0].hips.items()}
+    assert len(hips) == len(Side)
+    legs: dict[Site, LiveSensor] = {site: sensors[site] for site in LEG_SITES}
+    calibration = analysis.calibrations[-1].joints
+    print("| stage | of one core, %, six and seven sensors | seven over six: median, least, most of the minutes |")
+    print("|---|---|---|")
+    stages = (
+        ("walking", LiveWalk(legs, calibration), LiveWalk(sensors, calibration, hips), 1),
+        ("free motion", LiveFreeMotion(legs), LiveFreeMotion(sensors), 2),
+    )
+    for name, six, seven, recording in stages:
+        blocks = in_blocks(session.recordings[recording].imu)
+        of_legs: Blocks = [{site: one for site, one in block.items() if site in LEG_SITES} for block in blocks]
+        length_s = len(blocks) * BLOCK_S
+        spent = []
+        for minute in range(minutes + WARM_MINUTES):
+            of_six = sum(costs_s(six.update, later(of_legs, minute * length_s)))
+            of_seven = sum(costs_s(seven.update, later(blocks, minute * length_s)))
+            spent.append((of_six, of_seven))
+        spent = spent[WARM_MINUTES:]
+        shares = [100 * sum(one) / (minutes * length_s) for one in zip(*spent, strict=True)]
+        ratios = [of_seven / of_six for of_six, of_seven in spent]
+        told = f"{np.median(ratios):.2f}, {min(ratios):.2f}, {max(ratios):.2f}"
+        print(f"| {name} | {shares[0]:.1f}, {shares[1]:.1f} | {told} |")
+
+
 def memory_kib() -> int:
     """What the process holds now."""
     with Path("/proc/self/statm").open() as file:
@@ -134,7 +168,11 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--minutes", type=int, default=3, help="of each stage")
     parser.add_argument("--hours", type=float, help="of one stream, instead")
+    parser.add_argument("--seven", action="store_true", help="with a sensor on the pelvis, instead")
     asked = parser.parse_args()
+    if asked.seven:
+        compare_seven(asked.minutes)
+        return
     if asked.hours is None:
         compare(asked.minutes)
         return
