@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt, QTimer, Signal
-from PySide6.QtGui import QColor, QHideEvent, QKeyEvent, QMouseEvent, QPainter, QPaintEvent
+from PySide6.QtGui import QAccessible, QColor, QHideEvent, QKeyEvent, QMouseEvent, QPainter, QPaintEvent
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy
 
 from app.icons import Icon
@@ -40,6 +40,8 @@ DRAWN_WITH_PELVIS = later("Drawn from angles and the inclination of thighs and p
 
 class MovingLegs(Card):
     """`moved` tells where in the reference leg's stride the cursor is, percent, whoever moved it."""
+
+    accessible_role = QAccessible.Role.Chart
 
     moved = Signal(float)
 

@@ -26,6 +26,7 @@ from app.review import viewer
 from app.sounds import Loudspeaker, Sound
 from app.storage import files
 from app.storage.journal.disk import JournalFile
+from app.tokens import Theme
 from app.widgets import motion
 from devices import networks, ports
 from devices.emulators.transports import PseudoTerminal
@@ -300,7 +301,7 @@ def test_windows_is_asked_whether_things_may_move(wanted: int, took_ms: int, mon
 
     user32 = SimpleNamespace(SystemParametersInfoW=asked)
     monkeypatch.setattr(ctypes, "windll", SimpleNamespace(user32=user32), raising=False)
-    assert motion.duration_ms(200) == took_ms
+    assert motion.duration_ms(200, Theme()) == took_ms
 
 
 # ports and networks
