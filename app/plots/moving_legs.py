@@ -268,9 +268,9 @@ class _LegsPicture(Themed):
                     low, high = max(begin, 0.0), min(begin + length, 100.0)
                     if high > low:
                         left = lanes.left() + lanes.width() * low / 100
-                        painter.fillRect(
-                            QRectF(left, top, lanes.width() * (high - low) / 100, px(LANE)), theme.soft(side)
-                        )
+                        stance = QRectF(left, top, lanes.width() * (high - low) / 100, px(LANE))
+                        painter.setBrush(theme.soft(side))  # too faint on its ground without the edge
+                        painter.drawRect(stance)
         painter.setFont(theme.font(12, MEDIUM))
         painter.setPen(QColor(theme.colours.ink2))
         words = QRectF(lanes.left(), lanes.bottom() - px(20), lanes.width(), px(20))
