@@ -29,7 +29,7 @@ EVERY_MS = 250  # faster changes cannot be read
 class SensorStrip(Themed):
     """One stop for Tab; the arrows go from tile to tile."""
 
-    accessible_role = QAccessible.Role.Grouping
+    accessible_role = QAccessible.Role.List
 
     turned_bad = Signal()
     tiles_changed = Signal()

@@ -116,6 +116,8 @@ class SmallSheets(Themed):
         The number of a page, from 0.
     """
 
+    accessible_role = QAccessible.Role.List
+
     wished = Signal(int)
 
     def __init__(self, look: ThemeNotifier) -> None:

@@ -15,7 +15,7 @@ SIZE = (120, 28)
 class SmallCurve(Themed):
     """`name` is what readers of screens say of it. A gap in the values is one in the line."""
 
-    accessible_role = QAccessible.Role.Chart
+    accessible_role = QAccessible.Role.Graphic
 
     def __init__(self, look: ThemeNotifier, name: str) -> None:
         super().__init__()
