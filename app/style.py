@@ -28,8 +28,8 @@ from PySide6.QtWidgets import (
 )
 
 from app.icons import Icon, paint_icon
+from app.motion import duration_ms
 from app.tokens import CONTROL_RADIUS, Theme
-from app.widgets.motion import duration_ms
 
 Control = QStyle.ControlElement
 Primitive = QStyle.PrimitiveElement

@@ -26,9 +26,9 @@ from PySide6.QtGui import (
 from PySide6.QtWidgets import QFrame, QTextBrowser, QTextEdit
 
 from app.films.film import Film, duration_s, film_height, paint_frame, paint_stills
+from app.motion import duration_ms
 from app.pages.help_topics import help_file
 from app.theme import ThemeNotifier
-from app.widgets.motion import duration_ms
 from app.widgets.text import MEDIUM, SEMIBOLD
 from app.wording import tr
 

@@ -7,12 +7,12 @@ from PySide6.QtCore import QEvent, QObject, QPoint, QRect, Qt, QTimer, QVariantA
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPixmap, QResizeEvent, QShowEvent
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
 
+from app.motion import duration_ms
 from app.theme import ThemeNotifier
 from app.widgets.action_bar import ActionBar
 from app.widgets.banner import Banner
 from app.widgets.grid import COMPACT_BELOW, CONTENT, LEAST, WIDE_FROM, side_margin
 from app.widgets.header import Header
-from app.widgets.motion import duration_ms
 from app.widgets.page_stack import PageStack
 from app.widgets.rail_row import RailForm
 from app.widgets.sensor_strip import SensorStrip

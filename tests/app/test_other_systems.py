@@ -19,7 +19,7 @@ from typing import Any
 
 import pytest
 
-from app import cli
+from app import cli, motion
 from app.batch import executors
 from app.reports.proposed_names import DEVICES, session_name
 from app.review import viewer
@@ -27,7 +27,6 @@ from app.sounds import Loudspeaker, Sound
 from app.storage import files
 from app.storage.journal.disk import JournalFile
 from app.tokens import Theme
-from app.widgets import motion
 from devices import networks, ports
 from devices.emulators.transports import PseudoTerminal
 from devices.files import limits

@@ -32,7 +32,8 @@ class LabelChooser(Themed):
         self._choice = ""
         self.own = Field(look, tr("Other words for the next walk"), placeholder=tr("Other words"), has_label=False)
         self.own.setParent(self)
-        self.own.setFocusProxy(None)  # it was made before the labels: Tab would come to its box in its place
+        # it was made before the labels: Tab would come to its box in its place
+        self.own.setFocusProxy(None)  # type: ignore[arg-type]  # the stubs know no None, which takes the proxy away
         self.setAccessibleName(tr("Next condition"))
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         self.own.committed.connect(self._on_own_committed)

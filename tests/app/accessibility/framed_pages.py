@@ -82,6 +82,7 @@ def bench(look: ThemeNotifier) -> QWidget:
 def timed(look: ThemeNotifier) -> QWidget:
     page = WalkingPage(look)
     readout = LiveReadout(PlannedTest(TimedProtocol.TEN_METRES), 8.0, 3.0, distance_m=6.12)
+    page.show_walks((WalkRow("1", "A", "Shoes", WalkState.RECORDING),))
     page.show_test(TimedViewState(readout, "Shoes, attempt 1", 8.44, math.nan))
     return page
 

@@ -10,6 +10,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QProgressBar, QWidget
 from pytestqt.qtbot import QtBot
 
+from app import motion
 from app.main_window import MainWindow
 from app.pages.help_page import HelpPage
 from app.pages.help_topics import Topic
@@ -18,7 +19,6 @@ from app.plots.moving_legs import MovingLegs
 from app.settings import Settings
 from app.theme import ThemeNotifier
 from app.tokens import Theme
-from app.widgets import motion
 from app.wizard.shell import WizardShell
 
 WAIT_MS = 2000
@@ -134,8 +134,12 @@ def test_the_setting_is_chosen_by_keys_and_said(qtbot: QtBot, look: ThemeNotifie
 def test_the_window_follows_the_setting_and_a_new_start_keeps_it(
     qtbot: QtBot, look: ThemeNotifier, settings: Settings, tmp_path: Path
 ) -> None:
+    def end(window: MainWindow) -> None:
+        window.close()
+        window.finish()
+
     window = MainWindow(look, settings)
-    qtbot.addWidget(window, before_close_func=lambda one: (one.close(), one.finish()))
+    qtbot.addWidget(window, before_close_func=end)
     seen = [look.theme.has_less_motion]
     settings.has_less_motion = True
     seen.append(look.theme.has_less_motion)

@@ -19,8 +19,9 @@ from app.theme import ThemeNotifier
 from app.workers.library_controller import LibraryController
 from tests.app.accessibility.accessible_tree import complaints, wrong_order
 from tests.app.accessibility.framed_pages import patient_screen
+from tests.app.accessibility.reach import out_of_reach
 from tests.app.home.course_library import PASSPHRASE, make_course_library
-from tests.app.room import settle
+from tests.app.room import settle, words_cut
 
 WAIT_MS = 20_000
 QUESTIONS = 3  # its row in the rail
@@ -72,22 +73,42 @@ def opened(qtbot: QtBot, page: QWidget) -> QWidget:
     return page
 
 
-def test_home_and_what_opens_from_it(qtbot: QtBot, home: Home) -> None:
-    before: dict[str, Callable[[], object]] = {
+def ways(home: Home) -> dict[str, Callable[[], object]]:
+    """How each page is come to."""
+    return {
         "home": home.focus,
         "settings": home.show_settings,
         "questions": lambda: home.rail.step_pressed.emit(QUESTIONS),
         "goals": home.page.panel.goals_wished.emit,
         "analyse again": home.page.panel.analysing_wished.emit,
     }
+
+
+def test_home_and_what_opens_from_it(qtbot: QtBot, home: Home) -> None:
     found, pages = {}, set()
-    for name, show in before.items():
+    for name, show in ways(home).items():
         show()
         qtbot.wait(300)  # what is read of the library comes meanwhile
         pages.add(home.current)
         found[name] = wrong_with(home)
         home.escape()
-    assert len(pages) == len(before)
+    assert len(pages) == len(found)
+    assert {name: said for name, said in found.items() if said} == {}
+
+
+@pytest.mark.parametrize("size", [(1920, 1200), (1280, 800)])
+def test_home_twice_as_large_has_all_its_words_and_controls(
+    qtbot: QtBot, home: Home, look: ThemeNotifier, size: tuple[int, int]
+) -> None:
+    look.set_scale(2.0)
+    home.resize(*size)
+    found = {}
+    for name, show in ways(home).items():
+        show()
+        qtbot.wait(100)
+        settle()
+        found[name] = [*words_cut(home), *out_of_reach(home)]
+        home.escape()
     assert {name: said for name, said in found.items() if said} == {}
 
 
