@@ -20,6 +20,7 @@ HEADER_AND_BAR = 128
 STRIP, COMPACT_STRIP = 72, 44  # on the steps that show it
 
 
+@pytest.mark.endurance
 @pytest.mark.usefixtures("pseudo_language")
 @pytest.mark.parametrize("window", WINDOWS)
 @pytest.mark.parametrize("name", PAGES)
