@@ -11,6 +11,9 @@ from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QWidget
 
 from app.icons import Icon
+from app.pages.agreement_page import AgreementPage
+from app.pages.correct_page import CorrectPage, JointLine, WalkLine
+from app.pages.found_page import FoundPage
 from app.pages.result_page import ANSWER, COMPARE, STRIDES, WHOLE, ResultPage
 from app.patient_screen.patient_view import PatientView
 from app.patient_screen.window import PatientWindow
@@ -29,7 +32,8 @@ from app.wizard.walking.timed_view import TimedViewState
 from app.wizard.walking.walk_list import WalkRow, WalkState
 from app.wording import tr
 from core.analysis import analyse
-from core.body import LEG_SITES, Side
+from core.body import LEG_SITES, Joint, Side
+from core.diagnostics import diagnostics_of
 from core.results import Analysis
 from core.samples import Session
 from core.targets import Target, TargetMeasure
@@ -96,15 +100,51 @@ def timed_result(look: ThemeNotifier) -> QWidget:
     return page
 
 
-def report(look: ThemeNotifier) -> QWidget:
-    page = ReportPage(look)
+def blank_sheet() -> bytes:
+    """A picture of an empty page of A4."""
     image = QImage(595, 842, QImage.Format.Format_RGB32)
     image.fill(0xFFFFFFFF)
     content = QByteArray()
     file = QBuffer(content)
     file.open(QBuffer.OpenModeFlag.WriteOnly)
     assert image.save(file, "PNG")  # type: ignore[call-overload]  # the stubs know no device here
-    page.show_pages([bytes(content.data())] * 2)
+    return bytes(content.data())
+
+
+def report(look: ThemeNotifier) -> QWidget:
+    page = ReportPage(look)
+    page.show_pages([blank_sheet()] * 2)
+    return page
+
+
+def how_it_was_found(look: ThemeNotifier) -> QWidget:
+    page = FoundPage(look)
+    page.show_joints([Joint.LEFT_KNEE, Joint.RIGHT_KNEE], Joint.LEFT_KNEE)
+    session, analysis = analysed()
+    joint = analysis.calibrations[0].joints[Joint.LEFT_KNEE]
+    found = diagnostics_of(session, joint, analysis.recordings[-1].name)
+    assert found is not None
+    page.show_found(found, (), is_simulated=True)
+    return page
+
+
+def beside_optics(look: ThemeNotifier) -> QWidget:
+    page = AgreementPage(look)
+    page.show_pages([blank_sheet()], ())
+    return page
+
+
+def nothing_beside_optics(look: ThemeNotifier) -> QWidget:
+    page = AgreementPage(look)
+    page.show_nothing()
+    return page
+
+
+def correcting(look: ThemeNotifier) -> QWidget:
+    page = CorrectPage(look)
+    page.show_walks([WalkLine("1", "walk 1", "0:24", "Shoes", is_kept=True)])
+    page.show_joints([JointLine(Joint.LEFT_KNEE, is_turned=False, note="")])
+    page.show_sides("")
     return page
 
 
@@ -136,6 +176,10 @@ FRAMED: dict[str, tuple[int, Make]] = {
     "all figures": (5, results(ANSWER, "figures")),
     "what can be read": (5, results(ANSWER, "door")),
     "engineering figures": (5, results(ANSWER, "door", "engineering")),
+    "how it was found": (5, how_it_was_found),
+    "beside optics": (5, beside_optics),
+    "nothing beside optics": (5, nothing_beside_optics),
+    "correcting": (5, correcting),
     "report": (6, report),
 }
 
