@@ -32,6 +32,7 @@ from app.logs import log_qt_messages
 from app.settings import Scheme, Settings
 from app.storage.idle_lock import IdleLock
 from app.theme import ThemeNotifier, load_fonts
+from app.widgets.accessible_role import tell_roles
 from app.widgets.focus_ring import FocusRing
 from app.wording import PURPOSE, tr, use_language
 from app.workers.background import Background
@@ -443,6 +444,8 @@ class MainWindow(QWidget):
             self._look.set_dark(is_dark)
         if self._settings.scale != self._look.theme.scale:
             self._look.set_scale(self._settings.scale)
+        if self._settings.has_less_motion is not self._look.theme.has_less_motion:
+            self._look.set_less_motion(self._settings.has_less_motion)
 
     def _on_look_changed(self) -> None:
         self._settings.scale = self._look.theme.scale  # also when the keys changed it
@@ -528,6 +531,7 @@ def open_window(argv: list[str], language: str = "") -> int:
     app.setApplicationName("Gaitwright")
     app.setStyle("Fusion")
     load_fonts()
+    tell_roles()
     settings, folders = Settings(own_settings()), [word for word in app.arguments()[1:] if not word.startswith("-")]
     settings.language = language or settings.language
     settings.language_changed.connect(partial(app.exit, IN_ANOTHER_LANGUAGE))

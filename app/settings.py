@@ -78,6 +78,15 @@ class Settings(QObject):
         self._put("has_sound", "yes" if has_sound else "no")
 
     @property
+    def has_less_motion(self) -> bool:
+        """Whether nothing may move by itself; else that is as the system was asked for."""
+        return self._kept.value("has_less_motion", "") == "yes"
+
+    @has_less_motion.setter
+    def has_less_motion(self, has_less_motion: bool) -> None:
+        self._put("has_less_motion", "yes" if has_less_motion else "no")
+
+    @property
     def latest_operator(self) -> str:
         """The code of whoever logged in last here."""
         return str(self._kept.value("latest_operator", ""))

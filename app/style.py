@@ -28,6 +28,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.icons import Icon, paint_icon
+from app.motion import duration_ms
 from app.tokens import CONTROL_RADIUS, Theme
 
 Control = QStyle.ControlElement
@@ -352,10 +353,12 @@ class ControlStyle(QProxyStyle):
         assert isinstance(option, QStyleOptionProgressBar)
         theme, c, box = self.theme, self.theme.colours, QRectF(option.rect)
         span = option.maximum - option.minimum
-        if span <= 0:  # how long it takes is not known: half a bar goes to and fro
-            super().drawControl(Control.CE_ProgressBarContents, option, painter, widget)  # asks for the next frame
-            theme.paint_box(painter, box, c.track, radius=4)
-            turn = monotonic() / BUSY_S % 2
+        if span <= 0:  # how long it takes is not known: half a bar goes to and fro, or stands in the middle
+            turn = 0.5
+            if duration_ms(round(1000 * BUSY_S), theme):
+                super().drawControl(Control.CE_ProgressBarContents, option, painter, widget)  # asks for the next frame
+                theme.paint_box(painter, box, c.track, radius=4)
+                turn = monotonic() / BUSY_S % 2
             box.setWidth(box.width() / 2)
             box.translate(box.width() * min(turn, 2 - turn), 0)
         else:

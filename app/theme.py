@@ -33,6 +33,9 @@ class ThemeNotifier(QObject):
         """Set the size of everything, between 0.8 and 2."""
         self._apply(replace(self.theme, scale=min(max(scale, SCALES[0]), SCALES[-1])))
 
+    def set_less_motion(self, has_less_motion: bool) -> None:
+        self._apply(replace(self.theme, has_less_motion=has_less_motion))
+
     def grow(self, steps: int) -> None:
         """Go up or down the table of sizes; 0 goes back to 100 %."""
         if steps == 0:
@@ -64,6 +67,8 @@ class ThemeNotifier(QObject):
         QToolTip.setPalette(palette)
         app.setFont(_in_points(self.theme.font(14)))
         choices = _in_points(self.theme.font(16, QFont.Weight.DemiBold))
+        if self.theme.has_less_motion:  # menus that fade, where the desktop lets them; back with the next start
+            app.setEffectEnabled(Qt.UIEffect.UI_General, False)
         app.setFont(choices, "QComboBox")  # type: ignore[arg-type]  # the stubs ask for bytes, which it refuses
         for window in app.topLevelWidgets():
             for change in (QEvent.Type.ApplicationFontChange, QEvent.Type.ApplicationPaletteChange):

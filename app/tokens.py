@@ -17,10 +17,14 @@ CARD_RADIUS = 10
 
 @dataclass(frozen=True, slots=True)
 class Theme:
-    """One scheme at one size. Every length on the screen goes through `px`."""
+    """One scheme at one size. Every length on the screen goes through `px`.
+
+    `has_less_motion`: nothing moves by itself, whatever the system was asked for.
+    """
 
     colours: Colours = LIGHT
     scale: float = 1.0
+    has_less_motion: bool = False
 
     @property
     def is_dark(self) -> bool:

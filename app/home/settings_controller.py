@@ -117,6 +117,7 @@ class SettingsController(QObject):
         page.scheme_chosen.connect(self._on_scheme_chosen)
         page.scale_chosen.connect(self._on_scale_chosen)
         page.side_chosen.connect(self._on_side_chosen)
+        page.motion_chosen.connect(self._on_motion_chosen)
         page.sound_chosen.connect(self._on_sound_chosen)
         page.passphrase_wished.connect(self._on_passphrase_wished)
         page.recovery_key_wished.connect(self._on_recovery_key_wished)
@@ -140,6 +141,7 @@ class SettingsController(QObject):
             self._look.theme.scale,
             is_from_behind=kept.is_from_behind,
             has_sound=kept.has_sound,
+            has_less_motion=kept.has_less_motion,
         )
 
     def _on_language_chosen(self, language: str) -> None:
@@ -153,6 +155,9 @@ class SettingsController(QObject):
 
     def _on_side_chosen(self, is_from_behind: bool) -> None:
         self._settings.is_from_behind = is_from_behind
+
+    def _on_motion_chosen(self, has_less_motion: bool) -> None:
+        self._settings.has_less_motion = has_less_motion
 
     def _on_sound_chosen(self, has_sound: bool) -> None:
         self._settings.has_sound = has_sound

@@ -3,12 +3,13 @@
 from collections.abc import Sequence
 
 from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QStackedWidget, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QFrame, QHBoxLayout, QStackedWidget, QVBoxLayout, QWidget
 
 from app.icons import Icon
 from app.pages.sentence_page import SentencePage
 from app.theme import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
+from app.widgets.reading_area import ReadingArea
 from app.widgets.sheets import Sheet, Sheets
 from app.widgets.text import Text
 from app.widgets.themed import Themed
@@ -46,7 +47,7 @@ class AgreementPage(Themed):
         self.note = Text(look, tone="ink2", wraps=True)
         self.waiting = SentencePage(look)
         self.sheets = Sheets(look)
-        self.reading = QScrollArea()
+        self.reading = ReadingArea()
         self.reading.setFrameShape(QFrame.Shape.NoFrame)
         self.reading.setWidgetResizable(True)
         self.reading.setWidget(self.sheets)

@@ -10,7 +10,6 @@ from PySide6.QtWidgets import (
     QFrame,
     QGridLayout,
     QHBoxLayout,
-    QScrollArea,
     QStackedWidget,
     QVBoxLayout,
     QWidget,
@@ -30,6 +29,7 @@ from app.widgets.card import Card
 from app.widgets.chip import Chip
 from app.widgets.findings_list import ORDER, FindingRow
 from app.widgets.line_keys import LineKeys
+from app.widgets.reading_area import ReadingArea
 from app.widgets.segmented import Segmented
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.themed import Themed
@@ -77,7 +77,7 @@ class FoundPage(Themed):
         self.angle = _AngleCard(look)
         self.figures = _FiguresCard(look)
         self.noticed = Card(look)
-        self.cards = QScrollArea()
+        self.cards = ReadingArea()
         self._stack = QStackedWidget()
         self._build()
         self.back.clicked.connect(self.closed)

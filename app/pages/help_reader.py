@@ -26,9 +26,9 @@ from PySide6.QtGui import (
 from PySide6.QtWidgets import QFrame, QTextBrowser, QTextEdit
 
 from app.films.film import Film, duration_s, film_height, paint_frame, paint_stills
+from app.motion import duration_ms
 from app.pages.help_topics import help_file
 from app.theme import ThemeNotifier
-from app.widgets.motion import duration_ms
 from app.widgets.text import MEDIUM, SEMIBOLD
 from app.wording import tr
 
@@ -46,8 +46,8 @@ BODY = 16
 class HelpReader(QTextBrowser):
     """The text of a topic in the type of the house, with pictures in the theme that is in force.
 
-    A film plays once when its page is opened; Space or a click on it stops it and plays it again. Where the system asks
-    for less motion its scenes stand side by side instead.
+    A film plays once when its page is opened; Space or a click on it stops it and plays it again. Where less
+    motion is asked for its scenes stand side by side instead.
 
     Signals
     -------
@@ -125,7 +125,7 @@ class HelpReader(QTextBrowser):
 
     @property
     def _has_moving_film(self) -> bool:
-        return bool(self._film_name) and duration_ms(FRAME_MS) > 0
+        return bool(self._film_name) and duration_ms(FRAME_MS, self._look.theme) > 0
 
     def _turn(self) -> None:
         """Stop the film, or play it; from its beginning where it has ended."""
@@ -323,6 +323,7 @@ class HelpReader(QTextBrowser):
     def _on_look_changed(self) -> None:
         self.setFont(self._look.theme.font(BODY))
         at = self.verticalScrollBar().value()
+        self._set_playing(is_playing=self.is_playing)  # less motion may be asked for meanwhile
         self._wrap()
         self._set_text()
         self.mark(self._wanted)

@@ -39,6 +39,7 @@ class Topic(StrEnum):
     STATIONS = "stations"
     MESSAGES = "messages"
     KEYS = "keys"
+    ACCESSIBILITY = "accessibility"
     SENSORS_XIMU3 = "sensors-ximu3"
     SENSORS_WITMOTION = "sensors-witmotion"
     SENSORS_CSV = "sensors-csv"
@@ -98,6 +99,7 @@ def topic_title(topic: Topic) -> str:
         Topic.STATIONS: tr("Several stations"),
         Topic.MESSAGES: tr("What messages mean"),
         Topic.KEYS: tr("Keys"),
+        Topic.ACCESSIBILITY: tr("Accessibility"),
         Topic.SENSORS_XIMU3: "x-IMU3",
         Topic.SENSORS_WITMOTION: "WitMotion",
         Topic.SENSORS_CSV: tr("Lines of numbers"),

@@ -52,6 +52,8 @@ class CourseCard(Card):
         The visits that have no figures yet are to be evaluated.
     """
 
+    accessible_role = QAccessible.Role.Chart
+
     visit_opened = Signal(object)
     computing_wished = Signal()
 

@@ -23,6 +23,7 @@ from app.wording import LANGUAGES, languages, tr
 
 COLUMN = 720
 FRONT, BEHIND = "front", "behind"
+AS_SYSTEM, LESS_MOTION = "system", "less"
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,6 +54,7 @@ class SettingsPage(TallPage):
     scheme_chosen = Signal(str)
     scale_chosen = Signal(float)
     side_chosen = Signal(bool)  # from behind
+    motion_chosen = Signal(bool)  # less
     sound_chosen = Signal(bool)
     passphrase_wished = Signal(str, str)  # old, new
     recovery_key_wished = Signal()
@@ -93,6 +95,7 @@ class SettingsPage(TallPage):
             *self.scheme.segments,
             self.scale,
             *self.side.segments,
+            *self.motion.segments,
             self.sound,
             *(field.line_edit for field in (self.old, self.new, self.again)),
             self.change,
@@ -106,12 +109,15 @@ class SettingsPage(TallPage):
     def focus(self) -> None:
         self.language.focus()
 
-    def show_screen(self, language: str, scheme: str, scale: float, *, is_from_behind: bool, has_sound: bool) -> None:
+    def show_screen(
+        self, language: str, scheme: str, scale: float, *, is_from_behind: bool, has_sound: bool, has_less_motion: bool
+    ) -> None:
         self.language.choose(language)
         self.scheme.choose(scheme)
         nearest = min(range(len(SCALES)), key=lambda k: abs(SCALES[k] - scale))
         self.scale.setCurrentIndex(nearest)
         self.side.choose(BEHIND if is_from_behind else FRONT)
+        self.motion.choose(LESS_MOTION if has_less_motion else AS_SYSTEM)
         self.sound.setChecked(has_sound)
 
     def show_library(
@@ -202,6 +208,11 @@ class SettingsPage(TallPage):
         self.side = Segmented(
             look, tr("The patient is seen"), [(FRONT, tr("From the front"), ""), (BEHIND, tr("From behind"), "")]
         )
+        self.motion = Segmented(
+            look,
+            tr("Motion on the screen"),
+            [(AS_SYSTEM, tr("As the system"), ""), (LESS_MOTION, tr("Less motion"), "")],
+        )
         self.sound = Toggle(look, tr("Sounds"), "", is_on=True)
         self._screen = self._card(tr("Screen and sound"))
         for label, control in (
@@ -209,6 +220,7 @@ class SettingsPage(TallPage):
             (tr("Light or dark"), self.scheme),
             (tr("Size of everything"), self.scale),
             (tr("The patient is seen"), self.side),
+            (tr("Motion on the screen"), self.motion),
         ):
             self._screen.column.addWidget(Text(look, label, weight=MEDIUM))
             self._add_left(self._screen, control)
@@ -312,6 +324,7 @@ class SettingsPage(TallPage):
         self.scheme.chosen.connect(self.scheme_chosen)
         self.scale.activated.connect(self._on_scale_chosen)
         self.side.chosen.connect(self._on_side_chosen)
+        self.motion.chosen.connect(self._on_motion_chosen)
         self.sound.toggled.connect(self.sound_chosen)
         self.change.clicked.connect(self._on_change)
         self.renew.clicked.connect(self.recovery_key_wished)
@@ -401,6 +414,9 @@ class SettingsPage(TallPage):
 
     def _on_side_chosen(self, key: str) -> None:
         self.side_chosen.emit(key == BEHIND)
+
+    def _on_motion_chosen(self, key: str) -> None:
+        self.motion_chosen.emit(key == LESS_MOTION)
 
     def _on_edited(self, _text: str) -> None:
         for field in (self.old, self.new, self.again, self.code, self.name, self.first):

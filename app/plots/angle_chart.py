@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QColor, QPainter, QPainterPath, QPen, QPolygonF
+from PySide6.QtGui import QAccessible, QColor, QPainter, QPainterPath, QPen, QPolygonF
 from PySide6.QtWidgets import QStyleOptionGraphicsItem, QWidget
 
 from app.charts.axes import AXIS_WIDTH, RIGHT_MARGIN, range_for
@@ -46,6 +46,8 @@ class AngleChart(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no typ
 
     It is put together from its parts, because a `PlotItem` brings menus and forty controls that nobody would see.
     """
+
+    accessible_role = QAccessible.Role.Chart
 
     view_moved = Signal()
 

@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 from PySide6.QtCore import QPointF, QRectF, QSize
-from PySide6.QtGui import QColor, QFont, QImage, QPainter, QPaintEvent, QPolygonF, QResizeEvent
+from PySide6.QtGui import QAccessible, QColor, QFont, QImage, QPainter, QPaintEvent, QPolygonF, QResizeEvent
 from PySide6.QtWidgets import QSizePolicy
 
 from app.theme import ThemeNotifier
@@ -32,6 +32,8 @@ X_REACH, Y_REACH = 2 * math.sqrt(2), math.sqrt(2)  # half axes of Hammer's ellip
 
 class CostMap(Themed):
     """One sensor of one joint."""
+
+    accessible_role = QAccessible.Role.Chart
 
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()

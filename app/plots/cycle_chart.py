@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QColor, QMouseEvent, QPainter, QPaintEvent, QPixmap
+from PySide6.QtGui import QAccessible, QColor, QMouseEvent, QPainter, QPaintEvent, QPixmap
 from PySide6.QtWidgets import QBoxLayout, QGridLayout, QHBoxLayout, QSizePolicy
 
 from app.charts.axes import (
@@ -379,6 +379,8 @@ def _has_common_height(found: Comparison, joint: Joint) -> bool:
 
 class CycleChart(Themed):
     """One joint over 0 to 100 % of the stride; its axis stays unless a mean curve leaves it."""
+
+    accessible_role = QAccessible.Role.Chart
 
     picked = Signal(float, float)  # percent of the stride, degrees
 

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from PySide6.QtCore import QPointF, QRectF, QSize
-from PySide6.QtGui import QColor, QFont, QFontMetrics, QPainter, QPaintEvent
+from PySide6.QtGui import QAccessible, QColor, QFont, QFontMetrics, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy
 
 from app.charts.on_screen import DOT, paint_letter
@@ -59,6 +59,8 @@ class DifferenceGroup:
 
 class DifferencePlot(Themed):
     """As high as its rows."""
+
+    accessible_role = QAccessible.Role.Chart
 
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from PySide6.QtCore import QEvent, QPointF, QRectF, QSize, Qt
-from PySide6.QtGui import QColor, QFontMetrics, QHelpEvent, QPainter, QPaintEvent
+from PySide6.QtGui import QAccessible, QColor, QFontMetrics, QHelpEvent, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QToolTip
 
 from app.theme import ThemeNotifier
@@ -35,6 +35,8 @@ class GroupLine:
 
 class GroupPlot(Themed):
     """As high as its groups. `unit` stands under the axis."""
+
+    accessible_role = QAccessible.Role.Chart
 
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()

@@ -42,6 +42,8 @@ class JointCharts(Themed):
     part is.
     """
 
+    accessible_role = QAccessible.Role.Chart
+
     view_changed = Signal(bool, str)
 
     def __init__(self, look: ThemeNotifier) -> None:

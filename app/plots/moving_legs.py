@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt, QTimer, Signal
-from PySide6.QtGui import QColor, QHideEvent, QKeyEvent, QMouseEvent, QPainter, QPaintEvent
+from PySide6.QtGui import QAccessible, QColor, QHideEvent, QKeyEvent, QMouseEvent, QPainter, QPaintEvent
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy
 
 from app.icons import Icon
@@ -40,6 +40,8 @@ DRAWN_WITH_PELVIS = later("Drawn from angles and the inclination of thighs and p
 
 class MovingLegs(Card):
     """`moved` tells where in the reference leg's stride the cursor is, percent, whoever moved it."""
+
+    accessible_role = QAccessible.Role.Chart
 
     moved = Signal(float)
 
@@ -266,9 +268,9 @@ class _LegsPicture(Themed):
                     low, high = max(begin, 0.0), min(begin + length, 100.0)
                     if high > low:
                         left = lanes.left() + lanes.width() * low / 100
-                        painter.fillRect(
-                            QRectF(left, top, lanes.width() * (high - low) / 100, px(LANE)), theme.soft(side)
-                        )
+                        stance = QRectF(left, top, lanes.width() * (high - low) / 100, px(LANE))
+                        painter.setBrush(theme.soft(side))  # too faint on its ground without the edge
+                        painter.drawRect(stance)
         painter.setFont(theme.font(12, MEDIUM))
         painter.setPen(QColor(theme.colours.ink2))
         words = QRectF(lanes.left(), lanes.bottom() - px(20), lanes.width(), px(20))

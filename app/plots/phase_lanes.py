@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QColor, QMouseEvent, QPainter, QPaintEvent, QWheelEvent
+from PySide6.QtGui import QAccessible, QColor, QMouseEvent, QPainter, QPaintEvent, QWheelEvent
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QSizePolicy, QWidget
 
 from app.charts.axes import AXIS_WIDTH, RIGHT_MARGIN
@@ -181,6 +181,8 @@ class PhaseFrame(Card):
 
 class PhaseLanes(QWidget):
     """Left above right, as wide as the curves above it. The mouse acts as on the curves."""
+
+    accessible_role = QAccessible.Role.Chart
 
     pointed = Signal(float)  # at a time
     zoomed = Signal(float)  # share of the time in sight to keep

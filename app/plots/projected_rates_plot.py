@@ -3,7 +3,7 @@
 import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt
-from PySide6.QtGui import QColor, QFont, QPainter, QPaintEvent, QPen, QPolygonF, QResizeEvent
+from PySide6.QtGui import QAccessible, QColor, QFont, QPainter, QPaintEvent, QPen, QPolygonF, QResizeEvent
 from PySide6.QtWidgets import QSizePolicy
 
 from app.reports.diagnostics import parts_deg_s
@@ -26,6 +26,8 @@ STEPS = (5, 10, 20, 50, 100, 200, 500, 1000, 2000)
 
 class ProjectedRatesPlot(Themed):
     """Two panels of one size and one scale."""
+
+    accessible_role = QAccessible.Role.Chart
 
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()

@@ -5,7 +5,7 @@ from typing import TypeVar
 import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt
-from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen, QPixmap
+from PySide6.QtGui import QAccessible, QColor, QPainter, QPaintEvent, QPen, QPixmap
 from PySide6.QtWidgets import QSizePolicy
 
 from app.charts.axes import AXIS_WIDTH, KNEE_DEG, RIGHT_MARGIN, USUAL_DEG, angle_in_words, range_for
@@ -30,6 +30,8 @@ T = TypeVar("T", float, FloatArray)
 
 class TwoWaysChart(Themed):
     """Degrees over seconds; the axis widens for drift, while the accelerometers' spikes are cut at its ends."""
+
+    accessible_role = QAccessible.Role.Chart
 
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()

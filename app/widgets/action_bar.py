@@ -73,6 +73,8 @@ class BarState:
 class ActionBar(Themed):
     """Grows by a line where a narrow window or a long language leaves no room; nothing in it is ever cut."""
 
+    accessible_role = QAccessible.Role.ToolBar
+
     back_pressed = Signal()
     primary_pressed = Signal()
     other_pressed = Signal(int)

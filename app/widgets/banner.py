@@ -19,6 +19,8 @@ ABOVE = 12  # clear of the header; gone together with the banner
 class Banner(Themed):
     """Hidden until it is told something."""
 
+    accessible_role = QAccessible.Role.AlertMessage
+
     dismissed = Signal()
     acted = Signal()  # the way on that was offered
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from enum import Enum, auto
 
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt
-from PySide6.QtGui import QColor, QFontMetrics, QPainter, QPaintEvent, QTransform
+from PySide6.QtGui import QAccessible, QColor, QFontMetrics, QPainter, QPaintEvent, QTransform
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from app.theme import ThemeNotifier
@@ -74,6 +74,8 @@ def placing_of_legs(rect: QRectF) -> QTransform:
 
 class BodyFigure(QWidget):
     """The whole person with large R and L, or the legs alone with their joints marked."""
+
+    accessible_role = QAccessible.Role.Graphic
 
     def __init__(self, look: ThemeNotifier, legs_only: bool = False) -> None:
         super().__init__()

@@ -1,7 +1,7 @@
 """The letter of a leg in its frame: L filled, R outlined and dashed, so that it is read without colour too."""
 
 from PySide6.QtCore import QRectF, QSize, Qt
-from PySide6.QtGui import QColor, QPainter, QPaintEvent
+from PySide6.QtGui import QAccessible, QColor, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from app.theme import ThemeNotifier
@@ -43,6 +43,8 @@ def paint_chip(painter: QPainter, rect: QRectF, side: Side, theme: Theme) -> Non
 class Chip(QWidget):
     """The chip alone, before words about that leg."""
 
+    accessible_role = QAccessible.Role.Graphic
+
     def __init__(self, look: ThemeNotifier, side: Side) -> None:
         super().__init__()
         self._look, self._side = look, side
@@ -59,6 +61,8 @@ class Chip(QWidget):
 
 class SideKey(QWidget):
     """Chip and line of one leg: the key to the curves."""
+
+    accessible_role = QAccessible.Role.Graphic
 
     def __init__(self, look: ThemeNotifier, side: Side) -> None:
         super().__init__()

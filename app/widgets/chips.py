@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Sequence
 
 from PySide6.QtCore import QRect, QSize, Qt, Signal
-from PySide6.QtGui import QKeyEvent, QResizeEvent
+from PySide6.QtGui import QAccessible, QKeyEvent, QResizeEvent
 from PySide6.QtWidgets import QAbstractButton, QSizePolicy
 
 from app.theme import ThemeNotifier
@@ -23,6 +23,8 @@ class Chips(Themed):
     rivals
         Two keys that exclude each other: turning one on turns the other off.
     """
+
+    accessible_role = QAccessible.Role.Grouping
 
     turned = Signal()  # by the user
 

@@ -1,5 +1,7 @@
 """One choice out of many, folded away until it is asked for."""
 
+import sys
+
 from PySide6.QtCore import QEvent, QPoint, QSize, Qt
 from PySide6.QtGui import QWheelEvent
 from PySide6.QtWidgets import QComboBox, QSizePolicy
@@ -14,6 +16,8 @@ class Choice(QComboBox):
         self._least: float | None = None
         self._most = 0.0
         self.setAccessibleName(name)
+        if sys.platform.startswith("linux"):  # there Qt gives the choice in force as the name, and ours is not heard
+            self.setAccessibleDescription(name)
         self.setSizePolicy(QSizePolicy.Policy.Minimum, QSizePolicy.Policy.Fixed)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToContents)  # words come after it is first shown

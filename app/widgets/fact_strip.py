@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from PySide6.QtCore import QRectF, QSize
-from PySide6.QtGui import QFontMetrics, QPainter, QPaintEvent
+from PySide6.QtGui import QAccessible, QFontMetrics, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy
 
 from app.theme import ThemeNotifier
@@ -35,6 +35,8 @@ class KeyFigure:
 
 class FactStrip(Themed):
     """As wide as its figures need; a hairline stands before each."""
+
+    accessible_role = QAccessible.Role.Grouping
 
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 from PySide6.QtCore import QSize, Qt
+from PySide6.QtGui import QAccessible
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
 
 from app.icons import SEVERITY_ICONS, Icon
@@ -24,6 +25,8 @@ USUAL = frozenset({"not_a_hinge"})  # of living joints: a figure of theirs, whic
 
 
 class FindingsList(QScrollArea):
+    accessible_role = QAccessible.Role.List
+
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look = look
@@ -61,6 +64,8 @@ class FindingsList(QScrollArea):
 
 class FindingRow(QWidget):
     """What happened in bold, what follows below it."""
+
+    accessible_role = QAccessible.Role.ListItem
 
     def __init__(self, look: ThemeNotifier, icon: Icon, severity: Severity, text: str) -> None:
         super().__init__()

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from enum import Enum, auto
 
 from PySide6.QtCore import QPointF, QRect, QRectF, QSize, Qt
-from PySide6.QtGui import QColor, QFont, QFontMetrics, QPainter, QPaintEvent
+from PySide6.QtGui import QAccessible, QColor, QFont, QFontMetrics, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from app.body_words import joint_name
@@ -130,6 +130,8 @@ def _steps(share: float) -> float:
 
 class Gauge(QWidget):
     """One joint's card. The ring lies on the side of the figure: a right leg's at the right."""
+
+    accessible_role = QAccessible.Role.Graphic
 
     def __init__(self, look: ThemeNotifier, joint: Joint) -> None:
         super().__init__()

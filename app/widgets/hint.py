@@ -28,6 +28,8 @@ class Hint:
 
 
 class HintBand(QWidget):
+    accessible_role = QAccessible.Role.Note
+
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look = look

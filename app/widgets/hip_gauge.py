@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 
 from PySide6.QtCore import QRectF, QSize, Qt
-from PySide6.QtGui import QColor, QFontMetrics, QPainter, QPaintEvent
+from PySide6.QtGui import QAccessible, QColor, QFontMetrics, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from app.body_words import joint_name
@@ -53,6 +53,8 @@ def hip_face(found: HipHeadingState | None, is_now: bool = False) -> HipFace:
 
 class HipGauge(QWidget):
     """One hip's card: its ring at the left, what would show it in the middle, the figure at the right."""
+
+    accessible_role = QAccessible.Role.Graphic
 
     def __init__(self, look: ThemeNotifier, joint: Joint) -> None:
         super().__init__()

@@ -16,6 +16,8 @@ PADDING = 10
 class Notice(Themed):
     """Keeps its place while it has nothing to say, unless it is hidden. `padding`: above and below, px."""
 
+    accessible_role = QAccessible.Role.Note
+
     def __init__(self, look: ThemeNotifier, size: float = 18, padding: int = PADDING) -> None:
         super().__init__()
         self._look, self._padding = look, padding

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from PySide6.QtCore import QRectF, Signal
-from PySide6.QtGui import QPainter, QPaintEvent
+from PySide6.QtGui import QAccessible, QPainter, QPaintEvent
 from PySide6.QtWidgets import QAbstractButton, QButtonGroup, QHBoxLayout, QSizePolicy, QWidget
 
 from app.theme import ThemeNotifier
@@ -15,6 +15,8 @@ PLAIN_HEIGHT = 48  # without second lines, as high as a field
 
 class Segmented(QWidget):
     """`options` are key, word and second line of each choice; the first is chosen to begin with."""
+
+    accessible_role = QAccessible.Role.Grouping
 
     chosen = Signal(str)
 

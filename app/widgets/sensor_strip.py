@@ -3,7 +3,7 @@
 from collections.abc import Collection, Mapping
 
 from PySide6.QtCore import QElapsedTimer, QRect, QRectF, Qt, QTimer, Signal
-from PySide6.QtGui import QColor, QPainter, QPaintEvent, QResizeEvent
+from PySide6.QtGui import QAccessible, QColor, QPainter, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import QSizePolicy
 
 from app.theme import ThemeNotifier
@@ -28,6 +28,8 @@ EVERY_MS = 250  # faster changes cannot be read
 
 class SensorStrip(Themed):
     """One stop for Tab; the arrows go from tile to tile."""
+
+    accessible_role = QAccessible.Role.List
 
     turned_bad = Signal()
     tiles_changed = Signal()

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from PySide6.QtCore import QBuffer, QPointF, QRectF, QSize, Qt, QTimer, Signal
-from PySide6.QtGui import QColor, QImage, QImageReader, QKeyEvent, QMouseEvent, QPainter, QPaintEvent
+from PySide6.QtGui import QAccessible, QColor, QImage, QImageReader, QKeyEvent, QMouseEvent, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QVBoxLayout, QWidget
 
 from app.theme import ThemeNotifier
@@ -45,6 +45,8 @@ class Sheet:
 
 class Sheets(QWidget):
     """The pages under each other, as wide as there is room for."""
+
+    accessible_role = QAccessible.Role.Document
 
     sharper_wanted = Signal()
 
@@ -113,6 +115,8 @@ class SmallSheets(Themed):
     wished
         The number of a page, from 0.
     """
+
+    accessible_role = QAccessible.Role.List
 
     wished = Signal(int)
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 from PySide6.QtCore import QPointF, QSize
-from PySide6.QtGui import QPainter, QPaintEvent, QPolygonF
+from PySide6.QtGui import QAccessible, QPainter, QPaintEvent, QPolygonF
 from PySide6.QtWidgets import QSizePolicy
 
 from app.theme import ThemeNotifier
@@ -14,6 +14,8 @@ SIZE = (120, 28)
 
 class SmallCurve(Themed):
     """`name` is what readers of screens say of it. A gap in the values is one in the line."""
+
+    accessible_role = QAccessible.Role.Graphic
 
     def __init__(self, look: ThemeNotifier, name: str) -> None:
         super().__init__()

@@ -4,6 +4,7 @@ from collections.abc import Callable
 
 from PySide6.QtCore import QPoint, QRectF, Qt, Signal
 from PySide6.QtGui import (
+    QAccessible,
     QColor,
     QPainter,
     QPaintEvent,
@@ -40,6 +41,8 @@ def home_below(*, can_lock: bool) -> tuple[BelowRow, ...]:
 
 class StepRail(Themed):
     """One stop for Tab: within it the arrows go from row to row, Enter or Space presses one."""
+
+    accessible_role = QAccessible.Role.Grouping
 
     step_pressed = Signal(int)
     below_pressed = Signal(str)

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from PySide6.QtCore import QPointF, QRect, QRectF, QSize, Qt
-from PySide6.QtGui import QColor, QFontMetrics, QPainter, QPaintEvent
+from PySide6.QtGui import QAccessible, QColor, QFontMetrics, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from app.body_words import segment_name
@@ -41,6 +41,8 @@ class RingFace:
 
 class CountRing(QWidget):
     """As large as its place; the figure is read from six metres."""
+
+    accessible_role = QAccessible.Role.Graphic
 
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()

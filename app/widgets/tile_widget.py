@@ -1,7 +1,7 @@
 """One sensor's tile: whose it is, how it is, and whether it moves."""
 
 from PySide6.QtCore import QRectF, Qt, Signal
-from PySide6.QtGui import QColor, QFont, QFontMetrics, QKeyEvent, QPainter, QPaintEvent
+from PySide6.QtGui import QAccessible, QColor, QFont, QFontMetrics, QKeyEvent, QPainter, QPaintEvent
 from PySide6.QtWidgets import QWidget
 
 from app.body_words import segment_name
@@ -23,6 +23,8 @@ MARKS = BATTERY_WIDTH + 4 + 18  # battery and movement
 
 class TileWidget(QWidget):
     """One tile. It paints itself anew only when what it says is another."""
+
+    accessible_role = QAccessible.Role.ListItem
 
     moved = Signal(int)  # by so many tiles, with the arrows
 

@@ -26,6 +26,8 @@ STAYS_MS = 6000
 class Toast(Themed):
     """Hidden until it has something to offer. The shell places it and knows its key."""
 
+    accessible_role = QAccessible.Role.AlertMessage
+
     undone = Signal()
 
     def __init__(self, look: ThemeNotifier, parent: QWidget | None = None) -> None:

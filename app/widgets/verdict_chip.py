@@ -1,7 +1,7 @@
 """The key to one leg's curve, with what may be read of it: letter, line, and the verdict after its circle."""
 
 from PySide6.QtCore import QRectF, QSize
-from PySide6.QtGui import QFontMetrics, QPainter, QPaintEvent
+from PySide6.QtGui import QAccessible, QFontMetrics, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy
 
 from app.gates_in_words import verdict_word
@@ -29,6 +29,8 @@ BRIEF = {
 
 class VerdictChip(Themed):
     """Brief, it leaves out the curve's line and says the verdict in a word."""
+
+    accessible_role = QAccessible.Role.Graphic
 
     def __init__(self, look: ThemeNotifier, side: Side) -> None:
         super().__init__()

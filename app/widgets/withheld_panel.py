@@ -1,7 +1,7 @@
 """In place of what is withheld: of which leg, why, and what to do. Hatched, so that nobody takes it for a curve."""
 
 from PySide6.QtCore import QRectF, Qt
-from PySide6.QtGui import QBrush, QColor, QPainter, QPaintEvent
+from PySide6.QtGui import QAccessible, QBrush, QColor, QPainter, QPaintEvent
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy
 
 from app.gates_in_words import verdict_word
@@ -20,6 +20,8 @@ LEAST_WIDTH = 260  # narrower, its sentences have no room in height
 
 class WithheldPanel(Themed):
     """Hidden while there is nothing to say."""
+
+    accessible_role = QAccessible.Role.Note
 
     def __init__(self, look: ThemeNotifier, side: Side) -> None:
         super().__init__()

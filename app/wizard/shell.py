@@ -7,12 +7,12 @@ from PySide6.QtCore import QEvent, QObject, QPoint, QRect, Qt, QTimer, QVariantA
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPixmap, QResizeEvent, QShowEvent
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
 
+from app.motion import duration_ms
 from app.theme import ThemeNotifier
 from app.widgets.action_bar import ActionBar
 from app.widgets.banner import Banner
 from app.widgets.grid import COMPACT_BELOW, CONTENT, LEAST, WIDE_FROM, side_margin
 from app.widgets.header import Header
-from app.widgets.motion import duration_ms
 from app.widgets.page_stack import PageStack
 from app.widgets.rail_row import RailForm
 from app.widgets.sensor_strip import SensorStrip
@@ -63,7 +63,7 @@ class WizardShell(Themed):
         self.bar = ActionBar(look)
         self._build()
         self.toast = Toast(look, self)
-        self._fade = _Fade(self._scroll)
+        self._fade = _Fade(look, self._scroll)
         self._settled = QTimer(self)
         self._settled.setSingleShot(True)
         self._settled.timeout.connect(lambda: self._scroll.setUpdatesEnabled(True))
@@ -317,9 +317,9 @@ class WizardShell(Themed):
 class _Fade(QWidget):
     """The page that was there, as a picture over the one that is, going away."""
 
-    def __init__(self, scroll: QScrollArea) -> None:
+    def __init__(self, look: ThemeNotifier, scroll: QScrollArea) -> None:
         super().__init__(scroll.viewport())
-        self._under = scroll.viewport()
+        self._look, self._under = look, scroll.viewport()
         self._picture = QPixmap()
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
         self._run = QVariantAnimation(self)
@@ -332,7 +332,7 @@ class _Fade(QWidget):
     def begin(self) -> None:
         """Take the picture of what is there now; what comes next appears under it."""
         self.end()
-        duration = duration_ms(FADE_MS)
+        duration = duration_ms(FADE_MS, self._look.theme)
         if duration == 0 or not self._under.isVisible():
             return
         self._picture = self._under.grab()

@@ -19,14 +19,14 @@ from typing import Any
 
 import pytest
 
-from app import cli
+from app import cli, motion
 from app.batch import executors
 from app.reports.proposed_names import DEVICES, session_name
 from app.review import viewer
 from app.sounds import Loudspeaker, Sound
 from app.storage import files
 from app.storage.journal.disk import JournalFile
-from app.widgets import motion
+from app.tokens import Theme
 from devices import networks, ports
 from devices.emulators.transports import PseudoTerminal
 from devices.files import limits
@@ -300,7 +300,7 @@ def test_windows_is_asked_whether_things_may_move(wanted: int, took_ms: int, mon
 
     user32 = SimpleNamespace(SystemParametersInfoW=asked)
     monkeypatch.setattr(ctypes, "windll", SimpleNamespace(user32=user32), raising=False)
-    assert motion.duration_ms(200) == took_ms
+    assert motion.duration_ms(200, Theme()) == took_ms
 
 
 # ports and networks

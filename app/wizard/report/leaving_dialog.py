@@ -4,11 +4,12 @@ from collections.abc import Mapping, Sequence
 
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QColor, QPalette
-from PySide6.QtWidgets import QDialog, QFrame, QGridLayout, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QDialog, QFrame, QGridLayout, QHBoxLayout, QVBoxLayout, QWidget
 
 from app.theme import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.chips import Chips
+from app.widgets.reading_area import ReadingArea
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.wording import tr
 
@@ -69,7 +70,7 @@ class LeavingDialog(QDialog):
         ]
 
     def _build(self) -> None:
-        scroll = QScrollArea()
+        scroll = ReadingArea()
         scroll.setWidgetResizable(True)
         scroll.setFrameShape(QFrame.Shape.NoFrame)
         scroll.setAccessibleName(tr("All that leaves beside the figures"))

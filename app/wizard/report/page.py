@@ -5,12 +5,13 @@ from uuid import UUID
 
 from PySide6.QtCore import QEvent, QObject, QSignalBlocker, Qt, QTimer, Signal
 from PySide6.QtGui import QKeyEvent
-from PySide6.QtWidgets import QBoxLayout, QFrame, QHBoxLayout, QPlainTextEdit, QScrollArea, QWidget
+from PySide6.QtWidgets import QBoxLayout, QFrame, QHBoxLayout, QPlainTextEdit, QWidget
 
 from app.theme import ThemeNotifier
 from app.widgets.card import Card
 from app.widgets.chips import Chips
 from app.widgets.choice import Choice
+from app.widgets.reading_area import ReadingArea
 from app.widgets.segmented import Segmented
 from app.widgets.sheets import Sheet, Sheets, SmallSheets
 from app.widgets.text import SEMIBOLD, Text
@@ -46,7 +47,7 @@ class ReportPage(Themed):
         super().__init__()
         self._look, self._is_narrow = look, False
         self.sheets, self.small = Sheets(look), SmallSheets(look)
-        self.reading = QScrollArea()
+        self.reading = ReadingArea()
         self.reading.setFrameShape(QFrame.Shape.NoFrame)
         self.reading.setWidgetResizable(True)
         self.reading.setWidget(self.sheets)
@@ -119,7 +120,7 @@ class ReportPage(Themed):
     @property
     def tab_order(self) -> list[QWidget]:
         choices = [*self.added.buttons, self.earlier]
-        return [self.reading, self.small, self.comment, *choices, *self.formats.buttons, *self.paper.segments]
+        return [self.small, self.reading, self.comment, *choices, *self.formats.buttons, *self.paper.segments]
 
     def focus(self) -> None:
         """Give the focus to the pages: the words are optional, and Enter belongs to the report."""

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 
 from PySide6.QtCore import QRect, QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QFont, QFontMetrics, QPainter, QPaintEvent
+from PySide6.QtGui import QAccessible, QFont, QFontMetrics, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QVBoxLayout, QWidget
 
 from app.body_words import segment_name
@@ -34,6 +34,8 @@ class SensorList(Themed):
     selected
         The name of the sensor that keys mean from now on.
     """
+
+    accessible_role = QAccessible.Role.List
 
     assigned = Signal(str, object)
     selected = Signal(str)

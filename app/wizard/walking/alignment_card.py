@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from PySide6.QtCore import QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QFontMetrics, QMouseEvent, QPainter, QPaintEvent, QResizeEvent
+from PySide6.QtGui import QAccessible, QFontMetrics, QMouseEvent, QPainter, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QScrollArea, QSizePolicy, QVBoxLayout, QWidget
 
 from app.alignment_words import MINUS, change_in_words, direction_words, part_name, turns_words
@@ -200,6 +200,8 @@ class AlignmentCard(Card):
 
 class _AlignmentRow(Themed):
     """One alignment; pressed it is shown, with Shift it stands beside."""
+
+    accessible_role = QAccessible.Role.ListItem
 
     pressed = Signal(int, bool)
 

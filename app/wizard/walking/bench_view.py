@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from PySide6.QtCore import Qt, Signal
+from PySide6.QtGui import QAccessible
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QVBoxLayout, QWidget
 
 from app.icons import Icon
@@ -53,6 +54,8 @@ class BenchView(Themed):
     chosen, told
         As of `AlignmentCard`.
     """
+
+    accessible_role = QAccessible.Role.Grouping
 
     chosen = Signal(int, bool)
     told = Signal()

@@ -4,6 +4,7 @@ import math
 from collections.abc import Mapping
 
 from PySide6.QtCore import QSize, Qt
+from PySide6.QtGui import QAccessible
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QSizePolicy, QVBoxLayout
 
 from app.theme import ThemeNotifier
@@ -167,6 +168,8 @@ class StoppedCard(Card):
 
 class EmptyCard(Card):
     """Before the first walk: what to do, and why to stand a moment."""
+
+    accessible_role = QAccessible.Role.Note
 
     def __init__(self, look: ThemeNotifier) -> None:
         self._what = Text(look, tr("Choose a label, then press Space."), size=26, weight=SEMIBOLD, wraps=True)

@@ -3,7 +3,7 @@
 import math
 
 from PySide6.QtCore import QRectF, QSize
-from PySide6.QtGui import QColor, QPainter, QPaintEvent
+from PySide6.QtGui import QAccessible, QColor, QPainter, QPaintEvent
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QSpacerItem, QWidget
 
 from app.charts.axes import ANKLE_DEG, KNEE_DEG, degrees_in_words
@@ -26,6 +26,8 @@ HIP_SHARE, KNEE_SHARE, ANKLE_SHARE = 4, 5, 4  # of the height: the knee's axis i
 
 class WalkingCharts(Card):
     """Knee, ankle and phases in one frame, the hip above them where the pelvis wears a sensor."""
+
+    accessible_role = QAccessible.Role.Chart
 
     def __init__(self, look: ThemeNotifier) -> None:
         self.hip = LiveStrip(look, HIP_DEG, HIP_TICK_DEG)

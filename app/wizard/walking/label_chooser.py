@@ -2,7 +2,7 @@
 
 from PySide6.QtCore import QRect, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QFontMetrics, QKeyEvent, QPainter, QPaintEvent, QResizeEvent
-from PySide6.QtWidgets import QAbstractButton, QSizePolicy
+from PySide6.QtWidgets import QAbstractButton, QSizePolicy, QWidget
 
 from app.theme import ThemeNotifier
 from app.tokens import CHIP_RADIUS
@@ -32,6 +32,8 @@ class LabelChooser(Themed):
         self._choice = ""
         self.own = Field(look, tr("Other words for the next walk"), placeholder=tr("Other words"), has_label=False)
         self.own.setParent(self)
+        # it was made before the labels: Tab would come to its box in its place
+        self.own.setFocusProxy(None)  # type: ignore[arg-type]  # the stubs know no None, which takes the proxy away
         self.setAccessibleName(tr("Next condition"))
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         self.own.committed.connect(self._on_own_committed)
@@ -44,6 +46,11 @@ class LabelChooser(Themed):
     @property
     def buttons(self) -> list[QAbstractButton]:
         return list(self._options)
+
+    @property
+    def stops(self) -> list[QWidget]:
+        """Where the tabulator stops among the labels."""
+        return [option for option in self._options if option.focusPolicy() is Qt.FocusPolicy.TabFocus]
 
     def show_labels(self, labels: tuple[str, ...], choice: str) -> None:
         """Offer `labels`; a choice that is none of them stands in the field."""
@@ -99,10 +106,15 @@ class LabelChooser(Themed):
         The mouse leaves the focus where it is: Space must start the walk, not press the label again.
         """
         chosen = [option for option in self._options if option.text() == self._choice]
-        stops = (chosen or self._options)[:1]
+        before, stops = self.stops, (chosen or self._options)[:1]
+        for stop in stops:
+            stop.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+            for one in before:
+                QWidget.setTabOrder(one, stop)  # in whose place it comes; Qt chains nothing that takes no focus
         for option in self._options:
             option.setChecked(option in chosen)
-            option.setFocusPolicy(Qt.FocusPolicy.TabFocus if option in stops else Qt.FocusPolicy.NoFocus)
+            if option not in stops:
+                option.setFocusPolicy(Qt.FocusPolicy.NoFocus)
 
     def _flow(self, width: int) -> list[QRect]:
         """Where each label lies, and the field last, in lines of `width`."""

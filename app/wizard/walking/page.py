@@ -109,9 +109,9 @@ class WalkingPage(Themed):
     def tab_order(self) -> list[QWidget]:
         """The controls in the order of reading, those of this moment only."""
         controls: list[QWidget] = [*self.patient_controls.controls, *self.bench.tab_order, *self.tabs.segments]
-        controls += [self.stopped.keep, self.stopped.discard]
+        controls += [self.stopped.discard, self.stopped.keep]
         controls += [*self.walks.buttons, self.walks.restrapped]
-        controls += [*self.next.chooser.buttons, self.next.chooser.own.line_edit, self.next.test.box]
+        controls += [*self.next.chooser.stops, self.next.chooser.own.line_edit, self.next.test.box]
         return [one for one in controls if one.isVisibleTo(self)]
 
     def focus(self) -> None:

@@ -1,7 +1,7 @@
 """A figure that goes up and down in steps, by keys or by pressing its ends: no keyboard of digits is needed."""
 
 from PySide6.QtCore import QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QFontMetrics, QKeyEvent, QMouseEvent, QPainter, QPaintEvent
+from PySide6.QtGui import QAccessible, QFontMetrics, QKeyEvent, QMouseEvent, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from app.theme import ThemeNotifier
@@ -17,6 +17,8 @@ DOWN = (Qt.Key.Key_Minus, Qt.Key.Key_Underscore, Qt.Key.Key_Down, Qt.Key.Key_Lef
 
 class Stepper(QWidget):
     """`stepped` says in which direction, 1 or -1; who listens says what is shown then."""
+
+    accessible_role = QAccessible.Role.SpinBox
 
     stepped = Signal(int)
 

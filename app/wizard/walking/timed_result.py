@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from PySide6.QtCore import Qt
+from PySide6.QtGui import QAccessible
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
 
 from app.icons import Icon
@@ -68,6 +69,8 @@ class TimedResult:
 
 class TimedResultView(Themed):
     """In the place of the curves, between walks."""
+
+    accessible_role = QAccessible.Role.Grouping
 
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()

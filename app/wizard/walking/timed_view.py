@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt
-from PySide6.QtGui import QBrush, QColor, QPainter, QPaintEvent, QPen, QPolygonF
+from PySide6.QtGui import QAccessible, QBrush, QColor, QPainter, QPaintEvent, QPen, QPolygonF
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QSizePolicy, QVBoxLayout
 
 from app.icons import Icon
@@ -85,6 +85,8 @@ def distance_words(state: TimedViewState) -> tuple[str, str]:
 
 class TimedView(Themed):
     """Everything of one test; nothing in it is pressed: Space and the bar do that."""
+
+    accessible_role = QAccessible.Role.Grouping
 
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from PySide6.QtCore import QEvent, QObject, QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QColor, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QResizeEvent
+from PySide6.QtGui import QAccessible, QColor, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import (
     QFrame,
     QHBoxLayout,
@@ -73,6 +73,8 @@ class WalkRow:
 class WalkList(Card):
     """The newest walk is in sight. Below the list: what to press when the sensors came off."""
 
+    accessible_role = QAccessible.Role.List
+
     undo_pressed = Signal(str)
     renamed = Signal(str, str)  # a walk that was kept, and the condition that somebody typed
     restrapped_pressed = Signal()
@@ -92,6 +94,7 @@ class WalkList(Card):
         )
         self._list = QVBoxLayout(self._inside)
         super().__init__(look, spacing=4)
+        self.setAccessibleName(tr("Walks"))
         self._list.addStretch(1)
         self._scroll.setWidget(self._inside)
         self._scroll.setWidgetResizable(True)
@@ -159,6 +162,8 @@ MARKS = {
 
 
 class _ListedWalk(Themed):
+    accessible_role = QAccessible.Role.ListItem
+
     def __init__(self, look: ThemeNotifier, owner: WalkList) -> None:
         super().__init__()
         self._look, self._owner = look, owner

@@ -34,7 +34,7 @@ def frame(film: Film, time_s: float, theme: Theme) -> QImage:
 @pytest.fixture
 def page(qtbot: QtBot, look: ThemeNotifier, monkeypatch: pytest.MonkeyPatch) -> HelpPage:
     """A help page where things may move, whatever the machine of the test was asked for."""
-    monkeypatch.setattr(help_reader, "duration_ms", lambda usual_ms: usual_ms)
+    monkeypatch.setattr(help_reader, "duration_ms", lambda usual_ms, _theme: usual_ms)
     page = HelpPage(look)
     page.resize(1064, 672)
     qtbot.addWidget(page)
@@ -115,7 +115,7 @@ def test_space_scrolls_where_there_is_no_film(page: HelpPage) -> None:
 def test_where_less_motion_is_asked_for_the_scenes_stand_side_by_side(
     qtbot: QtBot, look: ThemeNotifier, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(help_reader, "duration_ms", lambda _usual_ms: 0)
+    monkeypatch.setattr(help_reader, "duration_ms", lambda _usual_ms, _theme: 0)
     page = HelpPage(look)
     qtbot.addWidget(page)
     page.resize(1064, 672)

@@ -98,7 +98,7 @@ def _fonts(qapp: object) -> Iterator[None]:
 
 @pytest.fixture
 def shell(look: ThemeNotifier, qtbot: QtBot, monkeypatch: pytest.MonkeyPatch) -> WizardShell:
-    monkeypatch.setattr(shell_module, "duration_ms", lambda _usual_ms: 0)
+    monkeypatch.setattr(shell_module, "duration_ms", lambda _usual_ms, _theme: 0)
     shell = filled(look)
     qtbot.addWidget(shell)
     shell.resize(1280, 800)

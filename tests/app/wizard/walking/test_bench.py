@@ -26,22 +26,10 @@ from app.wizard.walking.walk_labels import new_alignment
 from app.wizard.walking.walk_list import WalkRow, WalkState
 from core.alignment import AlignmentChange, NetChange, PartChange, ProsthesisPart
 from core.body import Joint, Side
-from core.results import Analysis, Calibration, Method, SideGait
-from core.samples import Recording, RecordingKind, Session
+from core.results import SideGait
 from tests.app.room import words_cut
+from tests.app.wizard.walking.bench_material import OF_B, OF_C, PYLON, WALKED, bench_visit
 from tests.core.verdicts.built_walk import calibrations, judged_walk, leg, walk
-
-PYLON = ProsthesisPart.PYLON
-OF_B = AlignmentChange("Alignment A", (PartChange(PYLON, height_mm=3.0),))
-OF_C = AlignmentChange("Alignment B", (PartChange(PYLON, height_mm=-1.0),))
-
-
-def recording(number: int, letter: str, change: AlignmentChange | None = None, **told: Any) -> Recording:
-    name = f"walk {number}"
-    return Recording(name, RecordingKind.WALKING, name, {}, condition=f"Alignment {letter}", alignment=change, **told)
-
-
-WALKED = (recording(1, "A"), recording(2, "B", OF_B), recording(3, "C", OF_C))
 
 
 def part(letter: str, **changes: Any) -> Part:
@@ -154,19 +142,7 @@ def test_few_strides_are_ten() -> None:
 
 @pytest.fixture
 def visit() -> SimpleNamespace:
-    """What the bench asks of a visit: three walks, the left leg prosthetic; the second bends its knee 10° more."""
-    legs = (leg(Side.LEFT), leg(Side.LEFT, knee_range_deg=70.0), leg(Side.LEFT, knee_range_deg=71.0))
-    walks = tuple(
-        judged_walk(walk(left=one, name=f"walk {k}", folder=f"walk {k}")) for k, one in enumerate(legs, start=1)
-    )
-    span = Calibration(tuple(one.name for one in walks), calibrations())
-    analysis = Analysis(Method.ROBUST, is_simulated=True, calibrations=(span,), recordings=walks)
-    every = [SimpleNamespace(details=one) for one in WALKED]
-    return SimpleNamespace(
-        prosthetic_sides=frozenset({Side.LEFT}),
-        recordings=SimpleNamespace(every=every, walks=every),
-        evaluation=SimpleNamespace(analysis=analysis, session=Session(WALKED), is_busy=False),
-    )
+    return bench_visit()
 
 
 @pytest.fixture

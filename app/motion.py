@@ -1,14 +1,16 @@
-"""May things move? How long a transition takes: nothing where the system was asked for less motion."""
+"""May things move? How long a transition takes: nothing where less motion is asked for, here or in the system."""
 
 import ctypes
 import sys
 
 from PySide6.QtWidgets import QApplication, QStyle
 
+from app.tokens import Theme
 
-def duration_ms(usual_ms: int) -> int:
+
+def duration_ms(usual_ms: int, theme: Theme) -> int:
     """Give how long a transition of `usual_ms` may take: all of it, or 0."""
-    return usual_ms if _is_motion_wanted() else 0
+    return usual_ms if not theme.has_less_motion and _is_motion_wanted() else 0
 
 
 def _is_motion_wanted() -> bool:

@@ -1,0 +1,215 @@
+"""The pages of a visit in their frame, filled: rail, header, sensors and bar round each, as the wizard has them."""
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cache, partial
+from typing import cast
+
+from PySide6.QtCore import QBuffer, QByteArray
+from PySide6.QtGui import QImage
+from PySide6.QtWidgets import QWidget
+
+from app.icons import Icon
+from app.pages.agreement_page import AgreementPage
+from app.pages.correct_page import CorrectPage, JointLine, WalkLine
+from app.pages.found_page import FoundPage
+from app.pages.result_page import ANSWER, COMPARE, STRIDES, WHOLE, ResultPage
+from app.patient_screen.patient_view import PatientView
+from app.patient_screen.window import PatientWindow
+from app.theme import ThemeNotifier
+from app.widgets.action_bar import BarAction, BarState, RecordingNote
+from app.widgets.rail_row import RailRow, StepState
+from app.widgets.sensor_tile import SensorTile
+from app.widgets.step_rail import wizard_below
+from app.wizard.report.page import ReportPage
+from app.wizard.shell import StripMode, WizardShell
+from app.wizard.visit import Visit
+from app.wizard.walking.bench_control import Bench
+from app.wizard.walking.page import WalkingPage
+from app.wizard.walking.timed_result import TimedAttempt, TimedResult
+from app.wizard.walking.timed_view import TimedViewState
+from app.wizard.walking.walk_list import WalkRow, WalkState
+from app.wording import tr
+from core.analysis import analyse
+from core.body import LEG_SITES, Joint, Side
+from core.diagnostics import diagnostics_of
+from core.results import Analysis
+from core.samples import Session
+from core.targets import Target, TargetMeasure
+from core.timed.found import TimedTest
+from core.timed.live import LiveReadout
+from core.timed.protocols import PlannedTest, TimedProtocol
+from devices.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
+from tests.app.changed_analysis import visit_of
+from tests.app.pages.filled_pages import PAGES
+from tests.app.wizard.walking.bench_material import bench_visit
+
+Make = Callable[[ThemeNotifier], QWidget]
+STEPS = ("Patient", "Sensors", "Stand still", "Free motion", "Walking", "Results", "Report")
+OVER_TEN_METRES = TimedTest(
+    TimedProtocol.TEN_METRES, 3.0, 12.0, False, False, 10.0, 10.0, 105.0, (), (), (), (), (), (), ()
+)
+
+
+@cache
+def analysed() -> tuple[Session, Analysis]:
+    """Two walks of the simulated patient, under two conditions."""
+    recordings = (Standing(), FreeMotion(), Walk(strides=13, speed_m_s=0.95), Walk("walk 2", strides=13))
+    session = simulate(replace(DEMONSTRATION, recordings=recordings)).session
+    return session, analyse(session)
+
+
+def results(view: str, *opened: str) -> Make:
+    """Results in one of their views; `opened` names the buttons that are pressed then."""
+
+    def make(look: ThemeNotifier) -> QWidget:
+        page = ResultPage(look)
+        session, analysis = analysed()
+        page.show_visit(visit_of(analysis, session))
+        page.view.choose(view)
+        for name in opened:
+            {"door": page.door, "figures": page.all_figures, "engineering": page.quality.engineering}[name].click()
+        return page
+
+    return make
+
+
+def bench(look: ThemeNotifier) -> QWidget:
+    shown = Bench(cast(Visit, bench_visit()), look)  # which asks of a visit only what is there
+    page = WalkingPage(look, shown.entry)
+    page.show_walks(tuple(WalkRow(str(k), one, f"Alignment {one}", WalkState.KEPT, 12) for k, one in enumerate("ABC")))
+    page.show_bench(shown.state())
+    return page
+
+
+def timed(look: ThemeNotifier) -> QWidget:
+    page = WalkingPage(look)
+    readout = LiveReadout(PlannedTest(TimedProtocol.TEN_METRES), 8.0, 3.0, distance_m=6.12)
+    page.show_walks((WalkRow("1", "A", "Shoes", WalkState.RECORDING),))
+    page.show_test(TimedViewState(readout, "Shoes, attempt 1", 8.44, math.nan))
+    return page
+
+
+def timed_result(look: ThemeNotifier) -> QWidget:
+    page = WalkingPage(look)
+    page.show_labels(("Shoes", "Barefoot"), "Shoes")
+    attempts = [TimedAttempt(f"walk {k}", TimedProtocol.TEN_METRES, OVER_TEN_METRES, is_kept=True) for k in (1, 2)]
+    page.show_walks(tuple(WalkRow(str(k), "A", "Shoes", WalkState.KEPT, 12) for k in (1, 2)))
+    page.show_tests(TimedProtocol.TEN_METRES, TimedResult(attempts, ["A1 Shoes", "A2 Shoes"]), {})
+    return page
+
+
+def blank_sheet() -> bytes:
+    """A picture of an empty page of A4."""
+    image = QImage(595, 842, QImage.Format.Format_RGB32)
+    image.fill(0xFFFFFFFF)
+    content = QByteArray()
+    file = QBuffer(content)
+    file.open(QBuffer.OpenModeFlag.WriteOnly)
+    assert image.save(file, "PNG")  # type: ignore[call-overload]  # the stubs know no device here
+    return bytes(content.data())
+
+
+def report(look: ThemeNotifier) -> QWidget:
+    page = ReportPage(look)
+    page.show_pages([blank_sheet()] * 2)
+    return page
+
+
+def how_it_was_found(look: ThemeNotifier) -> QWidget:
+    page = FoundPage(look)
+    page.show_joints([Joint.LEFT_KNEE, Joint.RIGHT_KNEE], Joint.LEFT_KNEE)
+    session, analysis = analysed()
+    joint = analysis.calibrations[0].joints[Joint.LEFT_KNEE]
+    found = diagnostics_of(session, joint, analysis.recordings[-1].name)
+    assert found is not None
+    page.show_found(found, (), is_simulated=True)
+    return page
+
+
+def beside_optics(look: ThemeNotifier) -> QWidget:
+    page = AgreementPage(look)
+    page.show_pages([blank_sheet()], ())
+    return page
+
+
+def nothing_beside_optics(look: ThemeNotifier) -> QWidget:
+    page = AgreementPage(look)
+    page.show_nothing()
+    return page
+
+
+def correcting(look: ThemeNotifier) -> QWidget:
+    page = CorrectPage(look)
+    page.show_walks([WalkLine("1", "walk 1", "0:24", "Shoes", is_kept=True)])
+    page.show_joints([JointLine(Joint.LEFT_KNEE, is_turned=False, note="")])
+    page.show_sides("")
+    return page
+
+
+def patient_screen(look: ThemeNotifier) -> QWidget:
+    window = PatientWindow(look)
+    window.show_view(PatientView(Target(TargetMeasure.KNEE_SWING_PEAK, Side.LEFT, 55), (51, 56, 53)))
+    return window
+
+
+# which step a page belongs to, and how it is made
+FRAMED: dict[str, tuple[int, Make]] = {
+    "patient": (0, PAGES["patient"]),
+    "sensors": (1, PAGES["sensors"]),
+    "no sensors": (1, PAGES["no sensors"]),
+    "stored sessions": (1, PAGES["stored sessions"]),
+    "ready to stand": (2, PAGES["ready to stand"]),
+    "cannot stand": (2, PAGES["cannot stand"]),
+    "free motion": (3, PAGES["free motion"]),
+    "nothing walked": (4, PAGES["nothing walked"]),
+    "recording": (4, PAGES["recording"]),
+    "asking": (4, PAGES["asking"]),
+    "bench": (4, bench),
+    "timed test": (4, timed),
+    "timed result": (4, timed_result),
+    "answer": (5, results(ANSWER)),
+    "whole walk": (5, results(WHOLE)),
+    "strides": (5, results(STRIDES)),
+    "compare": (5, results(COMPARE)),
+    "all figures": (5, results(ANSWER, "figures")),
+    "what can be read": (5, results(ANSWER, "door")),
+    "engineering figures": (5, results(ANSWER, "door", "engineering")),
+    "how it was found": (5, how_it_was_found),
+    "beside optics": (5, beside_optics),
+    "nothing beside optics": (5, nothing_beside_optics),
+    "correcting": (5, correcting),
+    "report": (6, report),
+}
+
+
+def framed(look: ThemeNotifier, name: str) -> WizardShell:
+    """Give a page in its frame; it is fitted to its room when the frame is shown."""
+    number, make = FRAMED[name]
+    shell, page = WizardShell(look), make(look)
+    shell.room_changed.connect(partial(_fit, page))
+    states = [StepState.DONE if k < number else StepState.TODO for k in range(len(STEPS))]
+    states[number] = StepState.CURRENT
+    shell.rail.show_rows(tuple(RailRow(tr(title), "", state) for title, state in zip(STEPS, states, strict=True)))
+    shell.rail.show_below(wizard_below())
+    shell.header.show_session("P-0147", tr("1968, male · left prosthetic"), is_simulated=True)
+    shell.header.show_elapsed(301.0)
+    tile = partial(SensorTile, name="0A22", battery=0.84, rate_hz=100.0, lost_share=0.0, silent_s=0.0)
+    shell.strip.show_tiles({site: tile(site, is_moving=True, is_worn=True) for site in LEG_SITES})
+    shell.set_strip_mode(StripMode.SHOWN if number in (2, 3, 4) else StripMode.FOLDED)
+    note = tr("Stopping now leaves the left knee with range only, without absolute angles.")
+    stop = BarAction(tr("Stop early"), tr("Space"), Icon.STOP, is_wished=False)
+    shell.bar.show_state(BarState(stop, quiet=(BarAction(tr("Repeat one leg"), icon=Icon.REPEAT),), note=note))
+    if name == "recording":
+        recorded = RecordingNote(tr("Recording {walk}").format(walk="3"), "", 24.0, has_sound=True)
+        shell.bar.show_state(BarState(BarAction(tr("Stop walk"), tr("Space"), Icon.STOP), recording=recorded))
+    shell.show_page(number, page)
+    return shell
+
+
+def _fit(page: QWidget, is_compact: bool, width: float, height: float) -> None:
+    if hasattr(page, "set_compact"):
+        page.set_compact(is_compact)
+    if hasattr(page, "set_room"):
+        page.set_room(width, height)

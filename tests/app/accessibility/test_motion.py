@@ -1,0 +1,150 @@
+"""Less motion: nothing moves by itself where it is asked for here, all does where neither here nor the system asks."""
+
+from collections.abc import Iterator
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+from PySide6.QtCore import QSettings, Qt
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QApplication, QProgressBar, QWidget
+from pytestqt.qtbot import QtBot
+
+from app import motion
+from app.main_window import MainWindow
+from app.pages.help_page import HelpPage
+from app.pages.help_topics import Topic
+from app.pages.settings_page import SettingsPage
+from app.plots.moving_legs import MovingLegs
+from app.settings import Settings
+from app.theme import ThemeNotifier
+from app.tokens import Theme
+from app.wizard.shell import WizardShell
+
+WAIT_MS = 2000
+
+
+@pytest.fixture(autouse=True)
+def _moving_system(monkeypatch: pytest.MonkeyPatch, look: ThemeNotifier) -> Iterator[None]:
+    """A system that was not asked for less motion, whatever the machine of the test was."""
+    monkeypatch.setattr(motion, "_is_motion_wanted", lambda: True)
+    yield
+    look.set_less_motion(False)
+
+
+@pytest.fixture
+def settings(tmp_path: Path) -> Settings:
+    return Settings(QSettings(str(tmp_path / "settings.ini"), QSettings.Format.IniFormat))
+
+
+def test_either_the_setting_or_the_system_takes_the_time_of_a_transition(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert motion.duration_ms(120, Theme()) == 120
+    assert motion.duration_ms(120, Theme(has_less_motion=True)) == 0
+    monkeypatch.setattr(motion, "_is_motion_wanted", lambda: False)
+    assert motion.duration_ms(120, Theme()) == 0
+
+
+@pytest.mark.parametrize("is_less", [False, True])
+def test_a_film_plays_by_itself_unless_less_motion_is_asked_for(
+    qtbot: QtBot, look: ThemeNotifier, is_less: bool
+) -> None:
+    look.set_less_motion(is_less)
+    page = HelpPage(look)
+    qtbot.addWidget(page)
+    page.show_topic(Topic.FREE_MOTION)
+    page.show()
+    assert page.text.is_playing is not is_less
+
+
+def test_a_film_that_plays_stops_when_less_motion_is_asked_for(qtbot: QtBot, look: ThemeNotifier) -> None:
+    page = HelpPage(look)
+    qtbot.addWidget(page)
+    page.show_topic(Topic.FREE_MOTION)
+    page.show()
+    playing = [page.text.is_playing]
+    look.set_less_motion(True)
+    playing.append(page.text.is_playing)
+    assert playing == [True, False]
+
+
+def frames_of(qtbot: QtBot, bar: QProgressBar) -> int:
+    """How many different pictures of a bar there are within a third of a second."""
+    pictures = []
+    for _ in range(4):
+        qtbot.wait(80)
+        pictures.append(bar.grab().toImage())
+    return sum(one != other for one, other in pairwise(pictures))
+
+
+@pytest.mark.parametrize("is_less", [False, True])
+def test_a_bar_of_unknown_length_stands_in_the_middle(qtbot: QtBot, look: ThemeNotifier, is_less: bool) -> None:
+    look.set_less_motion(is_less)
+    bar = QProgressBar()
+    qtbot.addWidget(bar)
+    bar.setTextVisible(False)
+    bar.setRange(0, 0)
+    bar.setFixedSize(100, 8)
+    bar.show()
+    assert (frames_of(qtbot, bar) == 0) is is_less
+    if is_less:
+        picture = bar.grab().toImage()
+        row = [picture.pixelColor(x, 4).name() == look.theme.colours.ink.lower() for x in (10, 50, 90)]
+        assert row == [False, True, False]
+
+
+@pytest.mark.parametrize("is_less", [False, True])
+def test_pages_of_a_visit_fade_into_each_other_unless_less_motion_is_asked_for(
+    qtbot: QtBot, look: ThemeNotifier, is_less: bool
+) -> None:
+    look.set_less_motion(is_less)
+    shell = WizardShell(look)
+    qtbot.addWidget(shell)
+    shell.resize(1280, 800)
+    shell.show()
+    for number in range(2):
+        shell.show_page(number, QWidget())
+    fades = [one for one in shell.findChildren(QWidget) if type(one).__name__ == "_Fade"]
+    assert len(fades) == 1
+    assert fades[0].isVisible() is not is_less
+    qtbot.waitUntil(lambda: not fades[0].isVisible(), timeout=WAIT_MS)
+
+
+def test_legs_move_only_when_somebody_plays_them(qtbot: QtBot, look: ThemeNotifier) -> None:
+    legs = MovingLegs(look)
+    qtbot.addWidget(legs)
+    legs.show()
+    assert not legs.is_playing
+
+
+def test_the_setting_is_chosen_by_keys_and_said(qtbot: QtBot, look: ThemeNotifier) -> None:
+    page = SettingsPage(look, 12, [])
+    qtbot.addWidget(page)
+    with qtbot.waitActive(page):
+        page.show()
+        page.activateWindow()
+    page.motion.focus()
+    focused = QApplication.focusWidget()
+    assert focused is not None
+    with qtbot.waitSignal(page.motion_chosen) as told:
+        QTest.keyClick(focused, Qt.Key.Key_Right)
+    assert told.args == [True]
+    assert page.motion.segments[1].accessibleName() == "Less motion"
+
+
+def test_the_window_follows_the_setting_and_a_new_start_keeps_it(
+    qtbot: QtBot, look: ThemeNotifier, settings: Settings, tmp_path: Path
+) -> None:
+    def end(window: MainWindow) -> None:
+        window.close()
+        window.finish()
+
+    window = MainWindow(look, settings)
+    qtbot.addWidget(window, before_close_func=end)
+    seen = [look.theme.has_less_motion]
+    settings.has_less_motion = True
+    seen.append(look.theme.has_less_motion)
+    again = Settings(QSettings(str(tmp_path / "settings.ini"), QSettings.Format.IniFormat))
+    assert again.has_less_motion
+    settings.has_less_motion = False
+    seen.append(look.theme.has_less_motion)
+    assert seen == [False, True, False]

@@ -1,0 +1,17 @@
+"""Every page by itself, as assistive technology gets it: names, roles and descriptions, and the order of Tab."""
+
+import pytest
+from pytestqt.qtbot import QtBot
+
+from app.theme import ThemeNotifier
+from tests.app.accessibility.accessible_tree import complaints
+from tests.app.pages.filled_pages import PAGES
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_everything_on_a_page_has_a_name_and_a_role(qtbot: QtBot, look: ThemeNotifier, name: str) -> None:
+    page = PAGES[name](look)
+    qtbot.addWidget(page)
+    page.resize(1064, 672)
+    page.show()
+    assert complaints(page) == []
