@@ -20,6 +20,7 @@ MOST_PAYLOAD = 512  # of an attribute, by the Bluetooth specification
 KNOWN = frozenset(Characteristic)
 TICK_HZ, TIME_BITS = 1e6, 32
 TURN_S = 2**TIME_BITS / TICK_HZ
+HALF_TURN = 1 << (TIME_BITS - 1)
 RAD = math.pi / 180.0
 PIECES = {0: "I", 1: "4f", 7: "3f", 8: "3f", 10: "H"}  # of a recorded sample, by the numbers that choose them
 CHOSEN = tuple(PIECES)
@@ -79,8 +80,8 @@ class RecordedSample:
 
     @classmethod
     def parsed(cls, data: bytes) -> "RecordedSample | None":
-        """Of a notice DATA, without its first byte; None where it is cut or says what cannot be."""
-        if len(data) < NUMBER.size + RECORDED.size:
+        """Of a notice DATA, without its first byte; None where it is not what was chosen or says what cannot be."""
+        if len(data) != NUMBER.size + RECORDED.size:
             return None
         (number,) = NUMBER.unpack_from(data)
         ticks, *values, status = RECORDED.unpack_from(data, NUMBER.size)
@@ -224,34 +225,15 @@ class FileFramer:
         forces = sorted(math.hypot(*one.sample.force) for one in self.samples.values())
         return not forces or WORN_M_S2[0] < forces[len(forces) // 2] < WORN_M_S2[1]
 
-    def rows(self, near_s: float, tie_s: "Tie") -> tuple[list[Row], list[Row]]:
-        """Rows and orientations in order, as `Heard` has them, the clock unwrapped so that the first is near `near_s`.
-
-        `near_s` is of the host's clock, which `tie_s` leads to.
-        """
+    def rows(self) -> tuple[list[Row], list[Row]]:
+        """Rows and orientations in order, as `Heard` has them, the clock going on where it begins anew."""
         rows: list[Row] = []
         orientations: list[Row] = []
         ticks, last = 0, None
         for number in sorted(self.samples):
             sample = self.samples[number].sample
-            ticks += 0 if last is None else (sample.ticks - last + (1 << 31)) % (1 << 32) - (1 << 31)
-            if last is None:
-                device_s = sample.ticks / TICK_HZ
-                turns = round((near_s - tie_s.host_s(device_s)) / TURN_S)
-                ticks = sample.ticks + turns * (1 << TIME_BITS)
+            ticks += sample.ticks if last is None else (sample.ticks - last + HALF_TURN) % (2 * HALF_TURN) - HALF_TURN
             last = sample.ticks
             rows.append((ticks / TICK_HZ, *sample.rate, *sample.force))
             orientations.append((ticks / TICK_HZ, *sample.orientation))
         return rows, orientations
-
-
-@dataclass(frozen=True, slots=True)
-class Tie:
-    """How the host's seconds follow from a sensor's, as they were found before it recorded: see `ClockFit`."""
-
-    origin_s: float
-    offset_s: float
-    skew: float
-
-    def host_s(self, device_s: float) -> float:
-        return device_s + self.offset_s + self.skew * (device_s - self.origin_s)

@@ -21,12 +21,15 @@ RAD = np.pi / 180
 class WornDots:
     """Sensors, their sources, and a journal of each kept as an application would."""
 
-    def __init__(self, radio: VirtualRadio, faults: Sequence[DotFaults], rate_hz: int = 60) -> None:
+    def __init__(
+        self, radio: VirtualRadio, faults: Sequence[DotFaults], rate_hz: int = 60, record_hz: int = 120
+    ) -> None:
         self.radio = radio
         self.air: Air
         self.dots: list[EmulatedDot]
         self.air, self.dots = worn(radio, faults)
-        self.group = DotGroup(radio, [DotSensor(radio, one) for one in self.air.announced()], rate_hz)
+        sensors = [DotSensor(radio, one) for one in self.air.announced()]
+        self.group = DotGroup(radio, sensors, rate_hz, record_hz=record_hz)
         self.sources = self.group.sources()
         self.begin_s = 0.0
         self.decoders = [DotDecoder() for _ in self.sources]
