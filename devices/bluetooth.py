@@ -37,12 +37,26 @@ class BluetoothMissingError(SourceRefusedError):
 
 @dataclass(frozen=True, slots=True)
 class Announced:
-    """Something that announces itself: `device` as the library wants it for a link."""
+    """Something that announces itself.
+
+    Attributes
+    ----------
+    companies
+        Who made it, by what it announces besides its name.
+    services
+        The UUIDs that it announces, in small letters.
+    device
+        As the library wants it for a link.
+    rssi_dbm
+        How strongly it was heard; None: that was not told.
+    """
 
     name: str
     address: str
     companies: tuple[int, ...] = ()
     device: "BLEDevice | str" = ""
+    services: tuple[str, ...] = ()
+    rssi_dbm: int | None = None
 
 
 class Radio:
@@ -106,7 +120,14 @@ class Radio:
                     "Switch it on, or plug in an adapter, then search again",
                 ) from problem
         return [
-            Announced(told.local_name or device.name or "", device.address, tuple(told.manufacturer_data), device)
+            Announced(
+                told.local_name or device.name or "",
+                device.address,
+                tuple(told.manufacturer_data),
+                device,
+                tuple(map(str.lower, told.service_uuids)),
+                told.rssi,
+            )
             for device, told in found.values()
         ]
 

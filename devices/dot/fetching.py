@@ -137,7 +137,7 @@ class Fetching:
         DotRefusedError
             It sends nothing.
         """
-        stuck = 0
+        stuck, cut_before = 0, self._sensor.cut_notices
         while (wanted := self._wanted()) is not None and stuck <= STUCK:
             before = len(self.framer.samples), self._looks, self._asked.total()
             try:
@@ -153,7 +153,7 @@ class Fetching:
             stuck = 0 if now != before else stuck + 1
         found, missing = len(self.framer.samples), self.framer.missing()
         if not found:
-            raise self._nothing()
+            raise self._nothing(is_cut=self._sensor.cut_notices > cut_before)
         is_end_known = self._looks >= LOOKS
         return FetchedFile(self._sensor.name, self._file, found, missing, is_end_known, self._is_even())
 
@@ -167,9 +167,9 @@ class Fetching:
         with suppress(SourceLostError):  # then it sends nothing more either
             await made_idle(self._sensor)
 
-    def _nothing(self) -> DotRefusedError:
+    def _nothing(self, *, is_cut: bool) -> DotRefusedError:
         name = self._sensor.name
-        if self._sensor.has_cut_notices:
+        if is_cut:
             return DotRefusedError("What {sensor} sends arrives cut", "Use another Bluetooth adapter", sensor=name)
         return DotRefusedError(
             "{sensor} does not send what it recorded", "Switch it off and on, then fetch it again", sensor=name

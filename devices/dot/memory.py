@@ -187,13 +187,14 @@ async def list_files(sensor: DotSensor) -> tuple[RecordedFile, ...]:
         It records, or does not tell.
     """
     await refuse_while_recording(sensor)
+    cut_before = sensor.cut_notices
     for _ in range(LISTINGS):
         await made_idle(sensor)
         pieces = await _pieces(sensor)
         files = [await _file(sensor, number + 1, count) for number, count in enumerate(pieces or ())]
         if pieces is not None and None not in files:
             return tuple(file for file in files if file is not None)
-    if sensor.has_cut_notices:
+    if sensor.cut_notices > cut_before:
         raise DotRefusedError("What {sensor} sends arrives cut", "Use another Bluetooth adapter", sensor=sensor.name)
     raise DotRefusedError(
         "{sensor} does not tell what is in its memory", "Switch it off and on, then try again", sensor=sensor.name

@@ -61,8 +61,8 @@ class DotSensor:
         As it told last; None and nothing before it was connected.
     has_heading_reset
         Whether some program turned the headings of its orientations, which lasts until it is switched off.
-    has_cut_notices
-        Whether the latest notices arrived shorter than they say that they are: links may carry too little.
+    cut_notices
+        How many notices arrived shorter than they say that they are: the link may carry too little.
     is_full
         Whether it has said since it was told to record last that its memory is full.
     fetched_last
@@ -73,7 +73,8 @@ class DotSensor:
         self.radio = radio
         self.info: DotInfo | None = None
         self.battery: float | None = None
-        self.has_heading_reset = self.has_cut_notices = self.is_full = False
+        self.has_heading_reset = self.is_full = False
+        self.cut_notices = 0
         self.fetched_last: RecordedFile | None = None
         self.sent: list[bytes] = []
         self.arrived = threading.Event()
@@ -259,12 +260,10 @@ class DotSensor:
     def understood(self, payload: bytes) -> DotMessage | None:
         """What a notice says; None where it arrived damaged."""
         try:
-            message = DotMessage.parsed(payload)
+            return DotMessage.parsed(payload)
         except DotMessageError:
-            self.has_cut_notices = len(payload) < 3 or len(payload) < payload[1] + 3
+            self.cut_notices += len(payload) < 3 or len(payload) < payload[1] + 3
             return None
-        self.has_cut_notices = False
-        return message
 
     async def expect(self, is_meant: Callable[[DotMessage], bool], within_s: float = NOTICE_S) -> DotMessage | None:
         """The first notice of a kind; None where none comes in time."""

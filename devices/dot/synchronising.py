@@ -74,6 +74,7 @@ class SyncFailure(StrEnum):
     NOT_BACK = "it did not come back"
     SILENT = "it does not begin to measure"
     NOT_HEARD = "it is not heard"
+    CUT = "what it sends arrives cut"
     OTHER_CLOCK = "its clock is another"
 
 
@@ -300,8 +301,9 @@ async def _heard_as_one(sensors: Sequence[DotSensor]) -> tuple[dict[str, StreamM
     await asyncio.sleep(HEARD_S)
     for sensor in sensors:
         if sensor.name in modes and sensor.name not in failed:
-            if (least_s := _least_late_s(sensor, modes[sensor.name])) is None:
-                failed[sensor.name] = SyncFailure.NOT_HEARD
+            least_s, is_cut = _least_late_s(sensor, modes[sensor.name])
+            if least_s is None:
+                failed[sensor.name] = SyncFailure.CUT if is_cut else SyncFailure.NOT_HEARD
             else:
                 late_s[sensor.name] = least_s
     if late_s:
@@ -312,8 +314,8 @@ async def _heard_as_one(sensors: Sequence[DotSensor]) -> tuple[dict[str, StreamM
     return modes, failed
 
 
-def _least_late_s(sensor: DotSensor, mode: StreamMode) -> float | None:
-    """How much later than its own clock says its samples arrived, at the least; None where none did."""
+def _least_late_s(sensor: DotSensor, mode: StreamMode) -> tuple[float | None, bool]:
+    """How much later than its own clock says its samples arrived, at the least, and whether some arrived damaged."""
     framer = DotFramer(SourceInfo("", "", settings={"mode": mode.number}))
     least_s = None
     for came_ns, frame in sensor.taken():
@@ -322,7 +324,7 @@ def _least_late_s(sensor: DotSensor, mode: StreamMode) -> float | None:
             one_s = came_ns / 1e9 - row[0]
             least_s = one_s if least_s is None else min(least_s, one_s)
         framer.heard.rows.clear()
-    return least_s
+    return least_s, framer.heard.damaged > 0
 
 
 async def _given_up(sensor: DotSensor) -> None:

@@ -8,11 +8,32 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+from bleak.assigned_numbers import CharacteristicPropertyName
+
+from devices.emulators.bluetooth import EmulatedCharacteristic, Notification
 
 Motion = Callable[[float], Sequence[float]]
 """Orientation (4), force in m/s2 (3) and rate in deg/s (3) at an instant of the host's clock, ns."""
-Notification = tuple[int, bytes]
 
+BASE = "1517{:04x}-4947-11e9-8646-d663bd873d93"
+PROPERTIES: dict[int, tuple[CharacteristicPropertyName, ...]] = {
+    0x1001: ("read",),
+    0x1002: ("read", "write"),
+    0x1004: ("notify",),
+    0x2001: ("read", "write"),
+    0x2002: ("notify",),
+    0x2003: ("notify",),
+    0x2004: ("notify",),
+    0x2006: ("read", "write"),
+    0x3001: ("read", "notify"),
+    0x7001: ("write",),
+    0x7002: ("read",),
+    0x7003: ("notify",),
+}
+CHARACTERISTICS = [
+    EmulatedCharacteristic(number, BASE.format(number), BASE.format(number & 0xFF00), properties)
+    for number, properties in PROPERTIES.items()
+]
 MODE_SIZES = {26: (0x2002, 63), 21: (0x2003, 40)}
 STEPS_US = {60: 16667, 30: 33333, 120: 8333}
 TURN_US = 1 << 32
@@ -94,7 +115,7 @@ class DotClock:
 
 
 class EmulatedDot:
-    """Its clocks run by `now_ns`. `notifications` is called every few milliseconds, whether or not a link is up.
+    """An `EmulatedPeripheral` whose clocks run by `now_ns`; it measures whether or not a link is up.
 
     Attributes
     ----------
@@ -114,6 +135,9 @@ class EmulatedDot:
         says_so: bool = True,
     ) -> None:
         self.mac = bytes([0xD4, 0x22, 0xCD, 0x00, 0x00, number + 1])
+        self.local_name = "Movella DOT"
+        self.companies: tuple[int, ...] = (0x0886,)
+        self.characteristics: Sequence[EmulatedCharacteristic] = CHARACTERISTICS
         self.faults = faults or DotFaults()
         self.chance = np.random.default_rng(number)
         self._motion, self._now_ns = motion, now_ns
@@ -145,12 +169,14 @@ class EmulatedDot:
         self._exported: EmulatedFile | None = None
         self.unreadable: set[int] = set()  # samples of a file that it never sends
         self.unheard: list[int] = []  # and some that are lost on their way, once each
-        self.exported = 0  # samples of files
+        self.exported = self._sent_of_file = 0  # samples of files, ever and since it was connected
         self.cut_recordings = 0  # by settings that were written meanwhile
 
-    def meet(self, peers: "Sequence[EmulatedDot]") -> None:
-        """These are the sensors that it may be synchronised with, itself among them."""
-        self._peers = peers
+    @staticmethod
+    def meet(dots: "Sequence[EmulatedDot]") -> None:
+        """Let these sensors be synchronised with one another."""
+        for dot in dots:
+            dot._peers = dots
 
     def restart(self) -> None:
         """It was switched off and on: it does nothing, and its clock begins anew. What it recorded is there."""
@@ -186,7 +212,24 @@ class EmulatedDot:
         is_synchronising = self._sync_root is not None and self._now_ns() - self._sync_from_ns < SYNC_TAKES_NS
         return not is_synchronising and self._now_ns() >= self.faults.unreachable_until_ns
 
+    def drops_at(self, operations: int) -> bool:
+        drops = self.faults.drops_after
+        is_due = bool(drops) and operations >= drops[0]
+        if is_due:
+            drops.pop(0)
+        return is_due
+
+    def drops_after(self, notification: Notification) -> bool:
+        self._sent_of_file += notification[0] == 0x7003 and notification[1][2] == 0x71
+        drops = self.faults.drops_export_after
+        is_due = bool(drops) and self._sent_of_file >= drops[0]
+        if is_due:
+            drops.pop(0)
+            self.stay_away(self.faults.unreachable_after_drop_s)
+        return is_due
+
     def connected(self) -> None:
+        self._sent_of_file = 0
         self._end_synchronising()
         if self.is_streaming:
             self._streamed()  # what was sent meanwhile nobody heard

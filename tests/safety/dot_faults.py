@@ -1,11 +1,12 @@
 """Emulated DOTs with everything going wrong at once: is a sample lost untold, is there a dead end, is anything erased?
 
-    python -m tests.safety.dot_faults --runs 500
+    python -m tests.safety.dot_faults --runs 500 [--bumble]
 
 Each run synchronises two to six sensors, streams from them for some seconds, lets them record in their memory, fetches
 and erases, while links are lost at any operation, notifications are lost, doubled, cut and damaged, sensors are busy,
 full, switched off, out of reach, or only say that they are synchronised. Seconds pass at once (`VirtualRadio`), and who
 waits for what never comes is an error. What a sensor took and recorded, and when, is told by itself, float for float.
+With `--bumble` the links go through Bumble's virtual radio, which has advertisements, ATT and subscriptions of its own.
 """
 
 import argparse
@@ -32,7 +33,7 @@ from devices.emulators.dot import DotFaults, EmulatedDot
 from devices.live import SourceLostError, SourceRefusedError
 from devices.source import DecodedSensor
 from tests.devices.dot.virtual_time import VirtualRadio
-from tests.devices.dot.worn_dots import RAD, WornDots, not_there
+from tests.devices.dot.worn_dots import RAD, Through, WornDots, behind_bleak, not_there
 from tests.safety.journal_material import ID, KEY, NO_ROOM_ASKED
 
 TRIES = 12  # of a user who does what is said
@@ -81,7 +82,7 @@ def some_faults(rng: random.Random) -> DotFaults:
     )
 
 
-def run_often(runs: int, seed: int, folder: Path) -> DotRuns:
+def run_often(runs: int, seed: int, folder: Path, through: Through = behind_bleak) -> DotRuns:
     """So many runs, each told by its number."""
     every = DotRuns()
     for number in range(runs):
@@ -89,7 +90,7 @@ def run_often(runs: int, seed: int, folder: Path) -> DotRuns:
         try:
             place = folder / str(number)
             place.mkdir()
-            every.faults += [f"run {seed + number}: {fault}" for fault in _run(rng, radio, place, every.seen)]
+            every.faults += [f"run {seed + number}: {fault}" for fault in _run(rng, radio, place, every.seen, through)]
         except Exception:  # what nobody was told to expect is a fault of this run
             every.faults.append(f"run {seed + number}: {traceback.format_exc()}")
         finally:
@@ -97,8 +98,8 @@ def run_often(runs: int, seed: int, folder: Path) -> DotRuns:
     return every
 
 
-def _run(rng: random.Random, radio: VirtualRadio, folder: Path, seen: Counter[str]) -> list[str]:
-    wearing = WornDots(radio, [some_faults(rng) for _ in range(rng.randrange(2, 7))])
+def _run(rng: random.Random, radio: VirtualRadio, folder: Path, seen: Counter[str], through: Through) -> list[str]:
+    wearing = WornDots(radio, [some_faults(rng) for _ in range(rng.randrange(2, 7))], through=through)
     if not _opened(wearing, seen):
         return ["dead end: never opened"]
     faults = _live(rng, wearing, seen)
@@ -369,9 +370,15 @@ def main() -> None:
     parser = argparse.ArgumentParser(description="Emulated DOTs with faults.")
     parser.add_argument("--runs", type=int, default=500)
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--bumble", action="store_true", help="through Bumble's virtual radio")
     wanted = parser.parse_args()
+    through: Through = behind_bleak
+    if wanted.bumble:
+        from tests.devices.dot.by_bumble import by_bumble
+
+        through = by_bumble
     with tempfile.TemporaryDirectory() as folder:
-        every = run_often(wanted.runs, wanted.seed, Path(folder))
+        every = run_often(wanted.runs, wanted.seed, Path(folder), through)
     for fault in every.faults:
         print(fault)
     print(f"{wanted.runs} runs: {every}")

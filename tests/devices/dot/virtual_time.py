@@ -89,6 +89,7 @@ def worn(
         EmulatedDot(number, motion, radio.now_ns, fault, skew=(-1) ** number * 20e-6 * number)
         for number, fault in enumerate(faults)
     ]
+    EmulatedDot.meet(dots)
     air = Air(dots, latency_s or [0.004 + 0.003 * number for number in range(len(dots))])
     radio.reach(air)
     return air, dots
