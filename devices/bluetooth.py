@@ -76,7 +76,7 @@ class Radio:
         heard: Callable[[], Sequence[Announced]] | None = None,
     ) -> None:
         self.backend = backend
-        self._heard = heard
+        self.heard = heard
         self.connecting = asyncio.Lock()
         self._loop: asyncio.AbstractEventLoop | None = None
         self._starting = threading.Lock()
@@ -101,8 +101,8 @@ class Radio:
         SourceRefusedError
             There is no Bluetooth here, or it is switched off.
         """
-        if self._heard is not None:
-            return list(self._heard())
+        if self.heard is not None:
+            return list(self.heard())
         if find_spec("bleak") is None:
             raise BluetoothMissingError(
                 "Sensors with Bluetooth LE are not heard: a library is missing",
@@ -184,9 +184,10 @@ class BluetoothLink:
         async with self._turn, self._lost_within(OPERATION_S):
             return bytes(await self._up().read_gatt_char(uuid))
 
-    async def write(self, uuid: str, data: bytes) -> None:
+    async def write(self, uuid: str, data: bytes, *, is_answered: bool = True) -> None:
+        """Write, and wait until that is answered; else as the characteristic is made for."""
         async with self._turn, self._lost_within(OPERATION_S):
-            await self._up().write_gatt_char(uuid, data, response=True)
+            await self._up().write_gatt_char(uuid, data, response=True if is_answered else None)
 
     async def subscribe(self, characteristic: int, uuid: str) -> None:
         """Let what this notifies be heard."""

@@ -43,7 +43,8 @@ class Quiet(StrEnum):
 class SensorDetails:
     """What a sensor says of itself. `rate_hz`, `rate_kind` and `battery` (0 to 1) None: it does not tell.
 
-    `clock` is the same of those that share one; empty: its own.
+    `clock` is the same of those that share one; empty: its own. Not `is_loss_seen`: it tells neither time nor number,
+    so that nobody sees where single samples are missing.
     """
 
     model: str = ""
@@ -54,6 +55,7 @@ class SensorDetails:
     battery: float | None = None
     clock: str = ""
     quiet: Quiet | None = None
+    is_loss_seen: bool = True
 
 
 class LiveSource(Protocol):

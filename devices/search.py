@@ -25,6 +25,8 @@ from devices.lsl import LslSource, OtherStreamError, announced_sensors, find_str
 from devices.ports import PortInfo, SerialPort, list_ports
 from devices.source import SourceInfo
 from devices.stream import ByteSource
+from devices.witmotion_ble import DRIVER as WITMOTION_BLE
+from devices.witmotion_ble import WitBleSource, is_wit, wit_name
 from devices.ximu3 import DRIVER as XIMU3
 from devices.ximu3 import Ximu3
 
@@ -34,6 +36,7 @@ ANSWER_S, MOST_ANSWER = 0.5, 4096  # what says more is something else
 ANNOUNCED_AT = 10000  # the port where x-IMU3s tell once a second that they are there
 ANNOUNCED_S = 1.3
 MOST_DATAGRAM = 2048
+BLUETOOTH = "Bluetooth"  # the place of what is heard through it
 NO_COLUMNS: Mapping[str, Columns] = MappingProxyType({})
 
 
@@ -124,14 +127,18 @@ def search(
 
 
 def _by_radio(radio: Radio) -> Sequence[FoundSensor | SourceRefusedError]:
-    """The sensors that announce themselves by Bluetooth LE, all of one group; or why nobody could be heard."""
+    """The sensors that announce themselves by Bluetooth LE, DOTs all of one group; or why nobody could be heard."""
     try:
-        announced = [one for one in radio.run(radio.announced()) if is_dot(one)]
+        announced = sorted(radio.run(radio.announced()), key=lambda one: one.address)
     except SourceRefusedError as refusal:
         return [refusal]
-    sensors = [DotSensor(radio, one) for one in sorted(announced, key=lambda one: one.address)]
+    sensors = [DotSensor(radio, one) for one in announced if is_dot(one)]
     group = DotGroup(radio, sensors)
-    return [FoundSensor(MOVELLA_DOT, one.name, "Bluetooth", partial(DotSource, one, group)) for one in sensors]
+    found = [FoundSensor(MOVELLA_DOT, one.name, BLUETOOTH, partial(DotSource, one, group)) for one in sensors]
+    for one in announced:
+        if is_wit(one):
+            found.append(FoundSensor(WITMOTION_BLE, wit_name(one), BLUETOOTH, partial(WitBleSource, radio, one)))
+    return found
 
 
 def _at_port(port: PortInfo, columns: Mapping[str, Columns]) -> FoundSensor | Passed | LinesAt:

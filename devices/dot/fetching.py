@@ -17,9 +17,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from devices.dot.messages import Characteristic, DotAnswer, DotMessage, DotNotice, Order, RecordedFile, fetch_from
-from devices.dot.samples import CHOSEN, FileFramer, framed
+from devices.dot.samples import CHOSEN, FileFramer
 from devices.dot.sensor import DotRefusedError, DotSensor
 from devices.live import Keep, SourceLostError
+from devices.notifications import framed
 
 LOOKS = 2  # behind the last sample: the one that comes again may be lost again
 OVERTAKEN_S = 0.1  # so long after its end something may come that the end has overtaken

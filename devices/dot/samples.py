@@ -1,7 +1,7 @@
 """Samples of a Movella DOT: what its modes send, and how both its streams and its files lie in a journal.
 
-Everything that arrives is kept as it came, each notification as `u16 characteristic, u16 length, payload`. Stamps are
-the sensor's own microseconds, which begin anew every 71 minutes; there is no counter, so that loss shows in the stamps.
+Everything that arrives is kept as it came (`devices/notifications.py`). Stamps are the sensor's own microseconds, which
+begin anew every 71 minutes; there is no counter, so that loss shows in the stamps.
 """
 
 import math
@@ -11,12 +11,11 @@ from dataclasses import dataclass
 
 from devices.clock import Unwrapping
 from devices.dot.messages import Characteristic, DotMessage, DotMessageError, DotNotice
+from devices.notifications import NotificationFrames
 from devices.source import SourceInfo
 from devices.stream import Heard, Row
 
 DRIVER, VERSION = "movella-dot", "1"
-HEAD = struct.Struct("<HH")
-MOST_PAYLOAD = 512  # of an attribute, by the Bluetooth specification
 KNOWN = frozenset(Characteristic)
 TICK_HZ, TIME_BITS = 1e6, 32
 TURN_S = 2**TIME_BITS / TICK_HZ
@@ -89,50 +88,12 @@ class RecordedSample:
         return None if sample is None else cls(number, sample, status)
 
 
-def framed(characteristic: int, payload: bytes) -> bytes:
-    """A notification as it is kept."""
-    return HEAD.pack(characteristic, len(payload)) + payload
-
-
-class Frames:
-    """Notifications in what was kept, in pieces of any size."""
-
-    def __init__(self) -> None:
-        self.damaged = 0
-        self._held = b""
-        self._is_lost = False
-
-    def feed(self, data: bytes) -> list[tuple[int, bytes]]:
-        """Characteristic and payload of those that are whole now."""
-        found, held, at = [], self._held + data, 0
-        while len(held) - at >= HEAD.size:
-            characteristic, length = HEAD.unpack_from(held, at)
-            if characteristic not in KNOWN or length > MOST_PAYLOAD:
-                self.damaged += not self._is_lost
-                self._is_lost = True
-                at += 1
-                continue
-            end = at + HEAD.size + length
-            if end > len(held):
-                break
-            found.append((characteristic, held[at + HEAD.size : end]))
-            self._is_lost = False
-            at = end
-        self._held = held[at:]
-        return found
-
-    def flush(self) -> None:
-        """Nothing follows: what was held back was cut."""
-        self.damaged += bool(self._held)
-        self._held = b""
-
-
 class DotFramer:
     """See `devices.stream.Framer`: what one sensor streams."""
 
     def __init__(self, info: SourceInfo) -> None:
         self.heard = Heard()
-        self._frames, self._damaged = Frames(), 0
+        self._frames, self._damaged = NotificationFrames(KNOWN), 0
         self._mode = _mode_of(info.settings)
         self._unwrapping, self._before_s = Unwrapping(TIME_BITS, TICK_HZ), 0.0
         self._is_first = True
@@ -186,7 +147,7 @@ class FileFramer:
         self.samples: dict[int, RecordedSample] = {}
         self.next = 0
         self.damaged = 0
-        self._frames = Frames()
+        self._frames = NotificationFrames(KNOWN)
 
     def feed(self, data: bytes) -> None:
         for characteristic, payload in self._frames.feed(data):
@@ -209,7 +170,7 @@ class FileFramer:
 
     def cut(self) -> None:
         """What follows does not join what came before."""
-        self._frames = Frames()
+        self._frames = NotificationFrames(KNOWN)
 
     def missing(self) -> tuple[range, ...]:
         """Numbers that were not heard, below the highest that was."""

@@ -32,8 +32,9 @@ from devices.dot.messages import (
     setting_rate,
     switching,
 )
-from devices.dot.samples import FULL, MODES, PLAIN, StreamMode, framed
+from devices.dot.samples import FULL, MODES, PLAIN, StreamMode
 from devices.live import SourceLostError, SourceRefusedError
+from devices.notifications import framed
 
 NOTICE_S = 2.0
 BUSY_S, BUSY_TRIES = 0.5, 6

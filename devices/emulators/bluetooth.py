@@ -77,10 +77,10 @@ class Air:
         self.clients: dict[str, FakeClient] = {}
         air = self
 
-        class Backend(FakeClient):
+        class ThisAir(FakeClient):
             AIR = air
 
-        self.backend: type[BaseBleakClient] = Backend
+        self.backend: type[BaseBleakClient] = ThisAir
 
     def announced(self) -> list[Announced]:
         """Who announces itself."""
@@ -97,6 +97,7 @@ class Air:
 
 
 def address_of(sensor: EmulatedPeripheral) -> str:
+    """A sensor's address as it is written."""
     return ":".join(f"{byte:02X}" for byte in sensor.mac)
 
 

@@ -322,6 +322,8 @@ class SensorsStep(Step):
             silent_s=float(round(status.silent_s)) if is_silent else 0.0,
             lost_share=round(status.lost_share, 3),
             can_identify=status.sensor not in self._without_light,
+            quiet=status.details.quiet,
+            is_loss_seen=status.details.is_loss_seen,
         )
 
     def _show_traces(self) -> None:

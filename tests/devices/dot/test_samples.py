@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from devices.dot.messages import DotMessage
-from devices.dot.samples import DotFramer, FileFramer, framed
+from devices.dot.samples import DotFramer, FileFramer
+from devices.notifications import framed
 from devices.source import SourceInfo
 from devices.stream import Row
 

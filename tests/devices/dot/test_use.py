@@ -99,19 +99,15 @@ def test_where_one_was_switched_off_its_own_clock_is_found_out_and_all_are_synch
     assert all(dot.is_synchronised for dot in wearing.dots)
 
 
-class LeftOffError(Exception):
-    """Nobody waits any more."""
-
-
 @pytest.mark.parametrize("at", [SyncStage.PREPARING, SyncStage.WAITING, SyncStage.CONNECTING])
 def test_synchronising_that_is_left_off_leaves_nobody_synchronised(radio: VirtualRadio, at: SyncStage) -> None:
     wearing = WornDots(radio, [DotFaults(), DotFaults(), DotFaults()])
 
     def tell(stage: SyncStage, sensor: str, _left_s: float) -> None:
         if stage is at and sensor in ("", "DOT 0002"):
-            raise LeftOffError
+            raise InterruptedError
 
-    with pytest.raises(LeftOffError):
+    with pytest.raises(InterruptedError):
         wearing.group.synchronise(tell)
     radio.pass_s(1.0)
     assert not any(dot.is_synchronised or dot.is_streaming for dot in wearing.dots)
