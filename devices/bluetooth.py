@@ -26,6 +26,9 @@ CONNECT_S = 10.0
 OPERATION_S = 5.0
 LEAVES_S = 5.0
 
+TICK_S = 0.2
+
+Tick = Callable[[], None]
 Notified = Callable[[int, bytes], None]
 """Takes a characteristic and what it notified, in the thread of the links."""
 Result = TypeVar("Result")
@@ -85,9 +88,24 @@ class Radio:
         """The clock that arrivals are noted by."""
         return host_time_ns()
 
-    def run(self, work: Coroutine[Any, Any, Result]) -> Result:
-        """Do this in the thread of the links, and wait for it."""
-        return asyncio.run_coroutine_threadsafe(work, self._running()).result()
+    def run(self, work: Coroutine[Any, Any, Result], tick: Tick | None = None) -> Result:
+        """Do this in the thread of the links, and wait for it.
+
+        `tick` is called by who waits, some times a second. What it raises ends the work, is waited for, and is raised.
+        """
+        loop = self._running()
+        if tick is None:
+            return asyncio.run_coroutine_threadsafe(work, loop).result()
+        ended = threading.Event()
+        doing = asyncio.run_coroutine_threadsafe(_begun(work, ended), loop).result()
+        while not ended.wait(TICK_S):
+            try:
+                tick()
+            except BaseException:
+                loop.call_soon_threadsafe(doing.cancel)
+                ended.wait()
+                raise
+        return doing.result()
 
     def wait(self, event: threading.Event, seconds: float) -> None:
         """Wait for something that is set in the thread of the links."""
@@ -212,6 +230,12 @@ class BluetoothLink:
                 yield
         except (BleakError, OSError, EOFError) as problem:  # TimeoutError is an OSError
             raise SourceLostError(f"{self._to.name} was lost") from problem
+
+
+async def _begun(work: Coroutine[Any, Any, Result], ended: threading.Event) -> "asyncio.Task[Result]":
+    task = asyncio.get_running_loop().create_task(work)
+    task.add_done_callback(lambda _task: ended.set())
+    return task
 
 
 async def _left(client: "BleakClient") -> None:

@@ -3,6 +3,7 @@
 What a sensor sends is put into the journal before it is looked at. What could not be had is said, by number.
 """
 
+import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,7 +11,7 @@ from pathlib import Path
 from app.storage.data_key import KeyMaterial
 from app.storage.journal.decoding import decode
 from app.storage.journal.writer import JournalWriter
-from devices.bluetooth import Radio
+from devices.bluetooth import Radio, Tick
 from devices.decoders import DECODERS
 from devices.dot.decoder import FileOrders, file_settings
 from devices.dot.fetching import FetchedFile, Fetching, reached
@@ -20,6 +21,8 @@ from devices.dot.samples import DRIVER, RECORDED, VERSION
 from devices.dot.sensor import DotRefusedError, DotSensor
 from devices.live import SourceLostError, SourceRefusedError
 from devices.source import SourceInfo
+
+FETCHED = "fetched "  # how the mark begins
 
 Progress = Callable[[str, int, int], None]
 """Takes a sensor, how many of its samples were fetched, and about how many there are. What it raises ends the fetching,
@@ -84,6 +87,11 @@ class MemoryFetching:
         self._progress: Progress = _nobody
 
     @property
+    def about(self) -> Mapping[str, int]:
+        """How many samples of each sensor there are, about; 0 where that is not known yet."""
+        return {name: one.about for name, one in self._wanted.items()}
+
+    @property
     def sensors(self) -> tuple[str, ...]:
         return tuple(self._wanted)
 
@@ -97,10 +105,13 @@ class MemoryFetching:
         """What came of each sensor whose file was fetched to its end."""
         return {name: one.result for name, one in self._begun.items() if one.result is not None}
 
-    def fetch(self, writer: JournalWriter, progress: Progress) -> Mapping[str, SourceLostError | SourceRefusedError]:
+    def fetch(
+        self, writer: JournalWriter, progress: Progress, tick: Tick | None = None
+    ) -> Mapping[str, SourceLostError | SourceRefusedError]:
         """Fetch what is not there yet, one sensor after the other; those that it failed with, and why.
 
-        May be tried again, into the same journal: what came is not asked for again.
+        May be tried again, into the same journal: what came is not asked for again. What `tick` (see `Radio.run`)
+        raises ends it for a while.
         """
         failed: dict[str, SourceLostError | SourceRefusedError] = {}
         self._progress = progress
@@ -109,18 +120,19 @@ class MemoryFetching:
                 continue
             try:
                 if name not in self._begun:
-                    self._begun[name] = _Begun(self._found(wanted, writer))
+                    self._begun[name] = _Begun(self._found(wanted, writer, tick))
                 one = self._begun[name]
-                one.result = self._radio.run(one.fetching.fetch())
+                one.result = self._radio.run(one.fetching.fetch(), tick)
             except (SourceLostError, SourceRefusedError) as problem:
                 failed[name] = problem
         return failed
 
-    def _found(self, wanted: WantedFile, writer: JournalWriter) -> Fetching:
+    def _found(self, wanted: WantedFile, writer: JournalWriter, tick: Tick | None) -> Fetching:
         sensor, file = wanted.sensor, wanted.file
         if file is None:
-            files = self._radio.run(_listed(sensor))
-            file = next((one for one in files if one.started_utc_s == wanted.started_utc_s), None)
+            files = self._radio.run(_listed(sensor), tick)
+            named = [one for one in files if one.started_utc_s == wanted.started_utc_s]
+            file = named[-1] if named else None  # one that was given up in the same second comes before
         if file is None or sensor.info is None:
             raise DotRefusedError(
                 "{sensor} holds nothing of this recording",
@@ -153,6 +165,13 @@ class MemoryFetching:
                 and one.fetching.framer.has_forces()
             )
         return {name: name in self._begun and self._begun[name].is_kept for name in self._wanted}
+
+    def told(self) -> str:
+        """What was fetched, for the journal: of each sensor when it was begun, its samples, whether that is all."""
+        told = {
+            name: [one.file.started_utc_s, one.samples, one.is_complete] for name, one in sorted(self.results.items())
+        }
+        return FETCHED + json.dumps(told)
 
     def erase(
         self, sensor: str, utc_s: int, *, is_confirmed: bool, may_lack: bool = False, others: Sequence[int] = ()

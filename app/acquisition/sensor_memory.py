@@ -5,9 +5,13 @@
 When each sensor was told to begin and to end is noted: nothing else tells where its file lies in time.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from pathlib import Path
 
-from app.acquisition.memory_fetching import MemoryFetching, OrderedFile, WantedFile
+from app.acquisition.memory_fetching import MemoryFetching, OrderedFile, Progress, WantedFile
+from app.storage.data_key import KeyMaterial
+from app.storage.journal.writer import JournalWriter
+from devices.bluetooth import Tick
 from devices.dot.memory import Begun, OwnClockError, record, stop
 from devices.dot.source import DotGroup
 from devices.live import SourceLostError, SourceRefusedError
@@ -20,6 +24,7 @@ class MemoryRecording:
 
     def __init__(self, group: DotGroup) -> None:
         self._group = group
+        self._rate_hz = group.record_hz or group.rate_hz
         self._begun: Mapping[str, Begun] = {}
         self._ended_ns: dict[str, int] = {}
         self._clocks: dict[str, str] = {}
@@ -37,32 +42,34 @@ class MemoryRecording:
         Raises
         ------
         SourceRefusedError
-            One has no room, records already, does not begin, or has another rate.
-        SourceLostError
-            One is out of reach.
+            One has no room, records already, does not begin, has another rate or clock, or is out of reach.
         """
         group = self._group
         self.given_up.add(utc_s)
         clocks = {sensor.name: group.clock_of(sensor.name) for sensor in group.sensors}
         synchronised = [name for name, clock in clocks.items() if clock]
         try:
-            self._begun = group.radio.run(record(group.sensors, utc_s, group.record_hz, synchronised))
+            self._begun = group.radio.run(record(group.sensors, utc_s, self._rate_hz, synchronised))
         except OwnClockError as problem:
             group.leave(problem.sensor)
             raise
         self.given_up.discard(utc_s)
         self._utc_s, self._clocks = utc_s, clocks
 
-    def end(self) -> Mapping[str, SourceLostError | SourceRefusedError]:
+    def ask_to_end(self) -> None:
+        """Note that it is to end now; waits for nothing."""
+        self._wanted_ns = self._wanted_ns or self._group.radio.now_ns()
+
+    def end(self, tick: Tick | None = None) -> Mapping[str, SourceLostError | SourceRefusedError]:
         """End the recording in each; those that it could not be ended in, and why. May be tried again."""
         failed: dict[str, SourceLostError | SourceRefusedError] = {}
         radio = self._group.radio
-        self._wanted_ns = self._wanted_ns or radio.now_ns()
+        self.ask_to_end()
         for sensor in self._group.sensors:
             if sensor.name in self._ended_ns:
                 continue
             try:
-                radio.run(stop(sensor))
+                radio.run(stop(sensor), tick)
                 self._ended_ns[sensor.name] = radio.now_ns()
             except (SourceLostError, SourceRefusedError) as problem:
                 failed[sensor.name] = problem
@@ -70,12 +77,35 @@ class MemoryRecording:
             self.fetching = self.fetching or MemoryFetching(radio, [self._wanted(name) for name in self._begun])
         return failed
 
+    def finish(
+        self, writer: JournalWriter, progress: Progress, tick: Tick | None = None
+    ) -> Mapping[str, SourceLostError | SourceRefusedError]:
+        """End it, and fetch it into the journal; those that it failed with, and why. May be tried again."""
+        failed = self.end(tick)
+        if failed:
+            return failed
+        assert self.fetching is not None  # all have ended
+        return self.fetching.fetch(writer, progress, tick)
+
+    def give_up(self) -> None:
+        """End it where it can be ended; nobody wants it."""
+        self.end()
+        self.given_up.add(self._utc_s)
+
+    def look_into(self, segments: Sequence[Path], data_key: KeyMaterial | None) -> Mapping[str, bool]:
+        """As `MemoryFetching.look_into`."""
+        return {} if self.fetching is None else self.fetching.look_into(segments, data_key)
+
+    def told(self) -> str:
+        """As `MemoryFetching.told`."""
+        return "" if self.fetching is None else self.fetching.told()
+
     def _wanted(self, name: str) -> WantedFile:
         begun, ended_ns = self._begun[name], self._ended_ns[name]
         sensor = next(one for one in self._group.sensors if one.name == name)
-        about = round((self._wanted_ns - begun.recording_ns) / 1e9 * self._group.record_hz)
+        about = round((self._wanted_ns - begun.recording_ns) / 1e9 * self._rate_hz)
         orders = OrderedFile(begun.told_ns, begun.recording_ns, ended_ns)
-        rate_hz = float(self._group.record_hz)
+        rate_hz = float(self._rate_hz)
         return WantedFile(sensor, self._utc_s, None, rate_hz, self._clocks[name], orders, max(about, 1))
 
     def ended_early_s(self) -> Mapping[str, float]:
@@ -83,8 +113,7 @@ class MemoryRecording:
         if self.fetching is None:
             return {}
         early_s = {
-            name: (self._wanted_ns - self._begun[name].recording_ns) / 1e9
-            - (one.samples + one.lost) / self._group.record_hz
+            name: (self._wanted_ns - self._begun[name].recording_ns) / 1e9 - (one.samples + one.lost) / self._rate_hz
             for name, one in self.fetching.results.items()
         }
         return {name: seconds for name, seconds in early_s.items() if seconds > EARLY_S}

@@ -419,10 +419,12 @@ class Visit(QObject):
         """Whether nothing of it goes on any more: no recording, no thread, no window of Rerun's."""
         idle = self.sensors.is_idle and self.evaluation.is_idle and self.reviewing.is_idle and self.preview.is_idle
         idle = idle and self.looking.is_idle and self.comparing.is_idle and self.recordings.is_idle
+        idle = idle and self.recordings.fetches.is_idle
         return idle and not (self.is_asking or self._is_changing or self._is_placing or self.patient.is_busy)
 
     def finish(self) -> None:
         """Wait for all threads: for the end of the program."""
+        self.recordings.fetches.finish()
         self.sensors.finish()
         self.evaluation.finish()
         self.reviewing.finish()

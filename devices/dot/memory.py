@@ -29,6 +29,7 @@ RECORD_HZ = 120
 LISTINGS = 3  # tries
 ERASES_S = 60.0
 LINK_TRIES = 4  # where the link is lost over an order
+BEGINS_S = 8.0  # so long one is looked for that is to begin: the patient waits
 ENDS_S, LOOKED_S = 12.0, 0.3  # so long a sensor may take to write what it holds, once told to end
 
 
@@ -66,22 +67,28 @@ async def record(
     ------
     MemoryFullError
         One has no room.
+    OwnClockError
+        One was switched off since it was synchronised.
     SourceRefusedError
-        One records already, does not begin, has another rate, or another clock than it should.
-    SourceLostError
-        One is out of reach.
+        One records already, does not begin, has another rate, or is out of reach.
     """
     tried: list[DotSensor] = []
     begun: dict[str, Begun] = {}
+    sensor = sensors[0]
     try:
         for sensor in sensors:
             await _made_ready(sensor, rate_hz, must_be_synchronised=sensor.name in synchronised)
         for sensor in sensors:
             tried.append(sensor)
             begun[sensor.name] = await _begin(sensor, utc_s)
-    except (SourceLostError, SourceRefusedError):
+    except (SourceLostError, SourceRefusedError) as problem:
+        lost = sensor.name
         for sensor in tried:
             await _stopped_quietly(sensor)
+        if isinstance(problem, SourceLostError):
+            raise DotRefusedError(
+                "{sensor} is out of reach", "Bring it nearer, then try again", sensor=lost
+            ) from problem
         raise
     return begun
 
@@ -89,7 +96,7 @@ async def record(
 async def _made_ready(sensor: DotSensor, rate_hz: int, *, must_be_synchronised: bool) -> None:
     for attempt in range(LINK_TRIES):
         try:
-            await reached(sensor)
+            await reached(sensor, BEGINS_S)
             await refuse_while_recording(sensor)
             await sensor.stop_stream()
             if (await sensor.settings()).rate_hz != rate_hz:
@@ -115,7 +122,7 @@ async def _begin(sensor: DotSensor, utc_s: int) -> Begun:
     told_ns = 0
     for attempt in range(LINK_TRIES):
         try:
-            await reached(sensor)
+            await reached(sensor, BEGINS_S)
             if told_ns and await sensor.state() is DotAnswer.RECORDING:
                 return Begun(told_ns, sensor.radio.now_ns())
             told_ns, sensor.is_full = told_ns or sensor.radio.now_ns(), False

@@ -9,7 +9,7 @@ from enum import StrEnum
 import numpy as np
 
 from core.samples import ImuBlock, RecordingKind
-from devices.bluetooth import Radio
+from devices.bluetooth import Radio, Tick
 from devices.channels import READ_S
 from devices.dot.fetching import reached
 from devices.dot.memory import RECORD_HZ
@@ -73,7 +73,8 @@ class DotGroup:
     rate_hz
         60, or 30 where the air is too full for that.
     record_hz
-        Of what is recorded in memories. Where it is another, going over from one to the other synchronises anew.
+        Of what is recorded in memories. Where it is another, going over from one to the other synchronises anew. None:
+        nothing is to be recorded there.
     """
 
     def __init__(
@@ -82,7 +83,7 @@ class DotGroup:
         sensors: Sequence[DotSensor],
         rate_hz: int = LIVE_HZ,
         profile: int = GENERAL,
-        record_hz: int = RECORD_HZ,
+        record_hz: int | None = RECORD_HZ,
     ) -> None:
         self.radio, self.sensors = radio, tuple(sensors)
         self.rate_hz, self.profile, self.record_hz = rate_hz, profile, record_hz
@@ -102,10 +103,15 @@ class DotGroup:
     def is_synchronising(self) -> bool:
         return self._synchronising.locked()
 
-    def synchronise(self, tell: Tell = _tell_nobody) -> None:
+    @property
+    def is_recording_use(self) -> bool:
+        """Whether they are ready to record in their memories, or do, and send nothing."""
+        return self.use is DotUse.RECORDING
+
+    def synchronise(self, tell: Tell = _tell_nobody, tick: Tick | None = None) -> None:
         """Bring all onto one clock, also once more, and stream; takes half a minute to two.
 
-        Never while one of them is recorded.
+        Never while one of them is recorded. What `tell` or `tick` (see `Radio.run`) raises ends it.
 
         Raises
         ------
@@ -115,47 +121,54 @@ class DotGroup:
             One cannot be synchronised, and says why.
         """
         with self._synchronising:
-            self._bring_together(self.rate_hz, tell, must_stream=True)
+            self._bring_together(self.rate_hz, tell, tick, must_stream=True)
             self.use = DotUse.STREAMING
 
-    def make_ready_to_record(self, tell: Tell = _tell_nobody) -> None:
+    def make_ready_to_record(self, tell: Tell = _tell_nobody, tick: Tick | None = None) -> None:
         """Bring all onto one clock at the rate that their memories record with; as `synchronise`.
 
         Where they are on one at this rate, and are to be for long enough still, they only stop streaming.
         """
+        rate_hz = self.record_hz or self.rate_hz
         with self._synchronising:
-            if self._are_one_at(self.record_hz):
+            if self.are_one_at(rate_hz):
                 self.turn += 1
-                self.radio.run(_silenced(self.sensors))
+                self.radio.run(_silenced(self.sensors), tick)
             elif len(self.sensors) > 1:
-                self._bring_together(self.record_hz, tell, must_stream=False)
+                self._bring_together(rate_hz, tell, tick, must_stream=False)
             else:
                 self.turn += 1
-                self.radio.run(_set_up(self.sensors[0], self.record_hz, self.profile))
+                self.radio.run(_set_up(self.sensors[0], rate_hz, self.profile), tick)
             self.use = DotUse.RECORDING
 
-    def stream_again(self, tell: Tell = _tell_nobody) -> None:
+    @property
+    def is_ready_to_record(self) -> bool:
+        """Whether memories can record now, on a clock that holds for long enough still."""
+        is_one = len(self.sensors) == 1 or self.are_one_at(self.record_hz or self.rate_hz)
+        return self.is_recording_use and not self.is_synchronising and is_one
+
+    def stream_again(self, tell: Tell = _tell_nobody, tick: Tick | None = None) -> None:
         """Go back from memories to streams; as `synchronise`."""
-        if len(self.sensors) > 1 and not self._are_one_at(self.rate_hz):
-            self.synchronise(tell)
+        if len(self.sensors) > 1 and not self.are_one_at(self.rate_hz):
+            self.synchronise(tell, tick)
             return
         with self._synchronising:
             self.turn += 1
             for sensor in self.sensors:
-                self.radio.run(_streaming(sensor, self.rate_hz, self.profile))
+                self.radio.run(_streaming(sensor, self.rate_hz, self.profile), tick)
             self.use = DotUse.STREAMING
 
-    def _are_one_at(self, rate_hz: int) -> bool:
+    def are_one_at(self, rate_hz: int) -> bool:
         """Whether all are on one clock at this rate, for long enough still."""
         common, left_s = self._common, self.renewal_due_s()
         is_whole = common is not None and common.rate_hz == rate_hz and len(common.members) == len(self.sensors)
         return is_whole and left_s is not None and left_s > 0
 
-    def _bring_together(self, rate_hz: int, tell: Tell, *, must_stream: bool) -> None:
+    def _bring_together(self, rate_hz: int, tell: Tell, tick: Tick | None, *, must_stream: bool) -> None:
         self._common = None
         self.turn += 1
         work = synchronise(self.sensors, rate_hz, self.profile, tell, must_stream=must_stream)
-        found = self.radio.run(work)
+        found = self.radio.run(work, tick)
         self._common = _Common(found, rate_hz, {sensor.name for sensor in self.sensors})
 
     def end(self) -> None:
@@ -244,7 +257,7 @@ class DotSource:
     def open(self) -> None:
         if self.group.is_synchronising:
             raise SourceLostError(f"{self.sensor.name} is being synchronised")
-        if self.group.use is DotUse.RECORDING:
+        if self.group.is_recording_use:
             return  # it sends nothing; once it is to, `read` says that it begins anew
         self._keeps_link = False
         try:
@@ -299,7 +312,7 @@ class DotSource:
 
     def read(self, keep: Keep) -> Sequence[ImuBlock]:
         radio, framer = self.group.radio, self._framer
-        if self.group.is_synchronising or self.group.use is DotUse.RECORDING:
+        if self.group.is_synchronising or self.group.is_recording_use:
             radio.wait(threading.Event(), READ_S)
             return ()
         if framer is None or self._turn != self.group.turn:
@@ -341,13 +354,13 @@ class DotSource:
         sensor, group = self.sensor, self.group
         if (info := sensor.info) is None:
             return {}
-        is_recording = group.use is DotUse.RECORDING
+        is_recording = group.is_recording_use
         quiet = Quiet.SYNCHRONISING if group.is_synchronising else Quiet.IN_MEMORY if is_recording else None
         told = SensorDetails(
             info.model,
             info.serial,
             ".".join(map(str, info.firmware)),
-            group.record_hz if is_recording else group.rate_hz,
+            group.record_hz if is_recording and group.record_hz else group.rate_hz,
             battery=sensor.battery,
             clock=group.clock_of(sensor.name),
             quiet=quiet,
@@ -355,7 +368,7 @@ class DotSource:
         return {sensor.name: told}
 
     def identify(self, sensor: str) -> bool:
-        is_busy = self.group.is_synchronising or self.group.use is DotUse.RECORDING
+        is_busy = self.group.is_synchronising or self.group.is_recording_use
         if sensor != self.sensor.name or self._framer is None or is_busy:
             return False
         with suppress(SourceLostError):  # what is lost is noticed by whoever reads
