@@ -44,7 +44,7 @@ NO_COLUMNS: Mapping[str, Columns] = MappingProxyType({})
 class FoundSensor:
     """A sensor that was heard, or `count` of them in one stream.
 
-    `make` gives a source of it; nothing is open until that is opened.
+    `make` gives a source of it; nothing is open until that is opened. `rssi_dbm`: how strongly it was heard by air.
     """
 
     driver: str
@@ -53,6 +53,7 @@ class FoundSensor:
     make: Callable[[], LiveSource]
     is_simulated: bool = False
     count: int = 1
+    rssi_dbm: int | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,12 +133,15 @@ def _by_radio(radio: Radio) -> Sequence[FoundSensor | SourceRefusedError]:
         announced = sorted(radio.run(radio.announced()), key=lambda one: one.address)
     except SourceRefusedError as refusal:
         return [refusal]
-    sensors = [DotSensor(radio, one) for one in announced if is_dot(one)]
-    group = DotGroup(radio, sensors)
-    found = [FoundSensor(MOVELLA_DOT, one.name, BLUETOOTH, partial(DotSource, one, group)) for one in sensors]
-    for one in announced:
-        if is_wit(one):
-            found.append(FoundSensor(WITMOTION_BLE, wit_name(one), BLUETOOTH, partial(WitBleSource, radio, one)))
+    dots = [one for one in announced if is_dot(one)]
+    group = DotGroup(radio, [DotSensor(radio, one) for one in dots])
+    found = []
+    for one, sensor in zip(dots, group.sensors, strict=True):
+        make = partial(DotSource, sensor, group)
+        found.append(FoundSensor(MOVELLA_DOT, sensor.name, BLUETOOTH, make, rssi_dbm=one.rssi_dbm))
+    for one in (one for one in announced if is_wit(one)):
+        make_wit = partial(WitBleSource, radio, one)
+        found.append(FoundSensor(WITMOTION_BLE, wit_name(one), BLUETOOTH, make_wit, rssi_dbm=one.rssi_dbm))
     return found
 
 

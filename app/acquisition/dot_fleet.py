@@ -9,19 +9,33 @@ So sensors are synchronised once for what is live, and once more before the walk
 once is enough.
 """
 
-from collections.abc import Callable, Sequence
+import threading
+from collections.abc import Callable, Coroutine, Sequence
 from dataclasses import dataclass
+from enum import StrEnum
+from typing import Any, TypeVar
 
 from app.acquisition.acquisition import Acquisition
 from devices.bluetooth import Radio, Tick
 from devices.dot.fetching import reached
 from devices.dot.memory import RECORD_HZ, stop
-from devices.dot.messages import EMULATED, DotMessageError
+from devices.dot.messages import EMULATED, DotAnswer, DotMessageError
 from devices.dot.sensor import DotSensor
 from devices.dot.source import GENERAL, LIVE_HZ, DotGroup
 from devices.live import SourceLostError
 
+Result = TypeVar("Result")
+
 ANSWERS_S = 8.0  # so long one that was heard is asked for
+
+
+class DotAsked(StrEnum):
+    """What came of asking a sensor who it is."""
+
+    ANSWERED = "answered"
+    RECORDING = "recording"  # in its memory
+    TOO_OLD = "too old"  # to be synchronised
+    SILENT = "silent"
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,31 +64,31 @@ class DotFleet:
 
     def __init__(self, radio: Radio, dots: Sequence[HeardDot]) -> None:
         self.radio, self.dots = radio, tuple(dots)
+        self._talking = threading.Lock()  # one question at a time, whoever asks
 
     @property
     def is_simulated(self) -> bool:
         """Whether one of those that were asked says that it is emulated."""
         return any(one.sensor.info is not None and one.sensor.info.model == EMULATED for one in self.dots)
 
-    def ask(self, name: str, tick: Tick | None = None) -> bool:
-        """Connect to a sensor, and let it tell of itself; whether it answers."""
-        try:
-            self.radio.run(reached(self._sensor(name), ANSWERS_S), tick)
-        except (SourceLostError, DotMessageError):
-            return False
-        return True
+    def ask(self, number: int, tick: Tick | None = None) -> DotAsked:
+        """Let one of them tell of itself and of what it does. Its link is left: adapters have few."""
+        with self._talking:
+            try:
+                return self.radio.run(_left(self.dots[number].sensor, _asked), tick)
+            except (SourceLostError, DotMessageError):
+                return DotAsked.SILENT
 
-    def identify(self, name: str) -> bool:
+    def identify(self, number: int) -> bool:
         """Let its light blink; whether it was told."""
-        sensor = self._sensor(name)
-        try:
-            self.radio.run(_identified(sensor))
-        except (SourceLostError, DotMessageError):
-            return False
-        return True
+        with self._talking:
+            try:
+                return self.radio.run(_left(self.dots[number].sensor, _identified))
+            except (SourceLostError, DotMessageError):
+                return False
 
-    def stop_recordings(self, tick: Tick | None = None) -> None:
-        """End whatever they record in their memories; what they hold stays there.
+    def stop_recordings(self, numbers: Sequence[int]) -> None:
+        """End whatever these record in their memories; what they hold stays there.
 
         Raises
         ------
@@ -83,22 +97,26 @@ class DotFleet:
         SourceRefusedError
             One goes on.
         """
-        for one in self.dots:
-            self.radio.run(stop(one.sensor), tick)
+        with self._talking:
+            for number in numbers:
+                self.radio.run(_left(self.dots[number].sensor, stop))
 
-    def group(self, names: Sequence[str], plan: DotPlan) -> DotGroup:
+    def wait(self) -> None:
+        """Until nobody is asked any more."""
+        with self._talking:
+            pass
+
+    def group(self, numbers: Sequence[int], plan: DotPlan) -> DotGroup:
         """Those that are worn, measuring so."""
-        worn = [one.sensor for one in self.dots if one.name in names]
+        worn = [self.dots[number].sensor for number in numbers]
         return DotGroup(self.radio, worn, plan.rate_hz, plan.profile, plan.record_hz)
 
-    def close(self, kept: Sequence[str] = ()) -> None:
+    def close(self, kept: Sequence[int] = ()) -> None:
         """Leave all but these."""
-        for one in self.dots:
-            if one.name not in kept:
-                self.radio.run(one.sensor.disconnect())
-
-    def _sensor(self, name: str) -> DotSensor:
-        return next(one.sensor for one in self.dots if one.name == name)
+        with self._talking:
+            for number, one in enumerate(self.dots):
+                if number not in kept:
+                    self.radio.run(one.sensor.disconnect())
 
 
 def acquisition_of(group: DotGroup, now_ns: Callable[[], int]) -> Acquisition:
@@ -106,6 +124,23 @@ def acquisition_of(group: DotGroup, now_ns: Callable[[], int]) -> Acquisition:
     return Acquisition(group.sources(), now_ns, group)
 
 
-async def _identified(sensor: DotSensor) -> None:
+async def _left(sensor: DotSensor, work: Callable[[DotSensor], Coroutine[Any, Any, Result]]) -> Result:
+    try:
+        return await work(sensor)
+    finally:
+        await sensor.disconnect()
+
+
+async def _asked(sensor: DotSensor) -> DotAsked:
     await reached(sensor, ANSWERS_S)
+    if sensor.info is None or not sensor.info.can_synchronise:
+        return DotAsked.TOO_OLD
+    return DotAsked.RECORDING if await sensor.state() is DotAnswer.RECORDING else DotAsked.ANSWERED
+
+
+async def _identified(sensor: DotSensor) -> bool:
+    await reached(sensor, ANSWERS_S)
+    if await sensor.state() is DotAnswer.RECORDING:
+        return False  # nothing is told to one that records
     await sensor.identify()
+    return True

@@ -20,6 +20,7 @@ from app.widgets.rail_row import StepState
 from app.widgets.sensor_tile import SILENT_FROM_S
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.sensors.columns_telling import ColumnsTelling
+from app.wizard.sensors.dot_setup import DotSetup
 from app.wizard.sensors.estimator import PlacingEstimator
 from app.wizard.sensors.page import SensorsPage, Way
 from app.wizard.sensors.replays import Replays
@@ -69,12 +70,17 @@ class SensorsStep(Step):
         self.dialog: QFileDialog | None = None
         self.telling = ColumnsTelling(self)
         self.telling.changed.connect(self.changed)
+        self.setup = DotSetup(visit.sensors, self)
+        self.setup.changed.connect(self._on_setup_changed)
+        self.setup.ready.connect(visit.sensors.search)
+        self.setup.left.connect(self._on_setup_left)
         self._replays = Replays(visit.controller, self)
         self._replays.listed.connect(self._on_listed)
         self._replays.read.connect(self._on_replay_read)
         self._replays.refused.connect(self._on_replay_refused)
         visit.sensors.changed.connect(self._on_sensors_changed)
         visit.sensors.opened.connect(self._on_opened)
+        visit.sensors.set_up_wanted.connect(self._on_source_chosen)
 
     @property
     def page(self) -> SensorsPage:
@@ -129,8 +135,12 @@ class SensorsStep(Step):
         )
 
     @property
+    def cannot_leave(self) -> str:
+        return self.setup.cannot_leave
+
+    @property
     def topic(self) -> str:
-        return "sensors"
+        return "sensors-movella-dot" if self.setup.is_on else "sensors"
 
     def enter(self) -> None:
         self._asks = SensorsShown.SOURCE
@@ -144,6 +154,7 @@ class SensorsStep(Step):
         self._told_of = ""
         self._replays.stop()
         self.telling.end()
+        self.setup.end()
         sensors = self._visit.sensors
         if sensors.acquisition is not None:
             sensors.acquisition.set_estimator(None)
@@ -181,6 +192,8 @@ class SensorsStep(Step):
         if self.telling.is_on:
             is_whole = self.telling.columns is not None
             return BarState(primary=BarAction(tr("Use these columns"), tr("Enter"), is_enabled=is_whole))
+        if self.setup.is_on:
+            return self.setup.bar()
         if self._is_choosing:
             is_any = self.page.stored.session is not None
             return BarState(primary=BarAction(tr("Replay it"), tr("Enter"), Icon.PLAY, is_enabled=is_any))
@@ -207,6 +220,8 @@ class SensorsStep(Step):
     def on_primary(self) -> None:
         if self.telling.is_on:
             self._use_columns()
+        elif self.setup.is_on:
+            self.setup.on_primary()
         elif self._is_choosing:
             if (session := self.page.stored.session) is not None:
                 self._replay(session)
@@ -219,7 +234,9 @@ class SensorsStep(Step):
             self.done.emit()
 
     def on_other(self, number: int) -> None:
-        if self._visit.cannot_record:
+        if self.setup.is_on:
+            self.setup.leave_out_failed()
+        elif self._visit.cannot_record:
             self.demonstration_wanted.emit()
         else:
             self.done.emit()
@@ -227,6 +244,8 @@ class SensorsStep(Step):
     def on_intent(self, intent: Intent) -> bool:
         if intent.action is KeyAction.LABEL:
             return self.page.place_selected(intent.number)
+        if intent.action is KeyAction.IDENTIFY and self.setup.is_on:
+            return self.setup.identify_selected()
         if intent.action is KeyAction.IDENTIFY:
             return self.page.identify_selected()
         return False
@@ -266,6 +285,8 @@ class SensorsStep(Step):
             page.show_searching(sensors.choice.name)
         elif self.telling.is_on:
             page.show_columns()
+        elif self.setup.is_on:
+            page.show_dots(self.setup.is_synchronising)
         elif self._is_choosing:
             page.show_stored()
         elif sensors.acquisition is None:
@@ -281,7 +302,7 @@ class SensorsStep(Step):
         options = [SourceOption(choice.key, choice.name) for choice in visit.choices]
         if visit.may_simulate:
             options.append(SourceOption(REPLAY, tr("Replay of a stored session")))
-        chosen = sensors.choice
+        chosen = sensors.choice or self.setup.choice
         if chosen is not None:
             found = len(sensors.acquisition.sensors) if sensors.acquisition is not None else 0
             note = tr("{count} found").format(count=found) if found else ""
@@ -355,8 +376,12 @@ class SensorsStep(Step):
     def _reconnect(self) -> None:
         """Open the source anew; its sensors come back to their places."""
         sensors = self._visit.sensors
-        if sensors.choice is not None:
-            self._wanted = dict(sensors.site_of)
+        if sensors.choice is None:
+            return
+        self._wanted = dict(sensors.site_of)
+        if sensors.choice.make_fleet is not None:
+            self._set_up(sensors.choice)
+        else:
             sensors.search(sensors.choice)
 
     def _on_opened(self) -> None:
@@ -395,6 +420,7 @@ class SensorsStep(Step):
             return
         self._end_choosing()
         self.telling.end()
+        self.setup.end()
         is_told, self._told_of = key == self._told_of, ""
         if any(choice.asks) and not is_told:
             self._told_of = key
@@ -407,8 +433,30 @@ class SensorsStep(Step):
             self._show()
             self.page.focus()
             self.changed.emit()
+        elif choice.make_fleet is not None:
+            self._set_up(choice)
         else:
             sensors.search(choice)
+
+    def _set_up(self, choice: SourceChoice) -> None:
+        """Ask of Movella DOTs which are worn, and synchronise them."""
+        self._visit.sensors.close()
+        known = self._wanted or self._known_places or self._visit.placement_before
+        self.setup.begin(self.page.dots, self.page.progress, choice, known.keys())
+        self._show()
+        self.page.focus()
+        self.changed.emit()
+
+    def _on_setup_changed(self) -> None:
+        if self._is_in_sight:
+            self._show()
+        self.changed.emit()
+
+    def _on_setup_left(self) -> None:
+        self.setup.end()
+        self._show()
+        self.page.focus()
+        self.changed.emit()
 
     def _use_columns(self) -> None:
         """Remember what is told, and search again: all that is known is heard then."""
