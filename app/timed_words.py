@@ -41,7 +41,7 @@ def planned_words(planned: PlannedTest | None) -> str:
 def start_words(protocol: TimedProtocol) -> str:
     """What starts the clock where no key does."""
     if protocol is TimedProtocol.TEN_METRES:
-        return tr("stand still for 1 s; the clock starts 2 m from there")
+        return tr("2 m on from standing still for 1 s")
     if DEFINITIONS[protocol].is_from_chair:
         return tr("as the thighs leave the seat")
     return tr("first step after 1 s of standing still")

@@ -132,7 +132,7 @@ KEYBOARD: tuple[Stop, ...] = (
     Stop(
         "06-patient",
         at_step("PatientStep"),
-        ("type DEMO-7", "to Birth year", "type 1990", "to Height", "type 178", "to Mass", "type 74"),
+        ("type DEMO-7", "to Birth year", "type 1990", "to Body height", "type 178", "to Mass", "type 74"),
         lingers_s=1.0,
     ),
     Stop("07-patient-typed", offers("Put on sensors"), ("press Return",), lingers_s=1.0),
@@ -279,4 +279,19 @@ BENCH: tuple[Stop, ...] = (  # three alignments of one prosthesis, by keys
         ),
     ),
 )
-TOURS = {"keyboard": (*KEYBOARD, *SECOND_BY_KEYS), "mouse": (*MOUSE, *SECOND_BY_MOUSE), "bench": BENCH}
+TIMED: tuple[Stop, ...] = (  # ten metres, timed by the motion, then sit to stand broken off, by keys
+    *KEYBOARD[:BENCH_UP_TO],
+    Stop("51-choose", offers("Barefoot"), ("press t",), lingers_s=1.0, patience_s=90.0),
+    Stop("52-chosen", says("Next: 10-metre walk"), ("press space",), lingers_s=1.0),
+    Stop("53-running", is_recording, lingers_s=6.0, patience_s=60.0),
+    Stop("54-over", lambda seen: not seen.is_recording, ("press k",), lingers_s=2.0, patience_s=60.0),
+    Stop("55-kept", offers("Results"), (*pressed("t", 4), "press space"), lingers_s=2.0),
+    Stop("56-seated", is_recording, ("press Escape",), lingers_s=4.0, patience_s=60.0),
+    Stop("57-broken-off", lambda seen: not seen.is_recording, ("press d",), lingers_s=2.0, patience_s=60.0),
+    Stop("58-discarded", offers("Results"), ("to Results", "press Return"), lingers_s=2.0),
+    Stop("59-results", offers("Legs", "Data"), ("press ctrl+7",), lingers_s=1.0, patience_s=60.0),
+    Stop("60-report", at_step("ReportStep"), ("press ctrl+s",), lingers_s=1.0, patience_s=60.0),
+    Stop("61-where", offers("Save"), ("press ctrl+a", "type {home}/results", "press Return"), lingers_s=1.0),
+    Stop("62-saved", says("Saved as"), lingers_s=2.0, leaves=(("results*/**/timed_test.csv", "10 m"),)),
+)
+TOURS = {"keyboard": (*KEYBOARD, *SECOND_BY_KEYS), "mouse": (*MOUSE, *SECOND_BY_MOUSE), "bench": BENCH, "timed": TIMED}

@@ -9,15 +9,17 @@ from PySide6.QtWidgets import QHBoxLayout, QSizePolicy
 
 from app.charts.axes import degrees_in_words, part_in_words, range_for, range_in_words, sign_in_words, title_in_words
 from app.charts.stride_chart import StrideCurve
-from app.icons import Icon
+from app.icons import VERDICT_ICONS, Icon
 from app.plots.cycle_chart import CycleChart
 from app.theme import ThemeNotifier
 from app.widgets.card import Card
 from app.widgets.chip import Chip
 from app.widgets.icons import IconMark
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
+from app.widgets.verdict_chip import BRIEF
 from app.wording import tr
 from core.body import Side
+from core.verdicts.model import Verdict
 
 
 class ComparedChart(CycleChart):
@@ -51,6 +53,11 @@ class ComparedFrame(Card):
         head.setSpacing(8)
         head.addWidget(Chip(look, side))
         head.addWidget(Text(look, title_in_words(is_knee), size=16, weight=SEMIBOLD))
+        self._verdict_mark = IconMark(look, VERDICT_ICONS[Verdict.READ], size=16)
+        self.verdict = Text(look, size=12, weight=MEDIUM)
+        for part in (self._verdict_mark, self.verdict):
+            part.hide()
+            head.addWidget(part)
         head.addStretch(1)
         head.addWidget(Text(look, sign_in_words(is_knee), size=12, tone="ink2"))
         notes.setSpacing(8)
@@ -63,6 +70,13 @@ class ComparedFrame(Card):
     @property
     def note(self) -> str:
         return self._note.text()
+
+    def show_verdict(self, verdict: Verdict) -> None:
+        """Say beside the joint what may be read of all its curves."""
+        self._verdict_mark.set_icon(VERDICT_ICONS[verdict])
+        self.verdict.setText(tr(BRIEF[verdict]))
+        for part in (self._verdict_mark, self.verdict):
+            part.setVisible(verdict is not Verdict.NOT_MEASURED)
 
     def show_curves(
         self, curves: Sequence[StrideCurve], note: str, is_simulated: bool, *, is_about_mean: bool = False

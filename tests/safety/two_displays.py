@@ -203,11 +203,11 @@ def _change_the_same(one: StationOnScreen, two: StationOnScreen, server: Server)
     one.lead(
         Stop("40-home", offers("New session for DEMO-7"), ("to Sessions", "press Down", "press Return")),
         Stop("41-session", offers("Legs"), ("press ctrl+1",), patience_s=PATIENCE_S),
-        Stop("42-patient", at_step("PatientStep"), ("to Height",)),
+        Stop("42-patient", at_step("PatientStep"), ("to Body height",)),
     )
     two.lead(
         Stop("40-session", offers("Legs"), ("press ctrl+1",)),
-        Stop("41-patient", at_step("PatientStep"), ("to Height",)),
+        Stop("41-patient", at_step("PatientStep"), ("to Body height",)),
     )
     one.lead(Stop("43-changes", at_step("PatientStep"), ("press ctrl+a", f"type {HEIGHTS[0]}", "press Tab")))
     _wait_until(lambda: _patient(server)["version"] == before["version"] + 1, "station one's height is saved")

@@ -24,6 +24,7 @@ from app.wizard.walking.bench import ChangeEntry
 from app.wizard.walking.bench_differences import BenchDifferences
 from app.wording import tr
 from core.body import Side, ankle_of, knee_of
+from core.verdicts.model import worst
 
 LIST, CURVES_LEAST, DIFFERENCES = 284, 308, 312
 BETWEEN = 16
@@ -123,6 +124,7 @@ class BenchView(Themed):
             frame.chart.deviations = tuple(
                 one for one in marks if one.is_knee is is_knee and one.first.joint is joint and has_one_zero
             )
+            frame.show_verdict(worst(part.verdicts.joint(joint).shape.verdict for part in state.parts))
             frame.show_curves(curves, " ".join(notes), state.is_simulated, is_about_mean=not has_one_zero)
 
     def _frame(self, side: Side, is_knee: bool) -> ComparedFrame:

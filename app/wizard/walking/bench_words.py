@@ -6,6 +6,7 @@ from app.pages.compared_words import error_in_sentence, is_judged, unit_behind
 from app.reports.comparison import Compared, Comparison, Part
 from app.reports.patient_report.answer import Answer, Outcome
 from app.reports.patient_report.numbers_in_words import fixed
+from app.reports.patient_report.what_stands_out import FAMILIES
 from app.wording import tr, within_sentence
 from core.body import Side
 from core.norms import MIN_STRIDES_FOR_SD
@@ -28,7 +29,7 @@ def bench_answer(found: Comparison, prosthetic: Side) -> Answer:
     if not own:
         first = tr("Nothing of the prosthetic side can be compared between {one} and {other}.")
         return Answer(Outcome.OPEN, first.format(one=shown.letter, other=other.letter), _beside(found, prosthetic))
-    worth = [row for row in own if row.difference.is_worth_a_sentence]
+    worth = _without_family([row for row in own if row.difference.is_worth_a_sentence])
     if worth:
         most = max(worth, key=lambda row: row.difference.ratio)
         error = tr("Larger than its error ({error}).").format(error=error_in_sentence(most))
@@ -52,6 +53,12 @@ def speeds_in_words(shown: Part, other: Part) -> str:
 def _is_told_of(row: Compared) -> bool:
     """Whether a sentence may tell of it: judged, of one leg, and no height, which the standing zero is in."""
     return is_judged(row) and not row.measure.is_of_walk and not row.measure.needs_height
+
+
+def _without_family(rows: list[Compared]) -> list[Compared]:
+    """A range and the excursion that makes most of it are one movement: the excursion is told."""
+    told = {(row.measure.column, row.difference.difference > 0) for row in rows}
+    return [row for row in rows if (FAMILIES.get(row.measure.column), row.difference.difference > 0) not in told]
 
 
 def _sentence(row: Compared) -> str:

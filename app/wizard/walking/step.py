@@ -149,7 +149,7 @@ class WalkingStep(Step):
 
     @property
     def folds_sensors(self) -> bool:
-        return self._is_bench and not self._visit.recordings.is_recording
+        return self._timed.is_running or (self._is_bench and not self._visit.recordings.is_recording)
 
     @property
     def takes_clicker(self) -> bool:

@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
 
@@ -31,6 +32,7 @@ from core.timed.found import TimedPart, TimedTest
 from core.timed.protocols import TimedProtocol
 
 NO_FIGURE = "\N{EN DASH}"
+TURNS = 4  # their column, which has no mean
 MOST_LAPS = 12  # more do not fit; the table in the files has all
 
 
@@ -146,24 +148,35 @@ def _attempts(state: TimedResult) -> tuple[list[TableColumn], list[TableRow]]:
     rows = []
     for called, attempt in zip(state.called, state.attempts, strict=True):
         found = attempt.found
-        figures = ["", "", "", "", "", ""] if found is None else _figures(found)
+        figures = [""] * len(heads) if found is None else _texts(_values(found))
         tone = "ink" if attempt.is_kept else "ink3"
         name = called if attempt.is_kept else tr("{walk}, discarded").format(walk=called)
         cells = [TextCell(name, tone=tone), *(TextCell(one, align=RIGHT, tone=tone) for one in figures[:shown])]
         rows.append(TableRow(tuple(cells)))
+    kept = [_values(one.found) for one in state.attempts if one.is_kept and one.found is not None]
+    if len(kept) > 1:
+        figures = _texts([float(np.mean(of_attempts)) for of_attempts in zip(*kept, strict=True)])
+        figures[TURNS] = ""
+        name = tr("Mean of {count}").format(count=len(kept))
+        told = [TextCell(one, align=RIGHT, weight=SEMIBOLD) for one in figures[:shown]]
+        rows.append(TableRow((TextCell(name, weight=SEMIBOLD), *told)))
     return columns, rows
 
 
-def _figures(found: TimedTest) -> list[str]:
-    apart_m = found.tape_difference_m
+def _values(found: TimedTest) -> list[float]:
     return [
-        number(found.time_s, 1),
-        number(found.distance_m, 1),
-        number(found.speed_m_s, 2),
-        number(found.cadence_steps_min, 0),
-        str(len(found.turns)),
-        f"{apart_m:+.2f}" if math.isfinite(apart_m) else NO_FIGURE,
+        found.time_s,
+        found.distance_m,
+        found.speed_m_s,
+        found.cadence_steps_min,
+        len(found.turns),
+        found.tape_difference_m,
     ]
+
+
+def _texts(values: Sequence[float]) -> list[str]:
+    texts = [number(value, digits) for value, digits in zip(values, (1, 1, 2, 0, 0, 2), strict=True)]
+    return [*texts[:-1], f"+{texts[-1]}" if values[-1] >= 0 else texts[-1]]
 
 
 def _part_columns() -> list[TableColumn]:

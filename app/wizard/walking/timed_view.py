@@ -253,10 +253,10 @@ class _Course(Themed):
         self.update()
 
     def sizeHint(self) -> QSize:
-        return QSize(self._look.theme.px(400), self._look.theme.px(132))
+        return QSize(self._look.theme.px(400), self._look.theme.px(120))
 
     def minimumSizeHint(self) -> QSize:
-        return QSize(self._look.theme.px(200), self._look.theme.px(132))
+        return QSize(self._look.theme.px(200), self._look.theme.px(120))
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         if self._state is None:

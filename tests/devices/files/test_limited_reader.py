@@ -408,6 +408,7 @@ def sent(told: dict[str, object], *arrays: Array) -> bytes:
 
 
 ANSWER = sent({"what": "read", "details": [1, "a"]}, np.arange(3.0), np.eye(2, dtype=np.int16))
+END_OF_HEAD = 8 + int.from_bytes(ANSWER[:8], "little")  # what says how long each array is
 
 
 @given(st.integers(0, len(ANSWER) - 1), st.integers(1, 255), st.integers(0, 60))
@@ -419,7 +420,7 @@ def test_a_damaged_answer_is_no_answer(place: int, change: int, cut: int) -> Non
     except (BrokenAnswerError, EOFError):
         return
     assert isinstance(told, dict)
-    assert cut == 0 or place < ANSWER.index(b"}") + 40
+    assert cut == 0 or place < END_OF_HEAD  # an array that is said to be shorter may miss its end
 
 
 @pytest.mark.parametrize("kind", ["|O", "<O8", "|V8", "|S9", "<U4", "<M8", "f8", "<f16", 8])

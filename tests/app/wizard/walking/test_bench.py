@@ -25,7 +25,7 @@ from app.wizard.walking.readout import WalkingReadout
 from app.wizard.walking.walk_labels import new_alignment
 from app.wizard.walking.walk_list import WalkRow, WalkState
 from core.alignment import AlignmentChange, NetChange, PartChange, ProsthesisPart
-from core.body import Side
+from core.body import Joint, Side
 from core.results import Analysis, Calibration, Method, SideGait
 from core.samples import Recording, RecordingKind, Session
 from tests.app.room import words_cut
@@ -107,6 +107,22 @@ def test_the_sentence_tells_the_prosthetic_sides_change_with_both_values() -> No
     assert "70.0° against 60.0°" in first
     assert then.startswith("Larger than its error (")
     assert "The sound side does not change beyond error. Sensors stayed on. Speed 1.18 and 1.18 m/s." in then
+
+
+def swinging(range_deg: float, swing_deg: float) -> SideGait:
+    """A left leg whose knee also straightens and bends in swing."""
+    found = leg(Side.LEFT, knee_range_deg=range_deg)
+    swing = {"knee_stance_to_swing_rad": np.full(len(found.strides), np.deg2rad(swing_deg))}
+    return replace(found, parameters={**found.parameters, **swing})
+
+
+@pytest.mark.parametrize(
+    ("swing_deg", "told"), [(68.0, "knee, stance to swing"), (58.5, "knee range"), (48.0, "knee range")]
+)
+def test_of_a_range_and_the_excursion_that_makes_it_the_excursion_is_told(swing_deg: float, told: str) -> None:
+    """Not where the excursion hardly changes, nor where it changes the other way and less."""
+    _, first, _ = told_of(part("B", left=swinging(70.0, swing_deg)), part("A", left=swinging(59.0, 57.0)))
+    assert f": {told}, " in first
 
 
 def test_where_only_the_sound_side_changes_no_sentence_is_of_the_prosthetic_one() -> None:
@@ -275,6 +291,18 @@ def test_the_page_shows_the_chain_the_curves_and_the_differences(page: WalkingPa
     assert knee.chart.deviations
     page.show_bench(None)
     assert page.charts.isVisible()
+
+
+def test_each_curve_says_what_may_be_read_of_it(page: WalkingPage, bench: Bench) -> None:
+    state = bench.state()
+    assert state is not None
+    page.bench.show_state(state)
+    assert [frame.verdict.text() for frame in page.bench.frames] == ["read", "read"]
+    axis = replace(calibrations()[Joint.LEFT_KNEE], axis_sd_rad=np.deg2rad(8.0))
+    unsure = {**calibrations(), Joint.LEFT_KNEE: axis}
+    doubted = replace(state.parts[0], walks=(judged_walk(walk(), unsure),))
+    page.bench.show_state(replace(state, parts=[doubted, *state.parts[1:]]))
+    assert [frame.verdict.text() for frame in page.bench.frames] == ["with care", "read"]
 
 
 def test_the_next_change_is_told_by_keys_and_reads_as_it_prints(page: WalkingPage, bench: Bench) -> None:

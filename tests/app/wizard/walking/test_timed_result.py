@@ -1,0 +1,40 @@
+"""The result of a timed test: its attempts, and their mean where there are several that count."""
+
+from dataclasses import replace
+
+from pytestqt.qtbot import QtBot
+
+from app.theme import ThemeNotifier
+from app.widgets.table import TableRow
+from app.widgets.table_cells import TextCell
+from app.wizard.walking.timed_result import TimedAttempt, TimedResult, TimedResultView
+from core.timed.found import TimedTest
+from core.timed.protocols import TimedProtocol
+
+TEN = TimedTest(TimedProtocol.TEN_METRES, 3.0, 12.0, False, False, 10.0, 10.0, 105.0, (), (), (), (), (), (), ())
+
+
+def attempt(number: int, time_s: float, *, is_kept: bool = True) -> TimedAttempt:
+    found = replace(TEN, end_s=TEN.start_s + time_s)
+    return TimedAttempt(f"walk {number}", TimedProtocol.TEN_METRES, found, is_kept)
+
+
+def texts(row: TableRow) -> list[str]:
+    return [cell.text for cell in row.cells if isinstance(cell, TextCell)]
+
+
+def shown(qtbot: QtBot, *attempts: TimedAttempt) -> list[list[str]]:
+    view = TimedResultView(ThemeNotifier())
+    qtbot.addWidget(view)
+    view.show_state(TimedResult(attempts, [f"A{k} Shoes" for k in range(1, len(attempts) + 1)]))
+    return list(map(texts, view.attempts.cells.rows))
+
+
+def test_the_mean_is_of_the_attempts_that_count(qtbot: QtBot) -> None:
+    rows = shown(qtbot, attempt(1, 9.0), attempt(2, 20.0, is_kept=False), attempt(3, 8.0))
+    assert rows[1][0] == "A2 Shoes, discarded"
+    assert rows[3:] == [["Mean of 2", "8.5", "10.0", "1.18", "105", ""]]
+
+
+def test_one_attempt_has_no_mean(qtbot: QtBot) -> None:
+    assert len(shown(qtbot, attempt(1, 9.0), attempt(2, 20.0, is_kept=False))) == 2
