@@ -7,6 +7,7 @@ import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
 
 from app.storage.data_key import KeyMaterial
 from app.storage.journal.decoding import decode
@@ -66,6 +67,16 @@ class WantedFile:
     clock: str = ""
     orders: OrderedFile | None = None
     about: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Lack:
+    """What a sensor's file does not hold of a recording: numbered samples, and the last `early_s` before its end."""
+
+    sensor: str
+    lost: int = 0
+    early_s: float = 0.0
+    is_end_known: bool = True
 
 
 @dataclass(slots=True)
@@ -165,6 +176,13 @@ class MemoryFetching:
                 and one.fetching.framer.has_forces()
             )
         return {name: name in self._begun and self._begun[name].is_kept for name in self._wanted}
+
+    def lacks(self, early_s: Mapping[str, float] = MappingProxyType({})) -> tuple[Lack, ...]:
+        """What could not be had, of each sensor that lacks something; it may have ended `early_s` before it was to."""
+        every = [
+            Lack(name, one.lost, early_s.get(name, 0.0), one.is_end_known) for name, one in sorted(self.results.items())
+        ]
+        return tuple(one for one in every if one != Lack(one.sensor))
 
     def told(self) -> str:
         """What was fetched, for the journal: of each sensor when it was begun, its samples, whether that is all."""

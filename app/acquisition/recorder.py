@@ -31,7 +31,7 @@ from core.samples import Recording, RecordingKind
 from devices.decoders import DECODERS
 
 if TYPE_CHECKING:  # sensors with memories are few, and what they need is imported with them
-    from app.acquisition.memory_fetching import Progress
+    from app.acquisition.memory_fetching import Lack, Progress
     from app.storage.data_key import KeyMaterial
     from devices.bluetooth import Tick
     from devices.live import SourceLostError, SourceRefusedError
@@ -220,6 +220,9 @@ class InMemory(Protocol):
 
     def look_into(self, segments: Sequence[Path], data_key: "KeyMaterial | None") -> object:
         """Find out whether its closed journal holds all that was fetched."""
+
+    def lacks(self) -> "tuple[Lack, ...]":
+        """What could not be had of it."""
 
     def told(self) -> str:
         """What was fetched of each sensor, for the journal."""

@@ -8,7 +8,7 @@ When each sensor was told to begin and to end is noted: nothing else tells where
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from app.acquisition.memory_fetching import MemoryFetching, OrderedFile, Progress, WantedFile
+from app.acquisition.memory_fetching import Lack, MemoryFetching, OrderedFile, Progress, WantedFile
 from app.storage.data_key import KeyMaterial
 from app.storage.journal.writer import JournalWriter
 from devices.bluetooth import Tick
@@ -95,6 +95,10 @@ class MemoryRecording:
     def look_into(self, segments: Sequence[Path], data_key: KeyMaterial | None) -> Mapping[str, bool]:
         """As `MemoryFetching.look_into`."""
         return {} if self.fetching is None else self.fetching.look_into(segments, data_key)
+
+    def lacks(self) -> tuple[Lack, ...]:
+        """As `MemoryFetching.lacks`; which sensors ended before they were told to is known, too."""
+        return () if self.fetching is None else self.fetching.lacks(self.ended_early_s())
 
     def told(self) -> str:
         """As `MemoryFetching.told`."""

@@ -168,6 +168,7 @@ class MemoryFetches(QObject):
     def _on_idle(self) -> None:
         if self._must_start:
             self.start()
+        self.changed.emit()
 
     def _on_progressed(self, _share: float, _what: str) -> None:
         self.changed.emit()

@@ -37,6 +37,7 @@ from core.samples import Recording, RecordingKind
 
 if TYPE_CHECKING:
     from app.acquisition.acquisition import Acquisition
+    from app.acquisition.memory_fetching import Lack
     from app.acquisition.recorder import InMemory
     from app.storage.opened import OpenedLibrary
     from core.alignment import AlignmentChange
@@ -60,13 +61,15 @@ class Ongoing:
 class SessionRecording:
     """A recording that has ended. `read_back` holds what its journal holds; None until it has been read.
 
-    `strides` are those counted live. `is_decided`: somebody has said whether it is kept; until then it is.
+    `strides` are those counted live. `is_decided`: somebody has said whether it is kept; until then it is. `lacks`:
+    what could not be fetched from the sensors' memories.
     """
 
     stored: StoredRecording
     read_back: Recording | None = None
     strides: Mapping[Side, int] | None = None
     is_decided: bool = True
+    lacks: "tuple[Lack, ...]" = ()
 
     @property
     def id(self) -> UUID:
@@ -540,7 +543,9 @@ class SessionRecordings(QObject):
         stored, read_back = result
         unread = self._unread.pop(0)
         self._is_reading, self._readings = False, 0
-        recording = SessionRecording(stored, read_back, unread.strides, stored.is_decided)
+        memory = unread.recorder.memory
+        lacks = memory.lacks() if memory is not None else ()
+        recording = SessionRecording(stored, read_back, unread.strides, stored.is_decided, lacks)
         if not self._unread:
             self._go_on()
         self._put(recording)

@@ -137,6 +137,7 @@ class Visit(QObject):
         self.evaluation.done.connect(self._keep_course)
         self.reviewing.refused.connect(self.refused)
         self.recordings.ended.connect(self._on_recording_ended)
+        self.recordings.begun.connect(self._note_lost_clocks)
         self.recordings.changed.connect(self._on_recordings_changed)
 
     @property
@@ -210,6 +211,8 @@ class Visit(QObject):
             return tr("Choose the source of the sensors first.")
         if not self.sensors.site_of and not self.sensors.is_left_to_motion:
             return tr("Say first which sensor is worn where.")
+        if self.sensors.are_in_memory:
+            return tr("The sensors are ready for walks. Set them back to live on the sensors' step first.")
         return self.cannot_record
 
     @property
@@ -301,6 +304,13 @@ class Visit(QObject):
             return opened.library.sessions.get(session_id)
 
         self._controller.run(place, self._on_placed, self._on_refused, self)
+
+    def _note_lost_clocks(self) -> None:
+        """Where sensors were told to be on one clock and some are not any more, tell the library so."""
+        told = self.session.details.sensors if self.session is not None else {}
+        worn = self.sensors.placed()
+        if any(one.info.clock == "" and site in told and told[site].clock for site, one in worn.items()):
+            self.place_sensors()
 
     def correct_placement(self) -> None:
         """Tell the library that all since the sensors were strapped on was worn as it is said now; it is read anew."""

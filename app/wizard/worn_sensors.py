@@ -127,14 +127,25 @@ class WornSensors(QObject):
 
     @property
     def are_ready_for_walks(self) -> bool:
-        """Whether a walk can be recorded on a clock that holds: such sensors are synchronised for it otherwise."""
+        """Whether a walk can be recorded as it is to be: in memories on a clock that holds, or else live."""
         dots = self.dots
-        if dots is None:
-            return True
-        if dots.record_hz is not None:
-            return dots.is_ready_to_record
-        due_s = dots.renewal_due_s()
-        return not dots.is_recording_use and (due_s is None or due_s > 0)
+        return dots is None or (dots.is_ready_to_record if dots.record_hz is not None else not dots.is_recording_use)
+
+    @property
+    def are_loose(self) -> bool:
+        """Whether DOTs that stream have no common clock, or have had it for so long that they drift apart."""
+        dots = self.dots
+        if dots is None or dots.is_recording_use or dots.is_synchronising or len(dots.sensors) < 2:
+            return False
+        return not dots.are_one_at(dots.rate_hz)
+
+    @property
+    def on_own_clocks(self) -> tuple[str, ...]:
+        """DOTs that were to have a common clock, and have not."""
+        dots = self.dots
+        if dots is None or len(dots.sensors) < 2 or dots.is_synchronising:
+            return ()
+        return tuple(sensor.name for sensor in dots.sensors if not dots.clock_of(sensor.name))
 
     @property
     def are_in_memory(self) -> bool:

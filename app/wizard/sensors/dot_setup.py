@@ -19,6 +19,7 @@ from devices.dot.synchronising import SyncFailure
 from devices.live import SourceLostError, SourceRefusedError
 
 if TYPE_CHECKING:
+    from app.acquisition.dot_fleet import HeardDot
     from app.widgets.sensors_progress import SensorsProgress
     from app.wizard.sensors.dot_form import DotForm
     from app.wizard.worn_sensors import SourceChoice, WornSensors
@@ -73,10 +74,15 @@ class DotSetup(QObject):
         return self._fleet is not None
 
     @property
+    def dots(self) -> "tuple[HeardDot, ...]":
+        """Those that were heard."""
+        return self._fleet.dots if self._fleet is not None else ()
+
+    @property
     def is_synchronising(self) -> bool:
-        """Whether sensors are being brought onto one clock for this, or let go again."""
+        """Whether sensors are being brought onto one clock, or let go again."""
         sync = self._sensors.sync
-        return self.is_on and (sync.is_running or sync.is_ending)
+        return sync.is_running or sync.is_ending
 
     @property
     def choice(self) -> "SourceChoice | None":
@@ -90,18 +96,18 @@ class DotSetup(QObject):
             return ""
         return tr("The sensors are being synchronised. Wait until they are, or cancel it.")
 
-    def begin(
-        self, form: "DotForm", progress: "SensorsProgress", choice: "SourceChoice", known: Collection[str]
-    ) -> None:
+    def show_on(self, form: "DotForm", progress: "SensorsProgress") -> None:
+        """Have these show what is asked and done, from now on."""
+        self._form, self._progress = form, progress
+        form.turned.connect(self._on_turned)
+        form.identify_pressed.connect(self._on_identify_pressed)
+        form.back_pressed.connect(self.left)
+        progress.stop_pressed.connect(self._sensors.sync.stop)
+
+    def begin(self, choice: "SourceChoice", known: Collection[str]) -> None:
         """Ask the sensors of this choice who they are. `known` are names that are worn, if they are heard."""
         self.end()
         self._sensors.sync.forget()
-        if self._form is None:
-            self._form, self._progress = form, progress
-            form.turned.connect(self._on_turned)
-            form.identify_pressed.connect(self._on_identify_pressed)
-            form.back_pressed.connect(self.left)
-            progress.stop_pressed.connect(self._sensors.sync.stop)
         assert choice.make_fleet is not None
         self._choice, fleet = choice, choice.make_fleet()
         self._fleet = fleet
@@ -128,6 +134,11 @@ class DotSetup(QObject):
 
         self._sensors.close_beside(close)
         self._failed, self._refusal = {}, ("", "")
+
+    def set_back(self) -> None:
+        """Bring the sensors that are open back from their memories to what is live."""
+        if (dots := self._sensors.dots) is not None and not self.is_synchronising:
+            self._sensors.sync.start(dots, SyncPurpose.STREAMS)
 
     def focus(self) -> None:
         if self._form is not None and self._progress is not None:
@@ -248,12 +259,15 @@ class DotSetup(QObject):
 
     def _show(self) -> None:
         fleet, form, progress = self._fleet, self._form, self._progress
-        if fleet is None or form is None or progress is None:
+        if form is None or progress is None:
             return
-        form.show_dots([self._line(number) for number in range(len(fleet.dots))])
-        form.tell(*(self._refusal if self._refusal[0] else self._sensors.sync.failure))
+        if fleet is not None:
+            form.show_dots([self._line(number) for number in range(len(fleet.dots))])
+            form.tell(*(self._refusal if self._refusal[0] else self._sensors.sync.failure))
         if self.is_synchronising:
-            names = [fleet.dots[number].name for number in self._group_numbers]
+            open_ones = self._sensors.acquisition.sensors if self._sensors.acquisition is not None else ()
+            asked = fleet.dots if fleet is not None else ()
+            names = [dot.name for number, dot in enumerate(asked) if number in self._group_numbers] or open_ones
             progress.show_state(progress_of(self._sensors.sync, names))
         self.changed.emit()
 
@@ -290,9 +304,7 @@ class DotSetup(QObject):
 
     def _on_sync_changed(self) -> None:
         sync = self._sensors.sync
-        if not self.is_on:
-            return
-        if not self.is_synchronising and not self._sensors.asking.is_busy and self._sensors.sync.is_idle:
+        if self.is_on and sync.is_idle and not self._sensors.asking.is_busy:
             self._failed = sync.failed
             self._ask()
         self._show()

@@ -97,6 +97,7 @@ class SensorsStep(Step):
             page.stored.folder_pressed.connect(self._choose_folder)
             page.stored.back_pressed.connect(self._on_stored_left)
             page.columns.back_pressed.connect(self._on_columns_left)
+            self.setup.show_on(page.dots, page.progress)
         return self._page
 
     @property
@@ -156,6 +157,7 @@ class SensorsStep(Step):
         self.telling.end()
         self.setup.end()
         sensors = self._visit.sensors
+        sensors.sync.forget()
         if sensors.acquisition is not None:
             sensors.acquisition.set_estimator(None)
         self._estimator = None
@@ -192,12 +194,15 @@ class SensorsStep(Step):
         if self.telling.is_on:
             is_whole = self.telling.columns is not None
             return BarState(primary=BarAction(tr("Use these columns"), tr("Enter"), is_enabled=is_whole))
-        if self.setup.is_on:
+        if self.setup.is_on or self.setup.is_synchronising:
             return self.setup.bar()
         if self._is_choosing:
             is_any = self.page.stored.session is not None
             return BarState(primary=BarAction(tr("Replay it"), tr("Enter"), Icon.PLAY, is_enabled=is_any))
         go_on = tr("Stand still")
+        if sensors.are_in_memory:
+            back = BarAction(tr("Set back to live"), tr("Enter"), is_wished=False)
+            return BarState(primary=back, note=tr("The sensors are ready for walks, and send nothing."))
         if sensors.acquisition is None:
             return BarState(note="" if sensors.is_searching else tr("Choose where sensors are looked for."))
         if reason := self._visit.cannot_record:
@@ -222,6 +227,8 @@ class SensorsStep(Step):
             self._use_columns()
         elif self.setup.is_on:
             self.setup.on_primary()
+        elif self._visit.sensors.are_in_memory:
+            self.setup.set_back()
         elif self._is_choosing:
             if (session := self.page.stored.session) is not None:
                 self._replay(session)
@@ -285,7 +292,7 @@ class SensorsStep(Step):
             page.show_searching(sensors.choice.name)
         elif self.telling.is_on:
             page.show_columns()
-        elif self.setup.is_on:
+        elif self.setup.is_on or self.setup.is_synchronising:
             page.show_dots(self.setup.is_synchronising)
         elif self._is_choosing:
             page.show_stored()
@@ -312,6 +319,8 @@ class SensorsStep(Step):
         page = self.page
         page.show_sources(options, chosen.key if chosen is not None else "")
         asks = next((choice.asks for choice in visit.choices if choice.key == self._told_of), ("", ""))
+        if not self.setup.is_on and sensors.sync.failure[0]:
+            asks = sensors.sync.failure
         page.tell(*asks if options else (tr("No source of sensors is at hand for this patient."), ""))
         apart = tr(
             "Simulated and replayed sensors are offered only for codes that begin with DEMO, "
@@ -442,7 +451,7 @@ class SensorsStep(Step):
         """Ask of Movella DOTs which are worn, and synchronise them."""
         self._visit.sensors.close()
         known = self._wanted or self._known_places or self._visit.placement_before
-        self.setup.begin(self.page.dots, self.page.progress, choice, known.keys())
+        self.setup.begin(choice, known.keys())
         self._show()
         self.page.focus()
         self.changed.emit()

@@ -1,4 +1,4 @@
-"""A radio whose seconds pass faster than ours, in a thread of its own as the application's: for what waits beside it."""
+"""A radio whose seconds pass faster than ours, in a thread of its own, for what is waited for beside the screen."""
 
 import asyncio
 import selectors
