@@ -221,6 +221,26 @@ class MemoryFetching:
         self._radio.run(_erased(self._wanted[sensor].sensor, kept, utc_s))
 
 
+@dataclass(frozen=True, slots=True)
+class FetchedBefore:
+    """What a journal says of one sensor's file."""
+
+    started_utc_s: int
+    samples: int
+    is_complete: bool
+
+
+def fetched_files(mark: str) -> Mapping[str, FetchedBefore]:
+    """What `MemoryFetching.told` has told, by the sensor's name; nothing where it is not that."""
+    try:
+        told = json.loads(mark.removeprefix(FETCHED))
+        return {
+            str(name): FetchedBefore(int(utc_s), int(count), bool(all_)) for name, (utc_s, count, all_) in told.items()
+        }
+    except (ValueError, TypeError, AttributeError):
+        return {}
+
+
 def _nobody(_sensor: str, _done: int, _of: int) -> None:
     """Nothing is fetched yet."""
 

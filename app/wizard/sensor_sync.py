@@ -222,9 +222,11 @@ def lines_of(view: SyncView, names: Collection[str]) -> tuple[SensorLine, ...]:
     if view.stage is SyncStage.WAITING:
         return tuple(SensorLine(name, LineState.NOW, tr("compares its clock")) for name in names)
     order = list(names)
-    last = len(order) if view.stage is SyncStage.LISTENING else 0
-    at = order.index(view.sensor) if view.sensor in order else last
+    if view.sensor not in order:
+        state = LineState.DONE if view.stage is SyncStage.LISTENING else LineState.TO_DO
+        return tuple(SensorLine(name, state) for name in order)
+    at = order.index(view.sensor)
     done = tr("set up") if view.stage is SyncStage.PREPARING else tr("asked")
-    lines = [SensorLine(name, LineState.DONE, done) for name in order[:at]]
-    lines += [SensorLine(name, LineState.NOW) for name in order[at : at + 1]]
-    return (*lines, *(SensorLine(name, LineState.TO_DO) for name in order[at + 1 :]))
+    before = (SensorLine(name, LineState.DONE, done) for name in order[:at])
+    after = (SensorLine(name, LineState.TO_DO) for name in order[at + 1 :])
+    return (*before, SensorLine(view.sensor, LineState.NOW), *after)

@@ -25,6 +25,7 @@ from app.storage.stored import Limits, PlacedSensor, StoredSession
 from app.storage.three_way import Contest, Edited, Value, Values, rebased
 from app.wizard.edit_question import EditQuestion, chosen_fields
 from app.wizard.evaluation import Evaluation
+from app.wizard.fetch_control import FetchControl
 from app.wizard.patient_record import PatientRecord
 from app.wizard.recordings import SessionRecording, SessionRecordings
 from app.wizard.resuming import (
@@ -136,6 +137,8 @@ class Visit(QObject):
         self.evaluation.computed.connect(self._on_computed)
         self.evaluation.done.connect(self._keep_course)
         self.reviewing.refused.connect(self.refused)
+        self.fetch = FetchControl(self.recordings, self.sensors, self)
+        """Gets recordings out of the sensors' memories."""
         self.recordings.ended.connect(self._on_recording_ended)
         self.recordings.begun.connect(self._note_lost_clocks)
         self.recordings.changed.connect(self._on_recordings_changed)

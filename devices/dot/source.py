@@ -141,6 +141,21 @@ class DotGroup:
                 self.radio.run(_set_up(self.sensors[0], rate_hz, self.profile), tick)
             self.use = DotUse.RECORDING
 
+    def fall_silent(self, tick: Tick | None = None) -> None:
+        """Stop streaming, on whatever clock they are: their memories can be asked then.
+
+        Raises
+        ------
+        SourceLostError
+            One is out of reach; some may go on streaming, and are taken for what they were.
+        DotRefusedError
+            One records.
+        """
+        with self._synchronising:
+            self.turn += 1
+            self.radio.run(_silenced(self.sensors), tick)
+            self.use = DotUse.RECORDING
+
     @property
     def is_ready_to_record(self) -> bool:
         """Whether memories can record now, on a clock that holds for long enough still."""

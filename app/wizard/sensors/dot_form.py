@@ -161,6 +161,11 @@ class DotForm(Themed):
     def choice(self) -> DotChoice:
         return DotChoice(int(self.rate.currentData()), int(self.walks.currentData()), int(self.profile.currentData()))
 
+    @property
+    def consequence(self) -> str:
+        """What is said of how walks are recorded."""
+        return self._consequence.text()
+
     def focus(self) -> None:
         self.list.setFocus()
 

@@ -26,6 +26,7 @@ from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed
 from app.wizard.sensors.columns_form import ColumnsForm
 from app.wizard.sensors.dot_form import DotForm
+from app.wizard.sensors.memories_form import MemoriesForm
 from app.wizard.sensors.sensor_list import SensorList
 from app.wizard.sensors.sensor_places import PlaceShown, SensorPlaces
 from app.wizard.sensors.sensor_row import SensorRow
@@ -110,7 +111,7 @@ class SensorsPage(Themed):
         self.searching = Searching(look)
         self.stored = SessionChooser(look)
         self.columns = ColumnsForm(look)
-        self.dots, self.progress = DotForm(look), SensorsProgress(look)
+        self.dots, self.memories, self.progress = DotForm(look), MemoriesForm(look), SensorsProgress(look)
         self._build()
         self._connect()
         self.show_no_source()
@@ -131,7 +132,7 @@ class SensorsPage(Themed):
     def tab_order(self) -> list[QWidget]:
         rows = [one for row in self.list.rows.values() for one in (row, row.worn, row.identify)]
         before = [*self.nothing.buttons, self.searching.stop, *self.stored.tab_order, *self.columns.tab_order]
-        before += [*self.dots.tab_order, self.progress.stop]
+        before += [*self.dots.tab_order, *self.memories.tab_order, self.progress.stop]
         return [self.sources, *before, *self._tiles, *self.ways.segments, *rows]
 
     def focus(self) -> None:
@@ -146,6 +147,8 @@ class SensorsPage(Themed):
             self.columns.focus()
         elif self._in_sight is self.dots:
             self.dots.focus()
+        elif self._in_sight is self.memories:
+            self.memories.focus()
         elif self._in_sight is self.progress:
             self.progress.focus()
         elif row := self.list.rows.get(self.list.selection):
@@ -204,6 +207,10 @@ class SensorsPage(Themed):
     def show_dots(self, is_synchronising: bool) -> None:
         """Ask which Movella DOTs are worn, or show how far they are synchronised."""
         self._show(self.progress if is_synchronising else self.dots)
+
+    def show_memories(self, is_busy: bool) -> None:
+        """Show what the sensors' memories hold, or how far that is found out, fetched or erased."""
+        self._show(self.progress if is_busy else self.memories)
 
     def show_reading(self, session: str) -> None:
         """Say that a session is read, to be replayed."""
@@ -314,7 +321,16 @@ class SensorsPage(Themed):
         self._column = QVBoxLayout(content)
         self._column.addLayout(self._head)
         # not stacked: each would ask room for all
-        for page in (self.nothing, self.searching, self.stored, self.columns, self.dots, self.progress, self._lists):
+        for page in (
+            self.nothing,
+            self.searching,
+            self.stored,
+            self.columns,
+            self.dots,
+            self.memories,
+            self.progress,
+            self._lists,
+        ):
             self._column.addWidget(page, 1)
             page.hide()
         self._in_sight: QWidget = self.nothing

@@ -44,7 +44,8 @@ LOST = 0.01  # of the samples; above it the radio wants a look
 class SensorRow:
     """One sensor as it is now. `battery` 0 to 1, None: it does not tell; `silent_s` 0 while it is heard.
 
-    `quiet`: why it is to send nothing; not `is_loss_seen`: nobody can see what is lost of it.
+    `quiet`: why it is to send nothing; not `is_loss_seen`: nobody can see what is lost of it. `has_memory`: walks can
+    be recorded in it.
     """
 
     name: str
@@ -57,6 +58,7 @@ class SensorRow:
     can_identify: bool = False
     quiet: Quiet | None = None
     is_loss_seen: bool = True
+    has_memory: bool = False
 
     @property
     def is_low(self) -> bool:

@@ -1,6 +1,7 @@
 """Six sensors on, and each known: heard through a source, and told where they are worn."""
 
 import datetime
+from dataclasses import replace
 from enum import Enum, auto
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -22,6 +23,7 @@ from app.wizard.keys import Intent, KeyAction
 from app.wizard.sensors.columns_telling import ColumnsTelling
 from app.wizard.sensors.dot_setup import DotSetup
 from app.wizard.sensors.estimator import PlacingEstimator
+from app.wizard.sensors.memories_control import MemoriesControl
 from app.wizard.sensors.page import SensorsPage, Way
 from app.wizard.sensors.replays import Replays
 from app.wizard.sensors.sensor_row import SensorRow
@@ -74,6 +76,9 @@ class SensorsStep(Step):
         self.setup.changed.connect(self._on_setup_changed)
         self.setup.ready.connect(visit.sensors.search)
         self.setup.left.connect(self._on_setup_left)
+        self.memories = MemoriesControl(visit, self)
+        self.memories.changed.connect(self._on_setup_changed)
+        self.memories.left.connect(self._on_memories_left)
         self._replays = Replays(visit.controller, self)
         self._replays.listed.connect(self._on_listed)
         self._replays.read.connect(self._on_replay_read)
@@ -98,6 +103,7 @@ class SensorsStep(Step):
             page.stored.back_pressed.connect(self._on_stored_left)
             page.columns.back_pressed.connect(self._on_columns_left)
             self.setup.show_on(page.dots, page.progress)
+            self.memories.show_on(page.memories, page.progress)
         return self._page
 
     @property
@@ -137,7 +143,7 @@ class SensorsStep(Step):
 
     @property
     def cannot_leave(self) -> str:
-        return self.setup.cannot_leave
+        return self.setup.cannot_leave or self.memories.cannot_leave
 
     @property
     def topic(self) -> str:
@@ -156,6 +162,7 @@ class SensorsStep(Step):
         self._replays.stop()
         self.telling.end()
         self.setup.end()
+        self.memories.end()
         sensors = self._visit.sensors
         sensors.sync.forget()
         if sensors.acquisition is not None:
@@ -173,7 +180,7 @@ class SensorsStep(Step):
         if self._ticks % ROW_TICKS == 0:
             self._show_sources()  # a search beside the screen may have found some
             self.telling.tick()
-        if self._visit.sensors.acquisition is None or self._is_choosing or self._replays.reading or self.telling.is_on:
+        if self._visit.sensors.acquisition is None or self._is_choosing or self._replays.reading or self._is_asking:
             return
         if self._estimator is not None:
             state = self._estimator.state
@@ -188,6 +195,20 @@ class SensorsStep(Step):
             self._show_rows()
 
     def bar(self) -> BarState:
+        bar = self._bar()
+        return replace(bar, quiet=(BarAction(tr("Sensors' memories")),)) if self._may_ask_memories else bar
+
+    @property
+    def _is_asking(self) -> bool:
+        """Whether something stands in the place of the sensors that are open, or that are to be."""
+        return self.telling.is_on or self.setup.is_on or self.setup.is_synchronising or self.memories.is_on
+
+    @property
+    def _may_ask_memories(self) -> bool:
+        is_free = self._visit.recordings.ongoing is None and self._visit.session is not None
+        return self._visit.sensors.dots is not None and is_free and not self._is_asking and not self._is_choosing
+
+    def _bar(self) -> BarState:
         sensors = self._visit.sensors
         if self._replays.reading:
             return BarState()
@@ -196,6 +217,8 @@ class SensorsStep(Step):
             return BarState(primary=BarAction(tr("Use these columns"), tr("Enter"), is_enabled=is_whole))
         if self.setup.is_on or self.setup.is_synchronising:
             return self.setup.bar()
+        if self.memories.is_on:
+            return self.memories.bar()
         if self._is_choosing:
             is_any = self.page.stored.session is not None
             return BarState(primary=BarAction(tr("Replay it"), tr("Enter"), Icon.PLAY, is_enabled=is_any))
@@ -227,6 +250,8 @@ class SensorsStep(Step):
             self._use_columns()
         elif self.setup.is_on:
             self.setup.on_primary()
+        elif self.memories.is_on:
+            self.memories.on_primary()
         elif self._visit.sensors.are_in_memory:
             self.setup.set_back()
         elif self._is_choosing:
@@ -243,10 +268,18 @@ class SensorsStep(Step):
     def on_other(self, number: int) -> None:
         if self.setup.is_on:
             self.setup.leave_out_failed()
+        elif self.memories.is_on:
+            self.memories.on_other()
         elif self._visit.cannot_record:
             self.demonstration_wanted.emit()
         else:
             self.done.emit()
+
+    def on_quiet(self, number: int) -> None:
+        if self.memories.is_on:
+            self.memories.leave()
+        elif self._may_ask_memories:
+            self.memories.begin()
 
     def on_intent(self, intent: Intent) -> bool:
         if intent.action is KeyAction.LABEL:
@@ -294,6 +327,8 @@ class SensorsStep(Step):
             page.show_columns()
         elif self.setup.is_on or self.setup.is_synchronising:
             page.show_dots(self.setup.is_synchronising)
+        elif self.memories.is_on:
+            page.show_memories(self.memories.is_busy)
         elif self._is_choosing:
             page.show_stored()
         elif sensors.acquisition is None:
@@ -354,6 +389,7 @@ class SensorsStep(Step):
             can_identify=status.sensor not in self._without_light,
             quiet=status.details.quiet,
             is_loss_seen=status.details.is_loss_seen,
+            has_memory=self._visit.sensors.dots is not None,
         )
 
     def _show_traces(self) -> None:
@@ -430,6 +466,7 @@ class SensorsStep(Step):
         self._end_choosing()
         self.telling.end()
         self.setup.end()
+        self.memories.end()
         is_told, self._told_of = key == self._told_of, ""
         if any(choice.asks) and not is_told:
             self._told_of = key
@@ -463,6 +500,13 @@ class SensorsStep(Step):
 
     def _on_setup_left(self) -> None:
         self.setup.end()
+        self._show()
+        self.page.focus()
+        self.changed.emit()
+
+    def _on_memories_left(self, was_live: bool) -> None:
+        if was_live:
+            self.setup.set_back()
         self._show()
         self.page.focus()
         self.changed.emit()

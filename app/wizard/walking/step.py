@@ -103,7 +103,7 @@ class WalkingStep(Step):
 
     @property
     def note(self) -> str:
-        if self._memory.is_fetching:
+        if self._memory.fetch.is_fetching:
             return tr("being fetched")
         if self._visit.recordings.is_recording and self._visit.recordings.ongoing is not None:
             if self._visit.recordings.ongoing.details.kind is RecordingKind.WALKING:
@@ -245,8 +245,8 @@ class WalkingStep(Step):
                 ),
                 has_back=False,
             )
-        if (bar := self._memory.bar()) is not None and not self._cannot_start:
-            return bar
+        if self._has_memory_bar:
+            return self._memory.bar() or BarState()
         if recordings.is_stopping:
             return BarState(primary=self._start_action, note=tr("The walk is being read back."))
         if self._is_bench:
@@ -340,9 +340,10 @@ class WalkingStep(Step):
 
     @property
     def _has_memory_bar(self) -> bool:
-        recordings = self._visit.recordings
+        visit, recordings = self._visit, self._visit.recordings
         is_between = recordings.ongoing is None or recordings.is_stopping
-        return is_between and not self._cannot_start and self._memory.bar() is not None
+        is_held_up = bool(visit.cannot_record) or recordings.must_move or not visit.sensors.site_of
+        return is_between and not is_held_up and self._memory.bar() is not None
 
     def _toggle_patient_screen(self) -> None:
         if self._feedback is not None:
@@ -426,7 +427,7 @@ class WalkingStep(Step):
             label, alignment = self._bench.next_walk()
             acquisition.set_up(self._bench.chain.set_so(label, alignment))
         acquisition.ask(RecordingKind.WALKING)
-        self._memory.begun()
+        self._memory.fetch.begun()
         recordings.begin(acquisition, RecordingKind.WALKING, label, alignment, self._timed.planned)
         self._bench.begun()
         if self._estimator is not None and recordings.ongoing is not None:

@@ -11,7 +11,7 @@ from devices.emulators.bluetooth import Air
 from devices.emulators.dot import DotFaults, EmulatedDot, Motion
 from tests.devices.dot.virtual_time import turning
 
-SPEED = 20.0
+SPEED = 50.0
 BEGIN_NS = time.monotonic_ns()
 
 
