@@ -1,7 +1,50 @@
-"""`python -m app` is `gaitwright`."""
+"""`python -m app` is `gaitwright`; frozen into a program of its own, it is each process that this one starts, too.
 
+Such a program is no Python that takes a module to run. It begins anew as itself, and what it is to be is told by its
+arguments: a worker of a batch by those of `multiprocessing`, the reader of foreign files by a word.
+"""
+
+import os
 import sys
 
-from app.cli import main
+LIBRARIES, LIBRARIES_BEFORE = "LD_LIBRARY_PATH", "LD_LIBRARY_PATH_ORIG"
+BEGIN_ANEW = "PYINSTALLER_RESET_ENVIRONMENT"
 
-sys.exit(main())
+
+def begin() -> int:
+    """Be what the arguments say, and give the exit code."""
+    if getattr(sys, "frozen", False):
+        begin_frozen()
+    from app.cli import main
+
+    return main()
+
+
+def begin_frozen() -> None:
+    """Do a child's work and end, if this process was started for it; else return at once."""
+    _keep_own_libraries()
+    from multiprocessing import freeze_support
+
+    from devices.files import child
+
+    freeze_support()
+    if sys.argv[1:2] == [child.WORD]:
+        child.main()
+        sys.exit()
+
+
+def _keep_own_libraries() -> None:
+    """Leave the system's programs that we start (players, the viewer, the desktop's) their own libraries.
+
+    What started us put ours before the system's for all processes to come; this one has looked there already. Ours get
+    them again, when they are told to begin as the first one did.
+    """
+    before = os.environ.pop(LIBRARIES_BEFORE, None)
+    os.environ.pop(LIBRARIES, None)
+    if before:
+        os.environ[LIBRARIES] = before
+    os.environ[BEGIN_ANEW] = "1"
+
+
+if __name__ == "__main__":
+    sys.exit(begin())

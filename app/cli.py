@@ -242,7 +242,9 @@ def _add_devices(parser: argparse.ArgumentParser) -> None:
         metavar="ADDRESS",
         help="ask for streams, too: on this computer, or in the network where it has this address",
     )
-    parser.add_argument("--count", type=int, default=6, metavar="N", help="how many are played (6)")
+    parser.add_argument(
+        "--count", type=int, default=6, metavar="N", help="how many are played (6); the seventh is on the pelvis"
+    )
     parser.add_argument(
         "--seconds", type=positive, default=math.inf, metavar="S", help="for how long they are played (until Ctrl C)"
     )

@@ -78,10 +78,10 @@ def emulate(kind: str, count: int, seconds: float, tell: Callable[[str], None], 
     OSError
         There are no pseudo-terminals on this system.
     """
-    from devices.emulators.patient import EmulatedPatient
+    from devices.emulators.patient import EmulatedPatient, session_for
     from devices.ports import MORE_PORTS
 
-    patient = EmulatedPatient()
+    patient = EmulatedPatient(session_for(count))
     with _emulations(patient, kind, count) as emulations:
         places = [emulation.place for emulation in emulations]
         for place in places:

@@ -43,6 +43,20 @@ WORDS = {
         later("The left hip lies {value} to the left of the right one (limit {limit})."),
         later("Check whether the thighs' sensors are swapped."),
     ),
+    "hip_found": GateWords(
+        later("The hip was not found: that takes standing, the knee's sensors and motion that shows the hip."),
+        later("Let the patient stand still for three seconds, then walk 15 s with a turn, or make lunges."),
+    ),
+    "hip_heading": GateWords(
+        later("The heading of the thigh in the pelvis is known to {value} only ({limit} wanted): no abduction."),
+        later("Let the patient walk 15 s with a turn, or make lunges."),
+    ),
+    "hip_deep": GateWords(
+        later("A hip bends to {value} (limit {limit}): so deep, the sensor shows half of the pelvis's tilt.")
+    ),
+    "pelvis_tilt": GateWords(
+        later("The pelvis tilts by {value} over the stride: up to {limit} that is not told from measurement error.")
+    ),
     "sign": GateWords(
         later(
             "The motion does not tell flexion from extension (margin {value}, {limit} wanted), so only the range holds."
@@ -92,6 +106,13 @@ WORDS = {
             "clocks differ."
         ),
         _ONE_RECEIVER,
+    ),
+    "leg_clock": GateWords(
+        later(
+            "Nothing ties the clocks of both legs together, and the hips do not tell how far they are apart: that "
+            "takes 20 s of walking."
+        ),
+        later("Let the patient walk for 20 s or longer, or use one receiver for all sensors."),
     ),
     "clocks": GateWords(later("The clocks of both legs may be {value} apart ({limit} at most)."), _ONE_RECEIVER),
 }

@@ -33,7 +33,7 @@ from app.settings import Scheme, Settings
 from app.storage.idle_lock import IdleLock
 from app.theme import ThemeNotifier, load_fonts
 from app.widgets.focus_ring import FocusRing
-from app.wording import use_language
+from app.wording import PURPOSE, tr, use_language
 from app.workers.background import Background
 from app.workers.garbage import GarbageCollector
 from app.workers.library_controller import LibraryController
@@ -90,7 +90,7 @@ class MainWindow(QWidget):
         self._must_refresh = False  # another station did something under the cover
         self._is_dark: bool | None = None  # not yet known
         self._apply_settings()  # before there is anything to be styled anew
-        self.setWindowTitle("Gaitwright")
+        self.setWindowTitle(" – ".join(("Gaitwright", tr(PURPOSE))))
         self.setAcceptDrops(True)
         self.setMinimumSize(*SMALLEST_SIZE)
         self.resize(QSize(*FIRST_SIZE).boundedTo(self.screen().availableSize() - QSize(*FRAME)))

@@ -1,7 +1,11 @@
 """What is a measure called that goals and a patient's course are of? Its name, its unit, and how it is written."""
 
+from enum import Enum, auto
+
+from app.timed_words import name_of_test
 from app.wording import later, side_name, tr
 from core.goals import Goal, GoalOf
+from core.timed.measures import PROTOCOLS
 
 NAMES = {
     "knee_stance_to_swing_deg": later("Knee, stance to swing"),
@@ -10,6 +14,8 @@ NAMES = {
     "ankle_push_off_deg": later("Ankle push-off"),
     "ankle_rocker_deg": later("Ankle rocker"),
     "ankle_range_deg": later("Ankle range"),
+    "hip_range_deg": later("Hip range"),
+    "pelvis_obliquity_range_deg": later("Pelvis, obliquity range"),
     "stance_percent": later("Stance"),
     "stride_length_m": later("Stride length"),
     "speed_m_s": later("Walking speed"),
@@ -21,54 +27,75 @@ NO_BREAK = "\N{NO-BREAK SPACE}"
 
 def measure_name(column: str, *, is_between: bool = False) -> str:
     """As it heads a row: "Stance L - R"."""
-    name = tr(NAMES[column])
+    name = _name(column)
     return tr("{measure} {less}").format(measure=name, less=LESS) if is_between else name
 
 
 def spoken_name(column: str, *, is_between: bool = False) -> str:
     """As it is read out."""
-    name = tr(NAMES[column])
+    name = _name(column)
     return tr("{measure} of the left leg less that of the right").format(measure=name) if is_between else name
 
 
 def unit_name(column: str) -> str:
     """The unit by itself."""
-    return {"deg": tr("degrees"), "percent": tr("% of stride"), "m": "m", "s": "m/s", "min": tr("steps/min")}[
-        _end(column)
-    ]
+    return {
+        _Unit.DEGREES: tr("degrees"),
+        _Unit.PERCENT: tr("% of stride"),
+        _Unit.METRES: "m",
+        _Unit.DISTANCE: "m",
+        _Unit.SPEED: "m/s",
+        _Unit.CADENCE: tr("steps/min"),
+        _Unit.SECONDS: tr("seconds"),
+    }[_unit(column)]
 
 
 def spoken_value(column: str, value: str) -> str:
     """A number with its unit, as it is read out."""
     said = {
-        "deg": tr("{value} degrees"),
-        "percent": tr("{value} percent of the stride"),
-        "m": tr("{value} metres"),
-        "s": tr("{value} metres per second"),
-        "min": tr("{value} steps per minute"),
+        _Unit.DEGREES: tr("{value} degrees"),
+        _Unit.PERCENT: tr("{value} percent of the stride"),
+        _Unit.METRES: tr("{value} metres"),
+        _Unit.DISTANCE: tr("{value} metres"),
+        _Unit.SPEED: tr("{value} metres per second"),
+        _Unit.CADENCE: tr("{value} steps per minute"),
+        _Unit.SECONDS: tr("{value} seconds"),
     }
-    return said[_end(column)].format(value=value)
+    return said[_unit(column)].format(value=value)
 
 
 def short_unit(column: str) -> str:
     """The unit as it follows a number, with the space before it."""
-    units = {"deg": "°", "percent": f"{NO_BREAK}%", "m": f"{NO_BREAK}m", "s": f"{NO_BREAK}m/s"}
-    return units.get(_end(column)) or f"{NO_BREAK}{tr('steps/min')}"
+    unit = _unit(column)
+    if unit is _Unit.DEGREES:
+        return "°"
+    signs = {_Unit.PERCENT: "%", _Unit.SECONDS: "s"}
+    return NO_BREAK + (signs.get(unit) or unit_name(column))
 
 
 def decimals(column: str) -> int:
     """Of its values where there is room for few: those that the error leaves a meaning."""
-    return {"deg": 0, "percent": 1, "m": 2, "s": 2, "min": 0}[_end(column)]
+    few = {_Unit.PERCENT: 1, _Unit.METRES: 2, _Unit.SPEED: 2, _Unit.SECONDS: 1}
+    return few.get(_unit(column), 0)
 
 
 def least_span(column: str) -> float:
     """Smaller changes are not blown up to a whole plot."""
-    return {"deg": 20.0, "percent": 6.0, "m": 0.3, "s": 0.4, "min": 20.0}[_end(column)]
+    return {
+        _Unit.DEGREES: 20.0,
+        _Unit.PERCENT: 6.0,
+        _Unit.METRES: 0.3,
+        _Unit.DISTANCE: 40.0,
+        _Unit.SPEED: 0.4,
+        _Unit.CADENCE: 20.0,
+        _Unit.SECONDS: 6.0,
+    }[_unit(column)]
 
 
 def limit(goal: Goal) -> str:
-    """The value of a goal with its unit: "60°"; decimals that say nothing are left out of degrees and percent."""
-    count = max(1, decimals(goal.column)) if _end(goal.column) in ("deg", "percent") else decimals(goal.column)
+    """The value of a goal with its unit: "60°"; decimals that say nothing are left out but of metres and speed."""
+    whole = (_Unit.DEGREES, _Unit.PERCENT, _Unit.SECONDS)
+    count = max(1, decimals(goal.column)) if _unit(goal.column) in whole else decimals(goal.column)
     number = f"{goal.value:.{count}f}"
     return (number.removesuffix(".0") if count == 1 else number) + short_unit(goal.column)
 
@@ -89,9 +116,34 @@ def whose_name(of: GoalOf) -> str:
 
 def goal_in_words(goal: Goal) -> str:
     """The whole goal: "Knee, stance to swing, left: at least 60°"."""
-    who = ", ".join(filter(None, [tr(NAMES[goal.column]), whose_name(goal.of)]))
+    who = ", ".join(filter(None, [_name(goal.column), whose_name(goal.of)]))
     return tr("{who}: {wanted}").format(who=who, wanted=wanted(goal))
 
 
-def _end(column: str) -> str:
-    return column.rsplit("_", 1)[1]
+class _Unit(Enum):
+    DEGREES = auto()
+    PERCENT = auto()
+    METRES = auto()
+    DISTANCE = auto()  # metres of a whole test
+    SPEED = auto()
+    CADENCE = auto()
+    SECONDS = auto()
+
+
+_ENDS = {  # of columns; the longer before those that they end with
+    "_deg": _Unit.DEGREES,
+    "_percent": _Unit.PERCENT,
+    "_m_s": _Unit.SPEED,
+    "_distance_m": _Unit.DISTANCE,
+    "_m": _Unit.METRES,
+    "_steps_min": _Unit.CADENCE,
+    "_s": _Unit.SECONDS,
+}
+
+
+def _unit(column: str) -> _Unit:
+    return next(unit for end, unit in _ENDS.items() if column.endswith(end))
+
+
+def _name(column: str) -> str:
+    return name_of_test(PROTOCOLS[column]) if column in PROTOCOLS else tr(NAMES[column])

@@ -11,6 +11,8 @@ import gettext
 import math
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from string import Formatter
+from typing import Any
 
 from core.body import Joint, Side, Site
 from core.findings import Finding
@@ -21,6 +23,7 @@ _catalogue = gettext.NullTranslations()
 _language = "en"
 # each in its own words, for who does not understand those in sight
 LANGUAGES = {"en": "English", "de": "Deutsch"}
+WITH_COMMAS = {"de"}  # languages that write fractions so
 
 SENTENCES = {
     # what the reader noticed
@@ -169,6 +172,9 @@ SENTENCES = {
         "the axis found lies {elevation_deg:.0f}° from horizontal, so flexion did not dominate the motion. Repeat "
         "free motion and bend this joint more."
     ),
+    "turns_contradict": (
+        "the feet tell {feet} turns in this test, the pelvis {pelvis}. Look which is right before the turns are used."
+    ),
     "clock_moved": (
         "the farther sensor's clock is {lag_ms:+.0f} ms off here and was not in the others. It has been "
         "corrected; with one receiver for all sensors it does not happen."
@@ -306,6 +312,33 @@ NAMES = {
 WHOLE_SESSION = "session"  # what a finding about no part in particular says as its place
 
 
+class _CommaFormatter(Formatter):
+    """Gives fractions a decimal comma; what only looks like one, as a version, keeps its point."""
+
+    def format_field(self, value: Any, format_spec: str) -> str:
+        text: str = super().format_field(value, format_spec)
+        return text.replace(".", ",") if isinstance(value, float) else text
+
+
+_COMMAS = _CommaFormatter()
+
+
+class _CommaSentence(str):
+    """A sentence of a language that writes fractions with a comma."""
+
+    __slots__ = ()
+
+    def format(self, *args: object, **values: object) -> str:
+        return _COMMAS.vformat(self, args, values)
+
+    def format_map(self, values: Mapping[str, object], /) -> str:  # type: ignore[override]  # as the built-in one is called
+        return _COMMAS.vformat(self, (), values)
+
+
+def _spoken(message: str, language: str) -> str:
+    return _CommaSentence(message) if language in WITH_COMMAS else message
+
+
 def use_language(language: str) -> None:
     """Speak `language` from now on, as "de", as far as there is a catalogue of it; else English.
 
@@ -328,7 +361,8 @@ def languages() -> tuple[str, ...]:
 
 def spoken_in(language: str) -> Callable[[str], str]:
     """Give what says a message in another language than the user's, as a page for somebody else; else English."""
-    return gettext.translation(DOMAIN, LOCALE, languages=[language], fallback=True).gettext
+    catalogue = gettext.translation(DOMAIN, LOCALE, languages=[language], fallback=True)
+    return lambda message: _spoken(catalogue.gettext(message), language)
 
 
 def spoken_language() -> str:
@@ -338,17 +372,28 @@ def spoken_language() -> str:
 
 def tr(message: str) -> str:
     """Give the message in the user's language."""
-    return _catalogue.gettext(message) if message else ""  # gettext's answer to nothing is the catalogue's head
+    return (
+        _spoken(_catalogue.gettext(message), _language) if message else ""
+    )  # gettext's answer to nothing is the catalogue's head
 
 
 def tr_n(one: str, many: str, count: int) -> str:
     """Give the message in the user's language, in the form that belongs to `count`, as `{count} strides`."""
-    return _catalogue.ngettext(one, many, count)
+    return _spoken(_catalogue.ngettext(one, many, count), _language)
+
+
+def figure_text(value: float, spec: str, language: str = "") -> str:
+    """Write a number by a format of Python's, as ".1f", with the decimal mark of the user's language or of another."""
+    text = format(value, spec)
+    return text.replace(".", ",") if (language or _language) in WITH_COMMAS else text
 
 
 def later(message: str) -> str:
     """Tell the catalogue of a message that is written here but shown, through `tr`, later: as a constant is."""
     return message
+
+
+PURPOSE = later("Research use. Not a medical device.")  # stays on every screen, page and export
 
 
 def filled(message: str, values: Mapping[str, object]) -> str:

@@ -42,7 +42,7 @@ from core.strap import slips_in_walks
 from core.timed.timing import time_test
 from core.validity import Basis, basis_of, spans_of_validity
 from core.verdicts.gates import verdicts_of
-from core.walk_findings import about_prosthesis, about_walk
+from core.walk_findings import about_prosthesis, about_turns, about_walk
 from core.walking import clocks_in, gait_in, prosthetic_sides, site_of_events
 
 Progress = Callable[[float, str], None]
@@ -133,6 +133,7 @@ def analyse(
             found = replace(found, verdicts=verdicts_of(found, here, stiff_sides))
             recordings.append(found)
             findings += about_angles(found)
+            findings += about_turns(found)
             findings += about_walk(found, {side: site_of_events(tracks, recording, side) for side in found.gait})
     findings += about_missing_joints(session, quality.unusable, recordings)
     findings += about_prosthesis(recordings)

@@ -48,6 +48,17 @@ class Site(StrEnum):
         return Segment(self.value.split("_")[-1])
 
 
+class JointKind(StrEnum):
+    """Which joint of a leg, from the trunk to the floor."""
+
+    HIP = "hip"
+    KNEE = "knee"
+    ANKLE = "ankle"
+
+    def of(self, side: Side) -> "Joint":
+        return Joint(f"{side}_{self}")
+
+
 class Joint(StrEnum):
     """A joint between two neighbouring segments. Flexion (knee, hip) and dorsiflexion are positive on both legs."""
 
@@ -63,12 +74,16 @@ class Joint(StrEnum):
         return Side(self.value.split("_")[0])
 
     @property
+    def kind(self) -> JointKind:
+        return JointKind(self.value.split("_")[1])
+
+    @property
     def is_knee(self) -> bool:
-        return self.value.endswith("knee")
+        return self.kind is JointKind.KNEE
 
     @property
     def is_hip(self) -> bool:
-        return self.value.endswith("hip")
+        return self.kind is JointKind.HIP
 
     @property
     def proximal(self) -> Site:

@@ -36,12 +36,21 @@ OF_LEGS = {
     "ankle_push_off_deg": 90.0,
     "ankle_rocker_deg": 90.0,
     "ankle_range_deg": 120.0,
+    "hip_range_deg": 140.0,
+    "pelvis_obliquity_range_deg": 60.0,
     "stance_percent": 95.0,
     "stride_length_m": 3.0,
 }
 OF_WALKS = {"speed_m_s": 3.0, "cadence_steps_min": 240.0}
+OF_TESTS = {  # of timed tests, as `core.timed.measures` calls them
+    "ten_metres_speed_m_s": 3.0,
+    "two_minutes_distance_m": 400.0,
+    "six_minutes_distance_m": 1200.0,
+    "up_and_go_time_s": 300.0,
+    "sit_to_stand_time_s": 300.0,
+}
 NOT_BETWEEN = ("stride_length_m",)  # in walking straight on both feet travel equally far
-MOST = {**OF_LEGS, **OF_WALKS}
+MOST = {**OF_LEGS, **OF_WALKS, **OF_TESTS}
 GOAL_COLUMNS = tuple(MOST)
 LEAST = 0.01  # but legs may be wanted not to differ at all
 MOST_NOTE = 200  # letters
@@ -103,9 +112,14 @@ class Goal:
         return self.agreed < day and (self.ended is None or self.ended >= day)
 
 
+def is_of_walk(column: str) -> bool:
+    """Whether a figure is no leg's: both together have one, in walking or in a timed test."""
+    return column in OF_WALKS or column in OF_TESTS
+
+
 def whose(column: str) -> tuple[GoalOf, ...]:
     """Whose figure a goal of a column can be of; nobody's where no goal can be of it."""
-    if column in OF_WALKS:
+    if is_of_walk(column):
         return (GoalOf.WALK,)
     if column not in OF_LEGS:
         return ()

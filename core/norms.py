@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from core.body import JointKind
 from core.gait.cycles import POINTS
 from core.gait.spatiotemporal import MeanAndSd
 from core.samples import FloatArray
@@ -35,7 +36,10 @@ SOURCE = (
 
 @dataclass(frozen=True, slots=True)
 class ReferenceCurves:
-    """Mean and standard deviation between subjects (101,), degrees, knee flexion and ankle dorsiflexion positive."""
+    """Mean and standard deviation between subjects (101,), degrees; flexion and dorsiflexion positive.
+
+    The zero of the hip is that of the pelvis's markers, some 10 deg from standing: its curve tells a shape alone.
+    """
 
     source: str
     group: str
@@ -47,6 +51,8 @@ class ReferenceCurves:
     knee_sd_deg: FloatArray
     ankle_mean_deg: FloatArray
     ankle_sd_deg: FloatArray
+    hip_mean_deg: FloatArray
+    hip_sd_deg: FloatArray
 
     @property
     def speed_class(self) -> str:
@@ -57,10 +63,13 @@ class ReferenceCurves:
         return abs(speed_m_s - self.speed_m_s) <= MAX_SPEED_DIFFERENCE_M_S
 
     def mean_and_sd_deg(self, kind: str) -> tuple[FloatArray, FloatArray]:
-        """Of the knee or the ankle."""
-        if kind == "knee":
-            return self.knee_mean_deg, self.knee_sd_deg
-        return self.ankle_mean_deg, self.ankle_sd_deg
+        """Of the hip, the knee or the ankle."""
+        of_kind = {
+            JointKind.HIP: (self.hip_mean_deg, self.hip_sd_deg),
+            JointKind.KNEE: (self.knee_mean_deg, self.knee_sd_deg),
+            JointKind.ANKLE: (self.ankle_mean_deg, self.ankle_sd_deg),
+        }
+        return of_kind[JointKind(kind)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,20 +88,21 @@ class ReferenceValues:
         return self.values["walking_speed"].mean
 
 
-def read_curves(text: str) -> ReferenceCurves:
-    """From the text of fukuchi2018_young_treadmill_comfortable_knee_ankle.csv.
+def read_curves(of_knee_and_ankle: str, of_hip: str) -> ReferenceCurves:
+    """From the texts of fukuchi2018_young_treadmill_comfortable_knee_ankle.csv and ..._hip.csv.
 
     Raises
     ------
     ValueError
-        The table has not 101 rows.
+        A table has not 101 rows.
     """
-    rows = _table(text)
-    if len(rows) != POINTS:
-        raise ValueError(f"reference curves have {len(rows)} rows, expected {POINTS}")
+    rows, hip_rows = _table(of_knee_and_ankle), _table(of_hip)
+    for one in (rows, hip_rows):
+        if len(one) != POINTS:
+            raise ValueError(f"reference curves have {len(one)} rows, expected {POINTS}")
 
     def column(name: str) -> FloatArray:
-        return np.array([float(row[name]) for row in rows])
+        return np.array([float(row[name]) for row in (hip_rows if name.startswith("hip") else rows)])
 
     return ReferenceCurves(
         source=SOURCE.format(derivation="github VIONWILLIAMS/EXO-Forge-Studio"),
@@ -105,6 +115,8 @@ def read_curves(text: str) -> ReferenceCurves:
         knee_sd_deg=column("knee_sd"),
         ankle_mean_deg=column("ankle_mean"),
         ankle_sd_deg=column("ankle_sd"),
+        hip_mean_deg=column("hip_mean"),
+        hip_sd_deg=column("hip_sd"),
     )
 
 

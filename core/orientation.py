@@ -8,7 +8,7 @@ its predecessor; a rate that the device has averaged over the past interval is u
 from dataclasses import replace
 
 import numpy as np
-from vqf import offlineVQF
+from vqf import VQF, offlineVQF
 
 from core.pair import OrientedTrack
 from core.samples import FloatArray, RateKind
@@ -39,6 +39,17 @@ def oriented(track: Track, rate_kind: RateKind, gyro_bias_rad_s: FloatArray) -> 
         intervals, instants = interval_rates(rates), rates
     turned = offlineVQF(np.ascontiguousarray(intervals), np.ascontiguousarray(track.acc_m_s2), None, track.step_s)
     return OrientedTrack(replace(track, gyr_rad_s=instants), turned["quat6D"])
+
+
+def accelerometer_time_constant_s() -> float:
+    """Time constant by which VQF corrects the vertical from what the accelerometer feels: as the filter has it.
+
+    Returns
+    -------
+    float
+        s.
+    """
+    return float(VQF(1.0).params["tauAcc"])
 
 
 def as_of_intervals(one: OrientedTrack) -> OrientedTrack:

@@ -176,6 +176,11 @@ class RecordingAnalysis:
     verdicts: Verdicts = field(default_factory=Verdicts)
     timed: TimedTest | None = None
 
+    @property
+    def measured(self) -> Mapping[Joint, JointAngle | HipAngle]:
+        """Every joint that has an angle, the hips last."""
+        return {**self.joints, **self.hips}
+
 
 @dataclass(frozen=True, slots=True)
 class Analysis:

@@ -21,6 +21,7 @@ from core.robust import robust_sd
 from core.rotations import angle_between, joint_frame
 from core.samples import FloatArray, ImuBlock, IntArray, Recording
 from core.sensors import SensorTracks
+from core.timed.protocols import TimedProtocol
 
 WINDOW_S = 5.0  # some four strides
 SAMPLES_PER_S = 10.0
@@ -183,7 +184,7 @@ def slips_in_walks(
     for joint, found in calibration.items():
         parts = []
         for walk, start_s in zip(walks, starts_s[:-1], strict=True):
-            if not tracks.is_usable(walk, joint.proximal, joint.distal):
+            if _is_in_place(walk) or not tracks.is_usable(walk, joint.proximal, joint.distal):
                 continue
             offset_s = start_s - tracks.span_of(walk)[0]  # the walks are laid end to end
             for block in tracks.blocks(walk):
@@ -203,6 +204,14 @@ def slips_in_walks(
         if not is_refuted(tracks, walks[k], found_slip):
             located.append((walks[k], found_slip))
     return located
+
+
+def _is_in_place(walk: Recording) -> bool:
+    """Whether nobody walks in it: rising bends knees so far that the tissue over them turns a sensor as a slip would.
+
+    A strap that slips meanwhile shows in the next walk.
+    """
+    return walk.test is not None and walk.test.protocol is TimedProtocol.SIT_TO_STAND
 
 
 def is_refuted(tracks: SensorTracks, walk: Recording, slip: Slip) -> bool:

@@ -1,16 +1,21 @@
 """Findings about the strides of a walk: missing, too few or doubtful ones, and missing peaks."""
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import numpy as np
 
 from core.body import Segment, Side, Site
 from core.findings import Finding, Severity
-from core.gait.cycles import ANKLE_WINDOWS, KNEE_WINDOWS
+from core.gait.cycles import PEAK_WINDOWS
 from core.gait.strides import Reason
+from core.hip.results import PelvisTurn
 from core.norms import MIN_STRIDES_FOR_MEAN, MIN_STRIDES_FOR_SD
 from core.results import RecordingAnalysis, SideGait
+from core.timed.found import Turn
+
+QUARTER_TURN_RAD = np.deg2rad(90.0)
+TURN_APART_S = 1.0  # feet turn about as much later or earlier than the pelvis
 
 
 def about_walk(walk: RecordingAnalysis, sites: Mapping[Side, Site | None]) -> list[Finding]:
@@ -89,6 +94,39 @@ def _about_peaks(walk: RecordingAnalysis, gait: SideGait) -> Iterator[Finding]:
         is_known = gait.strides.is_used & np.isfinite(cycles).all(axis=1)
         if np.count_nonzero(is_known) < MIN_STRIDES_FOR_MEAN or not walk.verdicts.joint(joint).sign.is_told:
             continue
-        for window in KNEE_WINDOWS if joint.is_knee else ANKLE_WINDOWS:
+        for window in PEAK_WINDOWS[joint.kind]:
             if not np.isfinite(gait.parameters[f"{window.name}_rad"][is_known]).any():
                 yield Finding("no_peak", Severity.INFO, f"{walk.name}, {joint}", {"peak": window.name})
+
+
+def about_turns(walk: RecordingAnalysis) -> list[Finding]:
+    """Where the pelvis and the feet of a timed test tell other turns; nothing without a sensor on the pelvis.
+
+    Returns
+    -------
+    list of Finding
+        One with how many each tells, or none.
+    """
+    test = walk.timed
+    if test is None or walk.pelvis is None or not len(walk.time_s) or test.missing:
+        return []
+    by_pelvis = [turn for turn in walk.turns if test.start_s <= 0.5 * (turn.start_s + turn.end_s) <= test.end_s]
+    by_feet = list(test.turns)
+    if _has_lone_turn(by_feet, by_pelvis) or _has_lone_turn(by_pelvis, by_feet):
+        told = {"feet": len(by_feet), "pelvis": len(by_pelvis)}
+        return [Finding("turns_contradict", Severity.WARNING, walk.name, told)]
+    return []
+
+
+def _has_lone_turn(one: Sequence[Turn | PelvisTurn], other: Sequence[Turn | PelvisTurn]) -> bool:
+    """Whether a turn of a quarter and more has none to the same side at its time."""
+    return any(
+        abs(turn.angle_rad) >= QUARTER_TURN_RAD
+        and not any(
+            (a.angle_rad > 0) == (turn.angle_rad > 0)
+            and a.start_s < turn.end_s + TURN_APART_S
+            and turn.start_s < a.end_s + TURN_APART_S
+            for a in other
+        )
+        for turn in one
+    )

@@ -9,9 +9,8 @@ import numpy as np
 from core.body import Joint, Segment, Side, Site, ankle_of, knee_of
 from core.gait.clocks import LegClocks, LegSteps, leg_clocks
 from core.gait.cycles import (
-    ANKLE_WINDOWS,
     EXCURSIONS,
-    KNEE_WINDOWS,
+    PEAK_WINDOWS,
     cycles_of,
     excursion_of_cycles,
     find_peak,
@@ -208,8 +207,8 @@ def _later(events: FootEvents, by_s: float) -> FootEvents:
 def _joint_parameters(strides: Strides, cycles: Mapping[Joint, FloatArray]) -> dict[str, FloatArray]:
     """Peaks, excursions, ranges and the angle at initial contact of each stride (k,), radians or percent."""
     parameters: dict[str, FloatArray] = {}
-    for joint, windows in ((j, KNEE_WINDOWS if j.is_knee else ANKLE_WINDOWS) for j in cycles):
-        kind, curves = "knee" if joint.is_knee else "ankle", cycles[joint]
+    for joint, windows in ((j, PEAK_WINDOWS[j.kind]) for j in cycles):
+        kind, curves = joint.kind, cycles[joint]
         parameters[f"{kind}_at_initial_contact_rad"] = curves[:, 0] if len(curves) else np.empty(0)
         for window in windows:
             peak = find_peak(curves, window)

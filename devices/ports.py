@@ -61,7 +61,7 @@ def list_ports() -> tuple[PortInfo, ...]:
         for port in listing.comports()
     ]
     named = [path for path in os.environ.get(MORE_PORTS, "").split(os.pathsep) if path]
-    found += [PortInfo(path, "named by " + MORE_PORTS, is_named=True) for path in named if Path(path).exists()]
+    found += [PortInfo(path, "named by " + MORE_PORTS, is_named=True) for path in named if _may_be_there(path)]
     return tuple(sorted(found, key=lambda port: (port.usb is None and not port.is_named, port.device)))
 
 
@@ -128,6 +128,10 @@ class SerialPort:
     def _find(self) -> None:
         if self._port.serial and self._port.usb:
             self._port = next((port for port in self._list_all() if self._port.is_same(port)), self._port)
+
+
+def _may_be_there(path: str) -> bool:
+    return os.name == "nt" or Path(path).exists()  # COM7 is no file
 
 
 def _may_be_exclusive() -> bool | None:

@@ -1,22 +1,16 @@
 """The demonstration's user of an above-knee prosthesis, who walks as the prosthesis is said to be set."""
 
 import threading
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 
-from core.alignment import NetChange, ProsthesisPart
+from core.alignment import NetChange
 from core.body import Side
 from core.samples import RecordingKind
+from devices.fitted_prosthesis import BUILT, SPEED_M_S, setting_of
 from devices.host_clock import host_time_ns
 from devices.replay import DEMONSTRATION_SESSION, ReplaySource, labelled
-from devices.walker import PEOPLE, ProsthesisSetting, Standing, Walk, WalkerSettings, simulate
-
-SPEED_M_S = 1.05
-# a knee that is held nearly straight in stance, and swings less than a sound one
-BUILT = ProsthesisSetting(stance_flexion=0.2, swing_flexion_deg=-6.0)
-DEG_PER_TURN = 6.0  # of the peak in swing, by a turn of this knee's valve out
-_FOOT = (ProsthesisPart.FOOT_FRONT_SCREW, ProsthesisPart.FOOT_BACK_SCREW)
-_PILLAR = (*_FOOT, ProsthesisPart.PYLON)
+from devices.walker import PEOPLE, Standing, Walk, WalkerSettings, simulate
 
 
 class ProsthesisUser(ReplaySource):
@@ -82,17 +76,3 @@ class ProsthesisUser(ReplaySource):
             if asked == self._times_asked:  # else something else was asked meanwhile
                 self.play_next(walk)
                 super().ask(RecordingKind.WALKING)
-
-
-def setting_of(changes: Mapping[ProsthesisPart, NetChange]) -> ProsthesisSetting:
-    """How the demonstration's prosthesis is set after these changes of its first alignment."""
-    foot = [changes[part] for part in _FOOT if part in changes]
-    knee = changes.get(ProsthesisPart.KNEE_UNIT, NetChange(ProsthesisPart.KNEE_UNIT))
-    return replace(
-        BUILT,
-        plantar_deg=sum(change.angle_deg for change in foot),
-        back_mm=sum(change.shift_mm for change in foot),
-        height_mm=sum(changes[part].height_mm for part in _PILLAR if part in changes),
-        stop_deg=max(knee.angle_deg, 0.0),
-        swing_flexion_deg=BUILT.swing_flexion_deg + DEG_PER_TURN * knee.turns,
-    )

@@ -8,12 +8,12 @@ from itertools import count
 
 import numpy as np
 
-from core.body import Site
+from core.body import LEG_SITES, Site
 from core.samples import BoolArray, ImuBlock, Recording, RecordingKind, SensorInfo, Session
 from devices.host_clock import host_time_ns
 from devices.live import Keep, SensorDetails, SourceLostError, SourceRefusedError
 from devices.source import SourceInfo
-from devices.walker import DEMONSTRATION, FreeMotion, Standing, Walk, WalkerSettings, simulate
+from devices.walker import DEMONSTRATION, FreeMotion, Motion, Standing, Walk, WalkerSettings, simulate
 
 DRIVER, VERSION = "replay", "1"
 POLL_S = 0.015
@@ -31,6 +31,17 @@ DEMONSTRATION_SESSION = replace(
         *(Walk(name=f"walk {number}", strides=14, standing_before_s=2.0) for number in DEMONSTRATION_TIMES),
     ),
 )
+# With a seventh sensor: two lunges come first, for circling legs do not show the hips, and walks go there and back.
+DEMONSTRATION_WITH_PELVIS = replace(
+    DEMONSTRATION,
+    sites=(*LEG_SITES, Site.PELVIS),
+    recordings=(
+        Standing(duration_s=10.0),
+        FreeMotion(name="free motion 1", duration_s=6.8, motion=Motion.LUNGES),
+        *(FreeMotion(name=f"free motion {number}", duration_s=6.0) for number in (2, 3, 4)),
+        *(Walk(name=f"walk {number}", strides=20, turn_rad=np.pi, standing_before_s=2.0) for number in (1, 2, 3)),
+    ),
+)
 # as on a label, so that a name does not say where the sensor is worn
 DEMONSTRATION_NAMES = {
     Site.LEFT_THIGH: "DEMO-09",
@@ -39,6 +50,7 @@ DEMONSTRATION_NAMES = {
     Site.RIGHT_THIGH: "DEMO-17",
     Site.RIGHT_SHANK: "DEMO-1B",
     Site.RIGHT_FOOT: "DEMO-22",
+    Site.PELVIS: "DEMO-3E",
 }
 
 

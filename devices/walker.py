@@ -17,6 +17,7 @@ from devices.walker_body import (
     NO_ERRORS,
     PEOPLE,
     VERY_COARSE,
+    CourseKind,
     FreeMotion,
     GaitChange,
     Leg,
@@ -24,6 +25,7 @@ from devices.walker_body import (
     Motion,
     SensorErrors,
     Standing,
+    TimedCourse,
     Tissue,
     Variation,
     Walk,
@@ -31,6 +33,8 @@ from devices.walker_body import (
     make_leg,
     set_up,
 )
+from devices.walker_course_pelvis import course_pelvis
+from devices.walker_courses import walk_course
 from devices.walker_gait import walk_leg
 from devices.walker_motion import Z_AXIS, LegMotion, move_freely, rotation_about, sway_of
 from devices.walker_pelvis import (
@@ -77,6 +81,7 @@ __all__ = [
     "NO_ERRORS",
     "PEOPLE",
     "VERY_COARSE",
+    "CourseKind",
     "FootTruth",
     "FreeMotion",
     "GaitChange",
@@ -89,6 +94,7 @@ __all__ = [
     "SessionTruth",
     "SimulatedSession",
     "Standing",
+    "TimedCourse",
     "Tissue",
     "Variation",
     "Walk",
@@ -141,7 +147,7 @@ def simulate(settings: WalkerSettings) -> SimulatedSession:
     start_faults = faults
     strapping = 0
     mountings = _mount(settings, strapping)
-    rides: dict[tuple[Site, type], Ride] = {}
+    rides: dict[tuple[Site, RecordingKind], Ride] = {}
     recordings: list[Recording] = []
     moved: list[MovedRecording] = []
     for number, wanted in enumerate(settings.recordings):
@@ -195,13 +201,14 @@ def _take(
     legs: Mapping[Side, Leg],
     worn: StrappedSensors,
     faults: Mapping[Site, SensorFaults],
-    rides: dict[tuple[Site, type], Ride],
+    rides: dict[tuple[Site, RecordingKind], Ride],
 ) -> tuple[Recording, MovedRecording, dict[Site, SensorFaults]]:
     """Recording `number`, how it was moved, and the sensors' faults at its end.
 
     `rides` holds how each sensor rode when these straps were first moved so, and is filled where this is the first.
     """
     wanted = settings.recordings[number]
+    kind = _kind_of(wanted)
     motions, pelvis, duration_s = _move(settings, number, worn.strapping, legs)
     imu: dict[Site, ImuBlock] = {}
     clocks: dict[Site, SensorClock] = {}
@@ -215,7 +222,7 @@ def _take(
             leg = motions[site.leg_side]
             tissue = Tissue.RIGID if _is_bare(legs, site) else settings.tissue
             chance = _rng(settings, 4, _index(site), number)
-            ride = rides.setdefault((site, type(wanted)), draw_ride(chance))
+            ride = rides.setdefault((site, kind), draw_ride(chance))
             following, wobble = _following(legs[site.leg_side], leg, site, worn.gains), 1.0
             if pelvis is not None and tissue is Tissue.REAL and site.segment is Segment.THIGH:
                 turned = thigh_on_tissue(
@@ -229,10 +236,9 @@ def _take(
         imu[site], bias = record(settings, site, clocks[site], fine_s, poses, faults[site], noise)
         biases[site] = bias.mean(axis=0)
         after[site] = replace(faults[site], gyr_bias_rad_s=bias[-1])
-    kinds = {Standing: RecordingKind.STANDING, FreeMotion: RecordingKind.FREE_MOTION, Walk: RecordingKind.WALKING}
     recording = Recording(
         name=wanted.name,
-        kind=kinds[type(wanted)],
+        kind=kind,
         folder=wanted.name.replace(" ", "_"),
         imu=imu,
         is_restrapped_before=wanted.is_restrapped_before,
@@ -244,6 +250,12 @@ def _take(
         ),
         after,
     )
+
+
+def _kind_of(wanted: Standing | FreeMotion | Walk | TimedCourse) -> RecordingKind:
+    if isinstance(wanted, Standing):
+        return RecordingKind.STANDING
+    return RecordingKind.FREE_MOTION if isinstance(wanted, FreeMotion) else RecordingKind.WALKING
 
 
 def _pelvis_poses(
@@ -289,6 +301,10 @@ def _move(
     if isinstance(wanted, FreeMotion) and is_lunging(wanted):
         duration_s = wanted.duration_s
         pelvis, motions = lunge(legs, wanted, _fine_clock(settings, duration_s), _rng(settings, 9, number))
+    elif isinstance(wanted, TimedCourse):
+        motions, seated, _, duration_s = walk_course(wanted, legs)
+        if Site.PELVIS in settings.sites:
+            pelvis, motions = course_pelvis(motions, seated)
     elif isinstance(wanted, FreeMotion):
         duration_s = wanted.duration_s * (2 if wanted.is_in_turn else 1)
         time_s = _fine_clock(settings, duration_s)

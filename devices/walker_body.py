@@ -45,7 +45,9 @@ class Manner(StrEnum):
     SHUFFLING: short steps, the foot put down and lifted nearly flat. TOES: the heels never touch the floor. FLAT: the
     foot lands and lifts flat, with a pitch of a few degrees. STIFF: foot and shank roll as one piece, as in an
     ankle-foot orthosis. DRAGGING: a foot that hangs, its toes on the floor in early swing, landing on the toes or flat;
-    toe-off is where the toes begin to slide. TOE_FIRST: lands on the toes, then lowers the heel.
+    toe-off is where the toes begin to slide. TOE_FIRST: lands on the toes, then lowers the heel. HEMIPARETIC: of one
+    side, after a stroke: the foot lands and lifts nearly flat, the knee bends little in swing, and the leg lands late
+    and stands for a shorter time than the other.
     """
 
     ORDINARY = "ordinary"
@@ -55,6 +57,7 @@ class Manner(StrEnum):
     STIFF = "stiff"
     DRAGGING = "dragging"
     TOE_FIRST = "toe_first"
+    HEMIPARETIC = "hemiparetic"
 
 
 @dataclass(frozen=True, slots=True)
@@ -200,12 +203,69 @@ VERY_COARSE = SensorErrors(
 )
 
 
+class CourseKind(StrEnum):
+    """Which timed test the patient walks."""
+
+    TEN_METRES = "10 m"
+    TWO_MINUTES = "2 min"
+    SIX_MINUTES = "6 min"
+    UP_AND_GO = "up and go"
+    SIT_TO_STAND = "sit to stand 5"
+    STAIRS = "stairs"
+
+
+@dataclass(frozen=True, slots=True)
+class TimedCourse:
+    """Everything one simulated course depends on. Within a session sensors and tissue are the session's.
+
+    Attributes
+    ----------
+    lap_m
+        Of the courses to and fro, from turn to turn.
+    pauses
+        How often the patient stands still on the way, in courses to and fro.
+    hesitates
+        Before a turn the patient waits for a moment and takes shorter steps.
+    slowing
+        By what share the speed falls from the first to the last step.
+    rise_s
+        How long rising from the chair takes.
+    silent_s
+        From when to when a site's sensor sends nothing; not within a session.
+    manner_of_side
+        Sides that walk in another manner than the ordinary one.
+    change, changed_side
+        What is added to joints and stance, in both legs or in one; time and length stay the course's.
+    """
+
+    kind: CourseKind
+    seed: int = 0
+    speed_m_s: float = 1.1
+    lap_m: float = 15.0
+    pauses: int = 0
+    hesitates: bool = False
+    slowing: float = 0.0
+    rise_s: float = 1.2
+    silent_s: Mapping[Site, tuple[float, float]] = field(default_factory=dict)
+    sites: tuple[Site, ...] = (Site.LEFT_THIGH, Site.RIGHT_THIGH, Site.LEFT_FOOT, Site.RIGHT_FOOT)
+    tissue: Tissue = Tissue.RIGID
+    rate_hz: float = 100.0
+    errors: SensorErrors = field(default_factory=SensorErrors)
+    name: str = "course"
+    is_restrapped_before: bool = False
+    manner_of_side: Mapping[Side, Manner] = field(default_factory=dict)
+    change: GaitChange = NO_CHANGE
+    changed_side: Side | None = None
+
+
 @dataclass(frozen=True, slots=True)
 class WalkerSettings:
     """Everything one simulated session depends on.
 
     Attributes
     ----------
+    body_seed
+        Whose body it is, where several sessions are of one person; None: one of this session's own.
     clock_late_s
         By how much a site's stamps are later than the truth. Missing sites are on time.
     clock_rate
@@ -213,6 +273,8 @@ class WalkerSettings:
         for `clock_late_s`; it samples by its own seconds.
     loss_fraction
         Share of samples lost, in bursts.
+    site_loss_fractions
+        Sites that lose another share.
     stamp_jitter_s
         Standard deviation of a stamp around the instant of its sample.
     site_rates_hz
@@ -228,7 +290,7 @@ class WalkerSettings:
     """
 
     seed: int = 0
-    recordings: tuple[Standing | FreeMotion | Walk, ...] = (Standing(), FreeMotion(), Walk())
+    recordings: tuple[Standing | FreeMotion | Walk | TimedCourse, ...] = (Standing(), FreeMotion(), Walk())
     sites: tuple[Site, ...] = LEG_SITES
     tissue: Tissue = Tissue.RIGID
     prosthetic_side: Side | None = None
@@ -239,12 +301,19 @@ class WalkerSettings:
     clock_late_s: Mapping[Site, float] = field(default_factory=dict)
     clock_rate: Mapping[Site, float] = field(default_factory=dict)
     loss_fraction: float = 0.0
+    site_loss_fractions: Mapping[Site, float] = field(default_factory=dict)
     stamp_jitter_s: float = 0.0
     errors: SensorErrors = SensorErrors()
     mounting_sd_m: float = 0.025
     tissue_gain: float = 0.0
     tissue_gain_sd: float = 0.0
     variation: Variation = Variation()
+    body_seed: int | None = None
+
+    @property
+    def body(self) -> int:
+        """The seed of the body."""
+        return self.seed if self.body_seed is None else self.body_seed
 
 
 @dataclass(frozen=True, slots=True)
@@ -294,7 +363,7 @@ def set_up(leg: Leg, setting: ProsthesisSetting) -> Leg:
 
 def make_leg(settings: WalkerSettings, side: Side) -> Leg:
     """One leg of the body that the settings' seed gives, in segment axes."""
-    rng = np.random.default_rng([settings.seed, 1, list(Side).index(side)])
+    rng = np.random.default_rng([settings.body, 1, list(Side).index(side)])
     is_prosthetic = settings.prosthetic_side is side
     knee_axis = np.array([0.0, 1.0, 0.0]) + rng.normal(0.0, np.tan(np.deg2rad(3.0)), 3) * [1, 0, 1]
     # the malleoli: the lateral one is lower and further back (Isman & Inman 1969: 80 deg to the tibia, 84 to the foot)

@@ -7,9 +7,9 @@ import numpy as np
 
 from core.body import Side
 from core.samples import FloatArray
-from devices.walker_body import Leg
+from devices.walker_body import NO_CHANGE, GaitChange, Leg
 from devices.walker_gait import walk_leg
-from devices.walker_manners import gait_at
+from devices.walker_manners import Gait
 from devices.walker_motion import (
     Z_AXIS,
     JointAngles,
@@ -21,11 +21,12 @@ from devices.walker_motion import (
     smooth_step,
 )
 from devices.walker_plan import HIP_AHEAD_OF_ANKLE_M, Bend, WalkPlan, plan_foot
-from devices.walker_variation import NO_CHANGES
+from devices.walker_variation import FootChanges
 
 SEATED_KNEE_RAD, SEATED_ANKLE_RAD = np.deg2rad(95.0), np.deg2rad(5.0)  # the thighs then lie level
 LEAN_RAD = np.deg2rad(12.0)  # so much further the shanks lean forward on the way up and down
 CLIMB_SHARE = 0.9  # of a swing, in which the foot comes to its new height: before it lands
+NEITHER: Mapping[Side, GaitChange] = {}
 FIDGET_RAD, FIDGET_HZ = np.deg2rad(0.6), 0.4  # of the thighs on the seat
 
 
@@ -70,23 +71,33 @@ class SeatChange:
         return self.start_s + self.duration_s
 
 
-def plan_bout(bout: Bout, speed_m_s: float, step_s: float, first: Side, rng: np.random.Generator) -> WalkPlan:
+def plan_bout(
+    bout: Bout,
+    gaits: Mapping[Side, Gait],
+    step_s: float,
+    first: Side,
+    rng: np.random.Generator,
+    change_of_side: Mapping[Side, GaitChange] = NEITHER,
+) -> WalkPlan:
     """When and where the feet stand in one bout, on a clock that starts with it.
 
     Parameters
     ----------
-    speed_m_s
-        The usual one, which decides the shape of a stride.
+    gaits
+        The usual ones of both legs, which decide the shape of a stride.
     step_s
         Of the fine clock.
+    change_of_side
+        What each leg has added to its joints and stance in every stride.
 
     Returns
     -------
     WalkPlan
         Its path is on a clock from 0 to its duration, in steps of `step_s`.
     """
-    gait = gait_at(speed_m_s)
-    durations = np.array([step.time_s for step in bout.steps])
+    gait = gaits[first]
+    shares = np.tile([1.0 + 2.0 * gait.late, 1.0 + 2.0 * gaits[first.other].late], len(bout.steps))[: len(bout.steps)]
+    durations = np.array([step.time_s for step in bout.steps]) * shares
     lengths = np.array([step.length_m for step in bout.steps])
     first_off = bout.standing_before_s + 0.3 * gait.stride_s
     contact = first_off + (1.0 - gait.stance) * gait.stride_s + np.concatenate([[0.0], np.cumsum(durations[1:])])
@@ -101,17 +112,16 @@ def plan_bout(bout: Bout, speed_m_s: float, step_s: float, first: Side, rng: np.
     ankle = np.interp(contact + gait.midstance * gait.stride_s, time_s, hip_path)
     ankle[-2:] = hip_path[-1]
     ankle[:-2] += rng.normal(0.0, 0.01 * gait.stride_m, len(ankle) - 2)
-    ends = {first: 0, Side.RIGHT if first is Side.LEFT else Side.LEFT: 1}
     plans = {
         side: plan_foot(
-            gait,
+            gaits[side],
             False,
             contact[k::2],
             np.concatenate([hip_path[:1], ankle[k::2]]) - HIP_AHEAD_OF_ANKLE_M,
             np.ones(len(contact[k::2])),
-            NO_CHANGES.of_foot(side, len(contact[k::2])),
+            _alike(change_of_side.get(side, NO_CHANGE), len(contact[k::2])),
         )
-        for side, k in ends.items()
+        for k, side in enumerate((first, first.other))
     }
     at_m = np.interp(contact, time_s, hip_path)
     bends = []
@@ -119,7 +129,13 @@ def plan_bout(bout: Bout, speed_m_s: float, step_s: float, first: Side, rng: np.
         members = [k for k, step in enumerate(bout.steps) if step.turn == number]
         begin_m, end_m = at_m[max(members[0] - 1, 0)], at_m[members[-1]]
         bends.append(Bend(0.5 * (begin_m + end_m), turn_rad, (end_m - begin_m) / 1.3))
-    return WalkPlan(dict.fromkeys(Side, gait), duration_s, hip_path, plans, tuple(bends))
+    return WalkPlan(gaits, duration_s, hip_path, plans, tuple(bends))
+
+
+def _alike(change: GaitChange, strides: int) -> FootChanges:
+    """The same in every stride."""
+    told = (change.knee_deg, change.ankle_deg, change.stance_percent)
+    return FootChanges(*(np.full(strides, value) for value in told))
 
 
 def walk_bouts(

@@ -6,17 +6,18 @@ either side, pause on the way, fidget on the chair; and a sensor may fall silent
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from enum import StrEnum
 
 import numpy as np
 
 from core.body import Side, Site
 from core.samples import BoolArray, FloatArray, ImuBlock, Patient, Recording, RecordingKind, SensorInfo, Session
-from devices.walker_body import Leg, SensorErrors, Tissue, WalkerSettings, make_leg
+from devices.walker_body import CourseKind, Leg, TimedCourse, Tissue, WalkerSettings, make_leg
 from devices.walker_bouts import Bout, CourseStep, PlannedBout, SeatChange, climb, plan_bout, sit, walk_bouts
+from devices.walker_course_pelvis import course_pelvis
 from devices.walker_gait import walk_leg
-from devices.walker_manners import gait_at
+from devices.walker_manners import Gait, gaits_of
 from devices.walker_motion import Z_AXIS, LegMotion, rotation_about, smooth_step, sway_of
+from devices.walker_pelvis import PelvisMotion, pelvis_poses
 from devices.walker_plan import plan_standing
 from devices.walker_sensors import draw_faults, draw_mounting, draw_ride, make_clock, record, sensor_poses
 
@@ -26,54 +27,7 @@ TAPE_M = (2.0, 12.0)  # of a course of 14 m, where the 10 m begin and end
 CHAIR_TO_CONE_M = 3.0
 EDGE_SHARE = 0.1  # of the way between seat and standing: from there on the thighs have left one or reached the other
 PAUSE_S = 1.0  # both feet on the floor for so long is a pause
-ALL_SITES = (Site.LEFT_THIGH, Site.RIGHT_THIGH, Site.LEFT_FOOT, Site.RIGHT_FOOT)
 LONG_S = {"2 min": 120.0, "6 min": 360.0}
-
-
-class CourseKind(StrEnum):
-    """Which test the patient walks."""
-
-    TEN_METRES = "10 m"
-    TWO_MINUTES = "2 min"
-    SIX_MINUTES = "6 min"
-    UP_AND_GO = "up and go"
-    SIT_TO_STAND = "sit to stand 5"
-    STAIRS = "stairs"
-
-
-@dataclass(frozen=True, slots=True)
-class TimedCourse:
-    """Everything one simulated course depends on.
-
-    Attributes
-    ----------
-    lap_m
-        Of the courses to and fro, from turn to turn.
-    pauses
-        How often the patient stands still on the way, in courses to and fro.
-    hesitates
-        Before a turn the patient waits for a moment and takes shorter steps.
-    slowing
-        By what share the speed falls from the first to the last step.
-    rise_s
-        How long rising from the chair takes.
-    silent_s
-        From when to when a site's sensor sends nothing.
-    """
-
-    kind: CourseKind
-    seed: int = 0
-    speed_m_s: float = 1.1
-    lap_m: float = 15.0
-    pauses: int = 0
-    hesitates: bool = False
-    slowing: float = 0.0
-    rise_s: float = 1.2
-    silent_s: Mapping[Site, tuple[float, float]] = field(default_factory=dict)
-    sites: tuple[Site, ...] = ALL_SITES
-    tissue: Tissue = Tissue.RIGID
-    rate_hz: float = 100.0
-    errors: SensorErrors = field(default_factory=SensorErrors)
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,8 +99,9 @@ def draw_course(kind: CourseKind, seed: int) -> TimedCourse:
         slowing=float(rng.uniform(-0.05, 0.25)),
         rise_s=float(rng.uniform(0.8, 2.5)),
         tissue=Tissue.RIGID if kind in LONG_S else Tissue.SOFT,
-        sites=(Site.LEFT_FOOT, Site.RIGHT_FOOT) if kind in LONG_S else ALL_SITES,
     )
+    if kind in LONG_S:
+        course = replace(course, sites=(Site.LEFT_FOOT, Site.RIGHT_FOOT))
     if kind in LONG_S and rng.uniform() < 0.2:
         start_s = float(rng.uniform(20.0, 90.0))
         site = course.sites[int(rng.integers(2))]
@@ -162,10 +117,23 @@ def simulate_course(course: TimedCourse) -> SimulatedCourse:
     legs = {side: make_leg(settings, side) for side in Side}
     mountings = {site: draw_mounting(site, settings.mounting_sd_m, _rng(course, 3, site)) for site in course.sites}
     faults = {site: draw_faults(course.errors, _rng(course, 2, site)) for site in course.sites}
-    walked, truth, duration_s = _walk(course, legs)
+    walked, changes, truth, duration_s = walk_course(course, legs)
     stood = _stand(course, legs)
+    of_pelvis: list[tuple[str, PelvisMotion, FloatArray, float]] = []
+    if Site.PELVIS in course.sites:
+        pelvis, stood = course_pelvis(stood, ())
+        of_pelvis.append(("standing", pelvis, np.empty(0), STANDING_S))
+        pelvis, walked = course_pelvis(walked, changes)
+        of_pelvis.append(("course", pelvis, truth.contacts_s, duration_s))
     imu: dict[str, dict[Site, ImuBlock]] = {"standing": {}, "course": {}}
     for site in course.sites:
+        if site is Site.PELVIS:
+            strap, chance = _rng(course, 10, site), _rng(course, 6, site)
+            for name, pelvis, hits_s, lasts_s in of_pelvis:
+                poses = pelvis_poses(pelvis, hits_s, mountings[site], course.tissue, strap, chance)
+                clock = make_clock(settings, site, lasts_s, chance)
+                imu[name][site] = record(settings, site, clock, pelvis.time_s, poses, faults[site], chance)[0]
+            continue
         ride = draw_ride(_rng(course, 4, site))
         for name, motions, lasts_s in (("standing", stood, STANDING_S), ("course", walked, duration_s)):
             chance = _rng(course, 5 if name == "course" else 6, site)
@@ -208,8 +176,16 @@ def _fine_clock(duration_s: float) -> FloatArray:
     return np.arange(-margin, int(np.ceil(duration_s * FINE_HZ)) + margin + 1) / FINE_HZ
 
 
-def _walk(course: TimedCourse, legs: Mapping[Side, Leg]) -> tuple[dict[Side, LegMotion], CourseTruth, float]:
-    """Both legs' poses on the fine clock, what is true of them, and how long the recording lasts."""
+def walk_course(
+    course: TimedCourse, legs: Mapping[Side, Leg]
+) -> tuple[dict[Side, LegMotion], list[SeatChange], CourseTruth, float]:
+    """Both legs' poses on the fine clock, when they sit and rise, what is true of them, and how long it lasts.
+
+    Returns
+    -------
+    dict of Side to LegMotion, list of SeatChange, CourseTruth and float
+        Earth axes, z up, metres; seconds from the start of the recording.
+    """
     rng = _rng(course, 8)
     start_s = round(rng.uniform(1.6, 3.0) * FINE_HZ) / FINE_HZ
     changes: list[SeatChange] = []
@@ -220,8 +196,11 @@ def _walk(course: TimedCourse, legs: Mapping[Side, Leg]) -> tuple[dict[Side, Leg
         start_s = changes[-1].end_s
     end_s = start_s
     bouts = _bouts(course, rng)
+    gaits = _gaits(course)
+    of_side = {side: course.change for side in Side if course.changed_side in (None, side)}
     for bout in bouts:
-        plan = plan_bout(bout, course.speed_m_s, 1.0 / FINE_HZ, list(Side)[int(rng.integers(2))], rng)
+        first = list(Side)[int(rng.integers(2))]
+        plan = plan_bout(bout, gaits, 1.0 / FINE_HZ, first, rng, of_side)
         planned.append(PlannedBout(round(end_s * FINE_HZ) / FINE_HZ, plan))
         end_s = planned[-1].start_s + plan.duration_s
     if course.kind is CourseKind.SIT_TO_STAND:
@@ -246,7 +225,7 @@ def _walk(course: TimedCourse, legs: Mapping[Side, Leg]) -> tuple[dict[Side, Leg
     motions = {side: sit(legs[side], motion, changes, phase_rad) for side, motion in motions.items()}
     compass = rotation_about(Z_AXIS, rng.uniform(0.0, 2.0 * np.pi, 1))[0]
     motions = {side: _turned(motion, compass) for side, motion in motions.items()}
-    return motions, replace(_truth(motions, planned, changes), climbs_m=climbs_m), duration_s
+    return motions, changes, replace(_truth(motions, planned, changes), climbs_m=climbs_m), duration_s
 
 
 def _climbed(motions: Mapping[Side, LegMotion], bout: Bout) -> tuple[dict[Side, LegMotion], dict[Side, FloatArray]]:
@@ -324,6 +303,16 @@ def _to_and_fro(course: TimedCourse, lasts_s: float, rng: np.random.Generator) -
     return bouts
 
 
+def _gaits(course: TimedCourse) -> Mapping[Side, Gait]:
+    return gaits_of(course.speed_m_s, course.manner_of_side)
+
+
+def _usual_step(course: TimedCourse) -> tuple[float, float]:
+    """Length and time of a step on the straight, m and s."""
+    gait = _gaits(course)[Side.LEFT]  # strides are those of both
+    return 0.5 * gait.stride_m, 0.5 * gait.stride_s
+
+
 def _about(rng: np.random.Generator) -> float:
     """A turn about, to either side, more or less."""
     return float(rng.choice([-1.0, 1.0]) * (np.pi + rng.normal(0.0, np.deg2rad(6.0))))
@@ -332,13 +321,13 @@ def _about(rng: np.random.Generator) -> float:
 def _straight(course: TimedCourse, way_m: float, done: float, rng: np.random.Generator) -> list[CourseStep]:
     """Steps for at least `way_m`, by a patient who has `done` a share of the test."""
     steps: list[CourseStep] = []
-    gait = gait_at(course.speed_m_s)
+    step_m, step_s = _usual_step(course)
     factor = np.sqrt(1.0 - course.slowing * done)  # slower by shorter steps and by longer times alike
     while sum(step.length_m for step in steps) < way_m:
         steps.append(
             CourseStep(
-                0.5 * gait.stride_m * factor * rng.normal(1.0, 0.03),
-                0.5 * gait.stride_s / factor * rng.normal(1.0, 0.02),
+                step_m * factor * rng.normal(1.0, 0.03),
+                step_s / factor * rng.normal(1.0, 0.02),
             )
         )
     return steps
@@ -361,11 +350,11 @@ def _stairs(course: TimedCourse, rng: np.random.Generator) -> list[CourseStep]:
 
 def _turn(course: TimedCourse, number: int, rng: np.random.Generator) -> list[CourseStep]:
     """Shorter steps on the turn; a patient who hesitates waits before it and takes two short steps on the straight."""
-    gait = gait_at(course.speed_m_s)
-    step_m, step_s = min(0.28, 0.5 * gait.stride_m), 0.5 * gait.stride_s
+    usual_m, step_s = _usual_step(course)
+    step_m = min(0.28, usual_m)
     steps: list[CourseStep] = []
     if course.hesitates:
-        steps = [CourseStep(0.6 * 0.5 * gait.stride_m, step_s), CourseStep(step_m, step_s)]
+        steps = [CourseStep(0.6 * usual_m, step_s), CourseStep(step_m, step_s)]
         steps.append(CourseStep(step_m, step_s + rng.uniform(0.1, 0.4)))
     count = int(rng.integers(5, 9))
     factors = rng.normal(1.0, [[0.05, 0.03]] * count)

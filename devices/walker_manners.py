@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from core.body import Side
-from devices.walker_body import Manner, Walk
+from devices.walker_body import Manner
 
 LEAST_CLEARANCE_M = 0.012  # Winter 1992, doi 10.1093/ptj/72.1.45: 1.3 cm under the toe
 
@@ -17,7 +17,8 @@ class Gait:
 
     `flat_pitch_rad` is the foot's pitch in the middle of stance; `toe_off_pitch_rad`, where not NaN, its pitch at
     toe-off, else the ankle's plantarflexion decides. Where `is_ankle_stiff` the foot turns with the shank. In the first
-    `drag` (a share) of swing the toes stay on the floor.
+    `drag` (a share) of swing the toes stay on the floor. A leg lands `late`, as a share of the stride, against half a
+    stride after the other, and stands so much shorter, so that both double supports stay as long.
     """
 
     speed_m_s: float
@@ -38,16 +39,28 @@ class Gait:
     toe_off_pitch_rad: float = np.nan
     is_ankle_stiff: bool = False
     drag: float = 0.0
+    late: float = 0.0
 
 
-def gaits_of_walk(walk: Walk) -> Mapping[Side, Gait]:
+def gaits_of(
+    speed_m_s: float, manner_of_side: Mapping[Side, Manner], manner: Manner = Manner.ORDINARY
+) -> Mapping[Side, Gait]:
     """Either side's gait; both share the shorter stride and its time."""
-    gaits = {side: gait_at(walk.speed_m_s, walk.manner_of_side.get(side, walk.manner)) for side in Side}
+    gaits = {side: gait_at(speed_m_s, manner_of_side.get(side, manner)) for side in Side}
     shorter = min(gaits.values(), key=lambda gait: gait.stride_m)
-    return {
-        side: replace(gait, stride_m=shorter.stride_m, stride_s=shorter.stride_s, midstance=shorter.midstance)
-        for side, gait in gaits.items()
-    }
+    shared = {}
+    for side, gait in gaits.items():
+        longer = gaits[side.other].late - gait.late
+        shared[side] = replace(
+            gait,
+            stride_m=shorter.stride_m,
+            stride_s=shorter.stride_s,
+            midstance=shorter.midstance,
+            stance=gait.stance + longer,
+            heel_rise=gait.heel_rise + longer,
+            late=-longer,
+        )
+    return shared
 
 
 def gait_at(speed_m_s: float, manner: Manner = Manner.ORDINARY) -> Gait:
@@ -111,6 +124,18 @@ def gait_at(speed_m_s: float, manner: Manner = Manner.ORDINARY) -> Gait:
             contact_pitch_rad=np.deg2rad(-8.0),
             lifted_rad=np.deg2rad(-8.0),
             full_contact=0.13,
+        )
+    if manner is Manner.HEMIPARETIC:
+        return replace(
+            _shortened(ordinary, 0.85),
+            full_contact=0.05,
+            heel_rise=ordinary.stance - 0.17,
+            contact_pitch_rad=np.deg2rad(3.0),
+            knee_swing=0.5,
+            shock=0.6 * ordinary.shock,
+            lifted_rad=np.deg2rad(4.0),
+            toe_off_pitch_rad=np.deg2rad(-15.0),
+            late=0.03,
         )
     return ordinary
 

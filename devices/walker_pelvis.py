@@ -107,7 +107,7 @@ def with_pelvis(
     rotations = turned @ rotation_about(X_AXIS, obliquity)
     hips = [motion.origins_m[0] for motion in swayed.values()]
     pelvis = PelvisMotion(time_s, rotations, 0.5 * (hips[0] + hips[1]))
-    return pelvis, {side: _hung(motion, hip_m(pelvis, side)) for side, motion in swayed.items()}
+    return pelvis, {side: hung(motion, hip_m(pelvis, side)) for side, motion in swayed.items()}
 
 
 def hip_m(pelvis: PelvisMotion, side: Side) -> FloatArray:
@@ -122,7 +122,14 @@ def hip_m(pelvis: PelvisMotion, side: Side) -> FloatArray:
     return pelvis.centre_m + outward * HALF_WIDTH_M * pelvis.rotations[:, :, 1]
 
 
-def _hung(motion: LegMotion, at_m: FloatArray) -> LegMotion:
+def hung(motion: LegMotion, at_m: FloatArray) -> LegMotion:
+    """A leg carried to where its hip is.
+
+    Parameters
+    ----------
+    at_m : (n, 3)
+        Where the hip's centre is, m, earth axes.
+    """
     return replace(motion, origins_m=motion.origins_m + (at_m - motion.origins_m[0]))
 
 

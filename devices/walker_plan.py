@@ -8,7 +8,7 @@ import numpy as np
 from core.body import Side
 from core.samples import FloatArray
 from devices.walker_body import Walk
-from devices.walker_manners import Gait, gait_at, gaits_of_walk
+from devices.walker_manners import Gait, gait_at, gaits_of
 from devices.walker_motion import smooth_step
 from devices.walker_variation import NO_CHANGES, FootChanges, StepChanges
 
@@ -73,12 +73,13 @@ def plan_walk(
     WalkPlan
         Times in seconds, places in metres.
     """
-    gaits = gaits_of_walk(walk)
+    gaits = gaits_of(walk.speed_m_s, walk.manner_of_side, walk.manner)
     gait = gaits[first]
     stride_s, swing_s = gait.stride_s, (1.0 - gait.stance) * gait.stride_s
     first_off = walk.standing_before_s + 0.3 * stride_s
     time, length = changes.of_steps(2 * walk.strides)
-    steps_s = 0.5 * stride_s * rng.normal(1.0, 0.012, 2 * walk.strides) * time
+    shares = np.tile([0.5 + gait.late, 0.5 + gaits[first.other].late], walk.strides)
+    steps_s = shares * stride_s * rng.normal(1.0, 0.012, 2 * walk.strides) * time
     contact = first_off + swing_s + np.concatenate([[0.0], np.cumsum(steps_s[1:])])
     at_speed = contact[0] + 0.12 * stride_s
     slowing = contact[-2]
@@ -96,7 +97,6 @@ def plan_walk(
     ankle = np.interp(placed_s, time_s, hip_path)
     ankle[-2:] = hip_path[-1]
     ankle[:-2] += rng.normal(0.0, 0.01 * gait.stride_m, len(ankle) - 2)
-    other = Side.RIGHT if first is Side.LEFT else Side.LEFT
     stride_time = 0.5 * (time + np.concatenate([time[:1], time[:-1]]))
     plans = {
         side: plan_foot(
@@ -107,7 +107,7 @@ def plan_walk(
             stride_time[k::2],
             changes.of_foot(side, walk.strides),
         )
-        for k, side in enumerate((first, other))
+        for k, side in enumerate((first, first.other))
     }
     bend = Bend(0.5 * float(hip_path.max()), walk.turn_rad, max(abs(walk.turn_rad) * TURN_RADIUS_M, 0.1))
     return WalkPlan(gaits, float(stopped + walk.standing_after_s + 0.4 * stride_s), hip_path, plans, (bend,))

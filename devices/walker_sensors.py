@@ -347,7 +347,10 @@ def make_clock(settings: WalkerSettings, site: Site, duration_s: float, rng: np.
     count = int(np.floor(duration_s * pace * rate_hz + 1e-9)) + 1
     stamp = np.arange(count) / rate_hz
     true = stamp / pace - late_s
-    jitter, lost = rng.normal(size=count), _lost(count, settings.loss_fraction, rng)
+    jitter, lost = (
+        rng.normal(size=count),
+        _lost(count, settings.site_loss_fractions.get(site, settings.loss_fraction), rng),
+    )
     stamp = stamp + np.clip(settings.stamp_jitter_s * jitter, -0.4 / rate_hz, 0.4 / rate_hz)
     return SensorClock(true[~lost], stamp[~lost])
 

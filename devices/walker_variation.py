@@ -100,9 +100,8 @@ def draw_gain(settings: WalkerSettings, joint: Joint, strapping: int) -> float:
         A share without unit; 0.1 reads 10 % more.
     """
     who = list(Joint).index(joint)
-    of_leg, of_strap = (
-        np.random.default_rng([settings.seed, *key]).normal() for key in ((12, who), (13, who, strapping))
-    )
+    of_leg = np.random.default_rng([settings.body, 12, who]).normal()
+    of_strap = np.random.default_rng([settings.seed, 13, who, strapping]).normal()
     sds = settings.variation.strappings
     if joint.is_knee:
         gain = settings.tissue_gain + settings.tissue_gain_sd * of_leg

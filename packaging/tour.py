@@ -8,7 +8,8 @@ exits with 1, naming the stop, when a session cannot be led to its end, or not i
 stopwatch.
 
 To change a tour change `tour_stops.py`: each stop waits until the screen says what it should, has its pictures taken
-and acts. `--manual` puts the pictures that the manual and the README show where they are read.
+and acts. `--manual` puts the pictures that the manual and the README show where they are read; `--lang` leads the same
+sessions in another language.
 """
 
 import argparse
@@ -21,7 +22,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -32,20 +33,29 @@ from tour_stops import PATIENCE_S, TOURS, Seen, Stop
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-PICTURES = Path(__file__).resolve().parents[1] / "resources" / "help" / "pictures"
-MANUAL = {
-    "07-patient-typed": "patient",
-    "07c-placed": "sensors",
-    "08b-standing": "stand-still",
-    "09-free-motion": "free-motion",
-    "10b-walking": "walking",
-    "13a-results": "results",
+HELP = Path(__file__).resolve().parents[1] / "resources" / "help"
+PICTURES = HELP / "pictures"
+MANUAL = {  # which stop of a tour becomes which picture
+    "keyboard": {
+        "07-patient-typed": "patient",
+        "07c-placed": "sensors",
+        "08b-standing": "stand-still",
+        "09-free-motion": "free-motion",
+        "10b-walking": "walking",
+        "13a-results": "results",
+        "13e-compare": "compare",
+        "26a-report": "report",
+        "27-home-again": "home",
+    },
+    "bench": {"34-b-against-a": "bench"},
+    "timed": {"53-running": "timed-test"},
 }
 PROGRAMS = {"Xvfb": "xvfb", "openbox": "openbox", "xdotool": "xdotool", "convert": "imagemagick"}  # Debian's packages
 SCREEN = "2000x1200x24"
 WINDOW = "1280x800@100"
 THEMES = ("light", "dark")
 TRACED = ("-f", "--seccomp-bpf", "-e", "trace=connect,sendto,sendmsg,sendmmsg,bind", "-e", "signal=none")
+INSIDE = (sys.executable, str(Path(__file__).resolve().with_name("tour_inside.py")))
 MOST_S = 300.0  # of the application's stopwatch
 LOOK_EVERY_S = 0.2
 MOST_TABS = 60  # more stops than any page has
@@ -77,7 +87,8 @@ class Application:
     def seen(self) -> Seen:
         told = self.ask("tell")
         controls = {name: (x, y) for name, (x, y) in told.pop("controls").items()}
-        return Seen(**{**told, "words": tuple(told["words"]), "controls": controls})
+        words, focus = tuple(told.pop("words")), tuple(told.pop("focus"))
+        return Seen(**told, words=words, focus=focus, controls=controls)
 
     def picture(self, look: str, file: Path) -> None:
         file.parent.mkdir(parents=True, exist_ok=True)
@@ -104,7 +115,8 @@ def main(arguments: list[str]) -> None:
         help=f"of the pictures: window and size of everything, as {WINDOW}; the first is the one that is worked with",
     )
     parser.add_argument("--trace", type=Path, metavar="FILE", help="note there, by strace, whom the application calls")
-    parser.add_argument("--manual", action="store_true", help="give the manual its pictures anew")
+    parser.add_argument("--lang", default="en", help="what the application speaks, as de")
+    parser.add_argument("--manual", action="store_true", help="give the manual of that language its pictures anew")
     wanted = parser.parse_args(arguments)
     missing = [package for program, package in PROGRAMS.items() if shutil.which(program) is None]
     if missing:
@@ -113,22 +125,28 @@ def main(arguments: list[str]) -> None:
     looks = [f"{theme} {size}" for size in wanted.sizes for theme in themes]
     for tour in [wanted.tour] if wanted.tour else list(TOURS):
         with ExitStack() as stack:
-            display = stack.enter_context(_display())
-            application = stack.enter_context(_application(display, wanted.trace))
+            display = stack.enter_context(own_display())
+            application = stack.enter_context(running(display, [*tracer(wanted.trace), *INSIDE]))
+            if wanted.lang != "en":
+                application.ask(f"speak {wanted.lang}")
+                application.ask("begin")  # the window is another
             try:
                 stopwatch_s = lead(application, TOURS[tour], wanted.out.resolve(), looks)
             except TourError as end:
                 sys.exit(str(end))
         if wanted.manual:
-            _give_pictures(wanted.out)
+            _give_pictures(
+                wanted.out, MANUAL.get(tour, {}), PICTURES if wanted.lang == "en" else HELP / wanted.lang / "pictures"
+            )
         print(f"{len(TOURS[tour])} stops by {tour} alone, {stopwatch_s:.0f} s of the application's stopwatch.")
 
 
-def _give_pictures(out: Path) -> None:
+def _give_pictures(out: Path, wanted: Mapping[str, str], pictures: Path) -> None:
     """With a palette of 256 colours, more than the pages have, they are a third as large."""
-    for stop, picture in MANUAL.items():
+    pictures.mkdir(parents=True, exist_ok=True)
+    for stop, picture in wanted.items():
         for theme, suffix in (("light", ""), ("dark", "-dark")):
-            taken, given = out / f"{theme}-{WINDOW}" / f"{stop}.png", PICTURES / f"{picture}{suffix}.png"
+            taken, given = out / f"{theme}-{WINDOW}" / f"{stop}.png", pictures / f"{picture}{suffix}.png"
             subprocess.run(["convert", taken, "-dither", "None", "-colors", "256", f"PNG8:{given}"], check=True)
 
 
@@ -178,6 +196,10 @@ def _do(application: Application, stop: Stop, deed: str) -> None:
             _tab_to(application, stop, words)
         case "click":
             application.hand("mousemove", *_place_of(application, stop, words), "click", "1")
+        case "await":
+            _await_window(application, stop, words)
+        case "raise":
+            application.hand("search", "--onlyvisible", "--name", words, "windowactivate", "--sync")
         case "drag":
             what, _, where = words.partition(" to ")
             _drag(application, _place_of(application, stop, what), _place_of(application, stop, where))
@@ -195,11 +217,21 @@ def _recovery_key(seen: Seen) -> str:
 
 def _tab_to(application: Application, stop: Stop, name: str) -> None:
     for _ in range(MOST_TABS):
-        if application.seen().focus.startswith(name):
+        if any(one.startswith(name) for one in application.seen().focus):
             return
         application.hand("key", "Tab")
         time.sleep(KEY_PAUSE_S)
     raise TourError(f"{stop.name}: Tab never comes to “{name}”.\n{_in_words(application.seen())}")
+
+
+def _await_window(application: Application, stop: Stop, title: str) -> None:
+    """Wait for a window of another program of ours."""
+    until_s = time.monotonic() + stop.patience_s
+    environment = {**os.environ, "DISPLAY": application.display}
+    while subprocess.run(["xdotool", "search", "--onlyvisible", "--name", title], env=environment).returncode != 0:
+        if time.monotonic() > until_s:
+            raise TourError(f"{stop.name}: no window is called “{title}”.\n{_in_words(application.seen())}")
+        time.sleep(LOOK_EVERY_S)
 
 
 def _drag(application: Application, start: tuple[str, str], end: tuple[str, str]) -> None:
@@ -238,13 +270,13 @@ def _place_of(application: Application, stop: Stop, control: str) -> tuple[str, 
 
 def _in_words(seen: Seen) -> str:
     return (
-        f"On the screen: {seen.screen} {seen.step}, focus on “{seen.focus}”, banner “{seen.banner}”.\n"
+        f"On the screen: {seen.screen} {seen.step}, focus on “{' = '.join(seen.focus)}”, banner “{seen.banner}”.\n"
         f"Controls: {', '.join(seen.controls)}\nWords: {' | '.join(seen.words)}"
     )
 
 
 @contextmanager
-def _display() -> "Iterator[str]":
+def own_display() -> "Iterator[str]":
     """Give a display that nobody else uses, with a window manager."""
     read, write = os.pipe()
     server = subprocess.Popen(
@@ -267,7 +299,11 @@ def _display() -> "Iterator[str]":
 
 
 @contextmanager
-def _application(display: str, trace: Path | None) -> "Iterator[Application]":
+def running(display: str, program: Sequence[str], owner: int | None = None) -> "Iterator[Application]":
+    """The application, started by `program`, on a display, with a home of its own that is gone afterwards.
+
+    `owner` is the user whose home it is, where `program` begins by becoming another.
+    """
     with tempfile.TemporaryDirectory(prefix="gaitwright-tour-") as folder:
         places = {
             name: str(Path(folder) / name.lower())
@@ -276,9 +312,11 @@ def _application(display: str, trace: Path | None) -> "Iterator[Application]":
         environment = {**os.environ, **places, "DISPLAY": display, "QT_QPA_PLATFORM": "xcb"}
         for place in places.values():
             Path(place).mkdir()
-        tracer = [] if trace is None else ["strace", *TRACED, "-o", str(trace.resolve())]
+        if owner is not None:
+            for place in (folder, *places.values()):
+                os.chown(place, owner, owner)
         process = subprocess.Popen(
-            [*tracer, sys.executable, str(Path(__file__).resolve().with_name("tour_inside.py"))],
+            program,
             cwd=places["HOME"],  # where dialogs begin
             env=environment,
             stdin=subprocess.PIPE,
@@ -293,6 +331,10 @@ def _application(display: str, trace: Path | None) -> "Iterator[Application]":
             process.wait(timeout=PATIENCE_S)
         finally:
             _end(process)
+
+
+def tracer(trace: Path | None) -> list[str]:
+    return [] if trace is None else ["strace", *TRACED, "-o", str(trace.resolve())]
 
 
 def _end(process: "subprocess.Popen[Any]") -> None:

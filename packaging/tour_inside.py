@@ -9,6 +9,8 @@ import threading
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
+from tour_words import in_english
+
 if TYPE_CHECKING:
     from PySide6.QtGui import QPixmap
     from PySide6.QtWidgets import QWidget
@@ -19,7 +21,12 @@ SETTLE_MS = 150
 
 def run() -> int:
     """Open the window as always, and answer whoever leads the tour."""
-    sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+    if getattr(sys, "frozen", False):  # into the folder that is installed: `installers/gaitwright.spec`
+        from app.__main__ import begin_frozen
+
+        begin_frozen()
+    else:
+        sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
     from PySide6.QtCore import QObject, Qt, Signal
 
     from app.main_window import open_window
@@ -44,7 +51,8 @@ def _answer(command: str) -> None:
 
     from app.main_window import MainWindow
 
-    window = next(widget for widget in QApplication.topLevelWidgets() if isinstance(widget, MainWindow))
+    windows = [widget for widget in QApplication.topLevelWidgets() if isinstance(widget, MainWindow)]
+    window = next(widget for widget in windows if widget.isVisible())
     verb, *rest = command.split()
     told: dict[str, Any] = {}
     match verb:
@@ -53,6 +61,8 @@ def _answer(command: str) -> None:
             window.activateWindow()
         case "look":
             _take_look(window, *rest)
+        case "speak":
+            window._settings.language = rest[0]  # the window is made anew in it
         case "picture":
             _picture_of(window).save(rest[0])
         case "tell":
@@ -64,8 +74,6 @@ def _answer(command: str) -> None:
 
 def _take_look(window: Any, theme: str, size: str) -> None:
     """Show the window in this theme and size, and let it settle."""
-    from PySide6.QtTest import QTest
-
     look, (side, scale) = window._look, size.split("@")
     width, height = (int(one) for one in side.split("x"))
     if (look.theme.is_dark, look.theme.scale) != (theme == "dark", int(scale) / 100):
@@ -73,8 +81,16 @@ def _take_look(window: Any, theme: str, size: str) -> None:
         look.set_scale(int(scale) / 100)
     if (window.width(), window.height()) != (width, height):
         window.resize(width, height)
-        QTest.qWait(SETTLE_MS)
-    QTest.qWait(SETTLE_MS)
+        _settle()
+    _settle()
+
+
+def _settle() -> None:
+    from PySide6.QtCore import QEventLoop, QTimer
+
+    loop = QEventLoop()
+    QTimer.singleShot(SETTLE_MS, loop.quit)
+    loop.exec()
 
 
 def _picture_of(window: Any) -> "QPixmap":
@@ -102,29 +118,35 @@ def _look_at(window: Any) -> dict[str, Any]:
         QWidget,
     )
 
+    from app.wording import spoken_language
+
+    def read(said: str) -> tuple[str, ...]:
+        return in_english(said, spoken_language())
+
     screen = window.screens.currentWidget()
     step = getattr(screen, "current", None)
     visit = getattr(screen, "visit", None)
     focus = QApplication.focusWidget()
     front = QApplication.activeModalWidget() or window
     controls: dict[str, tuple[int, int]] = {}
-    words = []
+    words: list[str] = []
     for widget in front.findChildren(QWidget):
         if not widget.isVisible():
             continue
         if isinstance(widget, QLabel):
-            words.append(widget.text())
+            words.extend(read(widget.text()))
         elif isinstance(widget, QAbstractButton | QComboBox | QLineEdit | QAbstractItemView):
             seen = widget.visibleRegion().boundingRect()
             if (name := _name_of(widget)) and widget.isEnabled() and not seen.isEmpty():
                 middle = widget.mapToGlobal(seen.center())
-                controls.setdefault(name, (middle.x(), middle.y()))
+                for meant in read(name):
+                    controls.setdefault(meant, (middle.x(), middle.y()))
         elif widget.accessibleName():
-            words.append(widget.accessibleName())
+            words.extend(read(widget.accessibleName()))
     return {
         "screen": type(screen).__name__,
         "step": type(step).__name__ if step is not None else "",
-        "focus": _name_of(focus) if focus is not None else "",
+        "focus": read(_name_of(focus)) if focus is not None else (),
         "is_recording": bool(getattr(screen, "is_recording", False)),
         "banner": next((b.text for b in _banners(window) if b.isVisible()), ""),
         "stopwatch_s": (visit.elapsed_s or 0.0) if visit is not None else 0.0,

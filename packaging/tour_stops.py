@@ -1,4 +1,7 @@
-"""Where does a tour stop, what must the screen say there, and what is done? By keyboard, by mouse, and at the bench."""
+"""Where does a tour stop, what must the screen say there, and what is done?
+
+By keyboard, by mouse, at the bench, and with a seventh sensor on the pelvis.
+"""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -9,11 +12,12 @@ PATIENCE_S = 30.0
 @dataclass(frozen=True, slots=True)
 class Seen:
     """What the application tells of itself: screen and step by their classes, the control that has the focus, and the
-    enabled controls in sight by their accessible names, each with its middle on the display."""
+    enabled controls in sight by their accessible names, each with its middle on the display. All in English, too,
+    whatever is spoken; a word that may stand for several stands there as each of them."""
 
     screen: str
     step: str
-    focus: str
+    focus: tuple[str, ...]
     is_recording: bool
     banner: str
     stopwatch_s: float
@@ -40,7 +44,8 @@ class Stop:
     does
         One after the other: "press Return" (keys as xdotool names them), "type P-1" ("{home}" is the tour's own
         folder), "copy key" (types the recovery key that is shown), "to Stop" (presses Tab until a control whose name
-        begins with Stop has the focus), "click Stop", "drag 0A09 to L thigh".
+        begins with Stop has the focus), "click Stop", "drag 0A09 to L thigh", "await Rerun" (another program's window,
+        by its title), "raise Gaitwright" (before all others).
     lingers_s
         Before the pictures, for what moves.
     leaves
@@ -71,6 +76,10 @@ def says(words: str) -> Callable[[Seen], bool]:
     return lambda seen: seen.says(words)
 
 
+def shows_pages(seen: Seen) -> bool:
+    return at_step("ReportStep")(seen) and any(words.endswith(" pages") for words in seen.words)
+
+
 def is_recording(seen: Seen) -> bool:
     return seen.is_recording
 
@@ -81,8 +90,8 @@ def has_walked(strides: int) -> Callable[[Seen], bool]:
     def counted(seen: Seen) -> bool:
         if not seen.is_recording or "Strides" not in seen.words:
             return False
-        figure = seen.words[seen.words.index("Strides") + 1]
-        return figure.isdigit() and int(figure) >= strides
+        behind = seen.words[seen.words.index("Strides") :]
+        return int(next((words for words in behind if words.isdigit()), 0)) >= strides
 
     return counted
 
@@ -203,7 +212,7 @@ SECOND_BY_KEYS: tuple[Stop, ...] = (  # the same patient comes back: nothing is 
     Stop("24d-keep", offers("Keep 1"), ("press k",), lingers_s=1.0),
     Stop("24e-kept", offers("Results"), ("press Return",), lingers_s=1.0),
     Stop("25a-results", offers("Legs", "Data"), ("press ctrl+7",), lingers_s=2.0, patience_s=60.0),
-    Stop("26a-report", at_step("ReportStep"), ("press ctrl+s",), lingers_s=2.0),
+    Stop("26a-report", shows_pages, ("press ctrl+s",), lingers_s=2.0, patience_s=60.0),
     Stop("26b-where", offers("Save"), ("press ctrl+a", "type {home}/second", "press Return"), lingers_s=1.0),
     Stop("26c-saved", says("Saved as"), ("to Step 7", "press Down", "press Return"), lingers_s=1.0),
     Stop("27-home-again", offers("New session"), lingers_s=2.0),
@@ -233,6 +242,14 @@ def pressed(key: str, times: int) -> tuple[str, ...]:
     return (f"press {key}",) * times
 
 
+def part_chosen(number: int) -> tuple[str, ...]:
+    """By its place in the list and not by its first letter, which every language has another of."""
+    return ("to Part", "press Home", *pressed("Down", number))
+
+
+FRONT_SCREW, KNEE_UNIT, PYLON = 0, 9, 10
+
+
 BENCH: tuple[Stop, ...] = (  # three alignments of one prosthesis, by keys
     *(
         replace(stop, does=(*stop.does, *PROSTHETIC)) if stop.name == "06-patient" else stop
@@ -244,9 +261,9 @@ BENCH: tuple[Stop, ...] = (  # three alignments of one prosthesis, by keys
         "32-a-kept",
         offers("A again"),
         (
-            *("to Part", "press p", "to Height", *pressed("plus", 3), "to Part", "press f"),
+            *(*part_chosen(PYLON), "to Height", *pressed("plus", 3), *part_chosen(FRONT_SCREW)),
             *("to Angle", *pressed("plus", 4), "to Turn", *pressed("plus", 4), "to Shift", *pressed("plus", 4)),
-            *("to Part", "press k", "to Turn", *pressed("plus", 12)),
+            *(*part_chosen(KNEE_UNIT), "to Turn", *pressed("plus", 12)),
         ),
     ),
     Stop("33-b-told", offers("Walk with B"), ("press space",), lingers_s=1.0),
@@ -255,7 +272,7 @@ BENCH: tuple[Stop, ...] = (  # three alignments of one prosthesis, by keys
     Stop(
         "35-b-kept",
         offers("B again"),
-        ("to Part", "press k", "to Angle", *pressed("plus", 8), "press space"),
+        (*part_chosen(KNEE_UNIT), "to Angle", *pressed("plus", 8), "press space"),
         lingers_s=1.0,
     ),
     Stop("35a-c-walking", has_walked(STRIDES), ("press space",), patience_s=60.0),
@@ -271,9 +288,9 @@ BENCH: tuple[Stop, ...] = (  # three alignments of one prosthesis, by keys
         says("Saved as"),
         lingers_s=2.0,
         leaves=(
-            ("results*/**/alignments.csv", "Alignment B,Alignment A,foot_front_screw,2,0.5,4,"),
-            ("results*/**/alignments.csv", "Alignment B,Alignment A,knee_unit,,1.5,,"),
-            ("results*/**/alignments.csv", "Alignment C,Alignment B,knee_unit,4,,,"),
+            ("results*/**/alignments.csv", " A,foot_front_screw,2,0.5,4,"),
+            ("results*/**/alignments.csv", " A,knee_unit,,1.5,,"),
+            ("results*/**/alignments.csv", " B,knee_unit,4,,,"),
             ("results*/**/summary.json", "foot_front_screw"),
             ("results*/**/differences.csv", "foot_heel_rise_deg"),
         ),
@@ -283,7 +300,7 @@ TIMED: tuple[Stop, ...] = (  # ten metres, timed by the motion, then sit to stan
     *KEYBOARD[:BENCH_UP_TO],
     Stop("51-choose", offers("Barefoot"), ("press t",), lingers_s=1.0, patience_s=90.0),
     Stop("52-chosen", says("Next: 10-metre walk"), ("press space",), lingers_s=1.0),
-    Stop("53-running", is_recording, lingers_s=6.0, patience_s=60.0),
+    Stop("53-running", is_recording, lingers_s=8.0, patience_s=60.0),
     Stop("54-over", lambda seen: not seen.is_recording, ("press k",), lingers_s=2.0, patience_s=60.0),
     Stop("55-kept", offers("Results"), (*pressed("t", 4), "press space"), lingers_s=2.0),
     Stop("56-seated", is_recording, ("press Escape",), lingers_s=4.0, patience_s=60.0),
@@ -294,4 +311,36 @@ TIMED: tuple[Stop, ...] = (  # ten metres, timed by the motion, then sit to stan
     Stop("61-where", offers("Save"), ("press ctrl+a", "type {home}/results", "press Return"), lingers_s=1.0),
     Stop("62-saved", says("Saved as"), lingers_s=2.0, leaves=(("results*/**/timed_test.csv", "10 m"),)),
 )
-TOURS = {"keyboard": (*KEYBOARD, *SECOND_BY_KEYS), "mouse": (*MOUSE, *SECOND_BY_MOUSE), "bench": BENCH, "timed": TIMED}
+REVIEWED: tuple[Stop, ...] = (  # the demonstration up to its results, which Rerun shows then, and its report
+    *(stop for stop in MOUSE if stop.name < "13a"),
+    Stop("51-results", offers("Legs", "Review in Rerun"), ("click Review in Rerun", "await Rerun"), patience_s=90.0),
+    Stop("52-rerun", offers("Legs", "Review in Rerun"), ("raise Gaitwright",), lingers_s=20.0),
+    Stop("53-report", offers("Go to the report"), ("click Go to the report",), lingers_s=1.0),
+    *(stop for stop in MOUSE if stop.name.startswith("14")),
+)
+SOURCE = next(k for k, stop in enumerate(KEYBOARD) if stop.name == "07a-source")
+PELVIS: tuple[Stop, ...] = (  # seven sensors, by keys
+    *KEYBOARD[:SOURCE],
+    Stop("51-source", at_step("SensorsStep"), ("to Simulated patient, seven", "press Return"), lingers_s=1.0),
+    Stop("52-sensors", offers("Movement decides"), (*PLACED_BY_KEYS, "press 7"), lingers_s=5.0),
+    Stop("53-placed", says("All seven are worn"), ("press Return",), lingers_s=1.0),
+    Stop("54-stand-still", at_step("StandStillStep"), ("press space",), lingers_s=1.0),
+    Stop("55-standing", is_recording, lingers_s=1.5),
+    Stop("56-lunges", lambda seen: at_step("FreeMotionStep")(seen) and seen.is_recording, lingers_s=5.0),
+    Stop("57-free-motion", at_step("FreeMotionStep"), lingers_s=6.0),
+    *(replace(stop, name=f"58{stop.name[2:]}") for stop in walk(1, ("press 1", "press space"), "press space")),
+    Stop("59-keep", offers("Keep 1"), ("press k",), lingers_s=1.0),
+    Stop("60-kept", offers("Results"), ("press Return",), lingers_s=1.0),
+    Stop("61-results", offers("Legs", "Data"), ("press ctrl+7",), lingers_s=2.0, patience_s=60.0),
+    Stop("62-report", at_step("ReportStep"), ("press ctrl+s",), lingers_s=2.0),
+    Stop("63-where", offers("Save"), ("press ctrl+a", "type {home}/results", "press Return"), lingers_s=1.0),
+    Stop("64-saved", says("Saved as"), lingers_s=2.0, leaves=(("results*/**/angles.csv", "left_hip_deg"),)),
+)
+TOURS = {
+    "keyboard": (*KEYBOARD, *SECOND_BY_KEYS),
+    "mouse": (*MOUSE, *SECOND_BY_MOUSE),
+    "bench": BENCH,
+    "timed": TIMED,
+    "review": REVIEWED,
+    "pelvis": PELVIS,
+}

@@ -2,6 +2,7 @@
 
 import gc
 import os
+import tomllib
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -21,8 +22,21 @@ settings.register_profile("ci", deadline=None, derandomize=True)
 settings.load_profile("ci" if os.environ.get("CI") else "here")
 
 
+REQUIREMENTS = Path(__file__).parents[1] / "packaging" / "safety" / "requirements.toml"
 COLLECTIONS = 60  # of young objects, until the old ones are looked through: that takes a while
 _BEGUN: set[str] = set()
+
+
+@pytest.hookimpl(tryfirst=True)  # before tests are chosen by their marks
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Put on each test the requirements that it holds: `pytest -m "requirement(id='R-REC-01')"`."""
+    held: dict[str, list[str]] = {}
+    for one in tomllib.loads(REQUIREMENTS.read_text(encoding="utf-8"))["requirement"]:
+        for test in one["tests"]:
+            held.setdefault(test, []).append(one["id"])
+    for item in items:
+        for requirement in held.get(item.nodeid.partition("[")[0], ()):
+            item.add_marker(pytest.mark.requirement(id=requirement))
 
 
 @pytest.fixture(scope="session")

@@ -205,6 +205,55 @@ def test_the_lock_holds_everything_the_project_asks_for() -> None:
     assert names - set(re.findall(r"^([\w.-]+)==", LOCK, re.MULTILINE)) == set()
 
 
+# what turns bytes of a file into running code, or a name inside of it into a path
+UNSAFE_MODULES = {"pickle", "shelve", "marshal", "dill", "joblib", "cloudpickle", "yaml", "runpy", "code"}
+UNSAFE_CALLS = {"eval", "exec", "extract", "extractall", "unpack_archive", "system", "popen"}
+UNSAFE_ARGUMENTS = {"allow_pickle", "shell"}
+FROM_THE_ASKING_PROCESS = "app/batch/executors.py"  # through a pipe that only the two have; no file is in it
+
+
+def unsafe(parts: Iterable[ast.AST]) -> Iterator[int]:
+    """Find the lines with what would run or unpack what stands in a file."""
+    for node in parts:
+        match node:
+            case ast.Import(names=names):
+                named = {alias.name.split(".")[0] for alias in names}
+            case ast.ImportFrom(module=str(module)):
+                named = {module.split(".")[0]}
+            case ast.Call(func=ast.Name(id=name)) if name in UNSAFE_CALLS:
+                named = UNSAFE_MODULES
+            case ast.Call(func=ast.Attribute(value=ast.Name(id="os" | "shutil" | "archive" | "zipped"), attr=name)):
+                named = UNSAFE_MODULES if name in UNSAFE_CALLS else set()
+            case ast.Call(func=ast.Attribute(attr="extractall")):
+                named = UNSAFE_MODULES
+            case ast.keyword(arg=str(name), value=ast.Constant(value=True)) if name in UNSAFE_ARGUMENTS:
+                named = UNSAFE_MODULES
+            case _:
+                continue
+        if named & UNSAFE_MODULES:
+            yield getattr(node, "lineno", 0)
+
+
+def test_what_would_run_or_unpack_a_file_is_found() -> None:
+    bad = [
+        "import pickle",
+        "from yaml import load",
+        "eval(text)",
+        "archive.extractall(folder)",
+        "shutil.unpack_archive(name)",
+        "np.load(path, allow_pickle=True)",
+        "subprocess.run(line, shell=True)",
+    ]
+    assert all(list(unsafe(ast.walk(ast.parse(line)))) == [1] for line in bad)
+    good = ["dialog.exec()", "np.load(path, allow_pickle=False)", "archive.read(name)", "ast.literal_eval(text)"]
+    assert [line for line in good if list(unsafe(ast.walk(ast.parse(line))))] == []
+
+
+def test_nothing_from_a_file_is_unpickled_run_or_unpacked() -> None:
+    files = [file for file in python_files(*PACKAGES) if file != ROOT / FROM_THE_ASKING_PROCESS]
+    assert [place(file, line) for file in files for line in unsafe(nodes(file))] == []
+
+
 ARRAYS = {"FloatArray", "IntArray", "BoolArray", "ComplexArray"}
 GIVES_NUMBERS = re.compile(r"\b(float|FloatArray|IntArray|BoolArray|ComplexArray)\b")
 

@@ -14,6 +14,8 @@ from core.tracks import nominal_step_s
 
 LOOK_S = 1.0
 SURE_AFTER = 2  # looks that say the same
+LYING_RAD_S = np.deg2rad(1.0)  # spread of the rate: nobody who wears a sensor keeps it so still for half a minute
+MOST = max(USUAL_SITES)
 
 
 class ChainSearch:
@@ -51,6 +53,9 @@ class ChainSearch:
     def _look(self, at_s: float) -> Generator[None, None, None]:
         speeds = self._note_lifts(at_s)
         blocks = {k: v for k, v in self._memory.between(at_s - KEPT_S, at_s).items() if k in speeds}
+        lying = [name for name, block in blocks.items() if _spread_rad_s(block) < LYING_RAD_S]
+        if len(blocks) == MOST and len(lying) == 1:  # a spare one beside the patient would pass for a pelvis that rests
+            del blocks[lying[0]]
         moving = sum(speed > MOVING_RAD_S for speed in speeds.values())
         if len(blocks) not in USUAL_SITES or moving < min(2, len(blocks) - 1):  # one alone is being shaken
             return
@@ -87,7 +92,7 @@ class ChainSearch:
         legs.sort(key=lambda leg: np.inf if leg.moved_at_s is None else leg.moved_at_s)
         at_s = [leg.moved_at_s for leg in legs]
         lead_s = None if len(at_s) < 2 or at_s[0] is None or at_s[1] is None else at_s[1] - at_s[0]
-        return Chains(tuple(legs), chains.margin, lead_s)
+        return replace(chains, legs=tuple(legs), lead_s=lead_s)
 
     def _moved_at_s(self, leg: Chain) -> float | None:
         at_s = [self._lifted_at_s[name] for name in leg.sensors if name in self._lifted_at_s]
@@ -95,4 +100,10 @@ class ChainSearch:
 
 
 def _legs(chains: Chains) -> set[tuple[str, ...]]:
-    return {leg.sensors for leg in chains.legs}
+    pelvis = () if chains.pelvis is None else (chains.pelvis,)
+    return {pelvis, *(leg.sensors for leg in chains.legs)}
+
+
+def _spread_rad_s(block: ImuBlock) -> float:
+    known = block.gyr_rad_s[np.isfinite(block.gyr_rad_s).all(axis=1)]
+    return float(np.sqrt(np.sum(np.var(known, axis=0)))) if len(known) else 0.0

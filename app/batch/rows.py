@@ -14,7 +14,7 @@ from app.logs import version_of
 from app.storage.pseudonyms import SEXES, age_in_words
 from core.body import Side
 from core.samples import Recording, Session
-from core.verdicts.quantities import OF_BOTH, PARAMETERS
+from core.verdicts.quantities import OF_BOTH, OF_HIPS, PARAMETERS
 
 Row = dict[str, str | float | int | bool | None]
 
@@ -73,6 +73,17 @@ COLUMNS: Mapping[str, CellKind] = {
         for name in OF_BOTH_ONLY
         for column, kind in ((name, CellKind.NUMBER), (f"{name}_status", CellKind.TEXT))
     },
+}
+
+
+HIP_COLUMNS: Mapping[str, CellKind] = {  # of a table with a session that had a sensor on the pelvis
+    column: kind
+    for name in OF_HIPS
+    for column, kind in (
+        (name, CellKind.NUMBER),
+        (f"{name}_sd", CellKind.NUMBER),
+        (f"{name}_status", CellKind.TEXT),
+    )
 }
 
 
@@ -140,6 +151,10 @@ def _figures(found: Mapping[str, Any], *, is_leg: bool) -> Iterator[tuple[str, s
         for name in PARAMETERS:
             yield name, found[f"{name}_mean"]
             for end in ("_sd", "_error", "_status"):
+                yield f"{name}{end}", found[f"{name}{end}"]
+        for name in (one for one in OF_HIPS if f"{one}_mean" in found):
+            yield name, found[f"{name}_mean"]
+            for end in ("_sd", "_status"):
                 yield f"{name}{end}", found[f"{name}{end}"]
 
 

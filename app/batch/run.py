@@ -9,7 +9,7 @@ from time import monotonic
 
 from app.analysed_folder import AnalysisChoices
 from app.batch.done import BatchFolder
-from app.batch.rows import UNNUMBERED, Row
+from app.batch.rows import COLUMNS, HIP_COLUMNS, UNNUMBERED, Row
 from app.batch.software import software
 from app.batch.sources import SessionSource
 from app.batch.spread import WorkerLostError, Workers, finished
@@ -116,7 +116,9 @@ class Batch:
         lines = [(typed_cell(one_line(name)), typed_cell(one_line(reason))) for name, reason in failures]
         write_table(("session", "reason"), lines, self._folder.work / FAILURES)
         (self._folder.work / FAILURES).replace(self._folder.out / FAILURES)
-        self.result.rows = write_tables(self._rows(), self._folder.work, self._folder.out)
+        has_hips = any(column in row for row in self._rows() for column in HIP_COLUMNS)
+        columns = {**COLUMNS, **(HIP_COLUMNS if has_hips else {})}
+        self.result.rows = write_tables(self._rows(), self._folder.work, self._folder.out, columns)
 
     def _rows(self) -> Iterator[Row]:
         """Of the sessions of this run, those that this software made with these choices: never two kinds in a table."""

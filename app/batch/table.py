@@ -6,9 +6,10 @@ columns that it names. Equal rows give equal bytes.
 """
 
 import csv
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import islice
 from pathlib import Path
+from types import MappingProxyType
 
 import pyarrow as pa
 import pyarrow.parquet as pq
@@ -25,11 +26,11 @@ TYPES = {
     CellKind.COUNT: pa.int64(),
     CellKind.FLAG: pa.bool_(),
 }
-SCHEMA = pa.schema([(name, TYPES[kind]) for name, kind in COLUMNS.items()])
-WORDS = [name for name, kind in COLUMNS.items() if kind is CellKind.TEXT]
 
 
-def write_tables(rows: Iterable[Row], beside: Path, folder: Path) -> int:
+def write_tables(
+    rows: Iterable[Row], beside: Path, folder: Path, columns: Mapping[str, CellKind] = MappingProxyType(dict(COLUMNS))
+) -> int:
     """Write both files into `beside` and rename them into `folder`; gives how many rows they have.
 
     Raises
@@ -38,17 +39,19 @@ def write_tables(rows: Iterable[Row], beside: Path, folder: Path) -> int:
         The disk is full or cannot be written to.
     """
     count = 0
+    schema = pa.schema([(name, TYPES[kind]) for name, kind in columns.items()])
+    words = [name for name, kind in columns.items() if kind is CellKind.TEXT]
     with (
         (beside / CSV).open("w", encoding="utf-8", newline="") as file,
-        pq.ParquetWriter(beside / PARQUET, SCHEMA, compression="zstd", use_dictionary=WORDS) as parquet,
+        pq.ParquetWriter(beside / PARQUET, schema, compression="zstd", use_dictionary=words) as parquet,
     ):
         lines = csv.writer(file, lineterminator="\n")
-        lines.writerow(COLUMNS)
+        lines.writerow(columns)
         group: list[pa.RecordBatch] = []
         for block in _blocks(rows):
             count += len(block)
-            lines.writerows([_cell(kind, row.get(name)) for name, kind in COLUMNS.items()] for row in block)
-            group.append(_batch(block))
+            lines.writerows([_cell(kind, row.get(name)) for name, kind in columns.items()] for row in block)
+            group.append(_batch(block, schema))
             if sum(len(batch) for batch in group) >= GROUP_ROWS:
                 parquet.write_table(pa.Table.from_batches(group), row_group_size=GROUP_ROWS)
                 group.clear()
@@ -65,9 +68,9 @@ def _blocks(rows: Iterable[Row]) -> Iterator[list[Row]]:
         yield block
 
 
-def _batch(block: Sequence[Row]) -> pa.RecordBatch:
-    arrays = [pa.array([row.get(field.name) for row in block], field.type) for field in SCHEMA]
-    return pa.RecordBatch.from_arrays(arrays, schema=SCHEMA)
+def _batch(block: Sequence[Row], schema: pa.Schema) -> pa.RecordBatch:
+    arrays = [pa.array([row.get(field.name) for row in block], field.type) for field in schema]
+    return pa.RecordBatch.from_arrays(arrays, schema=schema)
 
 
 def _cell(kind: CellKind, value: str | float | int | bool | None) -> str:

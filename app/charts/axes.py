@@ -4,13 +4,30 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from app.wording import capitalised, name_of, tr
-from core.body import Joint, Side, ankle_of, knee_of
+from app.wording import capitalised, later, name_of, tr
+from core.body import JointKind, Side
 from core.samples import FloatArray
 
 KNEE_DEG = (-10.0, 80.0)
 ANKLE_DEG = (-30.0, 30.0)
-ABOUT_MEAN_DEG = {KNEE_DEG: (-40.0, 50.0), ANKLE_DEG: ANKLE_DEG}  # of curves without a height
+HIP_DEG = (-30.0, 60.0)
+USUAL_DEG = {JointKind.HIP: HIP_DEG, JointKind.KNEE: KNEE_DEG, JointKind.ANKLE: ANKLE_DEG}
+ABOUT_MEAN_DEG = {  # of curves without a height
+    JointKind.HIP: (-40.0, 50.0),
+    JointKind.KNEE: (-40.0, 50.0),
+    JointKind.ANKLE: ANKLE_DEG,
+}
+TITLES = {JointKind.HIP: later("Hip"), JointKind.KNEE: later("Knee"), JointKind.ANKLE: later("Ankle")}
+SIGNS = {
+    JointKind.HIP: later("flexion + (°)"),
+    JointKind.KNEE: later("flexion + (°)"),
+    JointKind.ANKLE: later("dorsiflexion + (°)"),
+}
+NOTHING = {
+    JointKind.HIP: later("No hip angles."),
+    JointKind.KNEE: later("No knee angles."),
+    JointKind.ANKLE: later("No ankle angles."),
+}
 AXIS_WIDTH, RIGHT_MARGIN = 40, 16  # fixed, so that charts above one another align
 WIDEN_TO_DEG = 10  # a range that is left is widened to the next full ten
 
@@ -34,25 +51,21 @@ def angle_in_words(value: float) -> str:
     return f"{round(value)}".replace("-", "\N{MINUS SIGN}")
 
 
-def joint_of(side: Side, is_knee: bool) -> Joint:
-    return knee_of(side) if is_knee else ankle_of(side)
-
-
-def part_in_words(side: Side, is_knee: bool) -> str:
+def part_in_words(side: Side, kind: JointKind) -> str:
     """Name a joint where a sentence begins: "Left knee"."""
-    return capitalised(name_of(joint_of(side, is_knee)))
+    return capitalised(name_of(kind.of(side)))
 
 
-def title_in_words(is_knee: bool) -> str:
-    return tr("Knee") if is_knee else tr("Ankle")
+def title_in_words(kind: JointKind) -> str:
+    return tr(TITLES[kind])
 
 
-def sign_in_words(is_knee: bool) -> str:
-    return tr("flexion + (°)") if is_knee else tr("dorsiflexion + (°)")
+def sign_in_words(kind: JointKind) -> str:
+    return tr(SIGNS[kind])
 
 
-def nothing_in_words(is_knee: bool) -> str:
-    return tr("No knee angles.") if is_knee else tr("No ankle angles.")
+def nothing_in_words(kind: JointKind) -> str:
+    return tr(NOTHING[kind])
 
 
 def range_in_words(range_deg: tuple[float, float]) -> str:

@@ -7,7 +7,7 @@ import numpy as np
 
 from app.charts.cycles import Band
 from app.wording import capitalised, name_of, tr
-from core.body import Joint
+from core.body import Joint, JointKind
 from core.samples import FloatArray
 
 MOST_MARKS = 2  # in one chart; more would hide the curves
@@ -37,7 +37,7 @@ class Deviation:
     Raises
     ------
     ValueError
-        The points are of a knee and an ankle, which have no chart in common.
+        The points are of joints of two kinds, which have no chart in common.
     """
 
     first: Point
@@ -49,7 +49,7 @@ class Deviation:
     number: int | None = None
 
     def __post_init__(self) -> None:
-        if self.first.joint.is_knee is not self.second.joint.is_knee:
+        if self.first.joint.kind is not self.second.joint.kind:
             msg = f"{self.first.joint} and {self.second.joint} are not drawn in one chart"
             raise ValueError(msg)
 
@@ -58,8 +58,8 @@ class Deviation:
         return self.first, self.second
 
     @property
-    def is_knee(self) -> bool:
-        return self.first.joint.is_knee
+    def kind(self) -> JointKind:
+        return self.first.joint.kind
 
     def in_words(self) -> str:
         """The same for who cannot see it, as sentences."""

@@ -38,7 +38,7 @@ def _place_deviation(theme: Theme, ground: Ground, deviation: Deviation) -> Mark
     second = QFontMetrics(_font(theme, is_first=False)).horizontalAdvance(deviation.more) + 1
     line = theme.px(LINE_HEIGHT)
     sizes = [(first, line), (max(first, second), 2 * line)] if deviation.more else [(first, line)]
-    return place_mark(ground, ends, sizes, USUAL_EMPTY_PERCENT[deviation.is_knee])
+    return place_mark(ground, ends, sizes, USUAL_EMPTY_PERCENT[deviation.kind])
 
 
 def paint_deviation(painter: QPainter, theme: Theme, frame: Frame, deviation: Deviation, place: MarkPlace) -> None:

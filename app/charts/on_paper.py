@@ -46,8 +46,10 @@ STRIDE, ONLY_STRIDES = 0.32, 0.8
 
 BRACKET_WIDTH, BRACKET_CAP, NUMBER_RADIUS = 1.4, 2.5, 4.4
 LETTERS_FROM, LETTERS_APART = 24, 44  # percent of the stride
+NARROWEST = 27 * MM  # narrower, fewer labels fit below it
 NARROW, NARROW_FOOT = 60 * MM, 17.0  # narrower, what the axis is has no room, and stands above the charts
 HATCH_APART, LINE_OF_WORDS = 6.0, 8.6
+BELOW_MARK = 11.0  # of a plot's top, so that why it is withheld does not run into "SIMULATED"
 SIZE_OF_WORDS, PER_LETTER = 7.0, 0.6  # a letter's width on its height; an SVG cannot be asked
 
 
@@ -130,7 +132,7 @@ def places_of(frame: Frame, chart: StrideChart) -> list[MarkPlace]:
     for deviation in chart.deviations:
         ends = [(float(frame.x(point.percent)), float(frame.y(point.angle_deg))) for point in deviation.points]
         size = PER_LETTER * SIZE_OF_WORDS * len(deviation.size), 2 * NUMBER_RADIUS
-        places.append(place_mark(ground, ends, [size], USUAL_EMPTY_PERCENT[deviation.is_knee]))
+        places.append(place_mark(ground, ends, [size], USUAL_EMPTY_PERCENT[deviation.kind]))
     return places
 
 
@@ -193,7 +195,7 @@ def _hatches(frame: Frame) -> list[str]:
 def _why_withheld(frame: Frame, chart: StrideChart) -> list[str]:
     lines = wrap(chart.withheld, int(0.8 * frame.width / (PER_LETTER * SIZE_OF_WORDS)))
     middle, height = (frame.top + frame.bottom) / 2, 16 + LINE_OF_WORDS * len(lines)
-    top, x = middle - height / 2, (frame.left + frame.right) / 2
+    top, x = max(middle - height / 2, frame.top + BELOW_MARK), (frame.left + frame.right) / 2
     parts = [box(frame.left + 0.08 * frame.width, top, 0.84 * frame.width, height, PAPER.paper)]
     parts.append(text(x, top + 10, _withheld_word(), 8.6, anchor="middle", weight=600))
     for k, words in enumerate(lines):
@@ -205,7 +207,7 @@ def _axes(frame: Frame, axis: Axis, *, is_narrow: bool) -> list[str]:
     parts = []
     for percent in range(0, 101, 10):
         x = float(frame.x(percent))
-        is_labelled = percent % 20 == 0
+        is_labelled = percent % (20 if frame.width >= NARROWEST else 50) == 0
         if is_labelled and 0 < percent < 100:
             parts.append(line(x, frame.top, x, frame.bottom, PAPER.grid, 0.25))
         parts.append(line(x, frame.bottom, x, frame.bottom + (4 if is_labelled else 2.5), PAPER.ink, 0.6))

@@ -259,6 +259,7 @@ def _paint_toe_offs(painter: QPainter, theme: Theme, frame: Frame, width: float,
         left = x - needed - theme.px(4) if i == 0 else x + theme.px(4)
         left = min(max(left, least), width - needed)
         painter.drawText(QRectF(left, 0, needed, frame.top), AT_LEFT, label)
+        least = left + needed + theme.px(4)
 
 
 def _paint_letters(painter: QPainter, theme: Theme, frame: Frame, chart: StrideChart) -> None:

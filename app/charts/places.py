@@ -9,9 +9,14 @@ from app.charts.cycles import PERCENT
 from app.charts.frame import Frame
 from app.charts.marks import BAND_SDS
 from app.charts.stride_chart import StrideChart, toe_offs_in_order
+from core.body import JointKind
 from core.samples import FloatArray
 
-USUAL_EMPTY_PERCENT = {True: 50.0, False: 43.0}  # of a knee and an ankle: between the stance's curve and the swing's
+USUAL_EMPTY_PERCENT = {  # between the stance's curve and the swing's
+    JointKind.HIP: 50.0,
+    JointKind.KNEE: 50.0,
+    JointKind.ANKLE: 43.0,
+}
 CANDIDATES_PERCENT = np.arange(2.0, 99.0)
 WORDS_APART = 10.0  # between bar and words
 CLEAR = 3.0  # around words

@@ -5,11 +5,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from app.charts.axes import ABOUT_MEAN_DEG, ANKLE_DEG, KNEE_DEG
+from app.charts.axes import ABOUT_MEAN_DEG, USUAL_DEG
 from app.charts.cycles import Band, SideCycle, is_mean_enough, is_spread_enough
 from app.charts.marks import Deviation, Gap
 from app.wording import tr
-from core.body import Side
+from core.body import JointKind, Side
 from core.gait.cycles import POINTS
 from core.samples import FloatArray
 
@@ -83,10 +83,9 @@ class StrideChart:
         return any(curve.order is not None for curve in self.curves)
 
 
-def usual_range_deg(*, is_knee: bool, is_about_mean: bool) -> tuple[float, float]:
+def usual_range_deg(kind: JointKind, *, is_about_mean: bool) -> tuple[float, float]:
     """What an axis reaches in every chart, so that two patients are compared at a glance."""
-    usual = KNEE_DEG if is_knee else ANKLE_DEG
-    return ABOUT_MEAN_DEG[usual] if is_about_mean else usual
+    return (ABOUT_MEAN_DEG if is_about_mean else USUAL_DEG)[kind]
 
 
 def toe_offs_in_order(curves: Sequence[StrideCurve], decimals: int) -> list[StrideCurve]:

@@ -15,8 +15,9 @@ from pathlib import Path
 
 import numpy as np
 
-from app.exports.figures import RESEARCH, SIMULATED, software
+from app.exports.figures import SIMULATED, software
 from app.storage.pseudonyms import AGE, age_in_words
+from app.wording import PURPOSE
 from core.body import Site
 from core.samples import FloatArray, ImuBlock, Recording, RecordingKind, SensorInfo, Session
 
@@ -99,7 +100,7 @@ def write_bids(session: Session, folder: Path) -> None:
     )
     said = [SIMULATED] if session.is_simulated else []
     said += [
-        f"What inertial sensors on thighs, shanks and feet measured in one session. Made by {software()}. {RESEARCH}",
+        f"What inertial sensors on thighs, shanks and feet measured in one session. Made by {software()}. {PURPOSE}",
         "Accelerations hold gravity. Axes are those of the sensors, whose alignment to the body is not known.",
     ]
     (folder / "README").write_text("\n".join([*said, ""]), encoding="utf-8")

@@ -1,8 +1,9 @@
 """How does a motion laboratory's program read the angles? One C3D file per recording, angles as points, with events.
 
 Angles stand where such programs look for them: as points of the kind ANGLES, LKneeAngles and so on, of which the first
-component bends; the two others were not measured and are 0. A C3D has one rate and no stamps, so each frame holds the
-row of angles.csv nearest to it, at most half a frame away; a frame without one, or in a gap, has residual -1.
+component bends; the two others were not measured and are 0. Of a hip the second one is adduction, where that is told.
+A C3D has one rate and no stamps, so each frame holds the row of angles.csv nearest to it, at most half a frame away; a
+frame without one, or in a gap, has residual -1.
 
 A joint that is withheld, or whose sign is not known, is left out. One without a zero is named as its shape, such as
 LKneeAngles_SHAPE, and its mean is taken away, so that nothing reads a height from it. PROCESSING:STATUS says why.
@@ -14,10 +15,11 @@ from textwrap import shorten
 import ezc3d
 import numpy as np
 
-from app.exports.figures import SIMULATED, status_in_ascii, told_deg
+from app.exports.figures import SIMULATED, status_in_ascii, told_abduction_deg, told_deg
 from app.reports.gait_csv import events_of
 from app.reports.status import NO_ZERO, WITH_HEIGHT, joint_status
-from core.body import Joint
+from app.wording import PURPOSE
+from core.body import Joint, JointKind
 from core.results import RecordingAnalysis
 from core.samples import FloatArray, IntArray
 from core.tracks import nominal_step_s
@@ -28,7 +30,10 @@ POINTS = {
     Joint.RIGHT_KNEE: "RKneeAngles",
     Joint.LEFT_ANKLE: "LAnkleAngles",
     Joint.RIGHT_ANKLE: "RAnkleAngles",
+    Joint.LEFT_HIP: "LHipAngles",
+    Joint.RIGHT_HIP: "RHipAngles",
 }
+BENDS = {JointKind.HIP: "hip flexion", JointKind.KNEE: "knee flexion", JointKind.ANKLE: "ankle dorsiflexion"}
 # what other programs call the two that bound stance; the rest have no name of their own there
 EVENTS = {
     "initial_contact": "Foot Strike",
@@ -54,8 +59,10 @@ def write_c3d(recording: RecordingAnalysis, is_simulated: bool, path: Path) -> N
     OSError
         The file cannot be written.
     """
-    status = {joint: joint_status(recording, joint) for joint in POINTS if joint in recording.joints}
+    status = {joint: joint_status(recording, joint) for joint in POINTS if joint in recording.measured}
     joints = [joint for joint, said in status.items() if said in TOLD]
+    found = {joint: told_abduction_deg(recording, joint) for joint in joints if joint.is_hip}
+    abductions = {joint: abduction_deg for joint, abduction_deg in found.items() if abduction_deg is not None}
     rows, step_s = _rows_of_frames(recording)
     if len(rows) > MOST_FRAMES:
         raise FileRefusedError(
@@ -72,6 +79,8 @@ def write_c3d(recording: RecordingAnalysis, is_simulated: bool, path: Path) -> N
         if status[joint] == NO_ZERO and np.isfinite(angle_deg).any():
             angle_deg = angle_deg - np.nanmean(angle_deg)
         values[0, k] = np.append(angle_deg, np.nan)[rows]  # a frame without a row is the last, which is missing
+        if joint in abductions:
+            values[1, k] = np.append(-abductions[joint], np.nan)[rows]
     is_missing = ~np.isfinite(values[0])
     values[:3, is_missing] = np.nan
     c3d = ezc3d.c3d()
@@ -79,7 +88,9 @@ def write_c3d(recording: RecordingAnalysis, is_simulated: bool, path: Path) -> N
     point["RATE"]["value"] = [1.0 / step_s]
     labels = [POINTS[joint] + (SHAPE if status[joint] == NO_ZERO else "") for joint in joints]
     point["LABELS"]["value"] = labels
-    point["DESCRIPTIONS"]["value"] = [_description(joint, status[joint]) for joint in joints]
+    point["DESCRIPTIONS"]["value"] = [
+        _description(joint, status[joint], has_adduction=joint in abductions) for joint in joints
+    ]
     point["UNITS"]["value"] = ["deg"] * len(joints)
     c3d.add_parameter("POINT", "TYPE_GROUPS", ["ANGLES"])
     c3d.add_parameter("POINT", "ANGLES", labels)
@@ -87,6 +98,7 @@ def write_c3d(recording: RecordingAnalysis, is_simulated: bool, path: Path) -> N
     c3d.add_parameter("MANUFACTURER", "SOFTWARE", ["gaitwright"])
     said = [f"{joint}: {status_in_ascii(recording, joint)}" for joint in status]
     c3d.add_parameter("PROCESSING", "STATUS", [shorten(text, LONGEST_TEXT, placeholder=" ...") for text in said])
+    c3d.add_parameter("PROCESSING", "USE", [PURPOSE])
     c3d.add_parameter("SUBJECTS", "IS_SIMULATED", [int(is_simulated)])
     if is_simulated:
         c3d.add_parameter("SUBJECTS", "NOTE", [SIMULATED])
@@ -113,10 +125,10 @@ def _rows_of_frames(recording: RecordingAnalysis) -> tuple[IntArray, float]:
     return np.where(is_near, nearest, -1), step_s
 
 
-def _description(joint: Joint, status: str) -> str:
-    bends = "knee flexion" if joint.is_knee else "ankle dorsiflexion"
+def _description(joint: Joint, status: str, *, has_adduction: bool) -> str:
     shape = " less its mean, for there is no zero" if status == NO_ZERO else ""
-    return f"x: {bends}{shape}; y, z not measured"
+    rest = "y: adduction; z not measured" if has_adduction else "y, z not measured"
+    return f"x: {BENDS[joint.kind]}{shape}{', from standing' if joint.is_hip else ''}; {rest}"
 
 
 def _add_events(c3d: ezc3d.c3d, recording: RecordingAnalysis) -> None:

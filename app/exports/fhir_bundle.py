@@ -14,11 +14,12 @@ from pathlib import Path
 from typing import Any
 from uuid import NAMESPACE_URL, uuid5
 
-from app.exports.figures import RESEARCH, SIMULATED, WalkFigure, reason_of, software, unit_of, walk_figures
+from app.exports.figures import SIMULATED, WalkFigure, reason_of, software, unit_of, walk_figures
 from app.gates_in_words import gate_sentence
 from app.measure_names import goal_in_words
 from app.reports.agreed import agreed_with
 from app.storage.pseudonyms import AGE
+from app.wording import PURPOSE
 from core.body import Side
 from core.goals import Goal
 from core.results import Analysis
@@ -173,7 +174,7 @@ def _status(one: WalkFigure) -> str:
 
 def _notes(walk: str, condition: str) -> Iterator[str]:
     yield f"{walk}, {condition}" if condition.strip() else walk
-    yield RESEARCH
+    yield PURPOSE
 
 
 def _code(name: str, words: str = "") -> Mapping[str, Any]:

@@ -15,9 +15,8 @@ from core.body import Joint, Side
 from core.results import Analysis, RecordingAnalysis
 from core.samples import FloatArray
 from core.verdicts.model import Assessment, Verdict
-from core.verdicts.quantities import OF_BOTH, PARAMETERS, assessment_of, assessment_of_both
+from core.verdicts.quantities import OF_BOTH, OF_HIPS, PARAMETERS, assessment_of, assessment_of_both
 
-RESEARCH = "Research use. Not a medical device."
 SIMULATED = "SIMULATED: nobody was measured."
 UNITS = {  # by the end of a name, longer ends first
     "_steps_min": "steps/min",
@@ -76,7 +75,7 @@ def walk_figures(analysis: Analysis) -> Iterator[WalkFigure]:
     for walk, figures in walks.items():
         for side in Side:
             of_side = figures[side]
-            for name in PARAMETERS:
+            for name in (*PARAMETERS, *(OF_HIPS if any(joint.is_hip for joint in said[walk].joints) else ())):
                 mean, sd, error = (of_side.get(f"{name}_{what}") for what in ("mean", "sd", "error"))
                 found = assessment_of(said[walk], side, name)
                 if mean is not None or not found.is_told:
@@ -101,7 +100,15 @@ def as_in_csv_deg(angle_rad: FloatArray) -> FloatArray:
 
 def told_deg(recording: RecordingAnalysis, joint: Joint) -> FloatArray:
     """The joint's angle as in angles.csv (n,), for formats whose samples have no status: NaN once a strap slipped."""
-    found = as_in_csv_deg(recording.joints[joint].angle_rad)
+    found = as_in_csv_deg(recording.measured[joint].angle_rad)
+    return np.where(is_slipped(recording, joint.side), np.nan, found)
+
+
+def told_abduction_deg(recording: RecordingAnalysis, joint: Joint) -> FloatArray | None:
+    """A hip's abduction as in angles.csv (n,), NaN once a strap slipped; None where it may not be told."""
+    if not assessment_of(recording.verdicts, joint.side, "hip_abduction_peak_deg").is_told:
+        return None
+    found = as_in_csv_deg(recording.hips[joint].abduction_rad)
     return np.where(is_slipped(recording, joint.side), np.nan, found)
 
 

@@ -15,6 +15,7 @@ from app.storage.pseudonyms import AGE, Pseudonyms, Typed
 from app.timed_words import planned_words
 from app.wording import later
 from core.goals import Goal, held
+from core.hip.results import HipAngle
 from core.results import Analysis, Calibration, JointCalibration
 from core.samples import Recording, Session
 
@@ -41,11 +42,18 @@ def pseudonymised(
             walks_from=tuple(names[name] for name in found.walks_from),
         )
 
+    def hip(found: HipAngle) -> HipAngle:
+        standing = names.get(found.identification.standing_from, "")
+        return replace(found, identification=replace(found.identification, standing_from=standing))
+
     spans = tuple(
         Calibration(tuple(names[name] for name in span.walks), {j: joint(found) for j, found in span.joints.items()})
         for span in analysis.calibrations
     )
-    recordings = tuple(replace(r, name=names[r.name], folder=folders[r.name]) for r in analysis.recordings)
+    recordings = tuple(
+        replace(r, name=names[r.name], folder=folders[r.name], hips={j: hip(found) for j, found in r.hips.items()})
+        for r in analysis.recordings
+    )
     return other, replace(analysis, calibrations=spans, recordings=recordings, findings=())
 
 

@@ -19,16 +19,16 @@ from openpyxl.styles import Font
 from openpyxl.worksheet._write_only import WriteOnlyWorksheet
 
 from app.alignment_words import since_in_words
-from app.exports.figures import RESEARCH, SIMULATED, reason_of, software, unit_of, walk_figures
+from app.exports.figures import SIMULATED, reason_of, software, unit_of, walk_figures
 from app.exports.pseudonymised import what_is_said
 from app.reports.gait_csv import gait_tables
 from app.reports.status import WITHHELD, all_that_is_said, why
-from app.wording import sentence
-from core.body import Side
+from app.wording import PURPOSE, sentence
+from core.body import Side, hip_of
 from core.results import Analysis, RecordingAnalysis
 from core.samples import Session
 from core.verdicts.model import Assessment, Verdict, together
-from core.verdicts.quantities import PARAMETERS, assessment_of
+from core.verdicts.quantities import OF_HIPS, PARAMETERS, assessment_of
 
 Value = str | float | int | None
 NUMBER = re.compile(r"-?\d+(\.\d+)?")
@@ -73,7 +73,7 @@ def _about(session: Session, analysis: Analysis) -> list[list[Value]]:
     rows += [
         ["method", str(analysis.method)],
         ["software", software()],
-        ["use", RESEARCH],
+        ["use", PURPOSE],
     ]
     told = [row for row in rows if row[1] not in ("", None) or row[0] == SIMULATED]
     return [*told, ["What may be read", None], *_verdicts(analysis)]
@@ -116,13 +116,17 @@ def _joined(analysis: Analysis, name: str) -> tuple[list[str], Iterable[list[Val
 def _withheld_columns(recording: RecordingAnalysis, table: str, side: str) -> set[str]:
     """Columns of one row whose cells are empty in the CSV file because nothing may be said of them."""
     if table == "strides":
-        return {name for name in PARAMETERS if _is_withheld(assessment_of(recording.verdicts, Side(side), name))}
+        names = (*PARAMETERS, *OF_HIPS)
+        return {name for name in names if _is_withheld(assessment_of(recording.verdicts, Side(side), name))}
     found = set()
     for joint, said in recording.verdicts.joints.items() if table == "cycles" else ():
         curve = together((said.shape, said.sign))
         found |= {f"{joint}_mean_deg"} if _is_withheld(together((curve, said.height))) else set()
         found |= {f"{joint}_shape_deg"} if _is_withheld(curve) else set()
         found |= {f"{joint}_stride_sd_deg"} if _is_withheld(said.shape) else set()
+    for leg in recording.verdicts.abduction if table == "cycles" else ():
+        of_abduction = assessment_of(recording.verdicts, leg, "hip_abduction_peak_deg")
+        found |= {f"{hip_of(leg)}_abduction_mean_deg"} if _is_withheld(of_abduction) else set()
     return found
 
 

@@ -14,6 +14,7 @@ from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QStackedWidget, 
 from app.home.analysing_again import AnalysingAgain
 from app.home.computing_courses import ComputingCourses
 from app.home.deleting import Deleting
+from app.home.filling_demonstration import FillingDemonstration
 from app.home.goals import GoalsOfPatient
 from app.home.importing import Importing
 from app.home.library_notices import LibraryNotices
@@ -71,7 +72,7 @@ class Home(Themed):
     def __init__(self, look: ThemeNotifier, controller: LibraryController, settings: Settings) -> None:
         super().__init__()
         self._look, self._controller, self._settings = look, controller, settings
-        self._state: OpenedState | None = None
+        self.state: OpenedState | None = None
         self._patients: dict[UUID, stored.StoredPatient] = {}
         self._sessions_of: UUID | None = None  # the patient whose sessions are shown, or being read
         self._reading: PatientReading | None = None
@@ -90,6 +91,7 @@ class Home(Themed):
         self.toast = Toast(look, self)
         self.deleting = Deleting(controller, self)
         self.computing = ComputingCourses(controller, self)
+        self.filling = FillingDemonstration(look, controller, self)
         self._build()
         self._connect()
         self._go_to(self.page)
@@ -141,6 +143,7 @@ class Home(Themed):
 
     def finish(self) -> None:
         """Wait for what runs, when the window was closed."""
+        self.filling.stop()
         if self._questions is not None:
             self._questions.finish()
 
@@ -151,8 +154,8 @@ class Home(Themed):
         made.restored.connect(self.refresh)
         made.moved.connect(self._on_moved)
         self.deleting.undone.connect(made.read_deleted)
-        if self._state is not None:
-            made.show_library(self._state)
+        if self.state is not None:
+            made.show_library(self.state)
         return made
 
     def _make_questions(self) -> Questions:
@@ -165,7 +168,7 @@ class Home(Themed):
 
     def show_library(self, state: OpenedState) -> None:
         """Show a library that was just opened, and bring back what was being recorded when it was last in use."""
-        self._state = state
+        self.state = state
         self.banner.hide()
         self.page.search.clear()
         self.page.forget_patients()
@@ -178,17 +181,19 @@ class Home(Themed):
             )
         self.notices.show(state)
         self.recovering.begin(state)
+        self.filling.begin(state)
         self.refresh()
         self._go_to(self.page)
 
     def clear(self) -> None:
         """Keep nothing of any patient, for whoever comes next."""
-        self._state = None
+        self.state = None
         if self._again is not None:
             self._again.page.forget()
         if self._goals is not None:
             self._goals.forget()
         self.importing.forget()
+        self.filling.stop()
         if self._questions is not None:
             self._questions.forget()
         self._patients.clear()
@@ -202,7 +207,7 @@ class Home(Themed):
         self.page.show_patient("", "")
 
     def _on_moved(self, state: OpenedState) -> None:
-        self._state = state
+        self.state = state
         self._show()
         self.refresh()
 
@@ -248,6 +253,7 @@ class Home(Themed):
         column.setSpacing(0)
         column.addLayout(self._banner_row)
         column.addWidget(self._pages, 1)
+        column.addWidget(self.filling.strip)
         column.addWidget(self.bar)
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
@@ -298,6 +304,8 @@ class Home(Themed):
         self.computing.progressed.connect(self._on_progressed)
         self.computing.left.connect(self._on_computing_left)
         self.computing.told.connect(self.banner.tell)
+        self.filling.changed.connect(self.refresh)
+        self.filling.told.connect(self.banner.tell)
         self.toast.undone.connect(self.deleting.undo)
         self.deleting.done.connect(self._on_deleted)
         self.deleting.undone.connect(self.refresh)
@@ -351,7 +359,7 @@ class Home(Themed):
     def _show(self) -> None:
         """Show what can be done from the page in sight."""
         current = self.current
-        is_demonstration = self._state is not None and self._state.is_demonstration
+        is_demonstration = self.state is not None and self.state.is_demonstration
         states = [current is self.page or self._has_goals, False, current is self.importing.page, self._is_asking]
         icons = (Icon.HOME, Icon.BACK if is_demonstration else Icon.PLAY, Icon.IMPORT, Icon.GROUPS)
         names = (
@@ -365,7 +373,7 @@ class Home(Themed):
             for name, is_current, icon in zip(names, states, icons, strict=True)
         )
         self.rail.show_rows(tuple(rows))
-        is_shared = self._state is not None and self._state.library.shared is not None
+        is_shared = self.state is not None and self.state.library.shared is not None
         note = tr("Everything stays on this computer, encrypted.")
         if is_shared:
             note = tr("The clinic's library, shared by its stations.")
@@ -449,6 +457,8 @@ class Home(Themed):
             return  # somebody may be moving in what stands there
         now = datetime.datetime.now().astimezone()
         self._reading = reading
+        is_awaited = self.patient is not None and self.filling.is_awaited(self.patient.details.code)
+        self.page.panel.say_none_yet(is_awaited=is_awaited)
         self.page.show_sessions(reading.lines(now), reading.visits(now), reading.next_step(now), reading.goals)
 
     def _on_computing_wished(self) -> None:
@@ -538,7 +548,7 @@ class Home(Themed):
         elif number == QUESTIONS:
             self._go_to(self.questions.page)
             self.questions.begin()
-        elif self._state is not None and self._state.is_demonstration:
+        elif self.state is not None and self.state.is_demonstration:
             self.own_library_wished.emit()
         else:
             self.demonstration_wished.emit()

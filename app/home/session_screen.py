@@ -28,7 +28,7 @@ from app.widgets.page_stack import PageStack
 from app.widgets.start_pages import EmptyPage, WorkingPage
 from app.widgets.text import Text
 from app.widgets.themed import Themed
-from app.wording import filled, later, place, side_name, tr
+from app.wording import PURPOSE, filled, later, place, side_name, tr
 from app.workers.background import Background, Work
 from app.workers.behind_results import BehindResults
 from app.workers.opening import opening_demonstration, opening_folder
@@ -44,8 +44,7 @@ _log = logging.getLogger(__name__)
 
 NARROW_BELOW = 800
 HEADER, BAR = 56, 72
-PURPOSE = 120  # what it was made for, in two lines
-PURPOSE_WORDS = later("Research use. Not a medical device.")
+PURPOSE_WIDTH = 120  # what it was made for, in two lines
 
 STOPPED = (
     later("The analysis was stopped."),
@@ -305,7 +304,7 @@ class _ActionBar(Themed):
         self.open_folder = Button(look, tr("Open a session folder"), ButtonKind.SECONDARY, Icon.FOLDER, tr("Ctrl O"))
         self.open_demonstration = Button(look, tr("Open the demonstration"), ButtonKind.QUIET, Icon.PLAY, tr("Ctrl D"))
         self.how_found = Button(look, tr("How was this found?"), ButtonKind.QUIET, Icon.SEARCH)
-        self._purpose = Text(look, tr(PURPOSE_WORDS), size=12, tone="ink2", wraps=True)
+        self._purpose = Text(look, tr(PURPOSE), size=12, tone="ink2", wraps=True)
         self._purpose.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
         self._row = QHBoxLayout(self)
         self._row.addWidget(self.back)
@@ -317,7 +316,7 @@ class _ActionBar(Themed):
 
     def tell(self, note: str) -> None:
         """Say what must be known of the curves, before what the program is for."""
-        self._purpose.setText(" ".join(filter(None, [note, tr(PURPOSE_WORDS)])))
+        self._purpose.setText(" ".join(filter(None, [note, tr(PURPOSE)])))
 
     def set_narrow(self, is_narrow: bool) -> None:
         self._is_narrow = is_narrow
@@ -337,7 +336,7 @@ class _ActionBar(Themed):
     def _leave_out(self) -> None:
         widgets = (self.back, self.open_folder, self.open_demonstration, self.how_found)
         needed = [widget.sizeHint().width() for widget in widgets if widget is not self.back or not widget.isHidden()]
-        needed += [] if self._is_narrow else [self._look.theme.px(PURPOSE)]
+        needed += [] if self._is_narrow else [self._look.theme.px(PURPOSE_WIDTH)]
         room = self.width() - 2 * self._row.contentsMargins().left() - self._row.spacing() * (len(needed) - 1)
         self.open_demonstration.setVisible(sum(needed) <= room)
 

@@ -8,7 +8,6 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QKeySequence, QShortcut
 from PySide6.QtWidgets import QApplication, QGridLayout, QHBoxLayout, QVBoxLayout, QWidget
 
-from app.charts.axes import joint_of
 from app.charts.cycles import Band, SideCycle
 from app.icons import Icon
 from app.pages.compared_card import ComparedCard, scrolling
@@ -46,7 +45,7 @@ from app.widgets.segmented import Segmented
 from app.widgets.text import Text
 from app.widgets.themed import Themed
 from app.wording import later, tr
-from core.body import Side
+from core.body import JointKind, Side
 from core.gait.cycles import POINTS
 from core.norms import AgeAndHeight, ReferenceCurves
 from core.results import Analysis
@@ -92,7 +91,7 @@ class ComparePage(Themed):
         self._who = NOBODY
         self._chosen: tuple[str, ...] = ()  # letters, before the last was turned
         self._pressed = ""  # the letter that was asked for last
-        self._has_visits = self._is_simulated = self._is_compact = self._is_spacious = False
+        self._has_visits = self._is_simulated = self._is_compact = self._is_spacious = self._has_two_charts = False
         self._has_view, self._is_reading = True, False
         self.comparison: Comparison | None = None
         self.side_rows: tuple[SideRow, ...] = ()
@@ -104,11 +103,10 @@ class ComparePage(Themed):
         )
         self.chips = Chips(look, tr("What is compared"), [("", " ")])
         self.nothing = Text(look, size=16, wraps=True)
-        self.frames: dict[tuple[Side, bool], ComparedFrame] = {}
-        for is_knee in (True, False):
+        self.frames: dict[tuple[Side, JointKind], ComparedFrame] = {}
+        for kind in JointKind:
             for side in Side:
-                chart = ComparedChart(look, is_knee=is_knee)
-                self.frames[side, is_knee] = ComparedFrame(look, chart, side, is_knee)
+                self.frames[side, kind] = ComparedFrame(look, ComparedChart(look, kind), side, kind)
         self.side_charts = CycleCharts(look, reference_curves())
         self._mark = IconMark(look, Icon.WARNING, size=20)
         self.conclusion = Text(look, size=14, wraps=True)
@@ -178,8 +176,8 @@ class ComparePage(Themed):
         was_compact, was_spacious = self._is_compact, self._is_spacious
         self._is_compact, self._is_spacious, self._has_view = is_compact, is_spacious, has_view
         self.view.set_offered(CURVES, is_compact)
-        self.side_charts.set_side_by_side(is_compact and has_two_charts)
-        self.side_charts.set_brief(is_compact)
+        self._has_two_charts = has_two_charts
+        self._fit_side_charts()
         if is_compact != was_compact:
             self.view.choose(CURVES if is_compact else PLOT)
         self.card.set_room(is_compact, is_spacious)
@@ -208,8 +206,8 @@ class ComparePage(Themed):
         self._grid_room, self._grid = QWidget(), QGridLayout()
         self._grid_room.setLayout(self._grid)
         self._grid.setContentsMargins(0, 0, 0, 0)
-        for (side, is_knee), frame in self.frames.items():
-            self._grid.addWidget(frame, 0 if is_knee else 1, 0 if side is Side.LEFT else 1)
+        for (side, kind), frame in self.frames.items():
+            self._grid.addWidget(frame, list(JointKind).index(kind), 0 if side is Side.LEFT else 1)
         self._charts = QWidget()
         self._left = QVBoxLayout(self._charts)
         self._left.setContentsMargins(0, 0, 0, 0)
@@ -402,25 +400,26 @@ class ComparePage(Themed):
         self.comparison = found = Comparison(self.kind, chosen, base, self._is_simulated)
         self.side_rows = ()
         curves, sides = self._band(found.against)
-        for (side, is_knee), frame in self.frames.items():
-            joint = joint_of(side, is_knee)
+        has_hips = any(joint.is_hip for joint in found.joints)
+        for (side, kind), frame in self.frames.items():
+            joint = kind.of(side)
             worn = [part for part in chosen if joint in part.joints]
             is_about_mean = not all(part.verdicts.joint(joint).height.is_told for part in worn if part.is_drawn(joint))
             is_about_mean |= len(worn) > 1 and not found.has_one_zero(joint)
             drawn = [part.curve(joint, is_about_mean=is_about_mean) for part in worn]
-            is_beside_band, kind = curves is not None and side in sides, "knee" if is_knee else "ankle"
+            is_beside_band = curves is not None and side in sides
             frame.chart.band = Band(*curves.mean_and_sd_deg(kind)) if curves is not None and is_beside_band else None
             notes = [tr(OTHER_ZERO)] if is_about_mean else []
             notes += [withheld_in_words(part, joint) for part in worn if not part.is_drawn(joint)]
             frame.show_curves(drawn, " ".join(notes), self._is_simulated, is_about_mean=is_about_mean)
-            frame.setVisible(side in found.sides)
+            frame.setVisible(side in found.sides and (kind is not JointKind.HIP or has_hips))
         visits = self._of_visits
         pattern = tr("Change from {letter}") if visits is None else tr("Change from {letter}, {condition}")
         condition = "" if visits is None else condition_in_words(visits.condition)
         title = pattern.format(letter=found.against.letter, condition=condition)
         told = [row for row in found.changes if row.is_told]
         is_borrowed = any(found.error_kind(part) is not ComparisonKind.ATTACHED for part in found.others)
-        is_borrowed &= any(not joint.is_knee for joint in found.joints)
+        is_borrowed &= any(joint.kind is JointKind.ANKLE for joint in found.joints)
         self.error.setText(error_in_words([row.difference for row in told], is_borrowed=is_borrowed))
         worth = [sentence(row) for row in sorted(told, key=weight) if row.difference.is_worth_a_sentence]
         latest = found.latest if self.kind is Contrast.VISITS else None
@@ -444,14 +443,26 @@ class ComparePage(Themed):
         self.side_charts.set_band(curves if sides else None)
         verdicts = {joint: part.verdicts.joint(joint) for joint in part.joints}
         self.side_charts.show_cycles(cycles, verdicts, self._is_simulated)
+        self._fit_side_charts()
         told = [row for row in self.side_rows if row.is_told]
         differences = [row.difference for row in told]
-        self.error.setText(error_in_words(differences, is_borrowed=any(not joint.is_knee for joint in part.joints)))
+        self.error.setText(
+            error_in_words(differences, is_borrowed=any(joint.kind is JointKind.ANKLE for joint in part.joints))
+        )
         worth = [row for row in sorted(told, key=side_weight) if row.difference.is_worth_a_sentence]
         said = conclusion([side_sentence(row, first, second) for row in worth], differences)
         self._say(said, parts[:1], is_marked=bool(worth))
         title = f"{self._affected_words}: {LETTERS[first]} {MINUS} {LETTERS[second]}"
         self.card.show_sides(self.side_rows, first, second, title, self.conclusion.text())
+
+    def _fit_side_charts(self) -> None:
+        """Three charts are small where there is little room."""
+        charts, is_compact = self.side_charts, self._is_compact
+        is_crowded = not charts.hip.isHidden() and not self._is_spacious
+        is_beside = is_compact and (self._has_two_charts or is_crowded)
+        charts.set_side_by_side(is_beside)
+        charts.set_tight(is_tight=is_crowded, is_narrow=is_crowded and is_beside)
+        charts.set_brief(is_compact or is_crowded)
 
     def _band(self, part: Part) -> tuple[ReferenceCurves | None, frozenset[Side]]:
         """The curves that a part may stand beside, and which of its legs."""

@@ -12,6 +12,8 @@ from app.reports.walk_figures import (
     by_hand_in_words,
     few_strides_in_words,
     peak_figures,
+    pelvis_figures,
+    pelvis_in_words,
     reason_in_words,
     side_cycle,
     strides_in_words,
@@ -36,14 +38,16 @@ GROUPS = (
     later("42 adults, 24 young and 18 older, barefoot, overground"),
 )
 SPEED_WORDS = {"slow": later("slow"), "comfortable": later("comfortable"), "fast": later("fast")}
-KIND_WORDS = {"knee": later("Knee"), "ankle": later("Ankle")}
+KIND_WORDS = {"hip": later("Hip"), "pelvis": later("Pelvis"), "knee": later("Knee"), "ankle": later("Ankle")}
+LEG_KINDS, HIP_KINDS = ("knee", "ankle"), ("hip", "pelvis")
 NO_SPEED = later("This walk: speed not known, or withheld.")
 NO_SIDE = later("No band: a prosthetic leg is not compared with other people's.")
 CARE = later("{mark} read with care.")
+HIP_BAND = later("At the hip it is laid at the height of the curves and tells their shape alone.")
 
 
 class CyclePage(QWidget):
-    """The charts, and whose band it is; `peaks` and `time_distance` are cards that the page places."""
+    """The charts, and whose band it is; `peaks`, `time_distance` and `hips` are cards that the page places."""
 
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
@@ -57,12 +61,13 @@ class CyclePage(QWidget):
         column.addWidget(self.by_hand)
         self.peaks = FiguresCard(look, tr("Peaks and ranges"), tr("mean ± SD (°)"))
         self.time_distance = FiguresCard(look, tr("Time and distance"), tr("mean ± SD"))
-        for card in (self.peaks, self.time_distance):
+        self.hips = FiguresCard(look, tr("Hip and pelvis"), tr("mean ± SD (°)"))
+        for card in (self.peaks, self.time_distance, self.hips):
             card.column.addStretch(1)
 
     @property
     def tables(self) -> list[QWidget]:
-        return [self.peaks.table, self.time_distance.table]
+        return [self.peaks.table, self.time_distance.table, self.hips.table]
 
     def set_room(self, has_two_charts: bool) -> None:
         """Put the charts side by side where that is the better use of the page."""
@@ -91,12 +96,15 @@ class CyclePage(QWidget):
         self.charts.set_band(curves)
         self.charts.show_cycles(cycles, {joint: recording.verdicts.joint(joint) for joint in joints}, is_simulated)
         strides = {side: strides_used(gait) for side, gait in recording.gait.items()}
-        rows: list[str | Figure] = []
-        for kind, figures in peak_figures(recording, curves).items():
-            rows += [tr(KIND_WORDS[kind]), *figures]
+        of_joints = peak_figures(recording, curves)
+        of_hips = _under_heads({**of_joints, **pelvis_figures(recording)}, HIP_KINDS)
+        rows = _under_heads(of_joints, LEG_KINDS)
         told = " ".join(strides_in_words(side, gait) for side, gait in recording.gait.items())
-        reasons = [told, few_strides_in_words(recording), *_why_withheld(recording, joints), *_care_in_words(rows)]
+        reasons = [told, few_strides_in_words(recording), *_why_withheld(recording, joints)]
+        reasons += _care_in_words(rows)
         self.peaks.show_figures(rows, strides, " ".join(filter(None, reasons)))
+        self.hips.show_figures(of_hips, strides, " ".join([*pelvis_in_words(recording), *_care_in_words(of_hips)]))
+        self.hips.setVisible(bool(of_hips))
         figures = time_distance_figures(recording, values, sides_with_band)
         by_hand = by_hand_in_words(recording)
         self.by_hand.setText(by_hand)
@@ -104,7 +112,17 @@ class CyclePage(QWidget):
         group = _group_in_words(values, bands.why_no_values if sides_with_band else None)
         said = [by_hand, group, only, *_care_in_words(figures)]
         self.time_distance.show_figures(figures, strides, " ".join(filter(None, said)))
+        if curves is not None and any(joint.is_hip for joint in joints):
+            only = " ".join(filter(None, [only, tr(HIP_BAND)]))
         self.band_words = band_in_words(bands, both_sides(recording).speed_m_s, sides_with_band, only)
+
+
+def _under_heads(figures: Mapping[str, Sequence[Figure]], kinds: Sequence[str]) -> list[str | Figure]:
+    """The rows of these kinds that there are, each under its name."""
+    rows: list[str | Figure] = []
+    for kind in kinds:
+        rows += [tr(KIND_WORDS[kind]), *figures[kind]] if kind in figures else []
+    return rows
 
 
 def _why_withheld(recording: RecordingAnalysis, joints: Sequence[Joint]) -> list[str]:

@@ -189,6 +189,7 @@ class GoalsPage(TallPage):
         can = whose(self._column)
         self.whose.setVisible(GoalOf.WALK not in can)
         self.whose.set_offered(GoalOf.BETWEEN, GoalOf.BETWEEN in can)
+        self.sense.choose(AT_MOST if self._column.endswith("_time_s") else AT_LEAST)
         self.value.set_value(None)
         self._show_limits()
 

@@ -21,7 +21,7 @@ from PySide6.QtWidgets import (
 
 from app.icons import Icon
 from app.pages.help_reader import HelpReader
-from app.pages.help_topics import Topic, markdown_of, plain_words_of, topic_title
+from app.pages.help_topics import Topic, TopicGroup, group_title, markdown_of, plain_words_of, topic_title
 from app.theme import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
@@ -31,7 +31,7 @@ from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD, Text
 from app.widgets.themed import Themed
 from app.wording import tr, tr_n
 
-LIST_WIDTH = 248
+LIST_WIDTH = 264
 ROW = 44
 PADDING = 12
 SHORTEST_SEARCH = 2
@@ -55,6 +55,7 @@ class HelpPage(Themed):
         self.back = Button(look, tr("Back"), ButtonKind.SECONDARY, Icon.BACK, tr("Esc"))
         self._build()
         self.topics.chosen.connect(self.show_topic)
+        self.text.page_wanted.connect(self._on_page_wanted)
         self.choice.currentIndexChanged.connect(self._on_choice_changed)
         self.search.edited.connect(self._on_search_edited)
         self.back.clicked.connect(self.closed)
@@ -168,6 +169,12 @@ class HelpPage(Themed):
         if self.text.has_marks:
             self.text.go_to_next()
 
+    def _on_page_wanted(self, name: str) -> None:
+        """Follow a link of the text, if it leads to a page of the manual: nothing leads out of this computer."""
+        if name in set(Topic):
+            self.show_topic(Topic(name))
+            self.focus()
+
     def _on_choice_changed(self, index: int) -> None:
         self.show_topic(list(Topic)[index])
 
@@ -185,7 +192,7 @@ class HelpPage(Themed):
 
 
 class _TopicList(QWidget):
-    """One stop for Tab; the arrows go from topic to topic."""
+    """Groups of topics under their titles. One stop for Tab; the arrows go from topic to topic."""
 
     chosen = Signal(object)
 
@@ -198,7 +205,10 @@ class _TopicList(QWidget):
         self._column = QVBoxLayout(self)
         self._column.setContentsMargins(0, 0, 0, 0)
         self._column.setSpacing(2)
-        for row in self._by_topic.values():
+        begun = {Topic(group): group for group in TopicGroup}
+        for topic, row in self._by_topic.items():
+            if topic in begun:
+                self._column.addWidget(_GroupTitle(look, group_title(begun[topic])))
             self._group.addButton(row)
             self._column.addWidget(row)
         self._column.addStretch(1)
@@ -222,6 +232,12 @@ class _TopicList(QWidget):
     def _on_toggled(self, button: QAbstractButton, is_checked: bool) -> None:
         if is_checked and button.hasFocus():  # the arrows choose without a click
             self._on_clicked(button)
+
+
+class _GroupTitle(Text):
+    def __init__(self, look: ThemeNotifier, title: str) -> None:
+        super().__init__(look, title, size=12, weight=SEMIBOLD, tone="ink2")
+        self.setContentsMargins(PADDING, PADDING, PADDING, 0)
 
 
 class _TopicRow(QAbstractButton):

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from heapq import nlargest
 from uuid import UUID
 
-from PySide6.QtCore import QModelIndex, QRectF, Qt
+from PySide6.QtCore import QModelIndex, QRectF, Qt, Signal
 from PySide6.QtGui import QColor, QFont, QFontMetrics, QPainter, QResizeEvent
 from PySide6.QtWidgets import QStyle, QStyleOptionViewItem
 
@@ -198,8 +198,10 @@ class SessionCell(LineCell):
 class LineList(CellTable):
     """A list of lines, one of which may be chosen. Enter and a click on a session open it.
 
-    `chosen` and `opened` tell the id of a line.
+    `chosen` and `opened` tell the id of a line; `fitted`: lines may have other heights.
     """
+
+    fitted = Signal()
 
     def __init__(self, look: ThemeNotifier, name: str, is_opened_by_click: bool = False, row: int = ROW) -> None:
         super().__init__(look, name, row=row, head=0, padding=PAD, edge=PAD, is_list=True)
@@ -252,6 +254,7 @@ class LineList(CellTable):
         else:
             for number, row in enumerate(self.cells.rows):
                 self.setRowHeight(number, self._height(row.cells[0]))
+        self.fitted.emit()
 
     def paint_ground(self, painter: QPainter, option: QStyleOptionViewItem, index: Index) -> None:
         """A line under each row; the row that is chosen or under the mouse stands on a round ground."""

@@ -263,7 +263,7 @@ class HomePage(Themed):
 
     def _on_look_changed(self) -> None:
         px = self._look.theme.px
-        self._page.setContentsMargins(px(EDGE), px(16), px(EDGE), px(12))
+        self._page.setContentsMargins(px(EDGE), px(16), px(EDGE), px(8))
         self._page.setSpacing(px(12))
         self._columns.setSpacing(px(GUTTER))
         self._left.setSpacing(px(12))

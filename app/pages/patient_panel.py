@@ -10,7 +10,14 @@ from app.icons import Icon
 from app.measure_names import goal_in_words
 from app.pages.home_course import CourseCard
 from app.pages.home_lists import LineList, SessionLine
-from app.reports.course_lanes import MOST_TOGETHER, CourseVisit, conditions_of_visits, lanes, without_lane
+from app.reports.course_lanes import (
+    MOST_TOGETHER,
+    CourseVisit,
+    conditions_of_visits,
+    kinds_of_tests,
+    lanes,
+    without_lane,
+)
 from app.reports.course_words import NextStep
 from app.reports.visits import condition_in_words
 from app.theme import ThemeNotifier
@@ -18,6 +25,7 @@ from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.choice import Choice
 from app.widgets.icons import IconMark
+from app.widgets.segmented import Segmented
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed
 from app.wording import tr, tr_n
@@ -26,6 +34,7 @@ from core.goals import Goal, held
 SESSION_ROW = 48
 SESSIONS_SEEN, SESSIONS_AT_LEAST = 3, 2  # the others are scrolled to
 ALL = "\N{ASTERISK}"  # no condition is called so
+WALKING, TESTS = "walking", "tests"
 
 
 class PatientPanel(Themed):
@@ -57,12 +66,14 @@ class PatientPanel(Themed):
         self.delete_session = QAction(tr("Delete session"), self.menu)
         self.analyse_again = QAction(tr("Analyse sessions again"), self.menu)
         self.menu.addActions([self.analyse_again, self.delete_session, self.delete_patient])
+        self.shown = Segmented(look, tr("Course of"), [(WALKING, tr("Walking"), ""), (TESTS, tr("Timed tests"), "")])
         self.condition = Choice(look, tr("Condition"))
         self.count = Text(look, tone="ink2", wraps=True)
         self.goals = Button(look, tr("Goals"), ButtonKind.SECONDARY, Icon.GOAL, height=44)
         self.course = CourseCard(look)
         self.sessions = LineList(look, tr("Sessions"), is_opened_by_click=True, row=SESSION_ROW)
-        self.none_yet = Text(look, tr("No sessions yet."), tone="ink2", wraps=True)
+        self.none_yet = Text(look, tone="ink2", wraps=True)
+        self.say_none_yet(is_awaited=False)
         self.next = Text(look, wraps=True)
         self.go = Button(look, "", ButtonKind.QUIET, Icon.NEXT, height=36)
         self._build()
@@ -71,7 +82,16 @@ class PatientPanel(Themed):
 
     @property
     def tab_order(self) -> list[QWidget]:
-        return [self.more, self.condition, self.goals, self.course, self.course.compute, self.sessions, self.go]
+        return [
+            self.more,
+            *self.shown.segments,
+            self.condition,
+            self.goals,
+            self.course,
+            self.course.compute,
+            self.sessions,
+            self.go,
+        ]
 
     def set_room(self, width: float) -> None:
         """Lay out for this width, in px of the design."""
@@ -93,6 +113,13 @@ class PatientPanel(Themed):
         self.delete_session.setEnabled(self.sessions.line is not None)
         self._on_look_changed()
 
+    def say_none_yet(self, *, is_awaited: bool) -> None:
+        """What stands where sessions would, where there are none; `is_awaited`: they come by themselves."""
+        words = (
+            tr("This patient's visits are being recorded. They appear here.") if is_awaited else tr("No sessions yet.")
+        )
+        self.none_yet.setText(words)
+
     def show_course(self, visits: Sequence[CourseVisit], goals: Sequence[Goal] = ()) -> None:
         """Show the course over visits, which are in order of time; of the condition that is chosen, else of all."""
         self._visits, self._agreed = tuple(visits), tuple(goals)
@@ -107,6 +134,7 @@ class PatientPanel(Themed):
         self.condition.blockSignals(False)
         self.condition.setVisible(len(found) > 1)
         self.condition.updateGeometry()
+        self.shown.setVisible(bool(kinds_of_tests(visits, goals)))
         self.count.setText(_counted(found, visits, goals))
         self.course.setVisible(bool(visits))
         self._show_lanes()
@@ -128,6 +156,7 @@ class PatientPanel(Themed):
         self._above = QWidget()
         self._above_row = QHBoxLayout(self._above)
         self._above_row.setContentsMargins(0, 0, 0, 0)
+        self._above_row.addWidget(self.shown)
         self._above_row.addWidget(self.condition)
         self._above_row.addWidget(self.count, 1)
         self._above_row.addWidget(self.goals)
@@ -156,12 +185,15 @@ class PatientPanel(Themed):
         self.delete_session.triggered.connect(self.delete_session_wished)
         self.goals.clicked.connect(self.goals_wished)
         self.condition.currentIndexChanged.connect(self._show_lanes)
+        self.shown.chosen.connect(self._show_lanes)
+        self.sessions.fitted.connect(self._fit_sessions)
         self.sessions.chosen.connect(self._on_session_chosen)
         self.go.clicked.connect(self._on_next)
 
     def _show_lanes(self) -> None:
         chosen = self.condition.currentData()
-        shown = lanes(self._visits, None if chosen in (ALL, None) else chosen, self._agreed)
+        kinds = kinds_of_tests(self._visits, self._agreed) if self.shown.choice == TESTS else ()
+        shown = lanes(self._visits, None if chosen in (ALL, None) else chosen, self._agreed, kinds or None)
         self.course.show_course(self._visits, shown, list(conditions_of_visits(self._visits)))
         has_lanes = any(lane.lines for lane in shown)  # without any there is a line of words, and no room is taken
         self._column.setStretchFactor(self.course, int(has_lanes))
@@ -188,9 +220,13 @@ class PatientPanel(Themed):
             row.setSpacing(px(12))
         self.none_yet.setMinimumHeight(px(72))
         self._above.setMinimumHeight(px(48))
-        rows = min(len(self.sessions.lines), SESSIONS_SEEN)
-        self.sessions.setMinimumHeight(min(rows, SESSIONS_AT_LEAST) * px(SESSION_ROW))
-        self.sessions.setMaximumHeight(max(1, rows) * px(SESSION_ROW))
+        self._fit_sessions()
+
+    def _fit_sessions(self) -> None:
+        """Have the first lines whole, however many rows of words each takes."""
+        heights = [self.sessions.rowHeight(row) for row in range(min(len(self.sessions.lines), SESSIONS_SEEN))]
+        self.sessions.setMinimumHeight(sum(heights[:SESSIONS_AT_LEAST]))
+        self.sessions.setMaximumHeight(sum(heights) or self._look.theme.px(SESSION_ROW))
 
 
 def _counted(found: dict[str, int], visits: Sequence[CourseVisit], goals: Sequence[Goal]) -> str:

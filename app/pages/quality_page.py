@@ -2,19 +2,22 @@
 
 from collections.abc import Mapping, Sequence
 from functools import partial
+from types import MappingProxyType
 
-from PySide6.QtCore import QRectF, Qt, Signal
+from PySide6.QtCore import QPointF, QRectF, Qt, Signal
 from PySide6.QtGui import QColor, QPainter, QPaintEvent
 from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QScrollArea, QSizePolicy, QVBoxLayout, QWidget
 
 from app.gates_in_words import verdict_word
 from app.icons import VERDICT_ICONS, Icon, paint_icon
+from app.pages.compared_card import scrolling
 from app.reports.patient_report.data_quality import DataQuality, QualityLine
 from app.theme import ThemeNotifier
-from app.widgets.body_figure import BodyFigure, SensorMark
+from app.widgets.body_figure import SENSOR, BodyFigure, SensorMark
+from app.widgets.body_shapes import body_shapes
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
-from app.widgets.facts_table import fact_columns, fact_rows
+from app.widgets.facts_table import fact_columns, fact_rows, hip_columns, hip_rows
 from app.widgets.findings_list import FindingsList
 from app.widgets.icons import IconMark
 from app.widgets.table import CellTable
@@ -24,6 +27,7 @@ from app.widgets.toggle import Toggle
 from app.wording import name_of, tr
 from core.body import Joint, Side, Site
 from core.findings import Finding
+from core.hip.results import HipAngle
 from core.results import JointCalibration
 from core.verdicts.model import Verdict
 
@@ -31,6 +35,7 @@ SENTENCE_PX = 22
 FIGURE_WIDTH = 320
 BESIDE = 78  # px at either side of the legs: a verdict and its word
 MARK = (56, 32)
+HIP_BELOW = 14  # units of the drawing, from the upper edge of the thigh
 
 
 class QualityPage(Themed):
@@ -41,7 +46,7 @@ class QualityPage(Themed):
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look = look
-        self._lines: tuple[QualityLine, ...] = ()
+        self.lines: tuple[QualityLine, ...] = ()
         self._can_repeat = False
         self._line_cards: list[LineCard] = []
         self.first = Text(look, size=SENTENCE_PX, weight=SEMIBOLD, wraps=True)
@@ -51,6 +56,7 @@ class QualityPage(Themed):
         self.how_found = Button(look, tr("How was this found?"), ButtonKind.SECONDARY, Icon.SEARCH, height=52)
         self.agreement = Button(look, tr("Beside an optical system"), ButtonKind.SECONDARY, Icon.SEARCH, height=52)
         self.facts = CellTable(look, tr("How each joint was found"), head=36)
+        self.hip_facts = CellTable(look, tr("How each hip was found"), head=36)
         self.findings = FindingsList(look)
         self.figure = JointsFigure(look)
         self.strides = Text(look, size=12, tone="ink2", wraps=True)
@@ -61,7 +67,15 @@ class QualityPage(Themed):
 
     @property
     def tab_order(self) -> list[QWidget]:
-        return [*self._repeats(), self.engineering, self.how_found, self.agreement, self.facts, self.findings]
+        return [
+            *self._repeats(),
+            self.engineering,
+            self.how_found,
+            self.agreement,
+            self.facts,
+            self.hip_facts,
+            self.findings,
+        ]
 
     def focus(self) -> None:
         (next(iter(self._repeats()), None) or self.engineering).setFocus()
@@ -93,12 +107,19 @@ class QualityPage(Themed):
         self._order_card.setVisible(bool(found.in_order))
         self.strides.setText(strides)
         self.figure.show_joints(joints, worn)
-        if (found.lines, can_repeat) != (self._lines, self._can_repeat):
-            self._lines, self._can_repeat = found.lines, can_repeat
+        if (found.lines, can_repeat) != (self.lines, self._can_repeat):
+            self.lines, self._can_repeat = found.lines, can_repeat
             self._fill()
 
-    def show_engineering(self, calibrated: Mapping[Joint, JointCalibration], findings: Sequence[Finding]) -> None:
+    def show_engineering(
+        self,
+        calibrated: Mapping[Joint, JointCalibration],
+        findings: Sequence[Finding],
+        hips: Mapping[Joint, HipAngle] = MappingProxyType({}),
+    ) -> None:
         self.facts.show_rows(fact_columns(calibrated), fact_rows(calibrated))
+        self.hip_facts.show_rows(hip_columns(hips), hip_rows(hips))
+        self.hip_facts.setVisible(bool(hips))
         self.findings.show_findings(findings)
 
     def set_room(self, *, is_compact: bool, is_narrow: bool) -> None:
@@ -126,7 +147,13 @@ class QualityPage(Themed):
         order.addWidget(self.in_order, 1)
         self._order_card.column.addLayout(order)
         self._figures_card = Card(self._look)
-        self._figures_card.column.addWidget(self.facts)
+        tables = QWidget()
+        found = QVBoxLayout(tables)
+        found.setContentsMargins(0, 0, 0, 0)
+        for table in (self.facts, self.hip_facts):
+            found.addWidget(table)
+        found.addStretch(1)
+        self._figures_card.column.addWidget(scrolling(tables), 2)
         self._figures_card.column.addWidget(Text(self._look, tr("Everything noticed"), size=16, weight=SEMIBOLD))
         self._figures_card.column.addWidget(self.findings, 1)
         self._doors = QGridLayout()
@@ -162,7 +189,7 @@ class QualityPage(Themed):
             self._list.removeWidget(card)
             card.hide()
             card.deleteLater()
-        self._line_cards = [LineCard(self._look, line, can_repeat=self._can_repeat) for line in self._lines]
+        self._line_cards = [LineCard(self._look, line, can_repeat=self._can_repeat) for line in self.lines]
         for number, card in enumerate(self._line_cards):
             if card.repeat is not None:
                 card.repeat.clicked.connect(partial(self.repeat_wished.emit, card.side))
@@ -243,10 +270,19 @@ class JointsFigure(BodyFigure):
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__(look, legs_only=True)
         self._joints: dict[Joint, Verdict] = {}
+        self._has_pelvis = False
+
+    def joint_anchor(self, joint: Joint) -> QPointF:
+        """Where a joint lies; a hip in the upper end of its thigh, which the drawing does not mark."""
+        if not joint.is_hip:
+            return super().joint_anchor(joint)
+        thigh = body_shapes().outlines[joint.distal].boundingRect()
+        return self._placed().map(QPointF(thigh.center().x(), thigh.top() + HIP_BELOW))
 
     def show_joints(self, joints: Mapping[Joint, Verdict], worn: Sequence[Site]) -> None:
         self._joints = dict(joints)
-        self.show_worn(dict.fromkeys(worn, SensorMark.WORN))
+        self._has_pelvis = Site.PELVIS in worn
+        self.show_worn(dict.fromkeys((site for site in worn if site is not Site.PELVIS), SensorMark.WORN))
         said = [f"{name_of(joint)}: {verdict_word(verdict)}" for joint, verdict in joints.items()]
         self.setAccessibleDescription("; ".join([*said, self.accessibleDescription()]))
         self.update()
@@ -256,6 +292,13 @@ class JointsFigure(BodyFigure):
         theme = self._look.theme
         c, px = theme.colours, theme.px
         painter = QPainter(self)
+        if self._has_pelvis:
+            box = QRectF(0, 0, px(SENSOR[0]), px(SENSOR[1]))
+            box.moveCenter(self._placed().map(body_shapes().outlines["pelvis"].boundingRect().center()))
+            painter.setPen(theme.pen(c.surface, 1))
+            painter.setBrush(QColor(c.ink))
+            painter.drawRoundedRect(box, px(3), px(3))
+            painter.setBrush(Qt.BrushStyle.NoBrush)
         painter.setFont(theme.font(12, SEMIBOLD))
         for joint, verdict in self._joints.items():
             at, is_right = self.joint_anchor(joint), joint.side is Side.RIGHT
@@ -274,5 +317,6 @@ class JointsFigure(BodyFigure):
             paint_icon(painter, VERDICT_ICONS[verdict], mark, c.caution_ink if is_grave else c.ink)
             painter.setPen(QColor(c.ink))
             side = Qt.AlignmentFlag.AlignLeft if is_right else Qt.AlignmentFlag.AlignRight
-            words = QRectF(0, box.top() - px(18), self.width(), px(16))
+            # beside the hips the letters of both legs stand
+            words = QRectF(0, box.bottom() + px(2) if joint.is_hip else box.top() - px(18), self.width(), px(16))
             painter.drawText(words, side | Qt.AlignmentFlag.AlignVCenter, verdict_word(verdict))

@@ -38,11 +38,14 @@ from app.widgets.text import Text
 from app.widgets.themed import Themed
 from app.widgets.toggle import Toggle
 from app.wording import later, tr
-from core.body import LEG_JOINTS, LEG_SITES, Joint, Side
+from core.body import Joint, JointKind, Side, Site
+from core.hip.results import HipAngle
 from core.results import JointAngle, RecordingAnalysis
 from core.samples import FloatArray, RecordingKind
 
 RESULT, PUBLISHED, ORIENTATION, BOTH = "result", "published", "orientation", "both"
+
+LEG_KINDS = (JointKind.KNEE, JointKind.ANKLE)  # whose charts are always there
 
 # the views
 ANSWER, COMPARE, WHOLE, STRIDES = "answer", "compare", "whole", "strides"
@@ -52,6 +55,7 @@ ANSWER_PX = 22
 RECORDINGS = (146, 280)  # px: the narrowest and the widest that their box becomes
 BOTTOM = 44  # px high: the row that closes the answer
 BESIDE_TABLE, WITHHELD, NOTE = 484, 40, 24  # px high: all else on a page, a withheld curve, strides left out by hand
+PELVIS = 56  # px high: above the legs
 ANSWER_ICONS = {
     Outcome.DIFFERS: Icon.WARNING,
     Outcome.NOTHING: Icon.READ,
@@ -194,9 +198,10 @@ class ResultPage(Themed):
 
     def _fit_table(self) -> None:
         """Show as many rows of what differs as leave the charts their room."""
-        frames = (self.cycles.charts.knee, self.cycles.charts.ankle)
+        frames = self.cycles.charts.frames
         is_withheld = any(panel.text for frame in frames for panel in frame.withheld.values())
         taken = BESIDE_TABLE + (WITHHELD if is_withheld else 0) + (NOTE if self.cycles.by_hand.text() else 0)
+        taken += PELVIS if self.show_legs.isChecked() and len(frames) > len(LEG_KINDS) else 0
         self.differs.set_room(self._height - taken)
 
     def focus(self) -> None:
@@ -283,7 +288,10 @@ class ResultPage(Themed):
         self._tables = QBoxLayout(QBoxLayout.Direction.LeftToRight, self._figures)
         self._tables.setContentsMargins(0, 0, 0, 0)
         self._tables.addWidget(self.cycles.peaks, 1)
-        self._tables.addWidget(self.cycles.time_distance, 1)
+        right = QVBoxLayout()
+        right.addWidget(self.cycles.time_distance, 1)
+        right.addWidget(self.cycles.hips, 1)
+        self._tables.addLayout(right, 1)
         self._columns = QHBoxLayout()
         for widget, share in (
             (self._curves, 1),
@@ -368,7 +376,7 @@ class ResultPage(Themed):
         self.compare.set_room(room.is_compact, room.is_spacious, room.has_two_charts, has_view=not room.is_narrow)
         self.strides.set_charts_beside(self._room.has_strides_beside)
         self.quality.set_room(is_compact=room.is_compact, is_narrow=room.is_narrow)
-        for frame in (self.charts.knee, self.charts.ankle):
+        for frame in self.charts.frames:
             frame.set_room(is_narrow=room.is_narrow, is_wide=room.has_two_tables)
         self.charts.phases.set_narrow(self._room.is_narrow)
         self.cycles.set_room(self._room.has_two_charts)
@@ -433,9 +441,13 @@ class ResultPage(Themed):
         self.legs.setVisible(has_legs)
         if not has_legs:
             self.cycles.charts.show_cursor({})
-        is_beside = self._room.has_two_charts and view == ANSWER and (self._room.is_spacious or not has_legs)
-        self.cycles.charts.set_side_by_side(is_beside)
-        self.cycles.charts.set_brief(self._room.is_compact or view == STRIDES)
+        room, charts = self._room, self.cycles.charts
+        has_hips = len(charts.frames) > len(LEG_KINDS)
+        is_beside = view == ANSWER and (has_hips or (room.has_two_charts and (room.is_spacious or not has_legs)))
+        is_crowded = has_hips and (has_legs or not room.is_spacious)
+        charts.set_side_by_side(is_beside)
+        charts.set_tight(is_tight=is_crowded, is_narrow=is_crowded and is_beside and (room.is_narrow or has_legs))
+        charts.set_brief(room.is_compact or view == STRIDES or is_crowded)
         self.cycles.set_notes_shown(is_answer)
         self.strides.setVisible(view == STRIDES)
         self._show_strides()
@@ -518,18 +530,18 @@ class ResultPage(Themed):
         if recording is not None and recording.kind is RecordingKind.WALKING:
             facts = Facts(visit, recording)
             found, strides, calibrated = data_quality(facts), strides_in_short(facts), facts.calibrated
-            joints = {
-                joint: facts.verdicts.joint(joint).shape.verdict for joint in LEG_JOINTS if facts.is_measured(joint)
-            }
+            joints = {joint: facts.verdicts.joint(joint).shape.verdict for joint in Joint if facts.is_measured(joint)}
         else:
             found, strides, joints = quality_without_walk(visit, recording.name if recording else ""), "", {}
             calibrated = visit.analysis.calibrated_for(recording) if recording is not None else {}
-        sites = [site for site in LEG_SITES if any(site in one.imu for one in visit.session.recordings)]
+        sites = [site for site in Site if any(site in one.imu for one in visit.session.recordings)]
         self.door.tell(door_words(found))
         self.quality.show_quality(found, joints, sites, strides, can_repeat=self._is_live)
         names = visit.shown_names
         self.quality.show_engineering(
-            calibrated, [with_shown_names(finding, names) for finding in visit.analysis.findings]
+            calibrated,
+            [with_shown_names(finding, names) for finding in visit.analysis.findings],
+            recording.hips if recording is not None else {},
         )
 
     def _tell_answer(self) -> None:
@@ -550,6 +562,7 @@ class ResultPage(Themed):
             return
         method = self.methods.choice
         curves = {joint: curve for joint, angle in recording.joints.items() if (curve := _curve(angle, method))}
+        curves |= {joint: curve for joint, hip in recording.hips.items() if (curve := _hip_curve(hip, method))}
         self.charts.show_joints(curves)
         self.hint.setText(
             " ".join(filter(None, [tr(HINTS[method]), tr(KEYS), tr(EVENT_KEYS) if recording.gait else ""]))
@@ -568,6 +581,7 @@ class ResultPage(Themed):
     def _on_legs_toggled(self, is_on: bool) -> None:
         if is_on:
             self._show_moving_legs()
+        self._fit_table()
         self._show_parts()
         if is_on:
             self.legs.setFocus()
@@ -577,11 +591,11 @@ class ResultPage(Themed):
         if recording is not None and visit is not None:
             self.legs.show_legs(mean_legs(visit.session, visit.analysis, recording))
 
-    def _on_stride_picked(self, is_knee: bool, percent: float, angle_deg: float) -> None:
+    def _on_stride_picked(self, kind: JointKind, percent: float, angle_deg: float) -> None:
         if self.legs.isVisible():
             self.legs.show_percent(percent)
         elif self.view.choice == STRIDES:
-            self.strides.choose_nearest(is_knee, percent, angle_deg, self.cycles.charts.heights_deg)
+            self.strides.choose_nearest(kind, percent, angle_deg, self.cycles.charts.heights_deg)
 
     def _on_beside_changed(self) -> None:
         self._show_beside()
@@ -609,6 +623,12 @@ class ResultPage(Themed):
             layout.setSpacing(px(8 if is_compact and part is self._choices else 12))
         self._foot.setHorizontalSpacing(px(16))
         self._foot.setVerticalSpacing(px(8))
+
+
+def _hip_curve(hip: HipAngle, method: str) -> Curve | None:
+    """Give a hip's flexion, in degrees; neither the published method nor a magnetometer gives one."""
+    is_result = method in (RESULT, BOTH)
+    return Curve(np.rad2deg(hip.angle_rad), np.rad2deg(hip.sd_rad)) if is_result else None
 
 
 def _curve(angle: JointAngle, method: str) -> Curve | None:

@@ -11,10 +11,10 @@ from app.reports.walk_figures import by_hand_in_words
 from app.theme import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
-from app.widgets.stride_list import ANKLE_SHAPE, KNEE_SHAPE, StrideLine, StrideList
+from app.widgets.stride_list import StrideLine, StrideList
 from app.widgets.text import SEMIBOLD, Text
 from app.wording import NAMES, tr
-from core.body import Joint, Side, ankle_of, knee_of
+from core.body import Joint, JointKind, Side
 from core.gait.strides import Reason
 from core.results import RecordingAnalysis
 from core.samples import FloatArray
@@ -75,13 +75,13 @@ class StridesPage(Card):
         self.legend.setVisible(not are_beside)
 
     def choose_nearest(
-        self, is_knee: bool, percent: float, angle_deg: float, heights_deg: Mapping[Joint, float]
+        self, kind: JointKind, percent: float, angle_deg: float, heights_deg: Mapping[Joint, float]
     ) -> None:
         """Go to the stride whose curve runs nearest to a point of its chart; `heights_deg`: drawn so much lower."""
         best: tuple[float, int] | None = None
         at = int(np.clip(round(percent), 0, 100))
         for row, line in enumerate(self.list.lines):
-            joint = Joint(f"{line.side}_{'knee' if is_knee else 'ankle'}")
+            joint = kind.of(line.side)
             curve = self._curves(line).get(joint)
             if curve is not None and line.is_used:
                 distance = abs(float(curve[at]) - heights_deg.get(joint, 0.0) - angle_deg)
@@ -123,21 +123,20 @@ def stride_lines(recording: RecordingAnalysis) -> tuple[StrideLine, ...]:
         if side not in recording.gait:
             continue
         gait = recording.gait[side]
-        knee, ankle = (values_of(recording, side, name) for name in ("knee_range_deg", "ankle_range_deg"))
-        curves = {KNEE_SHAPE: gait.cycles.get(knee_of(side)), ANKLE_SHAPE: gait.cycles.get(ankle_of(side))}
+        ranges = {kind: values_of(recording, side, f"{kind}_range_deg") for kind in JointKind}
+        curves = {kind: gait.cycles.get(kind.of(side)) for kind in JointKind}
         for k, reason in enumerate(gait.strides.reason):
-            known = {shape: np.rad2deg(found[k]) for shape, found in curves.items() if found is not None}
+            known = {kind: np.rad2deg(found[k]) for kind, found in curves.items() if found is not None}
             lines.append(
                 StrideLine(
                     side=side,
                     number=k + 1,
                     start_s=float(gait.strides.start_s[k]),
                     end_s=float(gait.strides.end_s[k]),
-                    knee_range_deg=float(knee[k]),
-                    ankle_range_deg=float(ankle[k]),
+                    ranges_deg={kind: float(found[k]) for kind, found in ranges.items()},
                     reason=tr(NAMES["reason"][reason]) if reason else "",
                     is_by_hand=reason is Reason.BY_HAND,
-                    shapes_deg={shape: curve for shape, curve in known.items() if np.isfinite(curve).all()},
+                    shapes_deg={kind: curve for kind, curve in known.items() if np.isfinite(curve).all()},
                 )
             )
     return tuple(lines)

@@ -16,6 +16,7 @@ from core.body import Side
 from core.samples import FloatArray
 
 LEAST_SIZE = (320, 88)  # what can just be read; the page gives more where it has more
+LEAST_OF_THREE = 66  # px high: each of three over one another
 AXIS_HEIGHT, BARE_AXIS_HEIGHT = 24, 6
 CURVE_PX = 2.0
 HAIR_PX = 1.0
@@ -49,7 +50,7 @@ class AngleChart(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no typ
 
     def __init__(self, look: ThemeNotifier, lowest_deg: float, highest_deg: float, has_times: bool = True) -> None:
         super().__init__(useOpenGL=False)
-        self._has_times = has_times
+        self._has_times, self._is_of_three = has_times, False
         self._look = look
         self._fixed = (lowest_deg, highest_deg)
         self.range_deg = self._fixed
@@ -85,10 +86,15 @@ class AngleChart(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no typ
     def sizeHint(self) -> QSize:
         px = self._look.theme.px
         less = 0 if self._has_times else AXIS_HEIGHT - BARE_AXIS_HEIGHT
-        return QSize(px(LEAST_SIZE[0]), px(LEAST_SIZE[1] - less))
+        return QSize(px(LEAST_SIZE[0]), px((LEAST_OF_THREE if self._is_of_three else LEAST_SIZE[1]) - less))
 
     def minimumSizeHint(self) -> QSize:
         return self.sizeHint()
+
+    def set_of_three(self, is_of_three: bool) -> None:
+        """Let it be lower, where three charts share the room of two."""
+        self._is_of_three = is_of_three
+        self.updateGeometry()
 
     @property
     def is_widened(self) -> bool:

@@ -18,7 +18,7 @@ from app.widgets.icons import IconMark
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.verdict_chip import BRIEF
 from app.wording import tr
-from core.body import Side
+from core.body import JointKind, Side
 from core.verdicts.model import Verdict
 
 
@@ -42,8 +42,8 @@ class ComparedChart(CycleChart):
 class ComparedFrame(Card):
     """A chart under its leg, joint and sign, with what must be known to read it."""
 
-    def __init__(self, look: ThemeNotifier, chart: ComparedChart, side: Side, is_knee: bool) -> None:
-        self._side, self._is_knee = side, is_knee
+    def __init__(self, look: ThemeNotifier, chart: ComparedChart, side: Side, kind: JointKind) -> None:
+        self._side, self._kind = side, kind
         self.chart = chart
         self._mark = IconMark(look, Icon.WARNING, size=18)
         self._note = Text(look, size=12, weight=MEDIUM, wraps=True)
@@ -52,14 +52,14 @@ class ComparedFrame(Card):
         head, notes = QHBoxLayout(), QHBoxLayout()
         head.setSpacing(8)
         head.addWidget(Chip(look, side))
-        head.addWidget(Text(look, title_in_words(is_knee), size=16, weight=SEMIBOLD))
+        head.addWidget(Text(look, title_in_words(kind), size=16, weight=SEMIBOLD))
         self._verdict_mark = IconMark(look, VERDICT_ICONS[Verdict.READ], size=16)
         self.verdict = Text(look, size=12, weight=MEDIUM)
         for part in (self._verdict_mark, self.verdict):
             part.hide()
             head.addWidget(part)
         head.addStretch(1)
-        head.addWidget(Text(look, sign_in_words(is_knee), size=12, tone="ink2"))
+        head.addWidget(Text(look, sign_in_words(kind), size=12, tone="ink2"))
         notes.setSpacing(8)
         notes.addWidget(self._mark, 0, Qt.AlignmentFlag.AlignTop)
         notes.addWidget(self._note, 1)
@@ -90,7 +90,7 @@ class ComparedFrame(Card):
         self._note.setText(" ".join(said))
         for widget in (self._mark, self._note):
             widget.setVisible(bool(said))
-        self.chart.setAccessibleName(tr("{joint}, compared").format(joint=part_in_words(self._side, self._is_knee)))
+        self.chart.setAccessibleName(tr("{joint}, compared").format(joint=part_in_words(self._side, self._kind)))
         self.chart.setAccessibleDescription(self.in_words())
 
     def in_words(self) -> str:

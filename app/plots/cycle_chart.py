@@ -1,4 +1,4 @@
-"""Knee above ankle over one stride: each side on its own stride, the mean on the band of a cited group.
+"""Hip, knee and ankle over one stride: each side on its own stride, the mean on the band of a cited group.
 
 The chart paints itself: nobody zooms a stride, and so every label finds its place.
 """
@@ -9,11 +9,10 @@ from dataclasses import replace
 import numpy as np
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QMouseEvent, QPainter, QPaintEvent, QPixmap
-from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QSizePolicy
+from PySide6.QtWidgets import QBoxLayout, QGridLayout, QHBoxLayout, QSizePolicy
 
 from app.charts.axes import (
     degrees_in_words,
-    joint_of,
     nothing_in_words,
     part_in_words,
     range_for,
@@ -23,7 +22,7 @@ from app.charts.axes import (
 )
 from app.charts.cycles import Band, SideCycle
 from app.charts.frame import Frame
-from app.charts.marks import MOST_MARKS, Deviation, Gap, Point
+from app.charts.marks import MOST_MARKS, Deviation, Gap, Point, laid_at_height_of
 from app.charts.marks_on_screen import places_of
 from app.charts.on_screen import frame_of, paint, paint_cursor
 from app.charts.places import MarkPlace
@@ -47,12 +46,12 @@ from app.widgets.themed import Themed
 from app.widgets.verdict_chip import VerdictChip
 from app.widgets.withheld_panel import WithheldPanel
 from app.wording import capitalised, joined, later, tr
-from core.body import Joint, Side
+from core.body import Joint, JointKind, Side
 from core.norms import ReferenceCurves
 from core.samples import FloatArray
 from core.verdicts.model import JointVerdicts, Verdict
 
-LEAST_SIZE = (284, 144)
+LEAST_SIZE, TIGHT_SIZE = (284, 144), (160, 100)  # of two charts, or of three where there is little room
 EARLIER = (0, 2)  # the thin one of two curves, as in every comparison
 DOUBTS = {
     NO_ZERO: later("{sides}: no zero. Range and shape hold, height does not."),
@@ -62,99 +61,111 @@ DOUBTS = {
 
 
 class CycleCharts(Themed):
-    """Both charts, with what they share: the band and the single strides, each on or off."""
+    """All charts, with what they share: the band and the single strides, each on or off.
 
-    picked = Signal(bool, float, float)  # whether of the knee; percent of the stride, degrees
+    The hip's is there where a hip was measured, or should have been.
+    """
+
+    picked = Signal(object, float, float)  # JointKind; percent of the stride, degrees
 
     def __init__(self, look: ThemeNotifier, reference: ReferenceCurves) -> None:
         super().__init__()
         self._look = look
-        knee, ankle = CycleChart(look, is_knee=True), CycleChart(look, is_knee=False)
-        self.knee = CycleFrame(look, knee, is_knee=True)
-        self.ankle = CycleFrame(look, ankle, is_knee=False)
+        self.hip, self.knee, self.ankle = (CycleFrame(look, CycleChart(look, kind), kind) for kind in JointKind)
+        self._frames = (self.hip, self.knee, self.ankle)
+        self.hip.hide()
         self._box = QBoxLayout(QBoxLayout.Direction.TopToBottom, self)
         self._box.setContentsMargins(0, 0, 0, 0)
-        for frame in self.frames:
+        for frame in self._frames:
             self._box.addWidget(frame, 1)
             frame.chart.picked.connect(self._on_picked)
         self.set_band(reference)
         self._on_look_changed()
 
     @property
-    def frames(self) -> tuple["CycleFrame", "CycleFrame"]:
-        return self.knee, self.ankle
+    def frames(self) -> tuple["CycleFrame", ...]:
+        """Those that are there."""
+        return tuple(frame for frame in self._frames if not frame.isHidden())
 
     @property
     def heights_deg(self) -> dict[Joint, float]:
         """By how much the curves of joints without a height are drawn lower than they were measured."""
         found: dict[Joint, float] = {}
-        for frame, is_knee in ((self.knee, True), (self.ankle, False)):
-            found |= {joint_of(side, is_knee): height for side, height in frame.heights_deg.items()}
+        for frame in self._frames:
+            found |= {frame.kind.of(side): height for side, height in frame.heights_deg.items()}
         return found
 
     def show_cycles(
         self, cycles: Mapping[Joint, SideCycle], verdicts: Mapping[Joint, JointVerdicts], is_simulated: bool
     ) -> None:
         """Draw the joints of one walk, as far as the verdicts let them be seen; a joint without one can be read."""
-        for frame, is_knee in ((self.knee, True), (self.ankle, False)):
+        for frame in self._frames:
             frame.show_cycles(
-                {joint.side: cycle for joint, cycle in cycles.items() if joint.is_knee is is_knee},
-                {joint.side: found for joint, found in verdicts.items() if joint.is_knee is is_knee},
+                {joint.side: cycle for joint, cycle in cycles.items() if joint.kind is frame.kind},
+                {joint.side: found for joint, found in verdicts.items() if joint.kind is frame.kind},
                 is_simulated,
             )
+        self.hip.setVisible(any(joint.is_hip for joint in cycles))
 
     def set_band(self, reference: ReferenceCurves | None) -> None:
         """Draw this group's band, or none where none may stand beside the walk."""
-        for frame, kind in ((self.knee, "knee"), (self.ankle, "ankle")):
-            frame.chart.band = Band(*reference.mean_and_sd_deg(kind)) if reference is not None else None
+        for frame in self._frames:
+            frame.chart.band = Band(*reference.mean_and_sd_deg(frame.kind)) if reference is not None else None
             frame.chart.redraw()
 
     def show_beside(self, found: Comparison | None, words: str = "") -> None:
         """Draw thin what the walk stands beside, or say why nothing; marks are to be shown anew, and the next walk is
         without."""
-        for frame in self.frames:
+        for frame in self._frames:
             frame.show_beside(found, words)
 
     def show_stride(self, curves_deg: Mapping[Joint, FloatArray]) -> None:
         """Draw one stride (101,) over all others, bold; none: no stride is in force."""
-        for frame, is_knee in ((self.knee, True), (self.ankle, False)):
-            found = [(joint.side, curve) for joint, curve in curves_deg.items() if joint.is_knee is is_knee]
+        for frame in self._frames:
+            found = [(joint.side, curve) for joint, curve in curves_deg.items() if joint.kind is frame.kind]
             frame.show_stride(found[0] if found else None)
 
     def show_marks(self, deviations: Sequence[Deviation], gaps: Sequence[Gap] = ()) -> None:
         """Mark on the curves what stands out, degrees as measured; the next walk shown is without."""
-        for frame, is_knee in ((self.knee, True), (self.ankle, False)):
+        for frame in self._frames:
             frame.show_marks(
-                [found for found in deviations if found.is_knee is is_knee],
-                [gap for gap in gaps if gap.joint.is_knee is is_knee],
+                [found for found in deviations if found.kind is frame.kind],
+                [gap for gap in gaps if gap.joint.kind is frame.kind],
             )
 
     def set_strides_shown(self, is_shown: bool) -> None:
-        for frame in self.frames:
+        for frame in self._frames:
             frame.set_strides_shown(is_shown)
 
     def set_band_shown(self, is_shown: bool) -> None:
-        for frame in self.frames:
+        for frame in self._frames:
             frame.chart.has_band = is_shown
             frame.chart.redraw()
 
     def show_cursor(self, percent: Mapping[Side, float]) -> None:
         """Mark a place on each leg's own stride; none: no cursor."""
-        for frame in self.frames:
+        for frame in self._frames:
             frame.chart.readings = percent
             frame.chart.update()
 
     def set_brief(self, is_brief: bool) -> None:
         """Leave out what the axis and the icons say as well, where there is little room."""
-        for frame in self.frames:
+        for frame in self._frames:
             frame.set_brief(is_brief)
+
+    def set_tight(self, *, is_tight: bool, is_narrow: bool) -> None:
+        """Let three charts be small where there is little room; `is_narrow`: three beside each other."""
+        for frame in self._frames:
+            frame.chart.set_tight(is_tight)
+            frame.set_narrow(is_narrow)
 
     def set_side_by_side(self, is_side_by_side: bool) -> None:
         way = QBoxLayout.Direction.LeftToRight if is_side_by_side else QBoxLayout.Direction.TopToBottom
         self._box.setDirection(way)
 
     def _on_picked(self, percent: float, angle_deg: float) -> None:
-        self.picked.emit(self.sender() is self.knee.chart, percent, angle_deg)
+        kind = next(frame.kind for frame in self._frames if frame.chart is self.sender())
+        self.picked.emit(kind, percent, angle_deg)
 
     def _on_look_changed(self) -> None:
         self._box.setSpacing(self._look.theme.px(12))
@@ -163,8 +174,8 @@ class CycleCharts(Themed):
 class CycleFrame(Card):
     """A chart with its title, its sign in words, the key to its curves and what must be known to read them."""
 
-    def __init__(self, look: ThemeNotifier, chart: "CycleChart", is_knee: bool) -> None:
-        self._is_knee = is_knee
+    def __init__(self, look: ThemeNotifier, chart: "CycleChart", kind: JointKind) -> None:
+        self.kind = kind
         self.chart = chart
         self.chips = {side: VerdictChip(look, side) for side in Side}
         self._mark = IconMark(look, Icon.WARNING, size=18)
@@ -177,17 +188,25 @@ class CycleFrame(Card):
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
         head = QHBoxLayout()
         head.setSpacing(8)
-        head.addWidget(Text(look, title_in_words(is_knee), size=16, weight=SEMIBOLD))
-        self._sign = Text(look, sign_in_words(is_knee), size=12, tone="ink2")
+        head.addWidget(Text(look, title_in_words(kind), size=16, weight=SEMIBOLD))
+        self._sign = Text(look, sign_in_words(kind), size=12, tone="ink2")
         head.addWidget(self._sign)
         head.addStretch(1)
+        self._chips = QHBoxLayout()
+        self._chips.setSpacing(8)
         for side in Side:
-            head.addWidget(self.chips[side])
+            self._chips.addWidget(self.chips[side])
+        self._head = QGridLayout()
+        self._head.setHorizontalSpacing(8)
+        self._head.setVerticalSpacing(2)
+        self._head.addLayout(head, 0, 0)
+        self._head.addLayout(self._chips, 0, 1)
+        self._head.setColumnStretch(0, 1)
         notes = QHBoxLayout()
         notes.setSpacing(8)
         notes.addWidget(self._mark, 0, Qt.AlignmentFlag.AlignTop)
         notes.addWidget(self._note, 1)
-        self.column.addLayout(head)
+        self.column.addLayout(self._head)
         self.column.addLayout(notes)
         self.column.addWidget(self.beside)
         for panel in self.withheld.values():
@@ -210,7 +229,7 @@ class CycleFrame(Card):
         cycles, verdicts, is_simulated = self._walk
         doubts = {side: why for side, judged in verdicts.items() if side in cycles and (why := doubt_in(judged))}
         reasons = {side: why_in_words(judged) for side, judged in verdicts.items() if side in cycles}
-        joints = [joint for joint in (found.joints if found is not None else ()) if joint.is_knee is self._is_knee]
+        joints = [joint for joint in (found.joints if found is not None else ()) if joint.kind is self.kind]
         has_other_zero = found is not None and not all(_has_common_height(found, joint) for joint in joints)
         is_about_mean = has_other_zero or any(why != WITHHELD for why in doubts.values())
         self.heights_deg = {side: cycle.height_deg for side, cycle in cycles.items()} if is_about_mean else {}
@@ -232,7 +251,7 @@ class CycleFrame(Card):
         for widget in (self._mark, self._note):
             widget.setVisible(bool(self._note.text()))
         self._show_chart()
-        self.chart.setAccessibleName(tr("{joint} over one stride").format(joint=title_in_words(self._is_knee)))
+        self.chart.setAccessibleName(tr("{joint} over one stride").format(joint=title_in_words(self.kind)))
         self.chart.setAccessibleDescription(self.in_words())
 
     def show_marks(self, deviations: Sequence[Deviation], gaps: Sequence[Gap]) -> None:
@@ -264,6 +283,12 @@ class CycleFrame(Card):
         for chip in self.chips.values():
             chip.set_brief(is_brief)
 
+    def set_narrow(self, is_narrow: bool) -> None:
+        """Put the chips under the title, where they have no room beside it."""
+        self._head.removeItem(self._chips)
+        place = (1, 0, 1, 2, Qt.AlignmentFlag.AlignLeft) if is_narrow else (0, 1, 1, 1, Qt.AlignmentFlag.AlignRight)
+        self._head.addLayout(self._chips, *place)
+
     def set_strides_shown(self, is_shown: bool) -> None:
         self.chart.has_strides = is_shown
         self._show_beside_words()
@@ -277,7 +302,7 @@ class CycleFrame(Card):
         """Name the thin curves, and say of whom there is none."""
         against = found.against
         said = [tr("Thin: {walk}.").format(walk=against.name)] if self.chart.beside else []
-        worn = {joint_of(side, self._is_knee) for side in self.chart.cycles}
+        worn = {self.kind.of(side) for side in self.chart.cycles}
         for joint in sorted(worn, key=list(Joint).index):
             if joint not in against.joints:
                 said.append(tr("{side}: not measured in {walk}.").format(side=LETTERS[joint.side], walk=against.name))
@@ -296,7 +321,7 @@ class CycleFrame(Card):
         """Say each side's mean curve, for who cannot see it."""
         said = [tr("Simulated.")] if self.chart.is_simulated else []
         for side, cycle in self.chart.cycles.items():
-            part = part_in_words(side, self._is_knee)
+            part = part_in_words(side, self.kind)
             if side in self.chart.withheld:
                 said.append(f"{part}: {self.withheld[side].text}")
                 continue
@@ -325,7 +350,7 @@ class CycleFrame(Card):
         said += [deviation.in_words() for deviation in self.chart.deviations]
         said += [gap.in_words() for gap in self.chart.gaps]
         said += [text for text in (self.beside.text(), self.note) if text]
-        return " ".join(said) or nothing_in_words(self._is_knee)
+        return " ".join(said) or nothing_in_words(self.kind)
 
     def _notes(self, cycles: Mapping[Side, SideCycle], doubts: Mapping[Side, str]) -> list[str]:
         notes = []
@@ -335,7 +360,7 @@ class CycleFrame(Card):
         if self.chart.is_about_mean:
             notes.append(tr("0° is the mean of the stride."))
         if not cycles:
-            notes.append(nothing_in_words(self._is_knee))
+            notes.append(nothing_in_words(self.kind))
         empty = [LETTERS[s] for s, cycle in cycles.items() if not cycle.mean.n and s not in self.chart.withheld]
         if empty:
             notes.append(tr("{sides}: no usable stride.").format(sides=joined(empty)))
@@ -357,10 +382,10 @@ class CycleChart(Themed):
 
     picked = Signal(float, float)  # percent of the stride, degrees
 
-    def __init__(self, look: ThemeNotifier, *, is_knee: bool) -> None:
+    def __init__(self, look: ThemeNotifier, kind: JointKind) -> None:
         super().__init__()
-        self._look, self._is_knee = look, is_knee
-        self.range_deg = usual_range_deg(is_knee=is_knee, is_about_mean=False)
+        self._look, self._kind = look, kind
+        self.range_deg = usual_range_deg(kind, is_about_mean=False)
         self.cycles: Mapping[Side, SideCycle] = {}
         self.band: Band | None = None
         self.is_simulated = False
@@ -373,6 +398,7 @@ class CycleChart(Themed):
         self.deviations: tuple[Deviation, ...] = ()
         self.gaps: tuple[Gap, ...] = ()
         self._picture: QPixmap | None = None
+        self._least = LEAST_SIZE
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
 
     @property
@@ -381,14 +407,18 @@ class CycleChart(Themed):
 
     @property
     def _usual_deg(self) -> tuple[float, float]:
-        return usual_range_deg(is_knee=self._is_knee, is_about_mean=self.is_about_mean)
+        return usual_range_deg(self._kind, is_about_mean=self.is_about_mean)
 
     def sizeHint(self) -> QSize:
         px = self._look.theme.px
-        return QSize(px(LEAST_SIZE[0]), px(LEAST_SIZE[1]))
+        return QSize(px(self._least[0]), px(self._least[1]))
 
     def minimumSizeHint(self) -> QSize:
         return self.sizeHint()
+
+    def set_tight(self, is_tight: bool) -> None:
+        self._least = TIGHT_SIZE if is_tight else LEAST_SIZE
+        self.updateGeometry()
 
     def show_cycles(
         self,
@@ -417,13 +447,22 @@ class CycleChart(Themed):
         return StrideChart(
             axis=Axis(*self.range_deg, SCREEN_TICK_DEG, SCREEN_TICK_DEG),
             curves=self._curves(),
-            band=self.band if self.has_band and not self.is_about_mean else None,
+            band=self._drawn_band(),
             is_simulated=self.is_simulated,
             beside=() if self.has_strides else self.beside,
             chosen=self.stride,
             deviations=self.deviations,
             gaps=self.gaps,
         )
+
+    def _drawn_band(self) -> Band | None:
+        """At the hip laid at the height of the curves, for its group's zero is another one."""
+        if self.band is None or not self.has_band or self.is_about_mean:
+            return None
+        means = [curve.angle_deg for curve in self._curves() if curve.is_known]
+        if self._kind is not JointKind.HIP:
+            return self.band
+        return laid_at_height_of(np.mean(means, axis=0), self.band) if means else None
 
     def _curves(self) -> tuple[StrideCurve, ...]:
         return curves_of_walk(self.cycles, self.withheld, has_strides=self.has_strides)

@@ -1,4 +1,4 @@
-"""Knee above ankle over one recording: one time axis, one reading line, and always a way back to the whole."""
+"""Hip, knee and ankle over one recording: one time axis, one reading line, and always a way back to the whole."""
 
 from collections.abc import Mapping
 
@@ -8,10 +8,8 @@ from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QKeyEvent
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QSizePolicy, QVBoxLayout
 
 from app.charts.axes import (
-    ANKLE_DEG,
-    KNEE_DEG,
+    USUAL_DEG,
     degrees_in_words,
-    joint_of,
     nothing_in_words,
     part_in_words,
     range_in_words,
@@ -28,7 +26,7 @@ from app.widgets.icons import IconMark
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.themed import Themed
 from app.wording import later, name_of, tr
-from core.body import Joint, Side
+from core.body import Joint, JointKind, Side
 from core.results import SideGait
 from core.samples import FloatArray, IntArray
 
@@ -38,9 +36,10 @@ NO_GAIT: Mapping[Side, SideGait] = {}
 
 
 class JointCharts(Themed):
-    """Two charts that act as one control: the mouse or the keys read, move along and zoom in time.
+    """Charts that act as one control: the mouse or the keys read, move along and zoom in time.
 
-    `view_changed` tells whether the whole recording is in sight, and which part is.
+    The hip's is there where a hip was measured. `view_changed` tells whether the whole recording is in sight, and which
+    part is.
     """
 
     view_changed = Signal(bool, str)
@@ -50,15 +49,19 @@ class JointCharts(Themed):
         self._look = look
         self._time_s: FloatArray = np.zeros(0)
         self._cursor_s: float | None = None
+        self._name = ""
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-        self.knee = ChartFrame(look, AngleChart(look, *KNEE_DEG, has_times=False), is_knee=True)
-        self.ankle = ChartFrame(look, AngleChart(look, *ANKLE_DEG), is_knee=False)
-        self._frames = (self.knee, self.ankle)
+        self.hip, self.knee, self.ankle = (
+            ChartFrame(look, AngleChart(look, *USUAL_DEG[kind], has_times=kind is JointKind.ANKLE), kind)
+            for kind in JointKind
+        )
+        self.frames = (self.hip, self.knee, self.ankle)
+        self.hip.hide()
         self.phases = PhaseFrame(look)
         self._event_rows: IntArray = np.zeros(0, dtype=np.int64)
         self._column = QVBoxLayout(self)
         self._column.setContentsMargins(0, 0, 0, 0)
-        for frame in self._frames:
+        for frame in self.frames:
             self._column.addWidget(frame, 1)
             frame.chart.scene().sigMouseMoved.connect(self._on_mouse_moved)
         self._column.addWidget(self.phases)
@@ -66,7 +69,8 @@ class JointCharts(Themed):
         self.phases.lanes.pointed.connect(self._read_at)
         self.phases.lanes.zoomed.connect(self.zoom)
         self.phases.lanes.dragged.connect(self.go_on)
-        self.ankle.chart.link_time(self.knee.chart)
+        for frame in (self.hip, self.ankle):
+            frame.chart.link_time(self.knee.chart)
         self.knee.chart.view_moved.connect(self._on_view_moved)
         self._on_look_changed()
 
@@ -96,8 +100,8 @@ class JointCharts(Themed):
         self.phases.show_gait(time_s, gait, is_simulated)
         rows = [row for lane in self.phases.lanes.lanes.values() for row in lane.event_rows]
         self._event_rows = np.unique(np.array(rows, dtype=np.int64))
-        self.setAccessibleName(tr("Knee and ankle angles of {recording}").format(recording=name))
-        for frame in self._frames:
+        self._name = name
+        for frame in self.frames:
             frame.set_simulated(is_simulated)
             frame.chart.show_curves(time_s, {})
         self._read_at(None)
@@ -105,12 +109,27 @@ class JointCharts(Themed):
 
     def show_joints(self, curves: Mapping[Joint, Curve]) -> None:
         """Draw the joints' curves, all on the time of `show_recording`; the stretch in sight stays."""
-        for frame in self._frames:
-            joints = {side: joint_of(side, frame.is_knee) for side in Side}
+        for frame in self.frames:
+            joints = {side: frame.kind.of(side) for side in Side}
             frame.show_curves(self._time_s, {side: curves[joint] for side, joint in joints.items() if joint in curves})
-        told = [*(frame.in_words() for frame in self._frames), self.phases.in_words()]
+        has_hips = any(joint.is_hip for joint in curves)
+        self.hip.setVisible(has_hips)
+        for frame in self.frames:
+            frame.set_of_three(has_hips)
+        self._on_look_changed()
+        self.hip.set_moment_shown(has_hips)  # once is enough, on top
+        self.knee.set_moment_shown(not has_hips)
+        what = (
+            tr("Hip, knee and ankle angles of {recording}") if has_hips else tr("Knee and ankle angles of {recording}")
+        )
+        self.setAccessibleName(what.format(recording=self._name))
+        told = [*(frame.in_words() for frame in self._shown), self.phases.in_words()]
         self.setAccessibleDescription(" ".join(filter(None, told)))
         self._read_at(self._cursor_s)
+
+    @property
+    def _shown(self) -> list["ChartFrame"]:
+        return [frame for frame in self.frames if not frame.isHidden()]
 
     def show_whole(self) -> None:
         self._see(*self.knee.chart.whole_s)
@@ -184,7 +203,8 @@ class JointCharts(Themed):
         first, last = self.visible_s
         if not first <= time_s <= last:
             self.go_on((time_s - (first + last) / 2) / (last - first))
-        said = " ".join(frame.reading_in_words() for frame in (*self._frames, self.phases))
+        told = [*(frame.reading_in_words() for frame in self._shown), self.phases.reading_in_words()]
+        said = " ".join(told)
         QAccessible.updateAccessibility(QAccessibleAnnouncementEvent(self, f"{time_s:.2f} s. {said}".strip()))
 
     def _see(self, first_s: float, last_s: float) -> None:
@@ -198,11 +218,11 @@ class JointCharts(Themed):
             row = int(np.argmin(np.abs(self._time_s - time_s)))
             time_s = float(self._time_s[row])
         self._cursor_s = time_s
-        for frame in (*self._frames, self.phases):
+        for frame in (*self.frames, self.phases):
             frame.read(row, time_s)
 
     def _on_mouse_moved(self, position: QPointF) -> None:
-        for frame in self._frames:
+        for frame in self.frames:
             if frame.chart.underMouse():
                 time_s = frame.chart.time_at(position.x(), position.y())
                 if time_s is not None:
@@ -218,18 +238,18 @@ class JointCharts(Themed):
         self.view_changed.emit(self.is_whole, said.format_map(times))
 
     def _on_look_changed(self) -> None:
-        self._column.setSpacing(self._look.theme.px(12))
+        self._column.setSpacing(self._look.theme.px(12 if self.hip.isHidden() else 6))
 
 
 class ChartFrame(Card):
     """A chart with its title, its sign in words, and what stands at the reading line."""
 
-    def __init__(self, look: ThemeNotifier, chart: AngleChart, is_knee: bool) -> None:
-        self.is_knee = is_knee
+    def __init__(self, look: ThemeNotifier, chart: AngleChart, kind: JointKind) -> None:
+        self.kind = kind
         self.chart = chart
-        self._is_narrow = self._is_wide = False
-        self._title = Text(look, title_in_words(is_knee), size=16, weight=SEMIBOLD)
-        self._sign = Text(look, sign_in_words(is_knee), size=12, tone="ink2")
+        self._is_narrow = self._is_wide = self._is_of_three = False
+        self._title = Text(look, title_in_words(kind), size=16, weight=SEMIBOLD)
+        self._sign = Text(look, sign_in_words(kind), size=12, tone="ink2")
         self._simulated = Text(look, tr("SIMULATED"), size=12, weight=SEMIBOLD)
         self._moment = Text(look, size=14, tone="ink2")
         self._keys = {side: SideKey(look, side) for side in Side}
@@ -258,7 +278,7 @@ class ChartFrame(Card):
         self._place()
         self.column.addLayout(head)
         self.column.addWidget(chart, 1)
-        self._moment.setVisible(is_knee)  # once is enough, and the knee stands on top
+        self.set_moment_shown(kind is JointKind.KNEE)
         self._set_widened()
         self._on_look_changed()
 
@@ -266,6 +286,15 @@ class ChartFrame(Card):
         """Put the readings under the title where they do not fit beside it and the words of a widened axis."""
         self._is_narrow, self._is_wide = is_narrow, is_wide
         self._place()
+
+    def set_of_three(self, is_of_three: bool) -> None:
+        """Let it be lower, where three charts share the room of two."""
+        self._is_of_three = is_of_three
+        self.chart.set_of_three(is_of_three)
+        self._on_look_changed()
+
+    def set_moment_shown(self, is_shown: bool) -> None:
+        self._moment.setVisible(is_shown)
 
     def set_simulated(self, is_simulated: bool) -> None:
         self._simulated.setVisible(is_simulated)
@@ -276,7 +305,7 @@ class ChartFrame(Card):
             for widget in (self._keys[side], self._values[side]):
                 widget.setVisible(side in curves)
         self._set_widened()
-        self.chart.setAccessibleName(tr("{joint} over time").format(joint=title_in_words(self.is_knee)))
+        self.chart.setAccessibleName(tr("{joint} over time").format(joint=title_in_words(self.kind)))
         self.chart.setAccessibleDescription(self.in_words())
 
     def read(self, row: int | None, time_s: float | None) -> None:
@@ -290,23 +319,21 @@ class ChartFrame(Card):
 
     def reading_in_words(self) -> str:
         return " ".join(
-            f"{name_of(joint_of(side, self.is_knee))} {self._values[side].text()}."
-            for side in Side
-            if side in self.chart.curves
+            f"{name_of(self.kind.of(side))} {self._values[side].text()}." for side in Side if side in self.chart.curves
         )
 
     def in_words(self) -> str:
         """Say each leg's range, for who cannot see the curves."""
         said = []
         for side, curve in self.chart.curves.items():
-            part = part_in_words(side, self.is_knee)
+            part = part_in_words(side, self.kind)
             if np.isfinite(curve.angle_deg).any():
                 lowest, highest = (degrees_in_words(find(curve.angle_deg)) for find in (np.nanmin, np.nanmax))
                 told = tr("{part} from {lowest} to {highest}.")
                 said.append(told.format(part=part, lowest=lowest, highest=highest))
             else:
                 said.append(tr("{part} has no values.").format(part=part))
-        return " ".join(said) or nothing_in_words(self.is_knee)
+        return " ".join(said) or nothing_in_words(self.kind)
 
     def _place(self) -> None:
         for part in self._head:
@@ -333,6 +360,10 @@ class ChartFrame(Card):
 
     def _on_look_changed(self) -> None:
         super()._on_look_changed()
+        if self._is_of_three:
+            side, narrow = self._look.theme.px(16), self._look.theme.px(6)
+            self.column.setContentsMargins(side, narrow, side, narrow)
+            self.column.setSpacing(self._look.theme.px(2))
         self._reserve_room()
 
 

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt, QTimer, Signal
-from PySide6.QtGui import QColor, QHideEvent, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QPolygonF
+from PySide6.QtGui import QColor, QHideEvent, QKeyEvent, QMouseEvent, QPainter, QPaintEvent
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy
 
 from app.icons import Icon
@@ -14,6 +14,7 @@ from app.theme import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.chip import CHIP, LETTERS, paint_chip
+from app.widgets.limb import limb_outline
 from app.widgets.segmented import Segmented
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.themed import Themed
@@ -29,10 +30,12 @@ SPEEDS = (
     ("half", "\N{VULGAR FRACTION ONE HALF}", 0.5),
     ("one", "1\u00a0\N{MULTIPLICATION SIGN}", 1.0),
 )
+PELVIS_M, PELVIS_HALF_M = 0.14, 0.08  # as large as it looks right
 LANE, LANE_GAP, LANES_HEIGHT = 18, 8, 84
 NO_LEGS = later("Legs are drawn where a thigh was heard and a knee's height can be read.")
 APART = later("The clocks of both legs are not known to agree: drawn half a stride apart.")
 DRAWN = later("Drawn from angles and the thighs' inclination, not measured.")
+DRAWN_WITH_PELVIS = later("Drawn from angles and the inclination of thighs and pelvis, not measured.")
 
 
 class MovingLegs(Card):
@@ -91,7 +94,8 @@ class MovingLegs(Card):
         """Show the legs of another walk, where the cursor was."""
         self._legs = legs
         self.stop()
-        notes = [tr(NO_LEGS)] if legs is None else [tr(DRAWN)]
+        has_pelvis = legs is not None and legs.tilt_rad is not None
+        notes = [tr(NO_LEGS) if legs is None else tr(DRAWN_WITH_PELVIS) if has_pelvis else tr(DRAWN)]
         if legs is not None and len(legs.legs) == len(Side) and not legs.is_together:
             notes.append(tr(APART))
         self.note.setText(" ".join(notes))
@@ -199,7 +203,9 @@ class _LegsPicture(Themed):
         width = self._lanes().left() - px(CHIP + 24) if self._is_wide else self.width()
         room = QRectF(0, px(8), width, self.height() - px(8) - below)
         reach = max(float(-np.nanmin(leg.points_m[..., 1])) for leg in legs.legs.values())
-        scale = (room.height() - px(10)) / (1.08 * reach)
+        tilt_rad = legs.pelvis_tilt_rad(self._percent)
+        above = 0.0 if tilt_rad is None else PELVIS_M + PELVIS_HALF_M
+        scale = (room.height() - px(10)) / (1.08 * reach + above)
         standing = [side for side in poses if legs.is_standing(side, self._percent)] or list(poses)
         lowest = min(float(np.nanmin(poses[side][:, 1])) for side in standing)
         floor = room.bottom() - px(10)  # a swinging foot, drawn from its angle, may reach a little below it
@@ -209,9 +215,20 @@ class _LegsPicture(Themed):
 
         painter.setPen(theme.pen(theme.colours.control, 1))
         painter.drawLine(QPointF(room.left(), floor), QPointF(room.right(), floor))
+        if tilt_rad is not None:
+            self._paint_pelvis(painter, at(np.zeros(2)), tilt_rad, scale)
         for side in (Side.LEFT, Side.RIGHT):
             if side in poses:
                 self._paint_leg(painter, side, [at(point) for point in poses[side]], scale)
+
+    def _paint_pelvis(self, painter: QPainter, hip: QPointF, tilt_rad: float, scale: float) -> None:
+        """From the hips up, leaning as it is tilted from standing; behind the legs, for it is no leg's."""
+        theme = self._look.theme
+        up = scale * PELVIS_M
+        top = QPointF(hip.x() + up * math.sin(tilt_rad), hip.y() - up * math.cos(tilt_rad))
+        painter.setPen(theme.pen(theme.colours.control, 2))
+        painter.setBrush(QColor(theme.colours.track))
+        painter.drawPolygon(limb_outline(hip, top, scale * PELVIS_HALF_M, scale * PELVIS_HALF_M))
 
     def _paint_leg(self, painter: QPainter, side: Side, points: list[QPointF], scale: float) -> None:
         theme = self._look.theme
@@ -219,7 +236,7 @@ class _LegsPicture(Themed):
         painter.setBrush(theme.pale(side))
         for k, (first, last) in enumerate(HALF_WIDTHS_M):
             if all(math.isfinite(one.x()) for one in points[k : k + 2]):
-                painter.drawPolygon(_segment(points[k], points[k + 1], scale * first, scale * last))
+                painter.drawPolygon(limb_outline(points[k], points[k + 1], scale * first, scale * last))
         painter.setBrush(QColor(theme.colours.surface))
         for joint in points[:3]:
             if math.isfinite(joint.x()):
@@ -275,14 +292,3 @@ class _LegsPicture(Themed):
     def _on_look_changed(self) -> None:
         self.updateGeometry()
         self.update()
-
-
-def _segment(first: QPointF, last: QPointF, wide: float, narrow: float) -> QPolygonF:
-    """The outline of a segment: round at both ends, as wide as its halves."""
-    way = math.atan2(last.y() - first.y(), last.x() - first.x())
-    outline = []
-    for centre, radius, begin in ((first, wide, way + math.pi / 2), (last, narrow, way - math.pi / 2)):
-        for k in range(13):
-            turn = begin + math.pi * k / 12
-            outline.append(QPointF(centre.x() + radius * math.cos(turn), centre.y() + radius * math.sin(turn)))
-    return QPolygonF(outline)

@@ -8,7 +8,7 @@ from PySide6.QtCore import QPointF, QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen, QPixmap
 from PySide6.QtWidgets import QSizePolicy
 
-from app.charts.axes import ANKLE_DEG, AXIS_WIDTH, KNEE_DEG, RIGHT_MARGIN, angle_in_words, range_for
+from app.charts.axes import AXIS_WIDTH, KNEE_DEG, RIGHT_MARGIN, USUAL_DEG, angle_in_words, range_for
 from app.plots.angle_chart import DENSE_FROM, runs
 from app.plots.thinning import thin
 from app.theme import ThemeNotifier
@@ -47,7 +47,7 @@ class TwoWaysChart(Themed):
         self, joint: Joint, time_s: FloatArray, from_rates: FloatArray, from_forces: FloatArray, fused: FloatArray
     ) -> None:
         """Draw the angles (n,) in degrees over `time_s` (n,); NaN in gaps."""
-        self._side, self._fixed = joint.side, KNEE_DEG if joint.is_knee else ANKLE_DEG
+        self._side, self._fixed = joint.side, USUAL_DEG[joint.kind]
         self.time_s, self.curves_deg = time_s, (from_forces, from_rates, fused)
         self.see_all()
 

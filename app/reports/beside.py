@@ -3,19 +3,18 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from app.charts.axes import joint_of
 from app.charts.marks import Deviation, extreme_of
 from app.recording_names import shown_names
 from app.reports.comparison import Comparison, Contrast, Part, conditions_of
-from app.reports.patient_report.facts import KINDS
 from app.reports.patient_report.marks_on_curves import windows_of
 from app.reports.patient_report.numbers_in_words import fixed
 from app.reports.visits import ComparedVisits
 from app.wording import tr
+from core.body import JointKind
 from core.goals import NO_GOALS, AgreedGoals
 from core.results import Analysis
 from core.samples import Recording
-from core.verdicts.quantities import QUANTITIES, QuantityClass
+from core.verdicts.quantities import CLASSES, QuantityClass
 
 MARKED = (QuantityClass.SHAPE, QuantityClass.EXCURSION)
 
@@ -56,11 +55,11 @@ def changes_on_curves(found: Comparison) -> list[Deviation]:
     """Of each kind of joint the movement that differs most errors from what it stands beside, on the walk shown."""
     rows = sorted((row for row in found.rows if row.exceeds), key=lambda row: -row.difference.ratio)
     marked = []
-    for kind in KINDS:
-        of_kind = (row for row in rows if row.measure.kind == kind and QUANTITIES[row.measure.column] in MARKED)
+    for kind in JointKind:
+        of_kind = (row for row in rows if row.measure.kind == kind and CLASSES[row.measure.column] in MARKED)
         if (row := next(of_kind, None)) is None:
             continue
-        measure, joint = row.measure, joint_of(row.side, kind == KINDS[0])
+        measure, joint = row.measure, kind.of(row.side)
         curve_deg = row.part.cycle(joint).mean
         high, low = windows_of(measure.column)
         pattern = tr("{size} less than {other}") if row.difference.difference < 0 else tr("{size} more than {other}")

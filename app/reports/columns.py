@@ -19,7 +19,7 @@ COLUMNS = "columns.csv"
 HEADER = ("file", "column", "unit", "sign", "definition", "needs")
 # by the end of a name, longer ends first
 UNITS = {"_m_s": "m/s", "percent": "%", "_deg": "deg", "_s": "s", "_mm": "mm", "_m": "m"}
-FLEXION = {"knee": "flexion positive", "ankle": "dorsiflexion positive"}
+FLEXION = {"knee": "flexion positive", "ankle": "dorsiflexion positive", "hip": "flexion positive"}
 HEIGHT = "zero sign"
 NEEDS = {
     QuantityClass.PEAK_TIME: "sign",
@@ -167,6 +167,17 @@ HIP_STRIDES = {
         "how far the side of this leg drops below the other in its swing, from standing", "zero", "dropping positive"
     ),
     "pelvis_rotation_range_deg": ColumnMeaning("largest less smallest rotation of the stride; empty in turns"),
+    "hip_abduction_range_deg": ColumnMeaning("largest less smallest hip abduction of the stride"),
+    "hip_abduction_peak_deg": ColumnMeaning(
+        "largest hip abduction of the stride, from standing", HEIGHT, "abduction positive"
+    ),
+    "hip_adduction_peak_deg": ColumnMeaning(
+        "largest hip adduction of the stride, from standing", HEIGHT, "adduction positive"
+    ),
+    "pelvis_tilt_range_deg": ColumnMeaning(
+        "largest less smallest tilt of the stride; empty where its mean is 5 deg or less"
+    ),
+    "pelvis_lean_deg": ColumnMeaning("mean tilt over the stride, from standing", "zero", "forward positive"),
 }
 
 
@@ -185,7 +196,25 @@ def _prefixed(prefix: str, columns: Mapping[str, ColumnMeaning], whose: str) -> 
     return {prefix + name: one._replace(definition=f"{one.definition}{whose}") for name, one in columns.items()}
 
 
-CYCLES = PERCENT | {name: column for joint in LEG_JOINTS for name, column in _of_cycles(joint).items()}
+def _of_abduction(joint: Joint) -> dict[str, ColumnMeaning]:
+    sign = "abduction positive"
+    return {
+        f"{joint}_abduction_mean_deg": ColumnMeaning(
+            "mean abduction over the strides used; empty where the heading between pelvis and thigh is not sure enough",
+            HEIGHT,
+            sign,
+        ),
+        f"{joint}_abduction_stride_sd_deg": ColumnMeaning("standard deviation between the strides used"),
+        f"{joint}_abduction_n": N,
+        f"{joint}_abduction_status": _word(f"{STATUS}the abduction"),
+    }
+
+
+CYCLES = (
+    PERCENT
+    | {name: column for joint in Joint for name, column in _of_cycles(joint).items()}
+    | {name: column for side in Side for name, column in _of_abduction(hip_of(side)).items()}
+)
 DIFFERENCES = {
     **OF_PART,
     **_prefixed("against_", {**OF_PART, **MEAN, **BY_HAND}, ", of what it is compared with"),
@@ -221,9 +250,9 @@ KNOWN: Mapping[str, Mapping[str, ColumnMeaning]] = {
         **{f"{kind}_shape_status": _word(f"{STATUS}the {kind}'s range") for kind in FLEXION},
         **{f"{kind}_height_status": _word(f"{STATUS}the {kind}'s angles") for kind in FLEXION},
         **HIP_STRIDES,
-        "hip_shape_status": _word(f"{STATUS}the hip's range"),
-        "hip_height_status": _word(f"{STATUS}the hip's angles"),
+        "hip_abduction_status": _word(f"{STATUS}how far the hip moves outwards and inwards"),
         "pelvis_status": _word(f"{STATUS}the pelvis"),
+        "pelvis_tilt_status": _word(f"{STATUS}the range of the pelvis's tilt"),
     },
     "cycles.csv": CYCLES,
     "peaks.csv": {
@@ -238,6 +267,8 @@ KNOWN: Mapping[str, Mapping[str, ColumnMeaning]] = {
             for window in WINDOWS.values()
         },
         **{name: _of_stride(name) for name in EXCURSIONS_BY_COLUMN},
+        "hip_flexion_peak_percent": ColumnMeaning("when the largest hip flexion of the stride comes", "sign"),
+        "hip_extension_peak_percent": ColumnMeaning("when the largest hip extension of the stride comes", "sign"),
         **{f"{kind}_status": _word(f"{STATUS}when the {kind} peaks, and its excursions") for kind in FLEXION},
     },
     "fitting.csv": {

@@ -21,7 +21,7 @@ from app.reports.alignments import alignments_of
 from app.reports.walk_figures import by_hand_in_words
 from app.wording import joined, later, tr
 from core.alignment import AlignmentChange
-from core.body import LEG_JOINTS, Joint, Side
+from core.body import Joint, Side
 from core.chosen_strides import left_out_by_hand
 from core.gait.cycles import POINTS, MeanCycle, mean_cycle
 from core.gait.spatiotemporal import BothFeet, MeanAndSd, mean_and_sd
@@ -57,12 +57,13 @@ ERROR_SOURCES = {
     ErrorSource.EVENTS: later("events that come early or late"),
     ErrorSource.ZERO: later("the zero"),
 }
+PELVIS = "pelvis"
 CADENCE = "cadence_steps_min"  # of both legs; of one, two steps in each of its strides
 
 
 @dataclass(frozen=True, slots=True)
 class Measure:
-    """One figure that is compared; `column` is a quantity of strides, `kind` knee, ankle or empty.
+    """One figure that is compared; `column` is a quantity of strides, `kind` knee, ankle, hip, pelvis or empty.
 
     `is_of_walk`: both legs have the same, so it is told once, of both.
     """
@@ -98,6 +99,10 @@ MEASURES = (
     Measure("ankle_push_off_deg", later("Ankle push-off"), "ankle"),
     Measure("ankle_rocker_deg", later("Ankle rocker"), "ankle"),
     Measure("ankle_range_deg", later("Ankle range"), "ankle"),
+    Measure("hip_range_deg", later("Hip range"), "hip"),
+    Measure("hip_extension_peak_deg", later("Hip, most extended"), "hip"),
+    Measure("pelvis_obliquity_range_deg", later("Pelvis, obliquity range"), "pelvis"),
+    Measure("pelvis_drop_deg", later("Pelvis drop in swing"), "pelvis"),
     Measure("stance_percent", later("Stance time, % of stride"), "", "%"),
     Measure("stride_length_m", later("Stride length, m"), "", "m", 2),
     Measure("speed_m_s", later("Walking speed, m/s"), "", "m/s", 2, is_of_walk=True),
@@ -166,7 +171,7 @@ class Part:
     def joints(self) -> tuple[Joint, ...]:
         """Those with mean cycles."""
         has = {joint for walk in self.walks for gait in walk.gait.values() for joint in gait.cycles}
-        return tuple(joint for joint in LEG_JOINTS if joint in has)
+        return tuple(joint for joint in Joint if joint in has)
 
     @cached_property
     def verdicts(self) -> Verdicts:
@@ -236,6 +241,8 @@ class Part:
 
     def is_measured(self, side: Side, measure: Measure) -> bool:
         joint = measure.joint(side)
+        if measure.kind == PELVIS and all(walk.pelvis is None for walk in self.walks):
+            return False
         return side in self.sides and (joint is None or joint in self.joints)
 
     def is_drawn(self, joint: Joint) -> bool:
@@ -301,6 +308,8 @@ class Part:
         return sum(map(left_out_by_hand, gaits))
 
     def zero(self, joint: Joint) -> ZeroKind:
+        if joint.is_hip:  # its frames come from standing, or there is none
+            return ZeroKind.STANDING if joint in self.joints else ZeroKind.NONE
         return self.calibrated[joint].zero if joint in self.calibrated else ZeroKind.NONE
 
 
@@ -364,7 +373,7 @@ class Comparison:
 
     @property
     def joints(self) -> tuple[Joint, ...]:
-        return tuple(joint for joint in LEG_JOINTS if any(joint in part.joints for part in self.parts))
+        return tuple(joint for joint in Joint if any(joint in part.joints for part in self.parts))
 
     @property
     def is_one_attachment(self) -> bool:
@@ -474,7 +483,7 @@ class Comparison:
         self, measure: Measure, side: Side, pair: tuple[Part, Part], assessments: tuple[Assessment, ...]
     ) -> Reservation:
         joint = measure.joint(side)
-        if not all(side in one.sides and (joint is None or joint in one.joints) for one in pair):
+        if not all(one.is_measured(side, measure) for one in pair):
             return Reservation.NOT_MEASURED
         if joint is not None and measure.needs_height and not self.has_one_zero(joint):
             return Reservation.OTHER_ZERO

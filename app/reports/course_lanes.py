@@ -14,7 +14,8 @@ from uuid import UUID
 
 from app.reports.course import KNEE, SPEED, STANCE, Course, CourseCondition, change
 from core.body import Side
-from core.goals import OF_WALKS, Goal, GoalOf, held
+from core.goals import Goal, GoalOf, held, is_of_walk
+from core.timed.measures import COLUMNS, PROTOCOLS
 from core.verdicts.measurement_error import Difference, Judgement
 from core.verdicts.model import Verdict
 
@@ -30,7 +31,11 @@ class LaneKind(NamedTuple):
 
     @property
     def is_of_walk(self) -> bool:
-        return self.column in OF_WALKS
+        return is_of_walk(self.column)
+
+    @property
+    def is_of_test(self) -> bool:
+        return self.column in PROTOCOLS
 
 
 SPEED_LANE, KNEE_LANE, STANCE_LANE = LaneKind(SPEED), LaneKind(KNEE), LaneKind(STANCE, is_between=True)
@@ -129,20 +134,30 @@ def conditions_of_visits(visits: Sequence[CourseVisit]) -> dict[str, int]:
 
 def lane_kinds(goals: Sequence[Goal] = ()) -> tuple[LaneKind, ...]:
     """What has a lane: first what goals are of, then the usual ones as far as there is room."""
-    wanted = dict.fromkeys(_kind(goal) for goal in held(goals))
+    wanted = dict.fromkeys(_kind(goal) for goal in held(goals) if not _kind(goal).is_of_test)
     own = [*(kind for kind in USUAL if kind in wanted), *(kind for kind in wanted if kind not in USUAL)]
     few = own[:MOST_LANES]
     return (*few, *[kind for kind in USUAL if kind not in own][: max(USUAL_LANES - len(few), 0)])
 
 
+def kinds_of_tests(visits: Sequence[CourseVisit], goals: Sequence[Goal] = ()) -> tuple[LaneKind, ...]:
+    """The timed tests that have a lane: those that were done, and those that goals are of."""
+    done = {test.column for visit in visits if visit.course for one in visit.course.conditions for test in one.tests}
+    wanted = done | {goal.column for goal in held(goals)}
+    return tuple(LaneKind(column) for column in COLUMNS.values() if column in wanted)
+
+
 def without_lane(goals: Sequence[Goal]) -> tuple[Goal, ...]:
-    """Goals that hold and whose course has no room."""
+    """Goals that hold and whose course has no room; that of each timed test has."""
     shown = lane_kinds(goals)
-    return tuple(goal for goal in held(goals) if _kind(goal) not in shown)
+    return tuple(goal for goal in held(goals) if not (_kind(goal).is_of_test or _kind(goal) in shown))
 
 
 def lanes(
-    visits: Sequence[CourseVisit], condition: str | None = None, goals: Sequence[Goal] = ()
+    visits: Sequence[CourseVisit],
+    condition: str | None = None,
+    goals: Sequence[Goal] = (),
+    kinds: Sequence[LaneKind] | None = None,
 ) -> tuple[CourseLane, ...]:
     """What goals are of, speed, knee and stance over the visits, in order of time.
 
@@ -150,6 +165,8 @@ def lanes(
     ----------
     condition
         The only one that is shown; None: all of them, and changes are told of the most frequent one.
+    kinds
+        What has a lane in place of these.
     """
     known = list(conditions_of_visits(visits))
     shown = known if condition is None else [condition]
@@ -157,7 +174,7 @@ def lanes(
     affected = next((visit.course.affected for visit in reversed(visits) if visit.course is not None), None)
     sides = (affected,) if affected is not None else tuple(Side)
     found = []
-    for kind in lane_kinds(goals):
+    for kind in lane_kinds(goals) if kinds is None else kinds:
         own = tuple(one for one in held(goals) if _kind(one) == kind)
         wanted: tuple[Side | None, ...] = (None,)
         if not (kind.is_between or kind.is_of_walk):
@@ -191,6 +208,9 @@ def _point(number: int, walked: CourseCondition, kind: LaneKind, side: Side | No
             return None
         is_withheld = between.judgement is Judgement.WITHHELD
         return LanePoint(number, between.difference, math.nan, Verdict.WITHHELD if is_withheld else Verdict.READ)
+    if kind.is_of_test:
+        test = walked.test(kind.column)
+        return None if test is None else LanePoint(number, test.found.mean, test.whisker, test.verdict)
     figure = walked.figure(kind.column, side)
     if figure is None or figure.verdict is Verdict.NOT_MEASURED:
         return None

@@ -129,6 +129,21 @@ def told_goals(lane: CourseLane, one: LaneChange, visits: Sequence[CourseVisit])
     return [in_course(goal, walked) for goal in lane.goals if goal.of.side is one.line.side and goal.agreed < day]
 
 
+def changes_since_in_words(lane: CourseLane, visits: Sequence[CourseVisit]) -> str:
+    """What the last visit differs by from the one before, and from the first; empty where there is none before."""
+    said = []
+    for one in lane.changes:
+        since = [(one.since_last, one.before)] if one.since_last is not None else []
+        for found, number in (*since, (one.since_first, one.first)):
+            if found is None or number is None or not math.isfinite(found.difference):
+                continue
+            change = signed(found.difference, decimals(lane.kind.column)) + short_unit(lane.kind.column)
+            words = tr("{change} since {day}, {judged}.")
+            judged = judged_in_words(found, lane.kind)
+            said.append(words.format(change=change, day=day_of(number, visits), judged=judged))
+    return " ".join(said)
+
+
 def visit_in_words(number: int, lanes: Sequence[CourseLane], visits: Sequence[CourseVisit]) -> str:
     """All values of one visit, for who goes from visit to visit."""
     said = []

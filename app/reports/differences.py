@@ -23,7 +23,7 @@ from app.reports.comparison import (
 from app.reports.csv_report import typed_cell, write_table
 from app.reports.status import status_of
 from app.reports.visits import by_condition
-from core.body import LEG_JOINTS, Joint, Side
+from core.body import Joint, Side
 from core.gait.cycles import POINTS
 from core.gait.spatiotemporal import MeanAndSd
 from core.gait.symmetry import curve_difference, symmetry_index_percent
@@ -32,7 +32,7 @@ from core.results import Analysis
 from core.samples import Session
 from core.verdicts.measurement_error import Difference, Judgement
 from core.verdicts.model import Verdict, together
-from core.verdicts.quantities import CLASSES, FITTING, OF_BOTH, QUANTITIES, QuantityClass, assessment_of_both, joint_of
+from core.verdicts.quantities import CLASSES, FITTING, OF_BOTH, OF_HIPS, QUANTITIES, QuantityClass, assessment_of_both
 
 DIFFERENCES = "differences.csv"
 COMPARED_CYCLES = "compared_cycles.csv"
@@ -50,7 +50,7 @@ HEADER = (
 
 OF_WALKS = {measure.column: measure for measure in MEASURES if measure.is_of_walk}
 
-COMPARED = (*QUANTITIES, *FITTING)  # of hips and pelvis no error of a difference is known
+COMPARED = (*QUANTITIES, *FITTING, *OF_HIPS)  # of hips and pelvis no error of a difference is known: none is judged
 SIGNED = ("foot_pitch_at_contact_deg",)  # whose nought is no less of it: a share of it says nothing
 
 WITHHELD = Difference(math.nan, math.nan, Judgement.WITHHELD)
@@ -160,7 +160,7 @@ def write_compared_cycles(parts: Sequence[Part], path: Path) -> None:
     OSError
         The file cannot be written.
     """
-    curves = [(part, joint) for joint in LEG_JOINTS for part in parts if joint in part.joints]
+    curves = [(part, joint) for joint in Joint for part in parts if joint in part.joints]
     cells = [list(_curve(part, joint)) for part, joint in curves]
     heads = [f"{part.letter}_{joint}_{of}" for part, joint in curves for of in OF_CURVE]
     lines = [[str(percent), *(cell for curve in cells for cell in curve[percent])] for percent in range(POINTS)]
@@ -217,7 +217,7 @@ def _curves(comparison: Comparison, part: Part, side: Side) -> Iterator[Row]:
         cycles = part.cycle(joint), comparison.against.cycle(joint)
         difference = curve_difference(cycles[0].mean, cycles[1].mean)
         if min(cycle.n for cycle in cycles) >= MIN_STRIDES_FOR_MEAN and math.isfinite(difference):
-            name = f"{'knee' if joint.is_knee else 'ankle'}_curve_difference_deg"
+            name = f"{joint.kind}_curve_difference_deg"
             found = Difference(difference, math.nan, Judgement.NO_PUBLISHED_FIGURE)
             yield Row(part, comparison.against, side, name, nothing, nothing, found, said.verdict)
 
@@ -237,8 +237,7 @@ def _of_both(comparison: Comparison, part: Part) -> Iterator[Row]:
 
 
 def _is_measured(part: Part, side: Side, column: str) -> bool:
-    joint = joint_of(column, side)
-    return side in part.sides and (joint is None or joint in part.joints)
+    return part.is_measured(side, Measure.of(column))
 
 
 def _cells(row: Row) -> list[str]:

@@ -12,7 +12,7 @@ import numpy as np
 
 from app.reports.csv_report import write_table
 from app.reports.status import joint_status
-from core.body import LEG_JOINTS, Joint, Side, ankle_of, hip_of, knee_of
+from core.body import Joint, Side, ankle_of, hip_of, knee_of
 from core.gait.cycles import POINTS
 from core.results import RecordingAnalysis
 from core.verdicts.model import Assessment, together
@@ -21,6 +21,9 @@ from core.verdicts.quantities import (
     OF_HIPS,
     PARAMETERS,
     WINDOWS,
+    abduction_curve,
+    assessment_of,
+    hip_peaks_percent,
     mean_curve,
     peak_percent,
     values_of,
@@ -34,7 +37,11 @@ STRIDE_STATUS = (  # of the columns that each stands for
     *("knee_shape_status", "knee_height_status", "ankle_shape_status", "ankle_height_status"),
 )
 
-HIP_STATUS = ("hip_shape_status", "hip_height_status", "pelvis_status")
+HIP_STATUS = (
+    *("hip_shape_status", "hip_height_status", "pelvis_status"),
+    *("hip_abduction_status", "pelvis_tilt_status"),
+)
+HIP_PEAKS = ("hip_flexion_peak_percent", "hip_extension_peak_percent")
 
 
 def write_gait(recording: RecordingAnalysis, folder: Path) -> None:
@@ -52,6 +59,7 @@ def write_gait(recording: RecordingAnalysis, folder: Path) -> None:
 def peak_table(recordings: Sequence[RecordingAnalysis]) -> tuple[list[str], list[list[str]]]:
     """Give heading and rows of `peaks.csv`: when each stride of any recording peaks, and its excursions."""
     rows = []
+    has_hips = any(recording.hips for recording in recordings)
     for recording in recordings:
         for side in Side:
             if side in recording.gait:
@@ -59,11 +67,15 @@ def peak_table(recordings: Sequence[RecordingAnalysis]) -> tuple[list[str], list
                 columns = [strides.start_s, *(peak_percent(recording, side, column) for column in WINDOWS)]
                 columns += [values_of(recording, side, column) for column in EXCURSIONS_BY_COLUMN]
                 status = [_peak_status(recording, joint) for joint in (knee_of(side), ankle_of(side))]
+                of_hip = hip_peaks_percent(recording, side) if has_hips else []
+                of_hip_status = [_peak_status(recording, hip_of(side))] if has_hips else []
                 for k, reason in enumerate(strides.reason):
                     cells = [_cell(float(column[k])) for column in columns]
-                    rows.append([recording.folder, str(side), *cells, "false" if reason else "true", *status])
+                    more = [*(_cell(float(column[k])) for column in of_hip), *of_hip_status]
+                    rows.append([recording.folder, str(side), *cells, "false" if reason else "true", *status, *more])
     figures = [*PEAK_TIMES, *EXCURSIONS_BY_COLUMN]
-    return ["recording", "side", "start_s", *figures, "used", "knee_status", "ankle_status"], rows
+    header = ["recording", "side", "start_s", *figures, "used", "knee_status", "ankle_status"]
+    return [*header, *((*HIP_PEAKS, "hip_status") if has_hips else ())], rows
 
 
 def _peak_status(recording: RecordingAnalysis, joint: Joint) -> str:
@@ -73,12 +85,12 @@ def _peak_status(recording: RecordingAnalysis, joint: Joint) -> str:
 
 def gait_tables(recording: RecordingAnalysis) -> dict[str, tuple[list[str], Iterator[list[str]]]]:
     """Give headings and rows of `events`, `strides` and `cycles`, every cell as it stands in the file."""
-    joints = [
-        joint for joint in LEG_JOINTS if joint.side in recording.gait and joint in recording.gait[joint.side].cycles
-    ]
+    joints = [joint for joint in Joint if joint.side in recording.gait and joint in recording.gait[joint.side].cycles]
     of_cycles = ["percent"]
     for joint in joints:
         of_cycles += [f"{joint}_{what}" for what in ("mean_deg", "stride_sd_deg", "n", "shape_deg", "status")]
+        of_abduction = ("mean_deg", "stride_sd_deg", "n", "status") if joint.is_hip else ()
+        of_cycles += [f"{joint}_abduction_{what}" for what in of_abduction]
     events = ([_cell(time_s), str(side), event] for time_s, side, event in events_of(recording))
     return {
         "events": (["time_s", "side", "event"], events),
@@ -127,7 +139,10 @@ def _more_of_strides(recording: RecordingAnalysis) -> tuple[str, ...]:
 def _assessments_of_hips(recording: RecordingAnalysis, side: Side) -> list[Assessment]:
     """Of each column of `HIP_STATUS`."""
     hip = recording.verdicts.joint(hip_of(side))
-    return [hip.shape, together((hip.height, hip.sign)), recording.verdicts.pelvis]
+    abduction, tilt = (
+        assessment_of(recording.verdicts, side, name) for name in ("hip_abduction_range_deg", "pelvis_tilt_range_deg")
+    )
+    return [hip.shape, together((hip.height, hip.sign)), recording.verdicts.pelvis, abduction, tilt]
 
 
 def _assessments(recording: RecordingAnalysis, side: Side) -> list[Assessment]:
@@ -145,12 +160,22 @@ def _cycles(recording: RecordingAnalysis, joints: list[Joint]) -> Iterator[list[
         shape = mean - mean.mean()
         height = mean if has_height else np.full(POINTS, np.nan)
         curves.append((height, np.rad2deg(found.sd), found.n, shape, joint_status(recording, joint)))
+    abductions = {joint: _abduction_cells(recording, joint.side) for joint in joints if joint.is_hip}
     for percent in range(POINTS if joints else 0):
         row = [str(percent)]
-        for height, sd, n, shape, status in curves:
+        for joint, (height, sd, n, shape, status) in zip(joints, curves, strict=True):
             row += [_cell(float(height[percent])), _cell(float(sd[percent])), str(n)]
             row += [_cell(float(shape[percent])), status]
+            row += abductions[joint][percent] if joint in abductions else []
         yield row
+
+
+def _abduction_cells(recording: RecordingAnalysis, side: Side) -> list[list[str]]:
+    """Of each percent of the stride mean, spread, count and status."""
+    found, said = abduction_curve(recording, side), assessment_of(recording.verdicts, side, "hip_abduction_peak_deg")
+    mean_deg, sd_deg = np.rad2deg(found.mean), np.rad2deg(found.sd)
+    tail = [str(found.n), str(said.verdict)]
+    return [[_cell(float(mean_deg[k])), _cell(float(sd_deg[k])), *tail] for k in range(POINTS)]
 
 
 def _cell(value: float) -> str:

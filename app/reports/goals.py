@@ -4,14 +4,16 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from app.measure_names import goal_in_words, limit, short_unit
+from app.measure_names import decimals, goal_in_words, limit, short_unit
 from app.reports.comparison import Measure, Part, compare_legs
-from app.reports.course import Course, CourseCondition
+from app.reports.course import Course, CourseCondition, CourseTest, timed_test_of
 from app.reports.patient_report.numbers_in_words import fixed
 from app.wording import tr
 from core.body import Side
 from core.goals import Goal, GoalOf
 from core.norms import MIN_STRIDES_FOR_MEAN
+from core.timed.measures import PROTOCOLS
+from core.verdicts.attempts import error_between_visits
 from core.verdicts.goals import GoalStanding, beyond, error_of_visit, standing
 from core.verdicts.measurement_error import KINDS, ComparisonKind, Difference, QuantityKind
 from core.verdicts.model import Assessment, Verdict
@@ -39,6 +41,8 @@ def measured(goal: Goal, part: Part) -> GoalFigure:
         between = compare_legs(part, goal.column, (Side.LEFT, Side.RIGHT)) if has_both else None
         said = [part.assessment(side, goal.column).verdict for side in Side] if has_both else [Verdict.NOT_MEASURED]
         return _between(goal, between, Verdict.CARE if Verdict.CARE in said else said[0])
+    if goal.column in PROTOCOLS:
+        return _of_test(goal, timed_test_of(goal.column, part.walks))
     if goal.of is GoalOf.WALK:
         if not part.sides:
             return _nothing(goal, Verdict.NOT_MEASURED)
@@ -57,18 +61,22 @@ def in_course(goal: Goal, walked: CourseCondition) -> GoalFigure:
     if goal.of is GoalOf.BETWEEN:
         between = walked.between_legs(goal.column)
         return _between(goal, between, Verdict.READ)
+    if goal.column in PROTOCOLS:
+        return _of_test(goal, walked.test(goal.column))
     figure = walked.figure(goal.column, goal.of.side)
     return _figure(goal, figure.found, figure.assessment) if figure else _nothing(goal, Verdict.NOT_MEASURED)
 
 
 def reached_at(goals: Sequence[Goal], course: Course) -> tuple[GoalFigure, ...]:
-    """Goals that are reached in every condition of a visit, each as where it is reached by least, the surest first.
+    """Goals that are reached in every condition of a visit that has them, each as where it is by least, surest first.
 
     With an aid alone, or barefoot alone, it would be half of what was agreed.
     """
     found = []
     for goal in goals:
-        figures = [in_course(goal, walked) for walked in course.conditions]
+        is_of_test = goal.column in PROTOCOLS
+        own = [one for one in course.conditions if (one.test(goal.column) if is_of_test else one.figures)]
+        figures = [in_course(goal, walked) for walked in own]
         if figures and all(one.standing.is_reached for one in figures):
             found.append(min(figures, key=lambda one: beyond(goal, one.value) - one.error))
     return tuple(sorted(found, key=lambda one: one.standing is not GoalStanding.REACHED))
@@ -83,9 +91,17 @@ def _between(goal: Goal, found: Difference | None, verdict: Verdict) -> GoalFigu
 def _figure(goal: Goal, found: MeanOfStrides, assessment: Assessment) -> GoalFigure:
     if not (assessment.is_told and found.n >= MIN_STRIDES_FOR_MEAN and math.isfinite(found.mean)):
         return _nothing(goal, assessment.verdict)
-    is_biased = KINDS[goal.column] is QuantityKind.STANCE and assessment.is_toe_off_biased  # by how much, nobody knows
+    is_biased = (
+        KINDS.get(goal.column) is QuantityKind.STANCE and assessment.is_toe_off_biased
+    )  # by how much, nobody knows
     error = math.nan if is_biased else error_of_visit(goal.column, found)
     return GoalFigure(goal, found.mean, error, assessment.verdict)
+
+
+def _of_test(goal: Goal, test: CourseTest | None) -> GoalFigure:
+    if test is None or not test.is_told:
+        return _nothing(goal, Verdict.NOT_MEASURED if test is None else test.verdict)
+    return GoalFigure(goal, test.found.mean, error_between_visits(goal.column), test.verdict)
 
 
 def _nothing(goal: Goal, verdict: Verdict) -> GoalFigure:
@@ -157,4 +173,6 @@ def goal_mark(goal: Goal) -> str:
 
 def _places(column: str) -> int:
     """Decimals, one more than a goal usually has."""
+    if column in PROTOCOLS:
+        return decimals(column)
     return 2 if column.endswith(("_m", "_m_s")) else 1

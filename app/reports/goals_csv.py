@@ -49,7 +49,7 @@ def goal_figures(found: GoalFigure, agreed: AgreedGoals) -> dict[str, str | floa
         "side": str(goal.of),
         "limit": "at_most" if goal.is_at_most else "at_least",
         "goal": goal.value,
-        "unit": UNITS[goal.column.rsplit("_", 1)[1]],
+        "unit": "s" if goal.column.endswith("_time_s") else UNITS[goal.column.rsplit("_", 1)[1]],
         "agreed": goal.agreed.isoformat(),
         "until": goal.until.isoformat() if goal.until is not None else None,
         "agreed_before": is_before,

@@ -3,12 +3,15 @@
 from pathlib import Path
 
 LONGEST_CODE = 60  # characters of it in a name
+# Windows keeps these for devices, whatever ending follows
+DEVICES = {"con", "prn", "aux", "nul", *(f"{port}{number}" for port in ("com", "lpt") for number in range(10))}
 
 
 def session_name(code: str, started: str, what: str = "") -> str:
     """The patient's code, the day and, where it is not the report, what it is, in letters that any system takes."""
     safe = "".join(letter if letter.isalnum() or letter == "-" else "_" for letter in code)[:LONGEST_CODE]
-    return "_".join(filter(None, [safe or "session", started[:10], what]))
+    name = "_".join(filter(None, [safe or "session", started[:10], what]))
+    return f"session_{name}" if name.lower() in DEVICES else name
 
 
 def free_name(place: Path, name: str) -> str:

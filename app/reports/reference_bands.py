@@ -34,8 +34,9 @@ OTHER_AGES = later("The band is of other ages, so nothing is said of a distance 
 
 @cache
 def reference_curves() -> ReferenceCurves:
-    """Knee and ankle over the gait cycle, at one comfortable speed."""
-    return read_curves(_text("fukuchi2018_young_treadmill_comfortable_knee_ankle.csv"))
+    """Hip, knee and ankle over the gait cycle, at one comfortable speed."""
+    names = ("knee_ankle", "hip")
+    return read_curves(*(_text(f"fukuchi2018_young_treadmill_comfortable_{name}.csv") for name in names))
 
 
 @cache

@@ -76,3 +76,9 @@ def all_that_is_said(analysis: Analysis) -> Iterator[Said]:
                 for name in ("timing", "distance"):
                     yield Said(recording.name, f"{side} leg", name, getattr(of_leg, name))
             yield Said(recording.name, "both legs", "between", recording.verdicts.between)
+        if recording.verdicts.pelvis.verdict is not Verdict.NOT_MEASURED:
+            yield Said(recording.name, "pelvis", "angles", recording.verdicts.pelvis)
+            for side, found in recording.verdicts.abduction.items():
+                yield Said(recording.name, f"{side} hip", "abduction", found)
+            if recording.kind is RecordingKind.WALKING:
+                yield Said(recording.name, "pelvis", "tilt range", recording.verdicts.pelvis_tilt)

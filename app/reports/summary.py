@@ -17,7 +17,7 @@ from app.reports.reference_bands import reference_curves
 from app.reports.timed_csv import timed_summary
 from app.wording import sentence
 from core.alignment import alignment_table
-from core.body import Joint, Side
+from core.body import Joint, Side, hip_of
 from core.chosen_strides import left_out_by_hand
 from core.findings import Finding
 from core.gait.symmetry import curve_difference, gait_variable_score, symmetry_index_percent
@@ -204,7 +204,10 @@ def _verdicts(found: Verdicts) -> dict[str, Any]:
     """Give every verdict of a walk with its reasons in words; a joint or leg that was not worn says so."""
     joints = {str(joint): _parts(found.joint(joint), ("shape", "height", "sign")) for joint in found.told_joints}
     legs = {str(side): _parts(found.leg(side), ("timing", "distance")) for side in Side}
-    more = {} if found.pelvis.verdict is Verdict.NOT_MEASURED else {"pelvis": _assessment(found.pelvis)}
+    more = {}
+    if found.pelvis.verdict is not Verdict.NOT_MEASURED:
+        more = {"pelvis": _assessment(found.pelvis), "pelvis_tilt": _assessment(found.pelvis_tilt)}
+        more |= {f"{hip_of(side)}_abduction": _assessment(one) for side, one in found.abduction.items()}
     return {**joints, **legs, "between": _assessment(found.between), **more}
 
 

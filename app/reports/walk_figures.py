@@ -11,8 +11,8 @@ import numpy as np
 
 from app.charts.cycles import SideCycle, is_mean_enough, is_spread_enough
 from app.gates_in_words import GateWords, gate_words
-from app.wording import NAMES, joined, later, side_name, tr, tr_n
-from core.body import Joint, Side, ankle_of, knee_of
+from app.wording import NAMES, capitalised, joined, later, side_name, tr, tr_n
+from core.body import Joint, JointKind, Side
 from core.chosen_strides import left_out_by_hand
 from core.gait.cycles import ANKLE_WINDOWS, KNEE_WINDOWS, find_peak, mean_cycle
 from core.gait.spatiotemporal import MeanAndSd
@@ -56,6 +56,22 @@ PEAKS = (  # name of the column in strides.csv, name for the reader, window of t
     ("swing_dorsiflexion_deg", later("Swing dorsiflexion"), "ankle_swing_dorsiflexion"),
 )
 KNEE_ROWS, ANKLE_ROWS = PEAKS[:6], (PEAKS[0], *PEAKS[6:], PEAKS[5])
+HIP_ROWS = (
+    ("range_deg", later("Range"), None),
+    ("flexion_peak_deg", later("Most flexed"), None),
+    ("extension_peak_deg", later("Most extended"), None),
+    ("abduction_range_deg", later("Abduction, range"), None),
+    ("abduction_peak_deg", later("Most abducted"), None),
+    ("adduction_peak_deg", later("Most adducted"), None),
+)
+ROWS = {JointKind.HIP: HIP_ROWS, JointKind.KNEE: KNEE_ROWS, JointKind.ANKLE: ANKLE_ROWS}
+PELVIS_ROWS = (
+    ("pelvis_obliquity_range_deg", later("Obliquity, range")),
+    ("pelvis_drop_deg", later("Drop in swing")),
+    ("pelvis_rotation_range_deg", later("Rotation, range")),
+    ("pelvis_lean_deg", later("Lean, forward +")),
+    ("pelvis_tilt_range_deg", later("Tilt, range")),
+)
 WITHHELD, MAY_BE_MIRRORED = later("withheld"), later("sign unsure")
 NO_ZERO, NO_HEIGHT = later("no zero"), later("height withheld")
 
@@ -118,9 +134,9 @@ def peak_figures(recording: RecordingAnalysis, reference: ReferenceCurves | None
 
     The band stands where its source has it; None: none may stand beside this walk.
     """
-    found = {}
-    for kind, joint_of, rows in (("knee", knee_of, KNEE_ROWS), ("ankle", ankle_of, ANKLE_ROWS)):
-        joints = {side: joint_of(side) for side, gait in recording.gait.items() if joint_of(side) in gait.cycles}
+    found: dict[str, tuple[Figure, ...]] = {}
+    for kind, rows in ROWS.items():
+        joints = {side: kind.of(side) for side, gait in recording.gait.items() if kind.of(side) in gait.cycles}
         if not joints:
             continue
         doubts = {side: why for side, joint in joints.items() if (why := doubt_of(recording, joint))}
@@ -128,7 +144,7 @@ def peak_figures(recording: RecordingAnalysis, reference: ReferenceCurves | None
         for column, name, window in rows:
             of_joint = f"{kind}_{column}"
             means = {side: side_mean(recording, side, of_joint) for side in joints}
-            unknown = {side: doubts[side] for side, mean in means.items() if not mean.assessment.is_told}
+            unknown = {side: doubts.get(side, WITHHELD) for side, mean in means.items() if not mean.assessment.is_told}
             sides = {side: mean.found for side, mean in means.items() if side not in unknown}
             unit, decimals = ("%", 0) if column.endswith("_percent") else ("°", 1)
             band = band_of_peak(reference, kind, column, window) if reference is not None and sides else None
@@ -138,6 +154,39 @@ def peak_figures(recording: RecordingAnalysis, reference: ReferenceCurves | None
             )
         found[kind] = tuple(figures)
     return found
+
+
+def pelvis_figures(recording: RecordingAnalysis) -> dict[str, tuple[Figure, ...]]:
+    """Rows of the pelvis over each leg's strides, degrees; none without a sensor on it."""
+    if recording.pelvis is None:
+        return {}
+    figures = []
+    for column, name in PELVIS_ROWS:
+        means = {side: side_mean(recording, side, column) for side in recording.gait}
+        told = {side: mean.found for side, mean in means.items() if mean.assessment.is_told}
+        unknown = {side: WITHHELD for side, mean in means.items() if not mean.assessment.is_told}
+        care = frozenset(side for side, mean in means.items() if mean.assessment.verdict is Verdict.CARE)
+        figures.append(Figure(column, tr(name), "°", 1, told, unknown=unknown, with_care=care))
+    return {"pelvis": tuple(figures)}
+
+
+def pelvis_in_words(recording: RecordingAnalysis) -> list[str]:
+    """Why figures of pelvis and abduction are withheld, what holds alike of both once; how often the body turned."""
+    if recording.pelvis is None:
+        return []
+    said = recording.verdicts
+    withheld: dict[str, list[str]] = {}
+    for name, found in (
+        (tr("pelvis"), said.pelvis),
+        *((tr("abduction, {side}").format(side=side_name(side)), one) for side, one in said.abduction.items()),
+        (tr("tilt"), said.pelvis_tilt if said.pelvis.is_told else said.pelvis),
+    ):
+        for reason in found.reasons[:1]:
+            if reason.verdict is Verdict.WITHHELD:
+                withheld.setdefault(gate_words(reason).why, []).append(name)
+    told = [f"{capitalised(joined(list(dict.fromkeys(names))))}: {why}" for why, names in withheld.items()]
+    turns = len(recording.turns)
+    return [*told, tr_n("{count} turn.", "{count} turns.", turns).format(count=turns)] if turns else told
 
 
 def time_distance_figures(

@@ -9,7 +9,7 @@ from app.reports.patient_report.request import AnalysedVisit
 from app.reports.status import WITH_HEIGHT, joint_status, why
 from app.reports.walk_figures import MAY_BE_MIRRORED, doubt_in, reason_in_words, verdict_of
 from app.wording import capitalised, later, name_of, side_name, tr
-from core.body import LEG_JOINTS, Joint, Side
+from core.body import Joint, Side
 from core.results import Analysis, RecordingAnalysis
 from core.samples import RecordingKind, Session
 
@@ -26,7 +26,7 @@ def panel(session: Session, analysis: Analysis, recording: RecordingAnalysis, dr
     if recording.kind is RecordingKind.WALKING:
         answer = answer_of(Facts(AnalysedVisit(session, analysis), recording))
         lines += [f"### {answer.first}", "", answer.then, ""]
-    joints = [joint for joint in LEG_JOINTS if joint in recording.joints]
+    joints = [joint for joint in Joint if joint in recording.measured]
     lines += [_line(recording, joint, is_drawn=joint.side in drawn) for joint in joints]
     for side in Side:
         lines += [f"- {said}" for said in _slipped(recording, side)]
@@ -40,7 +40,7 @@ def _line(recording: RecordingAnalysis, joint: Joint, is_drawn: bool) -> str:
     verdict = tr(doubt) if doubt else verdict_word(verdict_of(found))
     reason = why(found.sign) if doubt == MAY_BE_MIRRORED else reason_in_words(found)
     grey = ""
-    if is_drawn and joint_status(recording, joint) not in WITH_HEIGHT:
+    if is_drawn and not joint.is_hip and joint_status(recording, joint) not in WITH_HEIGHT:
         said = tr("The {side} leg and foot are grey.") if joint.is_knee else tr("The {side} foot is grey.")
         grey = said.format(side=side_name(joint.side))
     pattern = tr("{part}: {verdict}.")

@@ -20,6 +20,7 @@ from core.tracks import blocks_of, even_tracks, nominal_step_s
 # shares of the height (Drillis & Contini 1966, Body segment parameters)
 THIGH, SHANK, FOOT, HIPS = 0.245, 0.246, 0.152, 0.191
 UNKNOWN_HEIGHT_M = 1.70
+PELVIS = 0.1  # of the height, from the hips up: it is drawn as large as it looks right
 HALF_WIDTHS_M = ((0.075, 0.055), (0.055, 0.035), (0.05, 0.025))  # of thigh, shank and foot at either end
 MAX_LENGTH_RATIO = 1.3  # a shank further from what its height lets expect comes of centres that were not found
 FRAMES_HZ = 50.0  # smooth to the eye
@@ -41,14 +42,17 @@ def height_of(session: Session) -> float:
     return session.patient.height_m or UNKNOWN_HEIGHT_M
 
 
-def how_drawn(session: Session) -> str:
+def how_drawn(session: Session, *, has_pelvis: bool = False) -> str:
     """Say what of the drawing is measured, what is a share of the height, and what is not known."""
     height_m, is_typed = height_of(session), session.patient.height_m is not None
+    hips = "The hips stay side by side in one place"
+    if has_pelvis:
+        hips = "The hips stay in one place, and between them the pelvis tilts, drops and turns as its sensor did"
     return (
         f"The legs are drawn, not measured. Knee and ankle bend as the angles say and each thigh is inclined as its "
         f"sensor was; thigh, foot and hips are shares of a height of {height_m:.2f} m"
         f"{'' if is_typed else ', which nobody typed'} (Drillis & Contini 1966), as is the shank where the centres of "
-        f"knee and ankle are not both known. How thick they are says nothing. The hips stay side by side in one place, "
+        f"knee and ankle are not both known. How thick they are says nothing. {hips}, "
         f"and every knee's axis points sideways: where the patient walked to is not known. {FRAMES_HZ:.0f} pictures a "
         f"second at most. A leg or foot is grey where the angle that bends it is withheld, has no zero, or may be "
         f"mirrored."
@@ -69,6 +73,40 @@ def draw_legs(session: Session, analysis: Analysis, recording: RecordingAnalysis
     return {
         side: _drawn(session, recording, raw, calibrated, side, frames) for side in sides if raw.holds(_thigh(side))
     }
+
+
+def draw_pelvis(session: Session, recording: RecordingAnalysis) -> tuple[FloatArray, FloatArray] | None:
+    """Frames (n,) of a walk, s, and the pelvis at each (n, 4, 3): left hip, top, right hip and back; metres.
+
+    None where no sensor was on it, or it may not be read.
+    """
+    if recording.kind is not RecordingKind.WALKING or not _has_pelvis(recording) or not len(recording.time_s):
+        return None
+    frames, height_m = _frames(recording.time_s), height_of(session)
+    left_m, right_m = (_hip_m(recording, frames, height_m, side) for side in Side)
+    tilt = _known(recording.pelvis.tilt_rad[frames]) if recording.pelvis is not None else np.zeros(len(frames))
+    up = np.stack([np.sin(tilt), np.zeros_like(tilt), np.cos(tilt)], axis=1)
+    top_m = 0.5 * (left_m + right_m) + PELVIS * height_m * up
+    return recording.time_s[frames], np.stack([left_m, top_m, right_m, left_m], axis=1)
+
+
+def _has_pelvis(recording: RecordingAnalysis) -> bool:
+    return recording.pelvis is not None and recording.verdicts.pelvis.is_told
+
+
+def _hip_m(recording: RecordingAnalysis, frames: IntArray, height_m: float, side: Side) -> FloatArray:
+    """One hip at each frame (n, 3): beside the other, as the pelvis drops and turns where it may be read."""
+    lateral = np.broadcast_to([0.0, 1.0, 0.0], (len(frames), 3))
+    if recording.pelvis is not None and _has_pelvis(recording):
+        drop, turn = (_known(a[frames]) for a in (recording.pelvis.obliquity_rad, recording.pelvis.rotation_rad))
+        lateral = np.stack([-np.sin(turn) * np.cos(drop), np.cos(turn) * np.cos(drop), np.sin(drop)], axis=1)
+    aside_m = HIPS * height_m / 2 * (1 if side is Side.LEFT else -1)
+    return np.array([0.0, 0.0, (THIGH + SHANK) * height_m]) + aside_m * lateral
+
+
+def _known(angle_rad: FloatArray) -> FloatArray:
+    """What is not known, as rotation in turns, is drawn as in standing."""
+    return np.nan_to_num(angle_rad)
 
 
 def _frames(time_s: FloatArray) -> IntArray:
@@ -96,8 +134,7 @@ def _drawn(
     if ankle_of(side) in recording.joints:
         lifted = recording.joints[ankle_of(side)].angle_rad[frames, None]
     foot_forward = np.cos(lifted) * shank_forward + np.sin(lifted) * shank_up
-    aside_m = HIPS * height_m / 2 * (1 if side is Side.LEFT else -1)
-    hip_m = np.broadcast_to([0.0, aside_m, (THIGH + SHANK) * height_m], up.shape)
+    hip_m = _hip_m(recording, frames, height_m, side)
     knee_m = hip_m - THIGH * height_m * up
     ankle_m = knee_m - shank_m * shank_up
     toes_m = ankle_m + FOOT * height_m * foot_forward

@@ -13,7 +13,8 @@ from itertools import groupby
 import numpy as np
 
 from app.reports.status import NO_ZERO, WITH_HEIGHT, WITHHELD, all_that_is_said, is_slipped, joint_status, why
-from core.body import Joint, Side
+from app.wording import PURPOSE
+from core.body import Joint, JointKind, Side
 from core.results import Analysis, RecordingAnalysis
 from core.samples import BoolArray, FloatArray, RecordingKind
 
@@ -51,7 +52,7 @@ def pieces_of(recording: RecordingAnalysis, joint: Joint) -> Iterator[tuple[Plac
 
 def places(analysis: Analysis, joint: Joint) -> list[Place]:
     """Where curves of a joint lie in any recording."""
-    used = {p for r in analysis.recordings if joint in r.joints for p, _ in pieces_of(r, joint)}
+    used = {p for r in analysis.recordings if joint in r.measured for p, _ in pieces_of(r, joint)}
     return [place for place in Place if place in used]
 
 
@@ -63,11 +64,11 @@ def is_pose(recording: RecordingAnalysis, joint: Joint, time_s: FloatArray) -> B
 
 def name_of_view(analysis: Analysis, joint: Joint) -> str:
     """What stands above a joint's curves: its name, and what is missing where no walk has more."""
-    walks = tuple(r for r in analysis.recordings if r.kind is RecordingKind.WALKING and joint in r.joints)
+    walks = tuple(r for r in analysis.recordings if r.kind is RecordingKind.WALKING and joint in r.measured)
     found = places(replace(analysis, recordings=walks or analysis.recordings), joint)
     name = joint.replace("_", " ")
     if Place.HEIGHT in found:
-        return f"{name}: {'flexion' if joint.is_knee else 'dorsiflexion'}, °"
+        return f"{name}: {'dorsiflexion' if joint.kind is JointKind.ANKLE else 'flexion'}, °"
     return f"{name}: shape, no zero, °" if Place.SHAPE in found else f"{name}: {WITHHELD}"
 
 
@@ -76,7 +77,7 @@ def document(analysis: Analysis, timelines: Mapping[str, str]) -> str:
 
     Walks come first.
     """
-    lines = ["# What may be read"]
+    lines = ["# What may be read", "", PURPOSE]
     walks = {recording.name for recording in analysis.recordings if recording.kind is RecordingKind.WALKING}
     in_order = sorted(all_that_is_said(analysis), key=lambda one: one.recording not in walks)
     for recording, said in groupby(in_order, key=lambda one: one.recording):

@@ -11,7 +11,7 @@ import numpy as np
 
 from app.review.drawn_legs import DrawnLeg, draw_legs
 from core.body import Side, ankle_of, knee_of
-from core.gait.cycles import POINTS
+from core.gait.cycles import POINTS, cycles_of, mean_cycle
 from core.results import Analysis, RecordingAnalysis
 from core.samples import FloatArray, Session
 from core.verdicts.model import together
@@ -50,12 +50,15 @@ class MeanLegs:
         When in that stride the other foot comes down; half of it where the clocks do not tell, see `is_together`.
     is_together
         Whether both legs are known at one instant.
+    tilt_rad
+        Of the pelvis over the reference leg's stride (101,), forward positive; None where it is not to be drawn.
     """
 
     legs: Mapping[Side, MeanLeg]
     reference: Side
     other_contact_percent: float = 50.0
     is_together: bool = False
+    tilt_rad: FloatArray | None = None
 
     def percent_of(self, side: Side, percent: float) -> float:
         """Where on its own stride a leg is when the reference leg is at `percent`, 0 to 100."""
@@ -67,6 +70,10 @@ class MeanLegs:
     def is_standing(self, side: Side, percent: float) -> bool:
         """Whether a foot is on the floor when the reference leg is at `percent`; False where that is not known."""
         return self.percent_of(side, percent) < self.legs[side].toe_off_percent
+
+    def pelvis_tilt_rad(self, percent: float) -> float | None:
+        """How far the pelvis is tilted when the reference leg is at `percent`; None where it is not to be drawn."""
+        return None if self.tilt_rad is None else float(np.interp(percent % 100.0, np.arange(POINTS), self.tilt_rad))
 
     def pose_m(self, side: Side, percent: float) -> FloatArray:
         """Hip, knee, ankle and toes (4, 2) of a leg at `percent` of its own stride."""
@@ -85,13 +92,23 @@ def mean_legs(session: Session, analysis: Analysis, walk: RecordingAnalysis) -> 
         return None
     affected = analysis.affected_side
     reference = affected if affected in legs else next(side for side in Side if side in legs)
+    tilt = _mean_tilt(walk, reference)
     other = Side.RIGHT if reference is Side.LEFT else Side.LEFT
     if other not in legs:
-        return MeanLegs(legs, reference)
+        return MeanLegs(legs, reference, tilt_rad=tilt)
     step = side_mean(walk, other, "step_time_s")
     is_together = step.assessment.is_told and math.isfinite(step.found.mean)
     contact = 100.0 * step.found.mean / legs[reference].stride_s if is_together else 50.0
-    return MeanLegs(legs, reference, contact, is_together)
+    return MeanLegs(legs, reference, contact, is_together, tilt)
+
+
+def _mean_tilt(walk: RecordingAnalysis, side: Side) -> FloatArray | None:
+    if walk.pelvis is None or not walk.verdicts.pelvis.is_told:
+        return None
+    strides = walk.gait[side].strides
+    cycles = cycles_of(walk.time_s, walk.pelvis.tilt_rad, strides.start_s, strides.end_s)
+    found = mean_cycle(cycles[strides.is_used])
+    return found.mean if found.n else None
 
 
 def _mean_leg(walk: RecordingAnalysis, side: Side, drawn: DrawnLeg) -> MeanLeg | None:

@@ -42,7 +42,7 @@ def _shown_deg(recording: RecordingAnalysis, joint: Joint) -> FloatArray:
     shown = np.full(len(recording.time_s), np.nan)
     for place, rows in pieces_of(recording, joint):
         if place is not Place.WITHHELD:
-            shown[rows] = np.rad2deg(recording.joints[joint].angle_rad[rows])
+            shown[rows] = np.rad2deg(recording.measured[joint].angle_rad[rows])
             if place is Place.SHAPE and np.isfinite(shown[rows]).any():
                 shown[rows] -= np.nanmean(shown[rows])
     return shown

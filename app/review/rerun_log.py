@@ -27,13 +27,24 @@ from rerun_bindings import PyMemorySinkStorage, new_blueprint, save
 from app.colours import DARK
 from app.reports.gait_csv import events_of
 from app.review.answer_panel import panel
-from app.review.drawn_legs import HALF_WIDTHS_M, HIPS, SHANK, THIGH, DrawnLeg, draw_legs, height_of, how_drawn
+from app.review.drawn_legs import (
+    HALF_WIDTHS_M,
+    HIPS,
+    SHANK,
+    THIGH,
+    DrawnLeg,
+    draw_legs,
+    draw_pelvis,
+    height_of,
+    how_drawn,
+)
 from app.review.may_be_read import Place, document, is_pose, name_of_view, pieces_of, places
 from app.review.phase_lane import lanes_of
 from app.review.rrd_file import remove_chance
-from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site, ankle_of, knee_of
+from core.body import Joint, JointKind, Side, Site, ankle_of, knee_of
 from core.gait.phases import PHASES, Phase
-from core.results import Analysis, RecordingAnalysis
+from core.hip.results import PelvisAngles
+from core.results import Analysis, JointAngle, RecordingAnalysis
 from core.samples import FloatArray, ImuBlock, IntArray, RecordingKind, Session
 
 APPLICATION = "gaitwright"
@@ -94,11 +105,12 @@ def _chunks(session: Session, analysis: Analysis, timelines: dict[str, str]) -> 
         legs = draw_legs(session, analysis, analysed)
         text = panel(session, analysis, analysed, legs)
         yield from _panel_chunk(timelines[analysed.name], session, analysed, text)
-        for joint in analysed.joints:
+        for joint in analysed.measured:
             yield from _angle_chunks(timelines[analysed.name], joint, analysed)
             yield from _lane_chunks(timelines[analysed.name], joint, analysed)
         for side, leg in legs.items():
             yield from _leg_chunks(timelines[analysed.name], side, leg, analysed)
+        yield from _pelvis_chunks(timelines[analysed.name], session, analysed)
         for side, gait in analysed.gait.items():
             yield from _phase_chunk(timelines[analysed.name], side, analysed.time_s, gait.phase)
             yield from _event_chunk(timelines[analysed.name], side, analysed)
@@ -112,12 +124,18 @@ def _labels(session: Session, analysis: Analysis) -> Iterator[Chunk]:
         looks = {"result": (SIDE_COLOUR[joint.side], 2.5), "published": (COLOURS.ink2, 1.0)}
         for place in places(analysis, joint):
             grey = COLOURS.control if place is Place.WITHHELD else None
-            for curve, (colour, width) in (looks | {"orientation": (COLOURS.control, 1.0)}).items():
+            looks |= {"orientation": (COLOURS.control, 1.0)}
+            for curve, (colour, width) in list(looks.items())[: 1 if joint.is_hip else None]:
                 yield _label(place.entity(joint, curve), [f"{curve}{place} °"], grey or colour, width)
             names = [f"2 sd below{place} °", f"2 sd above{place} °"]
             yield _label(place.entity(joint, "certainty"), names, grey or PALE_COLOUR[joint.side])
         for phase, width in LANE_PX.items():
             yield _label(_lane(joint, phase), [phase.replace("_", " ")], _phase_colour(joint.side, phase), width)
+    if _has_pelvis(analysis):
+        for name, sign in {"tilt": "forward", "obliquity": "left up", "rotation": "to the left"}.items():
+            yield _label(f"/pelvis/{name}", [f"{name}, {sign} +, °"], width=2.0)
+        looks_of = rr.LineStrips3D.columns(colors=[_rgba(COLOURS.ink2)], radii=[HIP_RADIUS_M / 2])
+        yield Chunk.from_columns("/legs/pelvis", indexes=[], columns=looks_of)
     words = [str(phase) for phase in PHASES if phase]
     for side in _sides_with_gait(analysis):
         columns = rr.StateConfiguration.columns(
@@ -130,7 +148,7 @@ def _labels(session: Session, analysis: Analysis) -> Iterator[Chunk]:
         yield _document("/simulated", "SIMULATED: nobody was measured.")
     sides = _sides_with_knee(analysis)
     if sides:
-        yield from _leg_labels(session, sides)
+        yield from _leg_labels(session, sides, has_pelvis=_has_pelvis(analysis))
 
 
 def _label(entity: str, names: list[str], colour: str | None = None, width: float = 1.0) -> Chunk:
@@ -152,7 +170,7 @@ def _document(entity: str, text: str, media_type: rr.MediaType = rr.MediaType.TE
     return Chunk.from_columns(entity, indexes=[], columns=columns)
 
 
-def _leg_labels(session: Session, sides: list[Side]) -> Iterator[Chunk]:
+def _leg_labels(session: Session, sides: list[Side], *, has_pelvis: bool) -> Iterator[Chunk]:
     """Yield the line between the hips, how each leg looks, and how all of it is drawn."""
     height_m = height_of(session)
     aside_m, up_m = HIPS * height_m / 2, (THIGH + SHANK) * height_m
@@ -161,7 +179,8 @@ def _leg_labels(session: Session, sides: list[Side]) -> Iterator[Chunk]:
         colors=[_rgba(COLOURS.control)],
         radii=[HIP_RADIUS_M / 2],
     )
-    yield Chunk.from_columns("/legs/hips", indexes=[], columns=hips)
+    if not has_pelvis:
+        yield Chunk.from_columns("/legs/hips", indexes=[], columns=hips)
     for side in sides:
         colours = [_rgba(SIDE_COLOUR[side])]
         for part in RADII_M:
@@ -173,7 +192,7 @@ def _leg_labels(session: Session, sides: list[Side]) -> Iterator[Chunk]:
             positions=[hip_m], colors=colours, radii=[HIP_RADIUS_M], labels=[side[0].upper()], show_labels=[True]
         )
         yield Chunk.from_columns(f"/legs/{side}/hip", indexes=[], columns=letter)
-    yield _document("/about_legs", how_drawn(session))
+    yield _document("/about_legs", how_drawn(session, has_pelvis=has_pelvis))
 
 
 def _leg_chunks(timeline: str, side: Side, leg: DrawnLeg, recording: RecordingAnalysis) -> Iterator[Chunk]:
@@ -191,6 +210,21 @@ def _leg_chunks(timeline: str, side: Side, leg: DrawnLeg, recording: RecordingAn
                 yield Chunk.from_columns(
                     f"/legs/{side}/{name}", indexes=[index], columns=columns.partition(is_here.astype(np.int64))
                 )
+
+
+def _pelvis_chunks(timeline: str, session: Session, recording: RecordingAnalysis) -> Iterator[Chunk]:
+    """Yield the pelvis between the legs, and its angles, where it may be read; nothing without a sensor on it."""
+    if (drawn := draw_pelvis(session, recording)) is not None:
+        time_s, points_m = drawn
+        strips = rr.LineStrips3D.columns(strips=points_m.astype(np.float32))
+        yield Chunk.from_columns("/legs/pelvis", [rr.TimeColumn(timeline, duration=time_s)], columns=strips)
+    if recording.pelvis is not None and recording.verdicts.pelvis.is_told:
+        for name, values_rad in _pelvis_angles(recording.pelvis).items():
+            yield from _series(f"/pelvis/{name}", timeline, recording.time_s, np.rad2deg(values_rad))
+
+
+def _pelvis_angles(pelvis: PelvisAngles) -> dict[str, FloatArray]:
+    return {"tilt": pelvis.tilt_rad, "obliquity": pelvis.obliquity_rad, "rotation": pelvis.rotation_rad}
 
 
 def bodies(ends_m: FloatArray, radius_m: float) -> ComponentColumnList:
@@ -217,9 +251,11 @@ def _raw_chunks(timeline: str, site: Site, block: ImuBlock) -> Iterator[Chunk]:
 
 def _angle_chunks(timeline: str, joint: Joint, recording: RecordingAnalysis) -> Iterator[Chunk]:
     """Yield a joint's curves where what may be said of them lets them lie; a shape has its mean taken away."""
-    angle, time_s = recording.joints[joint], recording.time_s
+    angle, time_s = recording.measured[joint], recording.time_s
     band_rad = angle.angle_rad[:, None] + BAND_SD * angle.sd_rad[:, None] * np.array([-1.0, 1.0])
-    curves = {"result": angle.angle_rad, "published": angle.published_rad, "orientation": angle.orientation_rad}
+    curves: dict[str, FloatArray | None] = {"result": angle.angle_rad}
+    if isinstance(angle, JointAngle):
+        curves |= {"published": angle.published_rad, "orientation": angle.orientation_rad}
     for curve, values_rad in (curves | {"certainty": band_rad}).items():
         for place, rows in pieces_of(recording, joint):
             if values_rad is not None:
@@ -290,11 +326,15 @@ def _series(entity: str, timeline: str, time_s: FloatArray, values: FloatArray) 
 
 
 def _sites(session: Session) -> list[Site]:
-    return [site for site in LEG_SITES if any(r.is_kept and site in r.imu for r in session.recordings)]
+    return [site for site in Site if any(r.is_kept and site in r.imu for r in session.recordings)]
 
 
 def _joints(analysis: Analysis) -> list[Joint]:
-    return [joint for joint in LEG_JOINTS if any(joint in recording.joints for recording in analysis.recordings)]
+    return [joint for joint in Joint if any(joint in recording.measured for recording in analysis.recordings)]
+
+
+def _has_pelvis(analysis: Analysis) -> bool:
+    return any(r.pelvis is not None and r.verdicts.pelvis.is_told for r in analysis.recordings)
 
 
 def _sides_with_gait(analysis: Analysis) -> list[Side]:
@@ -320,6 +360,8 @@ def _blueprint(session: Session, analysis: Analysis, timeline: str | None) -> rr
         axis = rrb.archetypes.TimeAxis(link=rrb.components.LinkAxis.LinkToGlobal)
         lanes = [rrb.StateTimelineView(origin=f"/phases/{s}", name=f"{s} phases", time_view=axis) for s in sides]
         tabs += [rrb.Vertical(*lanes, rrb.TextLogView(origin="/events", name="events"), name="Phases and events")]
+    if _has_pelvis(analysis):
+        tabs += [rrb.TimeSeriesView(origin="/pelvis", name="Pelvis: tilt, obliquity, rotation, °")]
     for signal in ("angular_rate", "specific_force"):
         views = [rrb.TimeSeriesView(origin=f"/raw/{s}/{signal}", name=s.replace("_", " ")) for s in _sites(session)]
         tabs += [rrb.Grid(*views, name=signal.replace("_", " ").capitalize(), grid_columns=2)]
@@ -348,7 +390,7 @@ def _leg_view(session: Session, analysis: Analysis) -> rrb.Spatial3DView:
 
 
 def side_views(analysis: Analysis, side: Side) -> rrb.Vertical | None:
-    """Stack a side's knee and ankle, each with its phases; what the lines are says the answer's panel, not a legend."""
+    """Stack a side's joints, each with its phases; what the lines are says the answer's panel, not a legend."""
     axis = rrb.archetypes.TimeAxis(link=rrb.components.LinkAxis.LinkToGlobal)
     views = [
         rrb.TimeSeriesView(
@@ -357,7 +399,7 @@ def side_views(analysis: Analysis, side: Side) -> rrb.Vertical | None:
             axis_x=axis,
             plot_legend=rrb.PlotLegend(visible=False),
         )
-        for joint in (knee_of(side), ankle_of(side))
+        for joint in (kind.of(side) for kind in JointKind)
         if joint in _joints(analysis)
     ]
     return rrb.Vertical(*views, name=str(side)) if views else None

@@ -26,6 +26,7 @@ from core.samples import Session
 MEMORY_LIMIT = "2GB"  # forty sessions of ten minutes
 END_S = 5.0  # then it is ended by force
 ADDRESS = "127.0.0.1"
+NOBODY = "http://127.0.0.1:9"  # where nobody listens
 SETTINGS = "settings"
 LOCK = ".lock"
 
@@ -167,6 +168,8 @@ def _start(command: list[str], settings: Path) -> "subprocess.Popen[bytes]":
     )
     if sys.platform == "darwin":
         own["HOME"] = str(settings)
+    # at every start it asks the internet for a newer one of itself, and no setting forbids it
+    own |= dict.fromkeys(("HTTPS_PROXY", "HTTP_PROXY", "ALL_PROXY", "https_proxy", "http_proxy", "all_proxy"), NOBODY)
     nowhere = subprocess.DEVNULL
     return subprocess.Popen(command, env=os.environ | own, stdin=nowhere, stdout=nowhere, stderr=nowhere)
 

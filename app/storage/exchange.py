@@ -20,9 +20,11 @@ from app.storage.journal.writer import JournalSummary, JournalWriter, State
 from app.storage.opened import OpenedLibrary, Report
 from app.storage.pseudonyms import Pseudonyms, Typed
 from app.storage.recovery import Interrupted
+from app.storage.sessions import NO_LIMITS
 from app.storage.stored import (
     Action,
     LibraryError,
+    Limits,
     PlacedSensor,
     RecordingState,
     StoredJournal,
@@ -57,7 +59,12 @@ class Imported:
 
 
 def import_session(
-    opened: OpenedLibrary, session: Session, report: Report, code: str = "", room: Room = ROOM
+    opened: OpenedLibrary,
+    session: Session,
+    report: Report,
+    code: str = "",
+    room: Room = ROOM,
+    limits: Limits = NO_LIMITS,
 ) -> Imported:
     """Take a session, as `read_session` gives it, into the library: to the patient of this code, or to a new one.
 
@@ -67,6 +74,8 @@ def import_session(
     ----------
     code
         Of the patient, where it is another than the session's own or that has none.
+    limits
+        What the patient's body does not allow, which no folder can say.
 
     Raises
     ------
@@ -89,7 +98,7 @@ def import_session(
     )
     if not set(wanted.goals) <= set(patient.details.goals):
         differing = (*differing, "goals")
-    visit = library.sessions.create(patient.id, replace(session, recordings=(), sensors={}))
+    visit = library.sessions.create(patient.id, replace(session, recordings=(), sensors={}), limits)
     try:
         _import_recordings(opened, visit.id, session, report, room)
     except BaseException:

@@ -36,6 +36,16 @@ NAMES = {
     "ankle_push_off_plantarflexion_deg": later("Ankle push-off plantarflexion"),
     "ankle_swing_dorsiflexion_deg": later("Ankle swing dorsiflexion"),
     "hip_range_deg": later("Hip range"),
+    "hip_flexion_peak_deg": later("Hip, most flexed"),
+    "hip_extension_peak_deg": later("Hip, most extended"),
+    "hip_abduction_range_deg": later("Hip abduction range"),
+    "hip_abduction_peak_deg": later("Hip, most abducted"),
+    "hip_adduction_peak_deg": later("Hip, most adducted"),
+    "pelvis_obliquity_range_deg": later("Pelvis, obliquity range"),
+    "pelvis_drop_deg": later("Pelvis drop in swing"),
+    "pelvis_rotation_range_deg": later("Pelvis, rotation range"),
+    "pelvis_tilt_range_deg": later("Pelvis, tilt range"),
+    "pelvis_lean_deg": later("Pelvis, lean"),
 }
 UNITS = {  # by the end of a name, longer ends first; and the decimals
     "_steps_min": (later("steps/min"), 0),

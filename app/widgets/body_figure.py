@@ -59,12 +59,17 @@ def paint_legs(
     painter.setRenderHint(QPainter.RenderHint.Antialiasing)
     place = _placing(BARE_LEGS if is_small else LEGS, rect, is_from_behind)
     if not is_small:
-        _paint_plain(painter, theme, place, "pelvis")
+        _paint_plain(painter, theme, place, "pelvis", is_emphasised=emphasised is Site.PELVIS)
     _paint_segments(painter, theme, place, emphasised, is_small)
     if not is_small:
         _paint_joints(painter, theme, place)
     _paint_sensors(painter, theme, place, worn)
     painter.restore()
+
+
+def placing_of_legs(rect: QRectF) -> QTransform:
+    """From the drawing to the screen, as `paint_legs` draws the legs into `rect` where there is room for the pelvis."""
+    return _placing(LEGS, rect, is_from_behind=False)
 
 
 class BodyFigure(QWidget):
@@ -120,7 +125,7 @@ class BodyFigure(QWidget):
         near = QRectF(0, 0, 2 * SEGMENT_SLACK, 2 * SEGMENT_SLACK)
         near.moveCenter(spot)
         outlines = body_shapes().outlines
-        hit = [site for site in LEG_SITES if outlines[site].contains(spot)]
+        hit = [site for site in Site if outlines[site].contains(spot)]  # a thigh before the pelvis behind it
         hit += [site for site in LEG_SITES if outlines[site].intersects(near)]
         return hit[0] if hit else None
 
@@ -155,6 +160,8 @@ class BodyFigure(QWidget):
                 _paint_plain(painter, theme, place, name)
             if not self._is_from_behind:
                 _paint_eyes(painter, theme, place)
+            if self._emphasised is Site.PELVIS:
+                _paint_plain(painter, theme, place, "pelvis", is_emphasised=True)
             _paint_segments(painter, theme, place, self._emphasised, is_small=False)
             _paint_sensors(painter, theme, place, self._worn)
         self._paint_letters(painter, place)
@@ -208,7 +215,7 @@ class BodyFigure(QWidget):
         self.setAccessibleName(self._sentence())
         places = [
             tr("{site}: {state}").format(site=name_of(site), state=mark_words(self._worn[site]))
-            for site in LEG_SITES
+            for site in Site
             if site in self._worn
         ]
         if self._emphasised is not None:
@@ -230,8 +237,8 @@ def _placing(part: QRectF, rect: QRectF, is_from_behind: bool) -> QTransform:
     return place
 
 
-def _paint_plain(painter: QPainter, theme: Theme, place: QTransform, name: str) -> None:
-    painter.setPen(theme.pen(theme.colours.control, 1.5))
+def _paint_plain(painter: QPainter, theme: Theme, place: QTransform, name: str, *, is_emphasised: bool = False) -> None:
+    painter.setPen(theme.pen(theme.colours.ink, 3.5) if is_emphasised else theme.pen(theme.colours.control, 1.5))
     painter.setBrush(QColor(theme.colours.track))
     painter.drawPath(place.map(body_shapes().outlines[name]))
 

@@ -4,13 +4,18 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
+import numpy as np
+
+from app.body_words import joint_name
 from app.icons import Icon
 from app.widgets.table import TableColumn, TableRow
 from app.widgets.table_cells import RIGHT, TextCell
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD
 from app.wording import later, name_of, tr
 from core.body import Joint
+from core.hip.results import HipAngle, HipIdentification
 from core.results import AxisSource, JointCalibration, ZeroKind
+from core.verdicts.gates import LIMITS
 
 MARGIN_WANTED = 1.3  # the same as in the findings: below it another answer fits almost as well
 SHORTEST_LAG_S = 0.0005
@@ -23,6 +28,7 @@ AXIS_FROM = {
     AxisSource.REFINED: later("rigid limb"),
 }
 JOINTS = (Joint.LEFT_KNEE, Joint.RIGHT_KNEE, Joint.LEFT_ANKLE, Joint.RIGHT_ANKLE)
+HIPS = (Joint.LEFT_HIP, Joint.RIGHT_HIP)
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,9 +60,28 @@ def fact_rows(found: Mapping[Joint, JointCalibration]) -> list[TableRow]:
     ]
 
 
+def hip_columns(found: Mapping[Joint, HipAngle]) -> list[TableColumn]:
+    """As `fact_columns`, of the hips."""
+    return [TableColumn(), *(TableColumn(_joint_head(joint), share=1) for joint in HIPS if joint in found)]
+
+
+def hip_rows(found: Mapping[Joint, HipAngle]) -> list[TableRow]:
+    """As `fact_rows`, of the hips, which have no axis."""
+    return [
+        TableRow(
+            (
+                TextCell(tr(question), tone="ink2"),
+                *(_cell(tell(found[joint].identification), tr(question), joint) for joint in HIPS if joint in found),
+            ),
+            hint=tr(hint).format(wanted=LIMITS.pairing_margin),
+        )
+        for question, hint, tell in HIP_QUESTIONS
+        if found
+    ]
+
+
 def _joint_head(joint: Joint) -> TextCell:
-    words = tr("Knee") if joint.is_knee else tr("Ankle")
-    return TextCell(words, align=RIGHT, weight=MEDIUM, side=joint.side, spoken=name_of(joint))
+    return TextCell(joint_name(joint), align=RIGHT, weight=MEDIUM, side=joint.side, spoken=name_of(joint))
 
 
 def _cell(fact: Fact, question: str, joint: Joint) -> TextCell:
@@ -82,18 +107,20 @@ def _axis_certainty(found: JointCalibration) -> Fact:
 
 
 def _margin(found: JointCalibration) -> Fact:
-    if found.sign_margin is None:
-        return Fact(tr("unknown"), needs_look=True)
-    if not math.isfinite(found.sign_margin) or found.sign_margin >= 100:
+    return Fact(tr("unknown"), needs_look=True) if found.sign_margin is None else _margin_of(found.sign_margin)
+
+
+def _margin_of(margin: float, wanted: float = MARGIN_WANTED) -> Fact:
+    if not math.isfinite(margin) or margin >= 100:
         return Fact(tr("over 100"))
-    return Fact(f"{found.sign_margin:.1f}", found.sign_margin < MARGIN_WANTED)
+    return Fact(f"{margin:.1f}", margin < wanted)
 
 
 def _direction(found: JointCalibration) -> Fact:
     return Fact(tr("sure")) if found.is_sign_certain else Fact(tr("uncertain"), needs_look=True)
 
 
-def _lag(found: JointCalibration) -> Fact:
+def _lag(found: JointCalibration | HipIdentification) -> Fact:
     if abs(found.lag_s) < SHORTEST_LAG_S:
         return Fact(tr("none"))
     return Fact(f"{found.lag_s * 1000:+.0f} ms".replace("-", "\N{MINUS SIGN}"))
@@ -113,6 +140,43 @@ def _degrees(angle_rad: float) -> str:
     return f"{math.degrees(angle_rad):.1f}°".replace("-", "\N{MINUS SIGN}")
 
 
+def _heading(found: HipIdentification) -> Fact:
+    return Fact(f"± {math.degrees(found.heading_sd_rad):.1f}°", not found.is_3d)
+
+
+def _disagreement(found: HipIdentification) -> Fact:
+    return Fact(f"{found.disagreement:.2f}", found.disagreement >= LIMITS.hip_disagreement)
+
+
+def _centre(found: HipIdentification) -> Fact:
+    lengths = [float(np.linalg.norm(one)) for one in (found.centre_proximal_m, found.centre_distal_m)]
+    least, most = LIMITS.hip_centre_m
+    words = tr("{pelvis} cm, {thigh} cm").format(pelvis=round(100 * lengths[0]), thigh=round(100 * lengths[1]))
+    return Fact(words, any(not least <= length <= most for length in lengths))
+
+
+def _apart(found: HipIdentification) -> Fact:
+    if found.centres_apart_m is None:
+        return Fact(tr("one hip only"))
+    least, most = LIMITS.hips_apart_m
+    return Fact(
+        tr("{apart} cm").format(apart=round(100 * found.centres_apart_m)), not least <= found.centres_apart_m <= most
+    )
+
+
+HIP_QUESTIONS: tuple[tuple[str, str, Callable[[HipIdentification], Fact]], ...] = (
+    (later("Heading certainty"), later("One standard deviation of the heading of pelvis against thigh."), _heading),
+    (
+        later("Margin"),
+        later("How much worse the next best answer fits. Under {wanted} is doubt."),
+        lambda found: _margin_of(found.margin, LIMITS.pairing_margin),
+    ),
+    (later("Disagreement"), later("How much of what both sensors feel of the hip they do not share."), _disagreement),
+    (later("Centre from the sensors"), later("How far the hip lies from the pelvis's and the thigh's."), _centre),
+    (later("Hips apart"), later("How far the left hip lies to the left of the right one."), _apart),
+    (later("Clock lag"), later("What was added to the farther sensor's clock."), _lag),
+    (later("Zero"), later("What reads zero."), lambda _: Fact(tr("standing"))),
+)
 QUESTIONS: tuple[tuple[str, str, Callable[[JointCalibration], Fact]], ...] = (
     (later("Axis from"), later("Which recording showed how the joint turns."), _axis_from),
     (later("Axis certainty"), later("One standard deviation of the direction of the joint axis."), _axis_certainty),

@@ -74,8 +74,8 @@ def gauge_face(joint: Joint, found: ExcitationState | None, wanted: Wanted, is_n
     axis_deg = math.degrees(found.axis_sd_rad) if found is not None else math.inf
     centre_mm = 1000 * found.centre_sd_m if found is not None else math.inf
     axis_wanted, centre_wanted = math.degrees(wanted.axis_rad), 1000 * wanted.centre_m
-    axis = _measure(axis_deg, axis_wanted, AXIS_FROM_DEG, "°", is_closed) if joint.is_knee else None
-    centre = _measure(centre_mm, centre_wanted, CENTRE_FROM_MM, "mm", is_closed)
+    axis = gauge_measure(axis_deg, axis_wanted, AXIS_FROM_DEG, "°", is_closed) if joint.is_knee else None
+    centre = gauge_measure(centre_mm, centre_wanted, CENTRE_FROM_MM, "mm", is_closed)
     if found is None:
         return GaugeFace(GaugeState.NOW if is_now else GaugeState.OPEN, axis, centre)
     if _is_loose(joint, found, wanted) and (is_closed or found.is_plateau):
@@ -113,8 +113,8 @@ def two_digits(value: float, wanted: float = math.inf) -> str:
     return figure
 
 
-def _measure(value: float, wanted: float, begins: float, unit: str, is_closed: bool) -> GaugeMeasure:
-    """A ring is logarithmic: each halving of what is uncertain closes as much of it."""
+def gauge_measure(value: float, wanted: float, begins: float, unit: str, is_closed: bool) -> GaugeMeasure:
+    """Read a figure. A ring is logarithmic: each halving of what is uncertain closes as much of it."""
     share = math.log(begins / value) / math.log(begins / wanted) if 0 < value < math.inf else 0.0
     is_met = is_closed or value <= wanted
     share = 1.0 if is_met else min(max(share, 0.0), 1.0 - 1 / STEPS)

@@ -1,6 +1,6 @@
-"""Are all six sensors heard? A tile for each round a pair of legs, or one sentence where tiles have no room."""
+"""Are all sensors heard? A tile for each round a pair of legs, or round that of the pelvis where one is worn there."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 
 from PySide6.QtCore import QElapsedTimer, QRect, QRectF, Qt, QTimer, Signal
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QResizeEvent
@@ -16,7 +16,7 @@ from app.widgets.text import SEMIBOLD
 from app.widgets.themed import Themed
 from app.widgets.tile_widget import TileWidget
 from app.wording import tr
-from core.body import LEG_SEGMENTS, Side, Site
+from core.body import LEG_SEGMENTS, LEG_SITES, Side, Site
 
 TILE = 56
 COMPACT_TILE = 44
@@ -43,9 +43,9 @@ class SensorStrip(Themed):
         self._later = QTimer(self)
         self._later.setSingleShot(True)
         self._later.timeout.connect(self._on_later)
-        self.widgets = {site: TileWidget(look, site, self) for site in _order(is_from_behind=False)}
-        for widget in self.widgets.values():
-            widget.moved.connect(self._on_moved)
+        self.widgets: dict[Site, TileWidget] = {}
+        for site in _order(LEG_SITES, is_from_behind=False):
+            self._add(site)
         self._legs = QRect()
         self._set_tab_stop(next(iter(self.widgets.values())))
         self._arrange()
@@ -66,7 +66,7 @@ class SensorStrip(Themed):
             if not self._later.isActive():
                 self._later.start(rest_ms)
         else:
-            self._show(dict(tiles))
+            self.show_at_once(dict(tiles))
 
     def set_compact(self, is_compact: bool) -> None:
         if is_compact != self._is_compact:
@@ -116,10 +116,11 @@ class SensorStrip(Themed):
             for text in self.painted_texts():
                 text.paint(painter, theme.colours)
 
-    def _show(self, tiles: dict[Site, SensorTile]) -> None:
+    def show_at_once(self, tiles: dict[Site, SensorTile]) -> None:
         before = self._tiles
         self._tiles, self._waiting = tiles, None
         self._since.restart()
+        self._show_pelvis(Site.PELVIS in tiles)
         for site, widget in self.widgets.items():
             if site in tiles:
                 widget.show_tile(tiles[site])
@@ -130,8 +131,60 @@ class SensorStrip(Themed):
         if next(turned, None) is not None:
             self.turned_bad.emit()
 
+    def _add(self, site: Site) -> None:
+        widget = self.widgets[site] = TileWidget(self._look, site, self)
+        widget.moved.connect(self._on_moved)
+        widget.setFocusPolicy(Qt.FocusPolicy.ClickFocus)
+        widget.set_compact(self._is_compact)
+        widget.show()
+
+    def _show_pelvis(self, is_shown: bool) -> None:
+        """Have a seventh tile, or none."""
+        if is_shown is (Site.PELVIS in self.widgets):
+            return
+        if is_shown:
+            self._add(Site.PELVIS)
+        else:
+            widget = self.widgets.pop(Site.PELVIS)
+            if widget.focusPolicy() is Qt.FocusPolicy.StrongFocus:
+                self._set_tab_stop(next(iter(self.widgets.values())))
+            widget.setParent(None)
+            widget.deleteLater()
+        self._arrange()
+
     def _arrange(self) -> None:
-        """Put the tiles in one row about the legs, or in two or three where they would be too narrow."""
+        """Put the tiles in one row about the legs, or in some where they would be too narrow."""
+        if Site.PELVIS in self.widgets:
+            self._arrange_seven()
+        else:
+            self._arrange_six()
+
+    def _arrange_seven(self) -> None:
+        """In one row about the pelvis; in two with the pelvis at the end of the first; else the sides side by side."""
+        px = self._look.theme.px
+        margin = side_margin(self.width(), self._look.theme)
+        gap, height = px(GAP), px(COMPACT_TILE if self._is_compact else TILE)
+        room = max(self.width(), px(LEAST)) - 2 * margin
+        order = [self.widgets[site] for site in _order(self.widgets, self._is_from_behind)]
+        in_one_row = (room - 6 * gap) // 7
+        is_tight = not self._is_compact and in_one_row < self._needed(is_tight=False)
+        columns = 4 if (room - 3 * gap) // 4 >= self._needed(is_tight=False) else 2
+        if in_one_row >= self._needed(is_tight):
+            columns = 7
+        elif columns == 2:
+            order = [order[k] for k in (0, 4, 1, 5, 2, 6, 3)]
+        width = max((room - (columns - 1) * gap) // columns, 1)
+        top = px(4 if self._is_compact else 8)
+        for k, widget in enumerate(order):
+            widget.set_tight(is_tight and columns == 7)
+            row, column = divmod(k, columns)
+            widget.setGeometry(margin + column * (width + gap), top + row * (height + gap), width, height)
+        rows = -(-7 // columns)
+        self.setFixedHeight(2 * top + rows * height + (rows - 1) * gap)
+        self._legs = QRect()
+        self.update()
+
+    def _arrange_six(self) -> None:
         px = self._look.theme.px
         margin = side_margin(self.width(), self._look.theme)
         gap, height = px(GAP), px(COMPACT_TILE if self._is_compact else TILE)
@@ -140,7 +193,7 @@ class SensorStrip(Themed):
         in_one_row = (room - between - 5 * gap + gap) // 6
         is_tight = not self._is_compact and in_one_row < self._needed(is_tight=False)
         needed = self._needed(is_tight)
-        order = [self.widgets[site] for site in _order(self._is_from_behind)]
+        order = [self.widgets[site] for site in _order(self.widgets, self._is_from_behind)]
         columns = 6 if in_one_row >= needed else 3 if (room - 2 * gap) // 3 >= self._needed(is_tight=False) else 2
         if columns == 2:
             order = [order[k] for k in (0, 3, 1, 4, 2, 5)]  # one row for each segment, the sides side by side
@@ -171,7 +224,7 @@ class SensorStrip(Themed):
             widget.setFocusPolicy(Qt.FocusPolicy.StrongFocus if widget is stop else Qt.FocusPolicy.ClickFocus)
 
     def _on_moved(self, steps: int) -> None:
-        order = [self.widgets[site] for site in _order(self._is_from_behind)]
+        order = [self.widgets[site] for site in _order(self.widgets, self._is_from_behind)]
         at = next(k for k, widget in enumerate(order) if widget is self.sender())
         goal = order[min(max(at + steps, 0), len(order) - 1)]
         self._set_tab_stop(goal)
@@ -179,17 +232,18 @@ class SensorStrip(Themed):
 
     def _on_later(self) -> None:
         if self._waiting is not None:
-            self._show(self._waiting)
+            self.show_at_once(self._waiting)
 
     def _on_look_changed(self) -> None:
         self._arrange()
         self.update()
 
 
-def _order(is_from_behind: bool) -> list[Site]:
+def _order(sites: Collection[Site], is_from_behind: bool) -> list[Site]:
     """Give the sites from left to right: the patient faces you, so the right leg stands at the left."""
-    first, second = (Side.LEFT, Side.RIGHT) if is_from_behind else (Side.RIGHT, Side.LEFT)
-    return [Site(f"{side}_{segment}") for side in (first, second) for segment in LEG_SEGMENTS]
+    sides = (Side.LEFT, Side.RIGHT) if is_from_behind else (Side.RIGHT, Side.LEFT)
+    first, second = ([Site(f"{side}_{segment}") for segment in LEG_SEGMENTS] for side in sides)
+    return [*first, *([Site.PELVIS] if Site.PELVIS in sites else []), *second]
 
 
 def _is_bad(tile: SensorTile | None) -> bool:

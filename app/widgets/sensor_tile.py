@@ -6,7 +6,7 @@ from enum import Enum, auto
 
 from app.widgets.battery import LOW
 from app.widgets.body_figure import SensorMark
-from app.wording import name_of, tr
+from app.wording import capitalised, name_of, tr
 from core.body import Site
 from devices.live import Quiet
 
@@ -87,7 +87,7 @@ def sentence(tiles: Mapping[Site, SensorTile]) -> str:
     worn = [tile for tile in tiles.values() if tile.is_worn]
     bad = [tile for tile in worn if tile.is_bad]
     if len(bad) == 1:
-        return tr("{site}: {words}").format(site=name_of(bad[0].site), words=bad[0].words)
+        return tr("{site}: {words}").format(site=capitalised(name_of(bad[0].site)), words=bad[0].words)
     if bad:
         return tr("{bad} of {count} sensors want a look").format(bad=len(bad), count=len(worn))
     if not worn:

@@ -15,7 +15,7 @@ from app.tokens import CHIP_RADIUS
 from app.widgets.chip import CHIP, paint_chip
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD
 from app.wording import tr
-from core.body import LEG_SITES, Site
+from core.body import Site
 
 ONE_TURN = 360 * 16  # as Qt counts
 STEPS = 720  # of the ring: finer ones nobody sees
@@ -161,7 +161,7 @@ class MovementBars(QWidget):
         silent: Sequence[str],
     ) -> None:
         """Show each worn sensor's movement; infinite where too little was heard to tell."""
-        sites = [site for site in LEG_SITES if site in movement_deg_s]
+        sites = [site for site in Site if site in movement_deg_s]
         unplaced = sorted(set(movement_deg_s) - set(sites))
         rows = {
             site: _Row(
@@ -208,12 +208,13 @@ class MovementBars(QWidget):
             painter.drawRoundedRect(QRectF(place).adjusted(0, 1, 0, -1), CHIP_RADIUS, CHIP_RADIUS)
             ink = c.caution_ink
         chip, left = px(CHIP), px(INSET)
-        if sensor in set(LEG_SITES):
+        is_placed = sensor in set(Site)
+        if is_placed and (side := Site(sensor).side) is not None:
             box = QRectF(left, place.center().y() - chip / 2 + 0.5, chip, chip)
-            paint_chip(painter, box, Site(sensor).leg_side, theme)
+            paint_chip(painter, box, side, theme)
         painter.setPen(QColor(ink))
         painter.setFont(theme.font(14, MEDIUM))
-        name = place.adjusted(left + (chip + px(8) if sensor in set(LEG_SITES) else 0), 0, 0, 0)
+        name = place.adjusted(left + (chip + px(8) if is_placed else 0), 0, 0, 0)
         upright = Qt.AlignmentFlag.AlignVCenter
         painter.drawText(name, upright, _name(sensor))
         bar_left = left + chip + px(8) + self._name_width + px(8)
@@ -245,7 +246,7 @@ class MovementBars(QWidget):
     def _name_width(self) -> int:
         metrics = QFontMetrics(self._look.theme.font(14, MEDIUM))
         chip = self._look.theme.px(CHIP + 8)  # a sensor that nobody has placed has none, but a longer name
-        widths = [metrics.horizontalAdvance(_name(one)) - (0 if one in set(LEG_SITES) else chip) for one in self._rows]
+        widths = [metrics.horizontalAdvance(_name(one)) - (0 if one in set(Site) else chip) for one in self._rows]
         return max(widths, default=0)
 
     @property
@@ -258,4 +259,4 @@ class MovementBars(QWidget):
 
 
 def _name(sensor: str) -> str:
-    return segment_name(Site(sensor).segment) if sensor in set(LEG_SITES) else sensor
+    return segment_name(Site(sensor).segment) if sensor in set(Site) else sensor

@@ -16,26 +16,29 @@ from app.widgets.table import CellTable, TableColumn, TableRow
 from app.widgets.table_cells import EMPTY, LEFT, RIGHT, TableCell, TextCell
 from app.widgets.text import MEDIUM
 from app.wording import capitalised, later, side_name, tr
-from core.body import Side
+from core.body import JointKind, Side
 from core.samples import FloatArray
 
 ROW, HEAD = 44, 36
 PADDING, MARK = 8, 20
-STRIDE, BEGINS, TAKES, KNEE, ANKLE, STATE, KNEE_SHAPE, ANKLE_SHAPE = range(8)
+STRIDE, BEGINS, TAKES, HIP, KNEE, ANKLE, STATE, HIP_SHAPE, KNEE_SHAPE, ANKLE_SHAPE = range(10)
 HEADS = (
     later("Stride"),
     later("at (s)"),
     later("takes (s)"),
+    later("hip range (°)"),
     later("knee range (°)"),
     later("ankle range (°)"),
     "",
+    later("hip"),
     later("knee"),
     later("ankle"),
 )
-SHAPES = (KNEE_SHAPE, ANKLE_SHAPE)
+RANGES = {HIP: JointKind.HIP, KNEE: JointKind.KNEE, ANKLE: JointKind.ANKLE}
+SHAPES = {HIP_SHAPE: JointKind.HIP, KNEE_SHAPE: JointKind.KNEE, ANKLE_SHAPE: JointKind.ANKLE}
 LEAST_SHAPE = 64  # narrower, a curve tells nothing
 SHAPE_MARGIN = 5  # between a curve and the lines of its row
-WIDEST = {BEGINS: "000.0", TAKES: "0.00", KNEE: "000.0", ANKLE: "000.0"}
+WIDEST = {BEGINS: "000.0", TAKES: "0.00", HIP: "000.0", KNEE: "000.0", ANKLE: "000.0"}
 STATE_WIDTH = 112  # words wrap in it
 
 
@@ -44,19 +47,18 @@ class StrideLine:
     """One stride of one side, the same one whatever became of it. `reason` says in words why it is left out; empty: it
     is used.
 
-    Only what is used, or was left out by hand, can be turned. NaN: not known. `shapes_deg`: knee and ankle over the
-    stride (101,), as far as they are known.
+    Only what is used, or was left out by hand, can be turned. `ranges_deg`: of each kind of joint, NaN where not known;
+    `shapes_deg`: the joints over the stride (101,), as far as they are known.
     """
 
     side: Side
     number: int
     start_s: float
     end_s: float
-    knee_range_deg: float = field(compare=False)
-    ankle_range_deg: float = field(compare=False)
+    ranges_deg: Mapping[JointKind, float] = field(compare=False)
     reason: str = field(compare=False)
     is_by_hand: bool = field(compare=False)
-    shapes_deg: Mapping[int, FloatArray] = field(default_factory=dict, compare=False, repr=False)
+    shapes_deg: Mapping[JointKind, FloatArray] = field(default_factory=dict, compare=False, repr=False)
 
     @property
     def is_used(self) -> bool:
@@ -196,7 +198,11 @@ class StrideList(CellTable):
 
     def share_width(self) -> None:
         """Give what is left to the curves where they are shown and have room, else to the words."""
-        known = [shape for shape in SHAPES if any(shape in line.shapes_deg for line in self.lines if line.is_used)]
+        known = [
+            column
+            for column, kind in SHAPES.items()
+            if any(kind in line.shapes_deg for line in self.lines if line.is_used)
+        ]
         spare = self.viewport().width() - sum(self.needed_widths)
         is_shown = self._has_shapes and bool(known) and spare // len(known) >= self._look.theme.px(LEAST_SHAPE)
         for shape in SHAPES:
@@ -210,10 +216,10 @@ class StrideList(CellTable):
 
 def _columns(lines: Sequence[StrideLine]) -> list[TableColumn]:
     is_known = {
-        KNEE: any(math.isfinite(line.knee_range_deg) for line in lines),
-        ANKLE: any(math.isfinite(line.ankle_range_deg) for line in lines),
+        column: any(math.isfinite(line.ranges_deg.get(kind, math.nan)) for line in lines)
+        for column, kind in RANGES.items()
     }
-    sample = StrideCell(StrideLine(Side.LEFT, 100, 0.0, 1.0, math.nan, math.nan, "", is_by_hand=False), can_turn=True)
+    sample = StrideCell(StrideLine(Side.LEFT, 100, 0.0, 1.0, {}, "", is_by_hand=False), can_turn=True)
     figures = [
         TableColumn(_head(column, RIGHT), widest=_figure(widest), is_hidden=not is_known.get(column, True))
         for column, widest in WIDEST.items()
@@ -230,7 +236,7 @@ def _rows(lines: Sequence[StrideLine], *, can_turn: bool) -> list[TableRow]:
     """One row a stride. The mean of a side is that of its strides used, the reach that of all."""
     none = np.empty(0)
     means, reach = {}, {}
-    for shape in SHAPES:
+    for shape in SHAPES.values():
         every = [line.shapes_deg[shape] for line in lines if shape in line.shapes_deg]
         reach[shape] = (float(np.min(every)), float(np.max(every))) if every else (0.0, 1.0)
         for side in Side:
@@ -242,15 +248,14 @@ def _rows(lines: Sequence[StrideLine], *, can_turn: bool) -> list[TableRow]:
         figures = {
             BEGINS: _number(line.start_s, 1),
             TAKES: _number(line.end_s - line.start_s, 2),
-            KNEE: _number(line.knee_range_deg, 1),
-            ANKLE: _number(line.ankle_range_deg, 1),
+            **{column: _number(line.ranges_deg.get(kind, math.nan), 1) for column, kind in RANGES.items()},
         }
         tone = "ink" if line.is_used else "ink2"
         cells: tuple[TableCell, ...] = (
             StrideCell(line, can_turn),
             *(_figure(words, tone, f"{heads[column]}: {words}") for column, words in figures.items()),
             TextCell(line.reason or tr("used"), size=12, tone=tone, wraps=True, spoken=line.in_words),
-            *(CurveCell(line, line.shapes_deg.get(k, none), means[line.side, k], reach[k]) for k in SHAPES),
+            *(CurveCell(line, line.shapes_deg.get(k, none), means[line.side, k], reach[k]) for k in SHAPES.values()),
         )
         rows.append(TableRow(cells, key=line))
     return rows

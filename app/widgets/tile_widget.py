@@ -4,6 +4,7 @@ from PySide6.QtCore import QRectF, Qt, Signal
 from PySide6.QtGui import QColor, QFont, QFontMetrics, QKeyEvent, QPainter, QPaintEvent
 from PySide6.QtWidgets import QWidget
 
+from app.body_words import segment_name
 from app.icons import Icon, paint_icon
 from app.theme import ThemeNotifier
 from app.tokens import CONTROL_RADIUS
@@ -13,8 +14,8 @@ from app.widgets.chip import CHIP, paint_chip
 from app.widgets.painted_text import PaintedText, height_for
 from app.widgets.sensor_tile import SensorTile, TileState, rate_and_loss
 from app.widgets.text import MEDIUM, SEMIBOLD
-from app.wording import name_of, tr
-from core.body import Segment, Site
+from app.wording import capitalised, name_of, tr
+from core.body import Site
 
 PADDING = 10
 MARKS = BATTERY_WIDTH + 4 + 18  # battery and movement
@@ -54,13 +55,13 @@ class TileWidget(QWidget):
         bold = QFontMetrics(self._words_font(is_bold=True))
         if self._is_compact:
             words = bold.horizontalAdvance(tr("silent {seconds} s").format(seconds=88))
-            return px(CHIP + 6 + 2 * 8) + max(name + px(4 + 18), words) + px(2)
+            return px(self._chip_room + 2 * 8) + max(name + px(4 + 18), words) + px(2)
         longest = max((tr("charge soon · {percent} %").format(percent=88)).split(), key=len)
         words = 2 * px(PADDING) + bold.horizontalAdvance(longest)
         if is_tight:
-            return max(px(8 + CHIP + 6 + 8) + name, words, px(120))
+            return max(px(8 + self._chip_room + 8) + name, words, px(120))
         fine = QFontMetrics(self._words_font(is_bold=False)).horizontalAdvance(rate_and_loss(100.0, 0.001))
-        return max(px(8 + CHIP + 6 + 4 + MARKS + 9) + name, words, 2 * px(PADDING) + fine)
+        return max(px(8 + self._chip_room + 4 + MARKS + 9) + name, words, 2 * px(PADDING) + fine)
 
     def painted_texts(self) -> list[PaintedText]:
         """Give what is painted now, each in its box."""
@@ -70,7 +71,7 @@ class TileWidget(QWidget):
         tone = "caution_ink" if is_bold else "ink2"
         name_tone = "caution_ink" if is_bold else "ink2" if state is TileState.NOT_WORN else "ink"
         chip = self._chip()
-        left = chip.right() + px(6)
+        left = chip.left() + px(self._chip_room)
         if self._is_compact:
             room = self.width() - px(8) - left
             if state is TileState.FINE:
@@ -102,7 +103,8 @@ class TileWidget(QWidget):
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         self._paint_frame(painter)
-        paint_chip(painter, self._chip(), self._tile.site.leg_side, theme)
+        if (side := self._tile.site.side) is not None:
+            paint_chip(painter, self._chip(), side, theme)
         self._paint_marks(painter, QColor(c.caution_ink if self._tile.is_bad else c.ink2))
         for text in self.painted_texts():
             text.paint(painter, c)
@@ -152,6 +154,11 @@ class TileWidget(QWidget):
             cell = QRectF(self._marks_left(), middle - px(7), px(BATTERY_WIDTH), px(14))
             paint_battery(painter, cell, self._tile.battery, self._look.theme, ink)
 
+    @property
+    def _chip_room(self) -> int:
+        """What the chip takes of the line before the name; the pelvis has no side."""
+        return CHIP + 6 if self._tile.site.side is not None else 0
+
     def _chip(self) -> QRectF:
         px = self._look.theme.px
         chip = px(CHIP)
@@ -168,8 +175,7 @@ class TileWidget(QWidget):
         return self.width() - px(9 + MARKS)
 
     def _segment(self) -> str:
-        words = {Segment.THIGH: tr("Thigh"), Segment.SHANK: tr("Shank"), Segment.FOOT: tr("Foot")}
-        return words[self._tile.site.segment]
+        return segment_name(self._tile.site.segment)
 
     def _short_words(self, room: float) -> str:
         """Give what is wrong in as many words as there is room for."""
@@ -190,7 +196,8 @@ class TileWidget(QWidget):
         tile = self._tile
         moving = tr("moving") if tile.is_moving else tr("still")
         is_heard = tile.state not in (TileState.NOT_WORN, TileState.SILENT, TileState.QUIET)
-        self.setAccessibleName(", ".join(filter(None, [name_of(tile.site), tile.words, moving if is_heard else ""])))
+        site = capitalised(name_of(tile.site))
+        self.setAccessibleName(", ".join(filter(None, [site, tile.words, moving if is_heard else ""])))
         battery = (
             tr("battery {percent} %").format(percent=round(tile.battery * 100)) if tile.battery is not None else ""
         )

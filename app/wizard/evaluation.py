@@ -12,8 +12,11 @@ from app.workers.background import Background, Report, Work
 from core.analysis import analyse
 from core.body import Joint, Side
 from core.chosen_strides import leave_out
+from core.hip.measure import is_trusted
+from core.validity import spans_of_validity
 
 if TYPE_CHECKING:
+    from core.hip.results import HipIdentification
     from core.results import Analysis, JointCalibration
     from core.samples import Session
 
@@ -59,6 +62,17 @@ class Evaluation(QObject):
     def calibration(self) -> "Mapping[Joint, JointCalibration]":
         """The latest of each joint."""
         return {} if self.analysis is None else calibration_of(self.analysis)
+
+    @property
+    def hips(self) -> "Mapping[Joint, HipIdentification]":
+        """What was found last of each hip since the sensors were strapped on, where it can be relied on."""
+        if self.analysis is None or self.session is None:
+            return {}
+        spans = spans_of_validity(self.session)
+        names = {recording.name for recording in spans[-1]} if spans else set()
+        found = (recording.hips for recording in self.analysis.recordings if recording.name in names)
+        hips = {joint: hip.identification for of_both in found for joint, hip in of_both.items()}
+        return {joint: hip for joint, hip in hips.items() if is_trusted(hip)}
 
     def strides(self, walk: str) -> dict[Side, int]:
         """How many strides of each side a walk holds, by its name; empty where it was not evaluated."""

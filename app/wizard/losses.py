@@ -3,8 +3,8 @@
 import math
 from collections.abc import Mapping, Sequence
 
-from app.wording import name_of, tr
-from core.body import LEG_SITES, Joint, Segment, Side, Site
+from app.wording import capitalised, name_of, tr
+from core.body import Joint, Segment, Side, Site
 
 TOLD_AFTER_S = 2.0
 BACK_TOLD_S = 6.0
@@ -26,7 +26,7 @@ class Losses:
     @property
     def silent(self) -> tuple[Site, ...]:
         """Those that have been silent for long enough to be told."""
-        return tuple(site for site in LEG_SITES if site in self._silent_s)
+        return tuple(site for site in Site if site in self._silent_s)
 
     def update(self, silent_s: Mapping[Site, float], now_s: float) -> tuple[Site, ...]:
         """Take how long each worn sensor has been silent; returns those that are told from now on."""
@@ -56,9 +56,10 @@ class Losses:
                 said = tr("{sensor} are back after {seconds:.1f} s.")
             else:
                 said = tr("All sensors are back after {seconds:.1f} s.")
-            names = ", ".join(name_of(site) for site in LEG_SITES if site in self._back)
-            what = said.format(sensor=names, seconds=max(self._back.values()))
-            return what, tr("The strides in between are left out.")
+            names = ", ".join(name_of(site) for site in Site if site in self._back)
+            what = capitalised(said.format(sensor=names, seconds=max(self._back.values())))
+            then = tr("The strides in between are left out.")
+            return what, tr("Only the hips are missing in between.") if set(self._back) == {Site.PELVIS} else then
         return NOTHING
 
     def _silent_message(self, is_recording: bool, joints: Sequence[Joint]) -> Message:
@@ -69,6 +70,10 @@ class Losses:
             return what, f"{tr('Recording goes on.')} {then}" if is_recording else then
         names = ", ".join(name_of(site) for site in self.silent)
         is_one = len(self._silent_s) == 1
+        if self.silent == (Site.PELVIS,):
+            what = tr("The pelvis has been silent for {seconds} s.").format(seconds=longest_s)
+            goes_on = tr("Recording goes on, and so do knees and ankles. The hips are missing until it is back.")
+            return what, goes_on if is_recording else tr("Switch it off and on, or go on without hip angles.")
         have = tr("{sensor} have been silent for {seconds} s.")
         said = tr("{sensor} has been silent for {seconds} s.") if is_one else have
         lost = [name_of(joint) for joint in joints if {joint.proximal, joint.distal} & self._silent_s.keys()]
@@ -86,4 +91,4 @@ class Losses:
         else:
             they = tr("Switch them off and on, or go on without them.")
             then = tr("Switch it off and on, or go on without it.") if is_one else they
-        return said.format(sensor=names, seconds=longest_s), then
+        return capitalised(said.format(sensor=names, seconds=longest_s)), then

@@ -673,8 +673,8 @@ def _by_hand(told: Session) -> tuple[dict[Joint, float], dict[Joint, int]]:
 
 
 def opposite(site: Site) -> Site:
-    """The same place on the other leg."""
-    return Site(f"{site.leg_side.other}_{site.segment}")
+    """The same place on the other leg; the pelvis stays."""
+    return Site.PELVIS if site.side is None else Site(f"{site.side.other}_{site.segment}")
 
 
 def _every_field_of(session: StoredSession) -> dict[str, Value]:

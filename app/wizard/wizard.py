@@ -279,7 +279,9 @@ class Wizard(QWidget):
         self.shell.header.show_elapsed(visit.elapsed_s)
         status, worn = visit.sensors.status, visit.sensors.sensor_at
         is_awaited = visit.sensors.is_left_to_motion and not worn
-        self.shell.strip.show_tiles({site: _tile(site, worn.get(site), status, is_awaited) for site in LEG_SITES})
+        has_pelvis = Site.PELVIS in worn or (is_awaited and Site.PELVIS in visit.sensors.places)
+        sites = tuple(Site) if has_pelvis else LEG_SITES
+        self.shell.strip.show_tiles({site: _tile(site, worn.get(site), status, is_awaited) for site in sites})
 
     def _tell(self, what: str, then: str) -> None:
         if what:

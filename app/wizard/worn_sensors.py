@@ -14,7 +14,7 @@ from app.widgets.sensor_tile import SILENT_FROM_S
 from app.wizard.sensor_sync import SensorSync
 from app.wording import filled, later, name_of, tr
 from app.workers.background import Background, Report, Work
-from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site
+from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site, hip_of
 from core.samples import SensorInfo
 from devices.live import SourceRefusedError
 
@@ -119,6 +119,19 @@ class WornSensors(QObject):
         """Those that have a sensor on both sides."""
         worn = self.sensor_at
         return [joint for joint in LEG_JOINTS if joint.proximal in worn and joint.distal in worn]
+
+    @property
+    def hips(self) -> list[Joint]:
+        """Those that have a sensor on both sides; none without one on the pelvis."""
+        worn = self.sensor_at
+        return [hip_of(side) for side in Side if {Site.PELVIS, hip_of(side).distal} <= worn.keys()]
+
+    @property
+    def places(self) -> tuple[Site, ...]:
+        """Where sensors can be worn: the pelvis only where there is a seventh, or one was put there."""
+        count = len(self.acquisition.sensors) if self.acquisition is not None else 0
+        has_pelvis = count > len(LEG_SITES) or Site.PELVIS in self.site_of.values()
+        return tuple(Site) if has_pelvis else LEG_SITES
 
     @property
     def dots(self) -> "DotGroup | None":
@@ -230,13 +243,17 @@ class WornSensors(QObject):
         return placed
 
     def price_of_missing(self) -> str:
-        """What is not measured for want of sensors, in a sentence; empty where all six are worn."""
-        worn = self.sensor_at
-        lost = [name_of(joint) for joint in LEG_JOINTS if joint not in self.joints]
+        """What is not measured for want of sensors, in a sentence; empty where all are worn that there are."""
+        worn, places = self.sensor_at, self.places
+        missing = [site for site in places if site not in worn]
+        if missing == [Site.PELVIS]:
+            return tr("No sensor on the pelvis: no hip angles.")
+        wanted = [*LEG_JOINTS, *(hip_of(side) for side in Side if Site.PELVIS in places)]
+        lost = [name_of(joint) for joint in wanted if joint not in (*self.joints, *self.hips)]
         if not lost or not worn:
             return ""
         return tr("Without {sites}: no {joints} angles.").format(
-            sites=", ".join(name_of(site) for site in LEG_SITES if site not in worn), joints=", ".join(lost)
+            sites=", ".join(name_of(site) for site in missing), joints=", ".join(lost)
         )
 
     def _close(self) -> None:

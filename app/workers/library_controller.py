@@ -313,7 +313,7 @@ class LibraryController(QObject):
         self._open(lambda: self._holder.create(folder, code, name, passphrase))
 
     def open_demonstration(self) -> None:
-        """Open a library of its own, gone when it is closed, with one simulated patient and a session."""
+        """Open a library of its own, gone when it is closed, with simulated patients who have no visits yet."""
         self._open(lambda: self._holder.open_demonstration())
 
     def close(self) -> None:

@@ -1,7 +1,6 @@
-"""What stands between a key and an open library? Somebody logged in, what is overdue, a demonstration's session."""
+"""What stands between a key and an open library? Somebody logged in, what is overdue, a demonstration's patients."""
 
 import logging
-from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
 
@@ -14,7 +13,6 @@ from app.storage.retention import destroy_overdue
 from app.storage.stored import Role
 
 BACKUP_FOLDER = "backup_folder"  # the library's setting that names where its backups are
-DEMONSTRATION_CODE = "DEMO-1"
 
 _log = logging.getLogger(__name__)
 
@@ -31,24 +29,18 @@ def let_keyring_remember(library: OpenedLibrary) -> None:
 
 
 def demonstration(folder: Path) -> OpenedLibrary:
-    # scipy takes a second that no log in is to wait for
-    from app.storage.exchange import import_session
-    from devices.replay import labelled
-    from devices.walker import DEMONSTRATION, simulate
+    """The demonstration's library with its patients, whose visits are recorded once it is open."""
+    # numpy takes some tenths of a second that no log in is to wait for
+    from app.demonstration.patients import simulated_patients
+    from app.demonstration.recording import add_patients
 
     library = OpenedLibrary(Library.create(folder, None, DEMONSTRATOR), folder, None)
     try:
-        session = labelled(simulate(DEMONSTRATION).session)
-        session = replace(session, started=datetime.now().isoformat(timespec="seconds"))
-        import_session(library, session, silent, DEMONSTRATION_CODE)
+        add_patients(library, simulated_patients(datetime.now().astimezone()))
     except BaseException:
         library.library.close()
         raise
     return library
-
-
-def silent(_share: float, _what: str) -> None:
-    """For whom progress is nothing."""
 
 
 def tidy(library: OpenedLibrary) -> None:

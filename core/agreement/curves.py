@@ -7,7 +7,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.signal import butter, sosfiltfilt
 
-from core.body import LEG_JOINTS, Joint
+from core.body import Joint
 from core.samples import FloatArray
 
 MAX_GAP_S = 0.05  # no curve is continued across a longer one, as in angles.csv
@@ -43,7 +43,7 @@ class ComparedTrial:
     @property
     def joints(self) -> tuple[Joint, ...]:
         """What both have."""
-        return tuple(joint for joint in LEG_JOINTS if joint in self.measured and joint in self.reference)
+        return tuple(joint for joint in Joint if joint in self.measured and joint in self.reference)
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,9 +1,11 @@
 """Joint angles over 0-100 % of each stride, their mean, and the peaks a clinician reads."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
+from core.body import JointKind
 from core.samples import BoolArray, FloatArray
 from core.tracks import MAX_REPORTED_GAP_S, nominal_step_s
 
@@ -40,6 +42,11 @@ ANKLE_WINDOWS = (
     PeakWindow("ankle_push_off_plantarflexion", 50, 80, False),
     PeakWindow("ankle_swing_dorsiflexion", 70, 95, True),
 )
+PEAK_WINDOWS: Mapping[JointKind, tuple[PeakWindow, ...]] = {
+    JointKind.HIP: (),  # its peaks are those of the whole stride
+    JointKind.KNEE: KNEE_WINDOWS,
+    JointKind.ANKLE: ANKLE_WINDOWS,
+}
 
 
 @dataclass(frozen=True, slots=True)

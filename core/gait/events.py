@@ -230,7 +230,9 @@ def _time_by_sole(timing: Timing, sole: SoleTravel, is_lifted: bool, is_landed: 
 
 
 def _settled(rate: FloatArray, contact: float, rest: int, usual: Usual) -> Onset:
-    """Full contact of a foot that has landed, whatever way it then turns; NaN: it hardly turns."""
+    """Full contact of a foot that has landed, whatever way it then turns; NaN: it hardly turns, or never landed."""
+    if not np.isfinite(contact):
+        return Onset(np.nan, 0.0)
     first = min(int(np.ceil(contact)), rest)
     turning = np.abs(rate[first : rest + 1])
     fastest = int(np.argmax(turning))
@@ -265,9 +267,12 @@ def _as_events(motion: FootMotion, timing: Timing, is_measured: BoolArray) -> Fo
 
 
 def _landing_of(motion: FootMotion, fastest: int, rest: int, lands: float) -> Landing:
-    """How a foot comes down between two indices; with its forefoot first, its toes are further down than in stance."""
+    """How a foot comes down between two indices; with its forefoot first, its toes are further down than in stance.
+
+    Where its sole never ceases to travel, as in a leg that circles, it may come down anywhere up to its rest.
+    """
     rate, pitch = motion.pitch_rate_rad_s, motion.pitch_rad
-    until = min(rest, max(fastest, int(np.ceil(lands))))
+    until = min(rest, max(fastest, int(np.ceil(lands)))) if np.isfinite(lands) else rest
     highest = fastest + int(np.argmax(pitch[fastest : until + 1]))
     lowest = highest + int(np.argmin(pitch[highest : rest + 1]))
     if pitch[lowest] > -FOREFOOT_RAD:

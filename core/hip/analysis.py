@@ -7,6 +7,7 @@ import numpy as np
 
 from core.body import Side, Site, hip_of
 from core.gait.clocks import ClockTie, LegClocks
+from core.gait.cycles import cycles_of
 from core.hip.clocks import NO_CLOCKS, HipClocks, hip_clocks
 from core.hip.heading import HipFit
 from core.hip.measure import Knees, fits_of, frames_of, measure_hips
@@ -75,10 +76,13 @@ def with_hips(
     pelvis = replace(measured.pelvis, rotation_rad=rotation)
     gait = {}
     for side, one in found.gait.items():
-        added: dict[str, FloatArray] = pelvis_parameters(one.strides, found.time_s, pelvis, side)
-        if hip_of(side) in measured.hips:
-            added |= hip_parameters(one.strides, found.time_s, measured.hips[hip_of(side)])
-        gait[side] = replace(one, parameters={**one.parameters, **added})
+        strides, hip = one.strides, measured.hips.get(hip_of(side))
+        added: dict[str, FloatArray] = pelvis_parameters(strides, found.time_s, pelvis, side)
+        cycles = dict(one.cycles)
+        if hip is not None:
+            added |= hip_parameters(strides, found.time_s, hip)
+            cycles[hip_of(side)] = cycles_of(found.time_s, hip.angle_rad, strides.start_s, strides.end_s)
+        gait[side] = replace(one, parameters={**one.parameters, **added}, cycles=cycles)
     return replace(found, hips=measured.hips, pelvis=pelvis, turns=turns, gait=gait)
 
 

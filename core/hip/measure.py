@@ -50,9 +50,9 @@ class HipsAndPelvis:
 Knees = Mapping[Joint, JointCalibration]
 
 
-def is_trusted(fit: HipFit) -> bool:
+def is_trusted(found: HipFit | HipIdentification) -> bool:
     """Whether both sensors moved as neighbours of one hip do, beyond doubt about the heading."""
-    return fit.margin >= MIN_MARGIN and fit.disagreement < MAX_DISAGREEMENT
+    return found.margin >= MIN_MARGIN and found.disagreement < MAX_DISAGREEMENT
 
 
 def fits_of(tracks: SensorTracks, recording: Recording, clocks: HipClocks, side: Side) -> list[HipFit | None]:
@@ -204,6 +204,8 @@ def _hip(
         lag_s=lag_s,
         standing_from=frames.standing_from,
         centres_apart_m=None,
+        frame_proximal=frames.pelvis,
+        frame_distal=frames.thighs[side],
     )
     return HipAngle(flexion, sd, abduction, identification)
 

@@ -79,7 +79,7 @@ def rotation_of(
 
 
 def hip_parameters(strides: Strides, time_s: FloatArray, hip: HipAngle) -> dict[str, FloatArray]:
-    """Range, greatest flexion and greatest extension of one hip in each stride of its leg, (k,) each.
+    """Range and peaks of one hip in each stride of its leg, (k,) each, in flexion and in abduction.
 
     Parameters
     ----------
@@ -89,18 +89,23 @@ def hip_parameters(strides: Strides, time_s: FloatArray, hip: HipAngle) -> dict[
     Returns
     -------
     dict
-        rad from standing, named as in strides.csv; extension is positive behind; NaN where a sample is missing.
+        rad from standing, named as in strides.csv; extension is positive behind, adduction towards the other leg; NaN
+        where a sample is missing.
     """
     most, least = (_of_strides(strides, time_s, hip.angle_rad, of) for of in (np.max, np.min))
+    outwards, inwards = (_of_strides(strides, time_s, hip.abduction_rad, of) for of in (np.max, np.min))
     return {
         "hip_range_rad": most - least,
         "hip_flexion_peak_rad": most,
         "hip_extension_peak_rad": -least,
+        "hip_abduction_range_rad": outwards - inwards,
+        "hip_abduction_peak_rad": outwards,
+        "hip_adduction_peak_rad": -inwards,
     }
 
 
 def pelvis_parameters(strides: Strides, time_s: FloatArray, pelvis: PelvisAngles, side: Side) -> dict[str, FloatArray]:
-    """Ranges of obliquity and rotation over each stride of one leg, and how far the pelvis drops in its swing, (k,).
+    """Ranges, mean tilt, and how far the pelvis drops in the swing, of each stride of one leg, (k,) each.
 
     Parameters
     ----------
@@ -110,7 +115,8 @@ def pelvis_parameters(strides: Strides, time_s: FloatArray, pelvis: PelvisAngles
     Returns
     -------
     dict
-        rad; the drop from standing, positive where the swinging side is the lower one.
+        rad; the drop and the lean from standing, the drop positive where the swinging side is the lower one, the lean
+        positive forward.
     """
     obliquity, rotation = pelvis.obliquity_rad, pelvis.rotation_rad
     lowered = -obliquity if side is Side.LEFT else obliquity
@@ -119,6 +125,8 @@ def pelvis_parameters(strides: Strides, time_s: FloatArray, pelvis: PelvisAngles
         "pelvis_obliquity_range_rad": _of_strides(strides, time_s, obliquity, np.ptp),
         "pelvis_drop_rad": swing,
         "pelvis_rotation_range_rad": _of_strides(strides, time_s, rotation, np.ptp),
+        "pelvis_tilt_range_rad": _of_strides(strides, time_s, pelvis.tilt_rad, np.ptp),
+        "pelvis_lean_rad": _of_strides(strides, time_s, pelvis.tilt_rad, np.mean),
     }
 
 

@@ -40,7 +40,9 @@ class HipIdentification:
 
     Centres (3,) point from the joint to the sensors, m, in sensor axes. `is_3d`: the heading is sure enough for Cardan
     angles; else flexion is that against the vertical, and there is no abduction. `centres_apart_m`: how far to the
-    left of the right hip's centre the left one's lies; None where there is one hip only.
+    left of the right hip's centre the left one's lies; None where there is one hip only. `frame_proximal` and
+    `frame_distal` (3, 3) are what the angles were measured with: rows x forward, y left, z up of pelvis and thigh, in
+    sensor axes.
     """
 
     centre_proximal_m: FloatArray
@@ -53,6 +55,8 @@ class HipIdentification:
     lag_s: float
     standing_from: str
     centres_apart_m: float | None
+    frame_proximal: FloatArray
+    frame_distal: FloatArray
 
 
 @dataclass(frozen=True, slots=True)

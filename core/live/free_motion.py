@@ -7,6 +7,8 @@ import numpy as np
 
 from core.body import LEG_JOINTS, Joint, Side, Site
 from core.live.excitation import HUMAN, PROSTHESIS, Excitation, ExcitationState
+from core.live.hip_heading import HipHeadingState
+from core.live.hips import LiveHips
 from core.live.lag import LagState, LiveLag
 from core.live.orientation import NOTHING, OrientedSamples, joined
 from core.live.pairing import MAX_WAIT_S
@@ -24,15 +26,19 @@ class FreeMotionState:
     ----------
     weakest
         The joint whose `missing` motion helps most now; None when all are as good as they get.
+    hips
+        What is known of the heading of each hip whose sensors are worn. Walking shows it as well, so nothing waits for
+        it.
     """
 
     joints: Mapping[Joint, ExcitationState] = field(default_factory=dict)
     lags: Mapping[Joint, LagState] = field(default_factory=dict)
     weakest: Joint | None = None
+    hips: Mapping[Joint, HipHeadingState] = field(default_factory=dict)
 
     @property
     def is_done(self) -> bool:
-        """Whether every joint is closed, or as good as this motion gives."""
+        """Whether every knee and ankle is closed, or as good as this motion gives."""
         return bool(self.joints) and self.weakest is None
 
 
@@ -64,6 +70,7 @@ class LiveFreeMotion:
             )
             for joint in asked
         }
+        self._hips = LiveHips(sensors)
 
     def update(self, blocks: Mapping[Site, ImuBlock]) -> FreeMotionState:
         """Take new samples of some or all sites.
@@ -80,7 +87,7 @@ class LiveFreeMotion:
         lags = {joint: motion.lag for joint, motion in self._joints.items() if motion.lag is not None}
         is_open = [joint for joint, state in joints.items() if not (state.is_closed or state.is_plateau)]
         weakest = max(is_open, key=lambda joint: joints[joint].wanting, default=None)
-        return FreeMotionState(joints, lags, weakest)
+        return FreeMotionState(joints, lags, weakest, self._hips.follow(turned))
 
     @property
     def late(self) -> dict[Site, int]:

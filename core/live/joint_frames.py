@@ -30,7 +30,22 @@ def frame_map(axis: FloatArray) -> ComplexArray:
     (4, 2)
         Complex, without unit.
     """
-    frame = np.stack([*joint_frame(axis), axis], axis=1)
+    return orientation_map(np.stack([*joint_frame(axis), axis], axis=1))
+
+
+def orientation_map(frame: FloatArray) -> ComplexArray:
+    """Matrix (4, 2) that takes orientations (n, 4) of a sensor, as rows, to u and v of a frame fixed to it.
+
+    Parameters
+    ----------
+    frame : (3, 3)
+        Its axes as columns, in sensor axes.
+
+    Returns
+    -------
+    (4, 2)
+        Complex, without unit.
+    """
     w, x, y, z = Rotation.from_matrix(frame).as_quat(scalar_first=True)
     product = np.array([[w, x, y, z], [-x, w, -z, y], [-y, z, w, -x], [-z, -y, x, w]])  # of 1, i, j, k with it
     return np.stack([product[:, 0] + 1j * product[:, 3], product[:, 1] + 1j * product[:, 2]], axis=1)

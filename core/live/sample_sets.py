@@ -87,8 +87,19 @@ def _products_to_matrix() -> FloatArray:
 _PRODUCTS_TO_MATRIX = _products_to_matrix()
 
 
-def _matrices(q: FloatArray) -> FloatArray:
-    """Rotation matrices (n, 3, 3) of quaternions (n, 4) of about unit length; for one, ten times as fast as SciPy."""
+def matrices_of(q: FloatArray) -> FloatArray:
+    """Rotation matrices of quaternions of about unit length; for one, ten times as fast as SciPy.
+
+    Parameters
+    ----------
+    q : (n, 4)
+        Scalar first.
+
+    Returns
+    -------
+    (n, 3, 3)
+        Takes vectors as the quaternion does.
+    """
     products = q[:, :, None] * (q / np.sum(q**2, axis=1, keepdims=True))[:, None, :]
     return (products.reshape(-1, 16) @ _PRODUCTS_TO_MATRIX).reshape(-1, 3, 3)
 
@@ -170,7 +181,7 @@ class SetCollector:
         kept.a1[n], kept.a2[n] = one.acc_m_s2[1], two.acc_m_s2
         levers = lever_matrix(np.concatenate([g1[3:4], g2[2:5]]), np.concatenate([dg1[1:2], dg2]))
         kept.k1[n], kept.k2[n] = levers[0], levers[1:]
-        turned = _matrices(np.stack([one.q_earth_from_sensor, two.q_earth_from_sensor]))
+        turned = matrices_of(np.stack([one.q_earth_from_sensor, two.q_earth_from_sensor]))
         kept.earth_from_1[n], kept.earth_from_2[n] = turned
         self._count += 1
         return True

@@ -4,7 +4,7 @@ The limits of stillness are those of `core.calibration.rest`; what is found is w
 since the last movement.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Container, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import Generic, TypeVar
@@ -61,9 +61,16 @@ class StandingState(Generic[Sensor]):
 
 
 class LiveStanding(Generic[Sensor]):
-    """Watches any number of sensors; fed block by block, of any size and in any order of sensors."""
+    """Watches any number of sensors; fed block by block, of any size and in any order of sensors.
 
-    def __init__(self, sensors: Iterable[Sensor], wanted_s: float = WANTED_S) -> None:
+    Parameters
+    ----------
+    optional
+        Sensors that nothing waits for while they are silent; the rest is then that of the others.
+    """
+
+    def __init__(self, sensors: Iterable[Sensor], wanted_s: float = WANTED_S, optional: Container[Sensor] = ()) -> None:
+        self._optional = optional
         self._watches = {sensor: _StillnessWatch() for sensor in sensors}
         self._bouts = _Bouts()
         self._rest_of = np.inf, np.inf
@@ -98,23 +105,28 @@ class LiveStanding(Generic[Sensor]):
             movement={sensor: w.movement for sensor, w in watches.items() if np.isfinite(w.heard_s)},
             restarts=self._bouts.count_after(begun_s + SAME_BOUT_S),
         )
-        if silent or not watches:  # a sensor that is not heard may be moving: the count waits for it and begins anew
+        heard = {sensor: watch for sensor, watch in watches.items() if sensor not in silent}
+        if any(sensor not in self._optional for sensor in silent) or not heard:
+            # a sensor that is not heard may be moving: the count waits for it and begins anew
             return replace(state, still_s=0.0, moved=(), silent=silent, rest={})
+        watches = heard
         since_s = max(watch.still_since_s for watch in watches.values())
         until_s = min(watch.judged_s for watch in watches.values())
         still_s = until_s - since_s
-        rest = self._rest(since_s, still_s) if still_s >= self._state.wanted_s else {}
+        rest = self._rest(since_s, still_s, watches) if still_s >= self._state.wanted_s else {}
         moved = tuple(sensor for sensor, watch in watches.items() if watch.is_moving)
-        return replace(state, still_s=max(0.0, still_s), moved=moved, silent=(), rest=rest)
+        return replace(state, still_s=max(0.0, still_s), moved=moved, silent=silent, rest=rest)
 
-    def _rest(self, since_s: float, still_s: float) -> Mapping[Sensor, Rest]:
+    def _rest(
+        self, since_s: float, still_s: float, watches: "Mapping[Sensor, _StillnessWatch]"
+    ) -> Mapping[Sensor, Rest]:
         """What all read while still since an instant, as of the last whole second after the wanted time."""
         whole_s = np.floor((still_s - self._state.wanted_s) / REST_EVERY_S) * REST_EVERY_S
         until_s = since_s + self._state.wanted_s + float(whole_s)
         from_s = max(since_s, until_s - KEPT_S + REST_EVERY_S)
         if (from_s, until_s) != self._rest_of:
             self._rest_of = from_s, until_s
-            found = {sensor: watch.rest(from_s, until_s) for sensor, watch in self._watches.items()}
+            found = {sensor: watch.rest(from_s, until_s) for sensor, watch in watches.items()}
             known = {sensor: one for sensor, one in found.items() if one is not None}
             self._found = known if len(known) == len(found) else {}
         return self._found

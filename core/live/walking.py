@@ -10,8 +10,10 @@ import numpy as np
 from core.body import Joint, Segment, Side, Site, ankle_of, knee_of
 from core.gait.live import FootEvent, LiveEvent, LiveEvents, PhaseChange
 from core.gait.phases import Phase
+from core.hip.results import HipIdentification
 from core.live.angle import AngleSamples, LiveAngle
 from core.live.foot_pitch import FootPitch, FootStrike
+from core.live.hips import LiveHips
 from core.live.orientation import NOTHING, OrientedSamples
 from core.live.pairing import PairedSamples, joined_rows
 from core.live.sensors import LiveSensor, LiveSensors
@@ -27,7 +29,10 @@ STRIDES_FOR_ANKLE = 5  # after so many of a side its ankle's axis can be found a
 
 @dataclass(frozen=True, slots=True)
 class LiveJoint:
-    """What is new of one joint. `is_provisional`: an ankle whose axis comes from free motion alone."""
+    """What is new of one joint.
+
+    `is_provisional`: an ankle whose axis comes from free motion alone, or a hip whose heading is not sure yet.
+    """
 
     samples: AngleSamples
     is_provisional: bool
@@ -72,6 +77,8 @@ class LiveWalk:
         Rate, gyroscope bias (3,) in sensor axes and kind of rate of every sensor that is worn.
     calibration
         Of the joints whose angles are wanted, from `analyse`; joints without both sensors are passed over.
+    hips
+        What `analyse` has found of the hips; they are passed over without a sensor on the pelvis.
 
     Examples
     --------
@@ -85,7 +92,12 @@ class LiveWalk:
     [<Joint.LEFT_ANKLE: 'left_ankle'>, <Joint.LEFT_KNEE: 'left_knee'>]
     """
 
-    def __init__(self, sensors: Mapping[Site, LiveSensor], calibration: Mapping[Joint, JointCalibration]) -> None:
+    def __init__(
+        self,
+        sensors: Mapping[Site, LiveSensor],
+        calibration: Mapping[Joint, JointCalibration],
+        hips: Mapping[Joint, HipIdentification] | None = None,
+    ) -> None:
         self._sensors = LiveSensors(sensors)
         known = [joint for joint in calibration if joint.proximal in sensors and joint.distal in sensors]
         lags_s = {joint: calibration[joint].lag_s for joint in known}
@@ -104,6 +116,7 @@ class LiveWalk:
             for site in sensors
             if site.segment is Segment.FOOT
         }
+        self._hips = LiveHips(sensors, hips or {})
         self._slips: tuple[Slip, ...] = ()
 
     def update(self, blocks: Mapping[Site, ImuBlock]) -> WalkingState:
@@ -120,6 +133,8 @@ class LiveWalk:
             both = turned.get(joint.proximal, NOTHING), turned.get(joint.distal, NOTHING)
             joints[joint] = LiveJoint(angle.update(*both), angle.is_provisional)
             has_new_window |= self._straps[joint].update(angle.paired)
+        for joint, told in self._hips.update(turned).items():
+            joints[joint] = LiveJoint(told.samples, told.is_provisional)
         if has_new_window:
             found = slips({joint: strap.turns for joint, strap in self._straps.items()})
             known = {slip.site for slip in self._slips}
@@ -133,6 +148,10 @@ class LiveWalk:
         """Go over to another calibration of a joint without a jump: an ankle's, once STRIDES_FOR_ANKLE are in."""
         self._angles[joint].recalibrate(calibration)
         self._straps[joint].calibration = calibration
+
+    def find_hips(self, hips: Mapping[Joint, HipIdentification]) -> None:
+        """Show hips that were not known before, and go over to other frames of those that were, without a jump."""
+        self._hips.find(hips)
 
     @property
     def late(self) -> dict[Site, int]:

@@ -121,13 +121,14 @@ class Arrangements:
 
 
 def joints_between(sites: tuple[Site, ...]) -> list[Joint]:
-    """The joints whose two sites are both among `sites`."""
-    return [joint for joint in LEG_JOINTS if joint.proximal in sites and joint.distal in sites]
+    """The joints whose two sites are both among `sites`: knees and ankles, then hips."""
+    every = (*LEG_JOINTS, *(joint for joint in Joint if joint.is_hip))
+    return [joint for joint in every if joint.proximal in sites and joint.distal in sites]
 
 
 @dataclass(frozen=True, slots=True)
 class Stature:
-    """How much higher a leg's first sensor sits than its last in standing, and how far it is along the joints, m."""
+    """How much higher a leg's thigh sensor sits than its last in standing, and how far it is along the joints, m."""
 
     height_m: float
     length_m: float
@@ -141,7 +142,7 @@ class Stature:
 def statures(arrangement: Arrangement, neighbours: Neighbours) -> dict[Side, Stature]:
     """The stature of every leg that has a joint."""
     found: dict[Side, Stature] = {}
-    for joint in joints_between(tuple(arrangement)):
+    for joint in (joint for joint in joints_between(tuple(arrangement)) if not joint.is_hip):
         ends = arrangement[joint.proximal], arrangement[joint.distal]
         above = found.get(joint.side, Stature(0.0, 0.0))
         height_m, length_m = float(neighbours.height_m[ends]), float(neighbours.length_m[ends])

@@ -17,13 +17,14 @@ MIN_UPRIGHTNESS = 0.5  # flatter, the patient lay, and the vertical does not tel
 LIFTED_RAD_S = 0.7  # the leg that bears the weight sways less
 MIN_LEAD_S = 0.5
 
-# What a number of sensors is worn as: whole legs first, then a knee.
+# What a number of sensors is worn as: whole legs first, then a knee; a seventh on the pelvis.
 USUAL_SITES = {
     2: (Site.LEFT_THIGH, Site.LEFT_SHANK),
     3: (Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT),
     4: (Site.LEFT_THIGH, Site.LEFT_SHANK, Site.RIGHT_THIGH, Site.RIGHT_SHANK),
     5: (Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT, Site.RIGHT_THIGH, Site.RIGHT_SHANK),
     6: LEG_SITES,
+    7: (*LEG_SITES, Site.PELVIS),
 }
 
 
@@ -68,11 +69,14 @@ class Chains:
         Cost of the best rival arrangement over the cost of this one; infinite where there is no rival.
     lead_s
         How much earlier the first leg was lifted than the second; None where one of them never was or is not there.
+    pelvis
+        The sensor that both thighs hang from; None where there are two to six.
     """
 
     legs: tuple[Chain, ...]
     margin: float
     lead_s: float | None
+    pelvis: str | None = None
 
     @property
     def is_certain(self) -> bool:
@@ -85,7 +89,7 @@ class Chains:
 
     def sites(self, first_moved: Side) -> dict[str, Site]:
         """Name every sensor's site, given the side of the leg that was lifted first."""
-        named = {}
+        named = {} if self.pelvis is None else {self.pelvis: Site.PELVIS}
         for side, leg in zip((first_moved, first_moved.other), self.legs, strict=False):
             for segment in LEG_SEGMENTS:
                 sensor = getattr(leg, segment.value)
@@ -95,9 +99,10 @@ class Chains:
 
 
 def find_chains(tracks: Tracks, standing: Mapping[str, FloatArray] | None = None) -> Chains | None:
-    """Arrange two to six sensors to legs; None where they were not heard together.
+    """Arrange two to seven sensors to legs; None where they were not heard together.
 
-    Two sensors are taken for a knee, three for a leg, four for two knees, five for a leg and a knee.
+    Two sensors are taken for a knee, three for a leg, four for two knees, five for a leg and a knee, seven for two legs
+    and a pelvis.
 
     Parameters
     ----------
@@ -115,7 +120,7 @@ def find_chains(tracks: Tracks, standing: Mapping[str, FloatArray] | None = None
     Raises
     ------
     ValueError
-        Fewer than two sensors, or more than six.
+        Fewer than two sensors, or more than seven.
     """
     return at_once(chains_in_steps(tracks, standing))
 
@@ -138,10 +143,10 @@ def chains_in_steps(
     Raises
     ------
     ValueError
-        Fewer than two sensors, or more than six.
+        Fewer than two sensors, or more than seven.
     """
     if len(tracks) not in USUAL_SITES:
-        raise ValueError(f"{len(tracks)} sensors, expected 2 to 6")
+        raise ValueError(f"{len(tracks)} sensors, expected 2 to 7")
     smoothed = yield from smoothed_in_steps(tracks)
     neighbours = (yield from neighbours_in_steps(smoothed, standing or {})) if smoothed else None
     if neighbours is None:
@@ -157,7 +162,8 @@ def chains_in_steps(
     legs.sort(key=lambda leg: np.inf if leg.moved_at_s is None else leg.moved_at_s)
     at_s = [leg.moved_at_s for leg in legs]
     lead_s = None if len(at_s) < 2 or at_s[0] is None or at_s[1] is None else at_s[1] - at_s[0]
-    return Chains(tuple(legs), arrangements.margin(best), lead_s)
+    pelvis = neighbours.names[arrangement[Site.PELVIS]] if Site.PELVIS in arrangement else None
+    return Chains(tuple(legs), arrangements.margin(best), lead_s, pelvis)
 
 
 def _total_height_m(arrangement: Arrangement, neighbours: Neighbours) -> float:

@@ -2,7 +2,7 @@
 
 from collections.abc import Generator, Mapping
 
-from core.body import LEG_SITES, Site
+from core.body import Site
 from core.findings import Finding, Severity
 from core.placement.arrangements import (
     Arrangement,
@@ -47,7 +47,7 @@ def _telling(tracks: SensorTracks) -> Recording | None:
 
 
 def _joined_sites(tracks: SensorTracks, recording: Recording) -> list[Site]:
-    worn = tuple(site for site in LEG_SITES if tracks.is_usable(recording, site))
+    worn = tuple(site for site in Site if tracks.is_usable(recording, site))
     return [site for site in worn if any(site in (j.proximal, j.distal) for j in joints_between(worn))]
 
 
@@ -124,7 +124,7 @@ def _groups(wanted: Arrangement, labelled: Arrangement) -> list[tuple[Site, ...]
     """The cycles in which the sensors change places."""
     site_of = {sensor: site for site, sensor in wanted.items()}
     groups: list[tuple[Site, ...]] = []
-    left = [site for site in LEG_SITES if site in wanted and wanted[site] != labelled[site]]
+    left = [site for site in Site if site in wanted and wanted[site] != labelled[site]]
     while left:
         group, site = [], left[0]
         while site in left:

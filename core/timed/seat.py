@@ -1,5 +1,9 @@
 """When the patient rises and sits, from the thighs' tilt against gravity: no pelvis sensor is needed.
 
+Nor is one used: on the walker the pelvis's pitch (over 10 deg/s until the thighs are under 15 deg) told the beginning
+of a rise a median 0.63 s early, as people lean before they rise, and of one in six not at all, where the thighs are
+0.006 s off; the end 0.08 s off against 0.012 s (`tests.validation.pelvis_courses`, 240 rises, rigid and soft tissue).
+
 The tilt is the angle between the vertical in the sensor's axes now and in standing, so that it needs no axis of the
 thigh. The offline filter runs over the recording both ways, which short and deep flexion asks for.
 """

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from core.body import Joint, Segment, Side, Site, ankle_of, knee_of
+from core.body import Joint, Segment, Side, Site, ankle_of, hip_of, knee_of
 from core.calibration.clinical_sign import MIN_MARGIN
 from core.gait.clocks import CARE_S, READ_S, ClockGate, LegClocks
 from core.gait.cycles import mean_cycle, range_of_cycles
@@ -43,6 +43,9 @@ class GateLimits:
     hip_disagreement: float = 0.2  # hips 0.07 to 0.08, of pelvis and shank 0.54
     hip_centre_m: tuple[float, float] = (0.05, 0.4)
     hips_apart_m: tuple[float, float] = (0.12, 0.28)
+    hip_heading_sd_deg: float = 6.0  # of abduction: beyond, it is a part of flexion
+    hip_deep_deg: float = 80.0  # deeper, the sensor on the sacrum shows half of the pelvis's tilt
+    pelvis_tilt_deg: float = 5.0  # over the stride: less is not told from an error of 0.4 to 1.4
     knee_least_deg: float = -20.0
     ankle_height_deg: tuple[float, float] = (-45.0, 40.0)
     halves_deg: float = 2.0
@@ -57,6 +60,7 @@ class GateLimits:
 
 
 LIMITS = GateLimits()
+HIP_NOT_FOUND = JointVerdicts(*[assess([GateReason("hip_found", Verdict.WITHHELD)])] * 3)
 OF_COURSE = ("halves", "halves_time", "drift")  # gates of what changes over a walk
 MIN_STRIDES_TO_SPLIT = 6  # halves of three strides, thirds of two: fewer say nothing of a walk's course
 
@@ -79,11 +83,14 @@ def verdicts_of(
         if joint in calibrated
     }
     joints |= {joint: _hip_verdicts(recording, joint, calibrated.get(knee_of(joint.side))) for joint in recording.hips}
+    joints |= {joint: HIP_NOT_FOUND for joint in _worn_hips(recording) if joint not in recording.hips}
     pelvis = assess(_pelvis(recording)) if recording.pelvis is not None else NOT_MEASURED
+    abduction = {joint.side: assess(_heading(hip.identification)) for joint, hip in recording.hips.items()}
     if recording.kind is not RecordingKind.WALKING:
-        return Verdicts(joints, pelvis=pelvis)
+        return Verdicts(joints, pelvis=pelvis, abduction=abduction)
     legs = {side: _leg_verdicts(recording, side, calibrated) for side in recording.gait}
-    return Verdicts(joints, legs, _between(recording), pelvis)
+    tilt = assess([*pelvis.reasons, *_tilt_range(recording)]) if recording.pelvis is not None else NOT_MEASURED
+    return Verdicts(joints, legs, _between(recording), pelvis, tilt, abduction)
 
 
 def calibration_verdicts(calibration: JointCalibration) -> JointVerdicts:
@@ -150,6 +157,19 @@ def _hip_verdicts(recording: RecordingAnalysis, joint: Joint, knee: JointCalibra
     return JointVerdicts(assess(shape), assess([*shape, *sign]), assess(sign))
 
 
+def _worn_hips(recording: RecordingAnalysis) -> list[Joint]:
+    """The hips that have a sensor on either side of them, whether they could be found or not."""
+    usable = recording.lost_percent
+    return [hip_of(side) for side in Side if Site.PELVIS in usable and hip_of(side).distal in usable]
+
+
+def _heading(found: HipIdentification) -> Iterator[GateReason]:
+    """Without a sure heading between pelvis and thigh there is flexion, against the vertical, but no abduction."""
+    sd_deg = _known(float(np.rad2deg(found.heading_sd_rad)))
+    if not found.is_3d:
+        yield GateReason("hip_heading", Verdict.WITHHELD, sd_deg, LIMITS.hip_heading_sd_deg, "deg")
+
+
 def _neighbours(found: HipIdentification) -> Iterator[GateReason]:
     """Whether pelvis and thigh moved as neighbours, at lengths that a body has, the legs not swapped."""
     if found.margin < LIMITS.pairing_margin:
@@ -174,6 +194,17 @@ def _pelvis(recording: RecordingAnalysis) -> Iterator[GateReason]:
     trusted = [hip for hip in recording.hips.values() if not [*_neighbours(hip.identification)]]
     if not trusted:
         yield GateReason("pairing", Verdict.WITHHELD, None, LIMITS.pairing_margin)
+    heard = [hip.angle_rad[np.isfinite(hip.angle_rad)] for hip in recording.hips.values()]
+    deepest_deg = max((float(np.rad2deg(angle.max())) for angle in heard if len(angle)), default=0.0)
+    if deepest_deg > LIMITS.hip_deep_deg:
+        yield GateReason("hip_deep", Verdict.CARE, deepest_deg, LIMITS.hip_deep_deg, "deg")
+
+
+def _tilt_range(recording: RecordingAnalysis) -> Iterator[GateReason]:
+    ranges = [gait.parameters["pelvis_tilt_range_rad"][gait.strides.is_used] for gait in recording.gait.values()]
+    known = np.rad2deg(np.concatenate([one[np.isfinite(one)] for one in ranges])) if ranges else np.empty(0)
+    if len(known) and float(known.mean()) <= LIMITS.pelvis_tilt_deg:
+        yield GateReason("pelvis_tilt", Verdict.WITHHELD, float(known.mean()), LIMITS.pelvis_tilt_deg, "deg")
 
 
 def _leg_verdicts(
@@ -366,6 +397,8 @@ def _between(recording: RecordingAnalysis) -> Assessment:
     if clocks.gate is ClockGate.STEP_SHARE:
         limit = 50.0 + np.copysign(clocks.limit, clocks.value - 50.0)
         return assess([GateReason("step_share", verdict, clocks.value, float(limit), "%")])
+    if clocks.gate is ClockGate.UNKNOWN and recording.leg_clock is not None:
+        return assess([GateReason("leg_clock", verdict)])
     known = _known(clocks.value)
     value_ms = None if known is None or clocks.gate is ClockGate.UNKNOWN else 1000.0 * known
     return assess([GateReason("clocks", verdict, value_ms, 1000.0 * clocks.limit, "ms")])

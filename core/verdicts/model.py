@@ -97,7 +97,9 @@ class LegVerdicts:
 class Verdicts:
     """Of one recording. `between` is what compares instants of both legs, which needs both clocks.
 
-    `pelvis` is of the pelvis against the vertical and against its own mean; its rotation needs no more.
+    `pelvis` is of the pelvis against the vertical and against its own mean; its rotation needs no more. `pelvis_tilt`
+    is of how far its tilt moves over the stride, `abduction` of each hip's, which needs the heading between pelvis and
+    thigh.
 
     A joint or leg that is missing was not measured.
     """
@@ -106,6 +108,8 @@ class Verdicts:
     legs: Mapping[Side, LegVerdicts] = field(default_factory=dict)
     between: Assessment = NOT_MEASURED
     pelvis: Assessment = NOT_MEASURED
+    pelvis_tilt: Assessment = NOT_MEASURED
+    abduction: Mapping[Side, Assessment] = field(default_factory=dict)
 
     @property
     def told_joints(self) -> tuple[Joint, ...]:
@@ -133,6 +137,12 @@ def pooled(many: Iterable[Verdicts]) -> Verdicts:
         legs={side: _worst_leg([one.legs[side] for one in some if side in one.legs]) for side in sides},
         between=together(one.between for one in some) if some else NOT_MEASURED,
         pelvis=together(one.pelvis for one in some) if some else NOT_MEASURED,
+        pelvis_tilt=together(one.pelvis_tilt for one in some) if some else NOT_MEASURED,
+        abduction={
+            side: together(one.abduction[side] for one in some if side in one.abduction)
+            for side in Side
+            if any(side in one.abduction for one in some)
+        },
     )
 
 

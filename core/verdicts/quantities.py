@@ -8,12 +8,21 @@ from enum import StrEnum
 import numpy as np
 
 from core.body import Joint, Side, ankle_of, hip_of, knee_of
-from core.gait.cycles import ANKLE_WINDOWS, EXCURSIONS, KNEE_WINDOWS, POINTS, MeanCycle, find_peak, mean_cycle
+from core.gait.cycles import (
+    ANKLE_WINDOWS,
+    EXCURSIONS,
+    KNEE_WINDOWS,
+    POINTS,
+    MeanCycle,
+    cycles_of,
+    find_peak,
+    mean_cycle,
+)
 from core.gait.spatiotemporal import BothFeet, MeanAndSd, both_feet, mean_and_sd
 from core.gait.strides import strides_of
 from core.results import RecordingAnalysis, SideGait
 from core.samples import FloatArray
-from core.verdicts.model import Assessment, Verdict, Verdicts, together
+from core.verdicts.model import NOT_MEASURED, Assessment, Verdict, Verdicts, together
 
 
 class QuantityClass(StrEnum):
@@ -77,9 +86,15 @@ OF_HIPS: Mapping[str, QuantityClass] = {  # what strides.csv has more where a se
     "pelvis_obliquity_range_deg": QuantityClass.SHAPE,
     "pelvis_drop_deg": QuantityClass.HEIGHT,
     "pelvis_rotation_range_deg": QuantityClass.SHAPE,
+    "hip_abduction_range_deg": QuantityClass.SHAPE,
+    "hip_abduction_peak_deg": QuantityClass.HEIGHT,
+    "hip_adduction_peak_deg": QuantityClass.HEIGHT,
+    "pelvis_tilt_range_deg": QuantityClass.SHAPE,
+    "pelvis_lean_deg": QuantityClass.HEIGHT,
 }
 CLASSES: Mapping[str, QuantityClass] = {**QUANTITIES, **FITTING, **OF_HIPS}
 SEGMENTS = ("shank", "thigh")
+ABDUCTION = ("hip_abduction", "hip_adduction")
 OF_BOTH = ("cadence_steps_min", "double_support_percent", "speed_m_s")
 WINDOWS = {f"{window.name}_deg": window for window in (*KNEE_WINDOWS, *ANKLE_WINDOWS)}
 
@@ -106,7 +121,12 @@ def assessment_of(verdicts: Verdicts, side: Side, name: str) -> Assessment:
     """What may be said of one column of strides.csv, peaks.csv or fitting.csv."""
     joint, wanted = joint_of(name, side), CLASSES[name]
     if name.startswith("pelvis"):  # over strides, which the foot's events bound
-        return together((verdicts.pelvis, verdicts.leg(side).timing))
+        of_pelvis = verdicts.pelvis_tilt if name == "pelvis_tilt_range_deg" else verdicts.pelvis
+        return together((of_pelvis, verdicts.leg(side).timing))
+    if name.startswith(ABDUCTION):
+        found = verdicts.joint(hip_of(side))
+        of_hip = found.shape if wanted is QuantityClass.SHAPE else together((found.height, found.sign))
+        return together((of_hip, verdicts.abduction.get(side, NOT_MEASURED)))
     if joint is not None:
         found = verdicts.joint(joint)
         if name.startswith(SEGMENTS):  # read at events of the foot
@@ -188,6 +208,34 @@ def peak_percent(recording: RecordingAnalysis, side: Side, column: str) -> Float
     if not together((found.shape, found.sign)).is_told:
         return np.full(len(gait.strides), np.nan)
     return find_peak(gait.cycles[joint], WINDOWS[column]).percent
+
+
+def hip_peaks_percent(recording: RecordingAnalysis, side: Side) -> tuple[FloatArray, FloatArray]:
+    """When in each stride (k,) the hip is most flexed, and when most extended; NaN where not known or withheld.
+
+    Returns
+    -------
+    (k,) and (k,)
+        Percent of the stride.
+    """
+    gait, found = recording.gait[side], recording.verdicts.joint(hip_of(side))
+    nothing = np.full(len(gait.strides), np.nan)
+    cycles = gait.cycles.get(hip_of(side))
+    if cycles is None or not len(cycles) or not together((found.shape, found.sign)).is_told:
+        return nothing, nothing
+    is_known = np.asarray(np.isfinite(cycles).all(axis=1), dtype=bool)
+    whole = np.where(is_known[:, None], cycles, 0.0)
+    most, least = np.where(is_known, whole.argmax(axis=1), np.nan), np.where(is_known, whole.argmin(axis=1), np.nan)
+    return most, least
+
+
+def abduction_curve(recording: RecordingAnalysis, side: Side) -> MeanCycle:
+    """A hip's mean abduction over the strides used, radians from standing; NaN where it is withheld."""
+    gait, hip = recording.gait[side], recording.hips.get(hip_of(side))
+    if hip is None or not assessment_of(recording.verdicts, side, "hip_abduction_peak_deg").is_told:
+        return mean_cycle(np.empty((0, POINTS)))
+    cycles = cycles_of(recording.time_s, hip.abduction_rad, gait.strides.start_s, gait.strides.end_s)
+    return mean_cycle(cycles[gait.strides.is_used])
 
 
 def used_cycles(recording: RecordingAnalysis, joint: Joint) -> FloatArray:

@@ -20,7 +20,7 @@ from devices.emulators.xsens_mti import MtiVoice
 from devices.host_clock import host_time_ns
 from devices.shimmer3 import EMULATED as SHIMMER3
 from devices.shimmer3 import calibrating
-from devices.walker import FreeMotion, SimulatedSession, Standing, Walk, WalkerSettings, simulate
+from devices.walker import FreeMotion, Motion, SimulatedSession, Standing, Walk, WalkerSettings, simulate
 from devices.witmotion import EMULATED as WITMOTION
 from devices.ximu3 import EMULATED as XIMU3
 from devices.ximu3 import G
@@ -41,6 +41,22 @@ SESSION = WalkerSettings(
         *(Walk(name=f"walk {number}", strides=14, standing_before_s=2.0) for number in (1, 2, 3)),
     ),
 )
+# a seventh sensor is worn on the pelvis: lunges, and walks there and back, show the hips
+SESSION_WITH_PELVIS = replace(
+    SESSION,
+    sites=(*LEG_SITES, Site.PELVIS),
+    recordings=(
+        Standing(duration_s=10.0),
+        FreeMotion(name="free motion 1", duration_s=6.8, motion=Motion.LUNGES),
+        *(FreeMotion(name=f"free motion {number}", duration_s=6.0) for number in (2, 3)),
+        *(Walk(name=f"walk {number}", strides=20, turn_rad=np.pi, standing_before_s=2.0) for number in (1, 2, 3)),
+    ),
+)
+
+
+def session_for(sensors: int) -> WalkerSettings:
+    """What a patient who wears so many sensors does."""
+    return SESSION if sensors <= len(LEG_SITES) else SESSION_WITH_PELVIS
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,6 +76,7 @@ class EmulatedPatient:
 
     def __init__(self, settings: WalkerSettings = SESSION, now_ns: Callable[[], int] = host_time_ns) -> None:
         self._errors, self._now_ns = settings.errors, now_ns
+        self.sites = tuple(site for site in Site if site in settings.sites)
         quiet = replace(settings.errors, gyro_noise_rad_s=0.0, acc_noise_m_s2=0.0)
         self.simulated: SimulatedSession = simulate(replace(settings, errors=quiet))
         recordings = self.simulated.session.recordings
@@ -135,7 +152,7 @@ class EmulatedSensor:
     def __init__(
         self, patient: EmulatedPatient, kind: str, number: int, rate_hz: int = 100, *, says_so: bool = True
     ) -> None:
-        self.site = LEG_SITES[number % len(LEG_SITES)]
+        self.site = patient.sites[number % len(patient.sites)]
         self.sent: list[FloatArray] = []
         self.sent_ns: list[float] = []
         self._patient, self._kind, self._rate_hz = patient, kind, rate_hz

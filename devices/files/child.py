@@ -17,17 +17,18 @@ if TYPE_CHECKING:
 
 TOML, SITE, TRIAL, GATHER, REFERENCE = "toml", "site", "trial", "gather", "reference"
 REFERENCE_S, REFERENCE_BYTES_A_SECOND = 10.0, 1_000_000.0  # of processor time; ten times what a text takes
+WORD = "read-foreign-files"  # what a frozen program that was started as this process is told
 READ, REFUSED, MEMORY, UNFORESEEN = "read", "refused", "memory", "unforeseen"
 
 
 def main() -> None:
-    """Read what is asked for on the standard input until nobody asks any more; the argument is the memory in bytes."""
+    """Read what is asked for on the standard input until nobody asks any more; the last argument: memory in bytes."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl C reaches all of a terminal; who asks ends this process
     asking, answering = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
     nowhere = os.open(os.devnull, os.O_RDWR)
     for stream in (0, 1, 2):  # what a library says before it aborts is no line for the user
         os.dup2(nowhere, stream)
-    limit_this_process(int(sys.argv[1]))
+    limit_this_process(int(sys.argv[-1]))
     from devices.files.answers import receive, send
 
     while True:

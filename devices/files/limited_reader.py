@@ -172,12 +172,18 @@ def start(memory_bytes: int) -> Process:
     """Start the limited process. It knows this program's modules, and takes none from the folder it is started in."""
     paths = os.pathsep.join(path or str(Path.cwd()) for path in sys.path)
     return subprocess.Popen(
-        [sys.executable, "-P", "-m", child.__name__, str(memory_bytes)],
+        [*_this_program(), str(memory_bytes)],
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         env={**os.environ, "PYTHONPATH": paths, "OPENBLAS_NUM_THREADS": "1", "PYTHONDONTWRITEBYTECODE": "1"},
         creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
     )
+
+
+def _this_program() -> list[str]:
+    if getattr(sys, "frozen", False):  # it has no Python beside it: `app.__main__`
+        return [sys.executable, child.WORD]
+    return [sys.executable, "-P", "-m", child.__name__]
 
 
 def end(process: Process) -> None:

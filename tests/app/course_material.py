@@ -8,6 +8,8 @@ from app.reports.course import Course, course_of
 from core.body import Joint, Side
 from core.results import Analysis, Calibration, Method, RecordingAnalysis, SideGait
 from core.samples import Recording
+from core.timed.protocols import TimedProtocol
+from tests.core.timed.built_tests import built_test
 from tests.core.verdicts.built_walk import Told, calibrations, each, judged_walk, leg, walk
 
 STRIDE_S = 1.1
@@ -31,6 +33,21 @@ def walked(
     right = leg(Side.RIGHT, strides, length_m=length_m, time_s=STRIDE_S)
     gait = walk(left=_with_knee(left, knee_deg), right=_with_knee(right, 60.0))
     return judged_walk(replace(gait, name=name), told)
+
+
+def timed(
+    protocol: TimedProtocol,
+    *,
+    time_s: float = 10.0,
+    distance_m: float = 10.0,
+    name: str = "walk 9",
+    is_end_by_key: bool = False,
+    told: Told | None = None,
+) -> RecordingAnalysis:
+    """A walk that is a timed test; from a chair alone it has no stride."""
+    found = built_test(protocol, time_s=time_s, distance_m=distance_m, is_end_by_key=is_end_by_key)
+    made = replace(walked(name, told=told), timed=found)
+    return replace(made, gait={}) if protocol is TimedProtocol.SIT_TO_STAND else made
 
 
 def course(

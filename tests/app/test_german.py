@@ -8,16 +8,21 @@ from functools import cache
 from pathlib import Path
 from string import Formatter
 
+import numpy as np
 import pytest
 from babel.messages.pofile import read_po
 
+from app.reports.patient_report.numbers_in_words import fixed, signed
 from app.wording import (
     SENTENCES,
     capitalised,
+    figure_text,
     languages,
     name_of,
     sentence,
+    spoken_in,
     spoken_language,
+    tr,
     tr_n,
     use_language,
     within_sentence,
@@ -50,6 +55,11 @@ ALIKE = {
 UNITS = {"mm", "cm", "kg", "Hz", "SD", "min"}
 ENGLISH = re.compile(r"\b(the|of|is|are|and|not|with|from|that|it|to|by|for|has|which|this|your|left|right)\b")
 NAMED_ALIKE = {"rate of turn", "Timed-up-and-go"}  # a setting of other programs; a test, in German clinics too
+# no word of this kind is said of a person or a change; of two answers to the same data it may be
+JUDGES = re.compile(r"\b(ab)?normal|\bsignificant|\bimprov|\bdeteriorat|\bpatholog|\bmostly\b", re.IGNORECASE)
+URTEILT = re.compile(r"\b(ab)?normal|\bsignifikant|verbesser|verschlechter|patholog|\bauffällig", re.IGNORECASE)
+COMPARES = re.compile(r"\b(better|worse)\b|\b(besser|schlechter)", re.IGNORECASE)
+OF_DATA = re.compile(r"\bfits?\b|^As good as it gets$", re.IGNORECASE)
 SHORTENED = {"Jan", "Feb", "Apr", "Aug", "Sep", "Oct", "Nov", "Dec"}  # with a point behind them
 
 
@@ -113,6 +123,14 @@ def test_one_and_many_keep_their_two_forms() -> None:
 
 def test_its_figures_are_those_of_the_english_sentence() -> None:
     assert [pair for pair in pairs() if fields(pair.english) != fields(pair.german)] == []
+
+
+def test_no_sentence_of_the_catalogue_judges() -> None:
+    judging = [pair for pair in pairs() if JUDGES.search(pair.english) or URTEILT.search(pair.german)]
+    assert judging == []
+    comparing = [pair for pair in pairs() if COMPARES.search(pair.english) or COMPARES.search(pair.german)]
+    assert len(comparing) > 5
+    assert [pair for pair in comparing if not OF_DATA.search(pair.english)] == []
 
 
 def test_its_outer_spaces_and_last_marks_are_kept() -> None:
@@ -182,3 +200,16 @@ def test_the_catalogue_is_compiled_anew(monkeypatch: pytest.MonkeyPatch) -> None
     monkeypatch.syspath_prepend(ROOT / "packaging")
     catalogue = importlib.import_module("catalogue")
     assert GERMAN.with_suffix(".mo").read_bytes() == catalogue.compiled(GERMAN), "run packaging/catalogue.py"
+
+
+@pytest.mark.usefixtures("german")
+def test_a_fraction_has_a_comma_and_what_only_looks_like_one_its_point() -> None:
+    said = tr("Speed {first} and {second} m/s.")
+    assert said.format(first=1.05, second="1.2.3") == "Geschwindigkeit 1,05 und 1.2.3 m/s."
+    assert said.format_map({"first": np.float64(0.5), "second": 2}) == "Geschwindigkeit 0,5 und 2 m/s."
+    assert (figure_text(-1.25, "+.1f"), figure_text(1.25, ".2f", "en")) == ("-1,2", "1.25")
+    assert (fixed(-0.04, 1), signed(0.0, 1), signed(2.5, 1)) == ("0,0", "0,0", "+2,5")
+    use_language("en")
+    assert (figure_text(1.25, ".2f"), figure_text(1.25, ".2f", "de")) == ("1.25", "1,25")
+    assert tr("Speed {first} and {second} m/s.").format(first=1.05, second=1.1) == "Speed 1.05 and 1.1 m/s."
+    assert spoken_in("de")("{value} degrees").format(value=1.5) == "1,5 Grad"

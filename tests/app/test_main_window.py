@@ -200,8 +200,9 @@ def test_a_recovery_key_that_was_never_typed_back_is_asked_for_until_it_is(
 
 
 def test_who_asks_for_the_demonstration_while_a_library_opens_gets_it_and_no_question_of_that_library(
-    qtbot: QtBot, open_window: Open, folder: Path
+    qtbot: QtBot, open_window: Open, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setattr("app.demonstration.patients.simulated_patients", lambda _now: ())  # nobody waits for visits
     slots = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64))
     slots.renew_recovery_key(slots.open("hk", PASSPHRASE))  # which nobody has typed back
     window = open_window(folder)
@@ -503,6 +504,10 @@ def is_cut(widget: QWidget) -> bool:
         need = widget.minimumSizeHint()
         return need.width() > widget.width() or need.height() > widget.height()
     return False
+
+
+def test_the_window_says_what_it_is_for(open_window: Open) -> None:
+    assert open_window(None).windowTitle() == "Gaitwright – Research use. Not a medical device."
 
 
 def test_the_language_is_kept_and_only_another_one_is_told(qtbot: QtBot, settings: Settings) -> None:

@@ -118,6 +118,7 @@ def _session(
     yield lambda: window.home is not None and window.home.isVisible()
     yield _after(2 * PAUSE_S)
     yield lambda: window.preparing.is_idle  # who types a passphrase takes longer
+    yield lambda: window.home is not None and not window.home.filling.is_busy  # nor what fills the demonstration
     from app.wizard.free_motion.step import FreeMotionStep
     from app.wizard.results.step import ResultsStep
     from app.wizard.sensors.page import Way

@@ -3,9 +3,9 @@
     python -m tests.benchmarks.placement --seeds 200 [--only rigid soft ...]
 
 Every sensor is mounted anyhow, biased (1.5 deg/s, 0.1 m/s2) and up to 30 ms late. One line per condition for the
-chains of six sensors, of one leg's three and of two knees' four: wrong chains, wrong ones called certain, right ones
-called uncertain, and the margin. One line per condition for the labels: doubted though right, and swapped on purpose
-but not named, or not rightly.
+chains of six sensors, of one leg's three and of two knees' four, or of seven with one on the pelvis: wrong chains,
+wrong ones called certain, right ones called uncertain, and the margin. One line per condition for the labels: doubted
+though right, and swapped on purpose but not named, or not rightly.
 """
 
 import argparse
@@ -53,6 +53,23 @@ CONDITIONS = {
     "soft walk, no standing": _settings(Walk(), Tissue.SOFT, has_standing=False),
     "soft walk, prosthesis": replace(_settings(Walk(), Tissue.SOFT), prosthetic_side=Side.LEFT),
 }
+SEVEN = (*LEG_SITES, Site.PELVIS)
+TURNING = Walk(strides=16, turn_rad=np.pi)
+CONDITIONS |= {
+    f"{name}, pelvis": replace(settings, sites=SEVEN)
+    for name, settings in {
+        "rigid": CONDITIONS["rigid"],
+        "soft": CONDITIONS["soft"],
+        "soft, 3 s": CONDITIONS["soft, 3 s"],
+        "real": CONDITIONS["real"],
+        "soft lunges": _settings(FreeMotion(motion=Motion.LUNGES), Tissue.SOFT),
+        "real lunges": _settings(FreeMotion(motion=Motion.LUNGES), Tissue.REAL),
+        "soft walk": CONDITIONS["soft walk"],
+        "soft walk, turn": _settings(TURNING, Tissue.SOFT),
+        "real walk": CONDITIONS["real walk"],
+        "real walk, turn": _settings(TURNING, Tissue.REAL),
+    }.items()
+}
 
 WORN: dict[str, Callable[[Site], bool]] = {
     "six": lambda site: True,
@@ -67,12 +84,18 @@ SWAPS = (
     (Site.LEFT_SHANK, Site.RIGHT_SHANK),
     (Site.LEFT_FOOT, Site.RIGHT_FOOT),
 )
+SWAPS_WITH_PELVIS = (
+    (Site.PELVIS, Site.LEFT_THIGH),
+    (Site.PELVIS, Site.RIGHT_SHANK),
+    (Site.PELVIS, Site.LEFT_FOOT),
+    (Site.PELVIS, Site.RIGHT_THIGH),
+)
 
 
 def session_of(condition: str, seed: int) -> Session:
     """One patient of a condition, every clock late by a chance of its own."""
     rng = np.random.default_rng([SEED_OF_LATENESS, seed])
-    late_s = {site: float(rng.uniform(-MAX_LATE_S, MAX_LATE_S)) for site in LEG_SITES}
+    late_s = {site: float(rng.uniform(-MAX_LATE_S, MAX_LATE_S)) for site in Site}
     return simulate(replace(CONDITIONS[condition], seed=seed, clock_late_s=late_s)).session
 
 
@@ -137,10 +160,12 @@ def report(condition: str, seeds: range) -> Iterator[str]:
     for seed in seeds:
         session = session_of(condition, seed)
         tracks, standing = unlabelled(tracks_of(session))
-        for name, is_worn in WORN.items():
+        has_pelvis = Site.PELVIS in tracks
+        for name, is_worn in {"seven": WORN["six"]}.items() if has_pelvis else WORN.items():
             found[name].append(arranged({k: v for k, v in tracks.items() if is_worn(Site(k))}, standing))
         false_alarms += bool(doubted(session))
-        swap = SWAPS[seed % len(SWAPS)]
+        swaps = SWAPS_WITH_PELVIS if has_pelvis else SWAPS
+        swap = swaps[seed % len(swaps)]
         named = doubted(swapped(session, *swap))
         unnamed += not named
         misnamed += bool(named) and named != {frozenset(map(str, swap))}

@@ -20,14 +20,19 @@ from core.norms import (
 
 BANDS = Path(__file__).parents[2] / "resources" / "reference_bands"
 CURVES = (BANDS / "fukuchi2018_young_treadmill_comfortable_knee_ankle.csv").read_text(encoding="utf-8")
+HIP = (BANDS / "fukuchi2018_young_treadmill_comfortable_hip.csv").read_text(encoding="utf-8")
 CLASSES = (BANDS / "fukuchi2018_spatiotemporal_overground_by_froude_class.csv").read_text(encoding="utf-8")
-GROUP, GROUPS = read_curves(CURVES), read_time_distance(CLASSES)
+GROUP, GROUPS = read_curves(CURVES, HIP), read_time_distance(CLASSES)
 
 
 def test_the_curves_are_those_of_the_source() -> None:
     assert GROUP.knee_mean_deg.max() == pytest.approx(62.26, abs=0.01)
     assert int(np.argmax(GROUP.knee_mean_deg)) == 74
     assert GROUP.ankle_mean_deg.min() == pytest.approx(-13.58, abs=0.01)
+    assert GROUP.hip_mean_deg.min() == pytest.approx(-8.08, abs=0.01)
+    assert int(np.argmin(GROUP.hip_mean_deg)) == 54
+    assert np.ptp(GROUP.hip_mean_deg) == pytest.approx(40.42, abs=0.01)
+    assert (GROUP.hip_sd_deg > 6.0).all()
     assert GROUP.n == 24
     assert "CC BY 4.0" in GROUP.source
     assert "as derived by" in GROUP.source
@@ -37,8 +42,10 @@ def test_the_curves_are_those_of_the_source() -> None:
 
 
 def test_half_a_table_is_refused() -> None:
-    with pytest.raises(ValueError, match="expected 101"):
-        read_curves("\n".join(CURVES.splitlines()[:50]))
+    half = "\n".join(CURVES.splitlines()[:50])
+    for texts in ((half, HIP), (CURVES, "\n".join(HIP.splitlines()[:50]))):
+        with pytest.raises(ValueError, match="expected 101"):
+            read_curves(*texts)
 
 
 def test_the_classes_of_speed_are_those_of_the_source() -> None:

@@ -1,4 +1,4 @@
-"""A strap that slips is named, with its time; walking, turning and loose tissue are no slip."""
+"""A strap that slips is named, with its time, in whole walks; walking, turning and loose tissue are no slip."""
 
 from dataclasses import replace
 
@@ -7,14 +7,25 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from core.analysis import analyse
-from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site
+from core.body import LEG_JOINTS, LEG_SITES, Side, Site
 from core.gait.strides import Reason
 from core.measure import pairs_of
 from core.results import Method
 from core.samples import ImuBlock, RateKind, Session
 from core.sensors import SensorTracks
-from core.strap import Slip, Turns, slips, turns_over
-from devices.walker import FreeMotion, SimulatedSession, Standing, Tissue, Walk, WalkerSettings, simulate
+from core.strap import Slip, slips, turns_over
+from core.timed.protocols import PlannedTest, TimedProtocol
+from devices.walker import (
+    CourseKind,
+    FreeMotion,
+    SimulatedSession,
+    Standing,
+    TimedCourse,
+    Tissue,
+    Walk,
+    WalkerSettings,
+    simulate,
+)
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
@@ -75,18 +86,6 @@ def test_walking_with_a_turn_is_no_slip() -> None:
 
 def test_a_slip_of_three_degrees_is_not_told(soft: SimulatedSession) -> None:
     assert found_in(slipped(soft.session, Site.LEFT_SHANK, np.deg2rad(3.0)), soft) == []
-
-
-def test_too_little_walking_tells_nothing() -> None:
-    turns = Turns(np.array([0.0]), np.deg2rad([40.0]))
-    assert slips({Joint.LEFT_KNEE: turns}) == []
-
-
-def test_two_windows_far_from_the_calibration_are_a_slip_before_the_walk() -> None:
-    turns = Turns(np.array([0.0, 5.0, 10.0]), np.deg2rad([20.0, 21.0, 19.0]))
-    (slip,) = slips({Joint.RIGHT_KNEE: turns})
-    assert slip.from_s == 0.0
-    assert slip.site is Site.RIGHT_THIGH
 
 
 def test_axes_that_were_never_right_are_no_slip() -> None:
@@ -179,3 +178,23 @@ def test_walking_again_slower_is_no_slip_and_a_slip_between_the_walks_is_told(se
 def part_of(block: ImuBlock, from_s: float, to_s: float) -> ImuBlock:
     keep = (block.time_s >= from_s) & (block.time_s < to_s)
     return replace(block, time_s=block.time_s[keep], gyr_rad_s=block.gyr_rad_s[keep], acc_m_s2=block.acc_m_s2[keep])
+
+
+def test_rising_from_a_chair_is_no_slip_and_what_slips_meanwhile_shows_in_the_next_walk() -> None:
+    rises = TimedCourse(CourseKind.SIT_TO_STAND, seed=1, rise_s=1.4, name="rises")
+    recordings = (Standing(), FreeMotion(), Walk(WALK, strides=12), rises, Walk("walk 2", strides=12))
+    session = simulate(WalkerSettings(seed=5, recordings=recordings, tissue=Tissue.SOFT)).session
+
+    def told(test: PlannedTest | None, session: Session) -> list[str]:
+        taken = tuple(replace(one, test=test) if one.name == "rises" else one for one in session.recordings)
+        findings = analyse(replace(session, recordings=taken)).findings
+        return [finding.where.split(",")[0] for finding in findings if finding.key == "strap_slipped"]
+
+    rising = PlannedTest(TimedProtocol.SIT_TO_STAND)
+    assert "rises" in told(None, session)
+    assert told(rising, session) == []
+    *before, last = session.recordings
+    up = before[0].imu[Site.RIGHT_SHANK].acc_m_s2.mean(axis=0)
+    turn = Rotation.from_rotvec(np.deg2rad(20.0) * up / np.linalg.norm(up)).as_matrix()
+    imu = {**last.imu, Site.RIGHT_SHANK: turned(last.imu[Site.RIGHT_SHANK], turn, -np.inf)}
+    assert told(rising, replace(session, recordings=(*before, replace(last, imu=imu)))) == ["walk 2"]

@@ -10,10 +10,13 @@ from core.analysis import analyse
 from core.body import Joint, Side, Site
 from core.findings import Finding, Severity
 from core.gait.strides import Reason, Strides, strides_of
+from core.hip.results import PelvisAngles, PelvisTurn
 from core.results import RecordingAnalysis, SideGait
 from core.samples import RecordingKind
+from core.timed.found import TimedTest, Turn
+from core.timed.protocols import TimedProtocol
 from core.verdicts.model import Assessment, Verdict
-from core.walk_findings import about_prosthesis, about_walk
+from core.walk_findings import about_prosthesis, about_turns, about_walk
 from devices.walker import Standing, Walk, WalkerSettings, simulate
 
 FEET: Mapping[Side, Site] = {Side.LEFT: Site.LEFT_FOOT, Side.RIGHT: Site.RIGHT_FOOT}
@@ -115,3 +118,57 @@ def test_the_late_toe_off_of_a_prosthetic_foot_that_walked_is_told(typed: str) -
     told = [one.where for one in found.findings if one.key == "prosthetic_toe_off"]
     assert told == [f"{side}_foot" for side in worn]
     assert about_prosthesis([replace(found.recordings[0], gait={})]) == []
+
+
+def timed_walk(walk: RecordingAnalysis, feet: tuple[Turn, ...], pelvis: tuple[PelvisTurn, ...]) -> RecordingAnalysis:
+    unknown = np.full(len(walk.time_s), np.nan)
+    test = TimedTest(
+        protocol=TimedProtocol.UP_AND_GO,
+        start_s=1.0,
+        end_s=20.0,
+        is_start_by_key=False,
+        is_end_by_key=False,
+        distance_m=6.0,
+        sensor_distance_m=6.0,
+        cadence_steps_min=100.0,
+        turns=feet,
+        pauses_s=(),
+        laps=(),
+        thirds=(),
+        rises=(),
+        silences=(),
+        missing=(),
+    )
+    return replace(walk, timed=test, turns=pelvis, pelvis=PelvisAngles(unknown, unknown, unknown))
+
+
+ABOUT = Turn(8.0, 9.5, np.pi)
+
+
+@pytest.mark.parametrize(
+    ("feet", "pelvis", "told"),
+    [
+        ((ABOUT,), (PelvisTurn(7.9, 9.7, 3.0),), None),
+        ((ABOUT,), (PelvisTurn(10.0, 11.0, 3.0),), None),  # feet turn a little earlier or later
+        ((ABOUT,), (PelvisTurn(7.9, 9.7, 3.0), PelvisTurn(14.0, 15.0, 1.0)), None),  # less than a quarter
+        ((ABOUT,), (PelvisTurn(7.9, 9.7, 3.0), PelvisTurn(24.0, 25.0, 3.0)), None),  # after the test
+        ((), (), None),
+        ((ABOUT,), (), (1, 0)),
+        ((), (PelvisTurn(7.9, 9.7, 3.0),), (0, 1)),
+        ((ABOUT,), (PelvisTurn(7.9, 9.7, -3.0),), (1, 1)),
+        ((ABOUT,), (PelvisTurn(7.9, 9.7, 3.0), PelvisTurn(14.0, 15.5, -3.0)), (1, 2)),
+    ],
+)
+def test_turns_of_feet_and_pelvis_that_contradict_are_told_once(
+    walk: RecordingAnalysis, feet: tuple[Turn, ...], pelvis: tuple[PelvisTurn, ...], told: tuple[int, int] | None
+) -> None:
+    found = about_turns(timed_walk(walk, feet, pelvis))
+    assert [(one.key, one.numbers["feet"], one.numbers["pelvis"]) for one in found] == (
+        [] if told is None else [("turns_contradict", *told)]
+    )
+
+
+def test_without_a_pelvis_or_a_test_no_turn_is_doubted(walk: RecordingAnalysis) -> None:
+    timed = timed_walk(walk, (ABOUT,), ())
+    assert about_turns(replace(timed, pelvis=None)) == []
+    assert about_turns(replace(timed, timed=None)) == []

@@ -8,7 +8,8 @@ import pytest
 from core.alignment import NetChange, ProsthesisPart
 from core.body import Side
 from core.samples import ImuBlock, RecordingKind
-from devices.prosthesis_user import BUILT, DEG_PER_TURN, ProsthesisUser, setting_of
+from devices.fitted_prosthesis import BUILT, DEG_PER_TURN, setting_of
+from devices.prosthesis_user import ProsthesisUser
 from devices.replay import DEMONSTRATION_NAMES
 from devices.walker import FreeMotion, Standing, WalkerSettings
 

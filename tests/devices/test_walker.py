@@ -12,17 +12,21 @@ from core.body import LEG_JOINTS, LEG_SITES, Joint, Segment, Side, Site
 from core.samples import BoolArray, FloatArray, ImuBlock, RecordingKind
 from devices.walker import (
     NO_ERRORS,
+    CourseKind,
     FreeMotion,
+    GaitChange,
     JointTruth,
     Motion,
     SimulatedSession,
     Standing,
+    TimedCourse,
     Tissue,
     Walk,
     WalkerSettings,
     simulate,
     truth_table,
 )
+from devices.walker_body import make_leg
 
 ComplexArray = NDArray[np.complex128]
 CLEAN = WalkerSettings(seed=2, errors=NO_ERRORS)
@@ -311,6 +315,40 @@ def test_a_sensor_rides_on_tissue_alike_in_every_walk_and_otherwise_in_free_moti
         turned[name] = along / np.linalg.norm(along)
     assert turned["walk 1"] @ turned["walk 2"] > np.cos(np.deg2rad(5.0))
     assert turned["walk 1"] @ turned["free"] < np.cos(np.deg2rad(20.0))
+
+
+def test_one_person_comes_twice_with_other_straps() -> None:
+    visits = [simulate(replace(CLEAN, seed=seed, body_seed=4)).truth.recordings["walk 1"] for seed in (7, 8)]
+    alone = simulate(replace(CLEAN, seed=7)).truth.recordings["walk 1"]
+    shank_m = [make_leg(replace(CLEAN, seed=seed, body_seed=4), Side.LEFT).shank_m for seed in (7, 8)]
+    assert shank_m[0] == shank_m[1] != make_leg(replace(CLEAN, seed=7), Side.LEFT).shank_m
+    axes = [visit.joints[Joint.LEFT_KNEE].axis_distal for visit in visits]
+    assert np.abs(axes[0] - axes[1]).max() > 0.05
+    standing = [visit.joints[Joint.LEFT_KNEE].standing_rad for visit in (*visits, alone)]
+    assert standing[0] == pytest.approx(standing[1], abs=1e-3)
+    assert abs(standing[0] - standing[2]) > np.deg2rad(0.3)
+
+
+def test_one_sensor_may_lose_samples_that_the_others_keep() -> None:
+    imu = simulate(replace(CLEAN, site_loss_fractions={Site.LEFT_FOOT: 0.1})).session.recordings[-1].imu
+    assert len(imu[Site.LEFT_FOOT]) < 0.97 * len(imu[Site.RIGHT_FOOT])
+    assert len(imu[Site.LEFT_SHANK]) == len(imu[Site.RIGHT_FOOT])
+
+
+def test_a_course_within_a_session_is_worn_as_its_walks_and_changed_as_they_are() -> None:
+    less, left = GaitChange(knee_deg=-20.0), Side.LEFT
+    kind = CourseKind.TEN_METRES
+    course = TimedCourse(kind, seed=3, speed_m_s=1.19, name="walk 2", change=less, changed_side=left)
+    recordings = (Standing(), Walk("walk 1", strides=4, change=less, changed_side=left), course)
+    simulated = simulate(replace(CLEAN, tissue=Tissue.RIGID, recordings=recordings))
+    told = simulated.truth.recordings
+    assert [r.kind for r in simulated.session.recordings] == [RecordingKind.STANDING, *2 * [RecordingKind.WALKING]]
+    for joint in (Joint.LEFT_KNEE, Joint.RIGHT_KNEE):
+        walk, timed = (told[name].joints[joint] for name in ("walk 1", "walk 2"))
+        np.testing.assert_array_equal(walk.axis_proximal, timed.axis_proximal)
+        assert np.rad2deg(walk.angle_rad.max()) == pytest.approx(np.rad2deg(timed.angle_rad.max()), abs=6.0)
+    peaks = [np.rad2deg(told["walk 2"].joints[Joint(f"{side}_knee")].angle_rad.max()) for side in Side]
+    assert peaks[1] - peaks[0] == pytest.approx(20.0, abs=6.0)
 
 
 def test_a_session_says_that_it_is_simulated_and_holds_what_was_asked() -> None:

@@ -7,8 +7,8 @@ import pytest
 
 from core.body import Side, Site
 from core.samples import FloatArray
-from devices.walker_body import NO_ERRORS
-from devices.walker_courses import CourseKind, SimulatedCourse, TimedCourse, draw_course, simulate_course
+from devices.walker_body import NO_ERRORS, CourseKind, TimedCourse
+from devices.walker_courses import SimulatedCourse, draw_course, simulate_course
 
 UP_AND_GO = TimedCourse(CourseKind.UP_AND_GO, seed=3, errors=NO_ERRORS, hesitates=True)
 
@@ -126,3 +126,23 @@ def test_a_rise_is_timed_between_a_tenth_and_nine_tenths_of_the_way(up_and_go: S
     # a quintic step passes 0.1 and 0.9 at 0.247 and 0.753 of its time
     assert rises_s == pytest.approx(0.506 * UP_AND_GO.rise_s, abs=0.05)
     assert Side.LEFT in {site.side for site in UP_AND_GO.sites}
+
+
+def test_a_pelvis_turns_with_the_way_and_leans_before_the_seat_is_left() -> None:
+    made = simulate_course(replace(UP_AND_GO, sites=(Site.PELVIS,), hesitates=False))
+    block = made.session.recordings[1].imu[Site.PELVIS]
+    assert np.abs(block.acc_m_s2).max() < 80.0
+    up = made.session.recordings[0].imu[Site.PELVIS].acc_m_s2.mean(axis=0)
+    up /= np.linalg.norm(up)
+    turned = float(np.sum(block.gyr_rad_s @ up) * 0.01)
+    assert turned == pytest.approx(sum(turn.angle_rad for turn in made.truth.turns), abs=0.2)
+    (left_s,) = made.truth.left_seat_s
+    tilt = np.arccos(np.clip(block.acc_m_s2 @ up / np.linalg.norm(block.acc_m_s2, axis=1), -1.0, 1.0))
+    clock = block.time_s
+    assert np.median(tilt[clock < left_s - 1.2]) < np.deg2rad(3.0)  # seated, upright
+    assert tilt[np.abs(clock - left_s) < 0.5].max() > np.deg2rad(15.0)
+
+
+def test_without_a_pelvis_a_course_is_as_it_was() -> None:
+    feet = replace(UP_AND_GO, sites=(Site.LEFT_FOOT,))
+    assert Site.PELVIS not in simulate_course(feet).session.recordings[1].imu

@@ -11,7 +11,7 @@ from devices.walker_gait import walk_leg
 from devices.walker_motion import LegMotion
 from devices.walker_plan import plan_walk
 
-MANNERS = [Manner.FLAT, Manner.STIFF, Manner.DRAGGING, Manner.TOE_FIRST]
+MANNERS = [Manner.FLAT, Manner.STIFF, Manner.DRAGGING, Manner.TOE_FIRST, Manner.HEMIPARETIC]
 STEP_S = 0.002
 
 
@@ -101,3 +101,22 @@ def test_one_side_may_walk_in_a_manner_of_its_own() -> None:
     assert lengths[0] == pytest.approx(lengths[1], rel=0.03)
     times = [np.mean(np.diff(truth.feet[side].events.initial_contact_s)) for side in Side]
     assert times[0] == pytest.approx(times[1], rel=0.02)
+
+
+def test_a_leg_after_a_stroke_lands_flat_and_late_bends_little_and_stands_for_a_shorter_time() -> None:
+    walk = Walk(speed_m_s=0.5, strides=8, manner_of_side={Side.RIGHT: Manner.HEMIPARETIC})
+    truth = simulate(WalkerSettings(errors=NO_ERRORS, recordings=(walk,))).truth.recordings["walk 1"]
+    peaks = {side: np.rad2deg(truth.joints[Joint(f"{side}_knee")].angle_rad.max()) for side in Side}
+    assert peaks[Side.RIGHT] < 40.0 < 55.0 < peaks[Side.LEFT]
+    contacts = {side: truth.feet[side].events.initial_contact_s for side in Side}
+    stance = {}
+    for side in Side:
+        offs = truth.feet[side].events.toe_off_s
+        inner = contacts[side][1:-1]
+        stance[side] = np.mean(offs[np.searchsorted(offs, inner)] - inner) / np.mean(np.diff(contacts[side]))
+    assert stance[Side.LEFT] - stance[Side.RIGHT] == pytest.approx(0.06, abs=0.02)
+    following = np.searchsorted(contacts[Side.RIGHT], contacts[Side.LEFT][1:-2])
+    steps_s = contacts[Side.RIGHT][following] - contacts[Side.LEFT][1:-2]
+    assert np.mean(steps_s) / np.mean(np.diff(contacts[Side.LEFT])) == pytest.approx(0.53, abs=0.01)
+    motion = walked(Manner.HEMIPARETIC, 0.5)
+    assert np.abs(pitch_deg(motion, motion.events.initial_contact_s)).max() < 5.0

@@ -226,8 +226,9 @@ def _exchanged(node: ast.expr, one: ast.expr, other: ast.expr) -> Iterator[Chang
 
 
 def all_mutants(root: Path, package: str) -> list[Mutant]:
-    """Mutants of all modules in a folder and below it."""
-    files = sorted(path for path in (root / package).rglob("*.py") if path.name != "__init__.py")
+    """Mutants of all modules in a folder and below it, or of one module."""
+    place = root / package
+    files = [place] if place.is_file() else sorted(f for f in place.rglob("*.py") if f.name != "__init__.py")
     found: list[Mutant] = []
     for path in files:
         found += mutants_of(path.read_text(encoding="utf-8"), path.relative_to(root).as_posix())

@@ -15,14 +15,20 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from enum import StrEnum
 from pathlib import Path
-from typing import NoReturn
+from typing import NoReturn, Protocol
 
 import pytest
 
 from tests.mutation.mutants import Mutant
 
-PACKAGES = ("app/exports", "devices", "core/gait", "core/calibration")
-TEST_FOLDERS = ("tests/core", "tests/devices", "tests/app/exports", "tests/app/reports")
+PACKAGES = (
+    *("app/exports", "devices", "core/gait", "core/calibration"),
+    *("core/verdicts", "app/reports/differences.py"),  # where a silent fault would be a wrong sentence
+)
+TEST_FOLDERS = (
+    *("tests/core", "tests/devices", "tests/app/exports", "tests/app/reports"),
+    *("tests/app/test_exported_doubt.py", "tests/app/test_compare_and_export.py"),
+)
 LEFT_BEHIND = (".git", ".venv", "build", "__pycache__", ".hypothesis", "*.egg-info", ".*_cache")
 MOST_SECONDS = 30.0  # of tests for one mutant; the mirror's and the shortest come first
 MOST_TESTS = 400
@@ -47,6 +53,15 @@ class Fate(StrEnum):
     SURVIVED = "survived"
     TIMEOUT = "timeout"
     UNCOVERED = "no coverage"
+
+
+class SourceChange(Protocol):
+    """A file, and what becomes of its text: a mutant, or a control that is broken on purpose."""
+
+    @property
+    def file(self) -> str: ...
+
+    def applied(self, source: str) -> str: ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -185,7 +200,7 @@ class Tree:
         if found.returncode:
             raise LookupError(f"some tests are not there any more, run with --cover:\n{found.stdout[-1000:]}")
 
-    def outcome(self, mutant: Mutant, tests: Sequence[str], expected_s: float) -> Outcome:
+    def outcome(self, mutant: SourceChange, tests: Sequence[str], expected_s: float) -> Outcome:
         """Let the tests look at the mutant until one fails."""
         if not tests:
             return Outcome(Fate.UNCOVERED, 0.0, 0)

@@ -26,6 +26,7 @@ from app.wizard.worn_sensors import SourceChoice
 from app.workers.garbage import GarbageCollector
 
 PATIENCE_S = 60.0
+FILLED_S = 300.0  # on a busy machine
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,6 +104,8 @@ def opened_window(open_sensors: Callable[[], Acquisition]) -> Iterator[tuple[QAp
         wait(application, lambda: window.home is not None and window.home.isVisible())
         wait(application, lambda: window.preparing.is_idle)
         wait(application, lambda: window.home is not None and window.home.patient is not None)
+        # what fills the demonstration beside the screen is not what is looked at
+        wait(application, lambda: window.home is not None and not window.home.filling.is_busy, FILLED_S)
         yield application, window
         window.close()
         window.finish()

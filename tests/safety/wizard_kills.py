@@ -1,6 +1,6 @@
 """A session that is led to a point and left there, for whoever kills it: what can be found again afterwards?
 
-    python -m tests.safety.wizard_kills LIBRARY PASSPHRASE POINT
+    python -m tests.safety.wizard_kills LIBRARY PASSPHRASE POINT [--pelvis]
 
 The whole window without a display, on a library with one patient coded for simulations, whose time runs twenty times
 as fast as ours. When the point is reached it prints one line of JSON, what was said and recorded until then, and waits.
@@ -31,7 +31,7 @@ from app.wizard.report.step import ReportStep
 from app.wizard.results.step import ResultsStep
 from app.wizard.sensors import sources
 from app.wizard.worn_sensors import SourceChoice
-from core.body import LEG_SITES, Joint, Side
+from core.body import LEG_SITES, Joint, Side, Site
 from core.samples import RecordingKind
 from devices.replay import ReplaySource
 from devices.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
@@ -58,7 +58,7 @@ class Guide:
     def __init__(self, application: QApplication, window: MainWindow) -> None:
         self._application, self._window = application, window
 
-    def begin(self, library: Path, passphrase: str) -> None:
+    def begin(self, library: Path, passphrase: str, sites: tuple[Site, ...]) -> None:
         """Open the library, begin a session with its patient, put the sensors on, stand and move."""
         window = self._window
         window.controller.open(library, passphrase)
@@ -72,10 +72,10 @@ class Guide:
         self.wizard.go_to(1)
         self._wait(lambda: self.visit.session is not None)
         self.visit.sensors.search(self.visit.choices[0])
-        self._wait(lambda: len(self.visit.sensors.status) == len(LEG_SITES))
+        self._wait(lambda: len(self.visit.sensors.status) == len(sites))
         assert self.visit.sensors.acquisition is not None
         self.acquisition = self.visit.sensors.acquisition
-        self.visit.sensors.assign_all(dict(zip(self.acquisition.sensors, LEG_SITES, strict=True)))
+        self.visit.sensors.assign_all(dict(zip(self.acquisition.sensors, sites, strict=True)))
         self.wizard.go_to(2)
         self._wait(lambda: self.visit.session is not None and bool(self.visit.session.placements))
         self._record(RecordingKind.STANDING, 6.0)
@@ -192,9 +192,11 @@ def main() -> int:
     parser.add_argument("library", type=Path)
     parser.add_argument("passphrase")
     parser.add_argument("point", type=Point)
+    parser.add_argument("--pelvis", action="store_true", help="with a seventh sensor")
     wanted = parser.parse_args()
     played = (Standing(duration_s=10.0), FreeMotion(duration_s=30.0), Walk(strides=14), Walk("walk 2", strides=14))
-    session = simulate(replace(DEMONSTRATION, recordings=played)).session
+    sites = tuple(Site) if wanted.pelvis else LEG_SITES
+    session = simulate(replace(DEMONSTRATION, sites=sites, recordings=played)).session
     source = ReplaySource(session, speed=SPEED)
     fast = SourceChoice("fast", "Fast patient", lambda: Acquisition([source], source.now_ns), is_simulated=True)
     sources.choices = lambda: (fast,)  # before the wizard takes it from there
@@ -206,7 +208,7 @@ def main() -> int:
     window = MainWindow(ThemeNotifier(application), settings, wanted.library)
     window.show()
     guide = Guide(application, window)
-    guide.begin(wanted.library, wanted.passphrase)
+    guide.begin(wanted.library, wanted.passphrase, sites)
     lead(guide, wanted.point)
     guide.tell()
     linger(application, WAITS_S)

@@ -25,7 +25,8 @@ from core.timed.protocols import PlannedTest, TimedProtocol
 from core.timed.timing import time_test
 from core.timed.way import body_way, pauses_of, start_of, turns_of
 from devices.files.session_folder import read_session
-from devices.walker_courses import TAPE_M, CourseKind, CourseTruth, draw_course, simulate_course
+from devices.walker_body import CourseKind
+from devices.walker_courses import TAPE_M, CourseTruth, draw_course, simulate_course
 from tests.benchmarks.gait import optical_foot
 from tests.validation.recordings_with_references import feet
 

@@ -7,8 +7,9 @@ from importlib.resources import files
 from typing import Any
 
 from app.charts.drawing import Picture
-from app.reports.agreement.pictures import ANKLE, KNEE, caption
+from app.reports.agreement.pictures import FIGURES, caption
 from app.reports.agreement.printed import (
+    KINDS,
     clock_words,
     dagger_words,
     figures_of_table_1,
@@ -35,13 +36,19 @@ from app.reports.patient_report.dates import day
 from app.reports.patient_report.document import CODE_LENGTH, PAGES, draw_pages, set_pages
 from app.reports.patient_report.numbers_in_words import fixed, signed
 from app.reports.patient_report.plain_text import isolated, plain, shortened, typed
-from app.wording import capitalised, spoken_language, tr
+from app.wording import capitalised, later, spoken_language, tr
 from core.agreement.figures import NAMED_PHASES, Agreement
+from core.body import JointKind
 from core.gait.phases import Phase
 from core.samples import Patient, Session
 
 TEMPLATE = files("resources") / "report" / "agreement.typ"
 NAME_LENGTH, SENTENCE_LENGTH = 40, 400
+OVER_TIME = {
+    JointKind.KNEE: later("Knee over time"),
+    JointKind.ANKLE: later("Ankle over time"),
+    JointKind.HIP: later("Hip over time"),
+}
 
 
 def agreement_report(
@@ -107,14 +114,14 @@ def _pages(study: AgreementStudy, patient: Patient, pictures: Mapping[str, Pictu
         clocks = [typed(clock_words(walk), SENTENCE_LENGTH) for walk in study.with_angles]
         first += [heading(tr("Clocks and signs"), 2), bullets(clocks)]
         first += [paragraph(optical_words()), note(f"{dagger_words()} {_what_is_not_shown()}")]
-    drawn = [(name, is_knee) for name, is_knee in ((KNEE, True), (ANKLE, False)) if name in pictures]
+    drawn = [(name, kind) for kind, name in FIGURES.items() if name in pictures]
     more: list[list[Block]] = [
         [
-            heading(tr("Knee over time") if is_knee else tr("Ankle over time")),
+            heading(tr(OVER_TIME[kind])),
             figures([pictures[name]]),
-            note(caption(study, is_knee=is_knee)),
+            note(caption(study, kind)),
         ]
-        for name, is_knee in drawn
+        for name, kind in drawn
     ]
     return [first, *more]
 
@@ -143,7 +150,7 @@ def _table_1(study: AgreementStudy, patient: Patient, of_walk: Any, of_all: Any)
         cells = [fixed(None if one is None else math.degrees(of_walk(one)), 2) for one in found]
         rows.append(
             [
-                tr("knee") if joint.is_knee else tr("ankle"),
+                tr(KINDS[joint.kind]),
                 role,
                 *cells,
                 fixed(math.degrees(of_all(over)), 2),
@@ -167,7 +174,7 @@ def _over_walks(study: AgreementStudy, patient: Patient) -> Block:
         ]
         rows.append(
             [
-                tr("knee") if joint.is_knee else tr("ankle"),
+                tr(KINDS[joint.kind]),
                 role,
                 signed(math.degrees(found.bias_rad), 2),
                 fixed(math.degrees(found.sd_rad), 2),
@@ -203,7 +210,7 @@ def _phases(study: AgreementStudy, patient: Patient) -> Block:
         assert over is not None  # as above
         errors = [over.whole.in_phases((phase,)) for phase in NAMED_PHASES]
         cells = [fixed(math.degrees(error.rms_rad), 2) for error in errors]
-        rows.append([tr("knee") if joint.is_knee else tr("ankle"), role, *cells])
+        rows.append([tr(KINDS[joint.kind]), role, *cells])
     return table(columns, rows, is_dense=True)
 
 

@@ -14,8 +14,8 @@ from app.charts.drawing import COLOURS, MM, Picture, box, curve, line, picture, 
 from app.colours import PAPER
 from app.reports.agreement.printed import side_role
 from app.reports.agreement.study import AgreementStudy, AngleKind, ComparedWalk
-from app.wording import capitalised, tr
-from core.body import LEG_JOINTS, Joint
+from app.wording import capitalised, later, tr
+from core.body import Joint, JointKind
 from core.gait.phases import PHASES, Phase
 from core.samples import BoolArray, FloatArray, IntArray, Patient
 
@@ -29,7 +29,16 @@ FILLS = {
     Phase.PRE_SWING: PAPER.band_2sd,
     Phase.SWING: PAPER.paper,
 }
-KNEE, ANKLE = "figure_8_knee", "figure_9_ankle"
+FIGURES = {  # by the names of their files; the first two as the paper numbers them
+    JointKind.KNEE: "figure_8_knee",
+    JointKind.ANKLE: "figure_9_ankle",
+    JointKind.HIP: "figure_hip",
+}
+ANGLES = {
+    JointKind.KNEE: later("Knee flexion"),
+    JointKind.ANKLE: later("Ankle dorsiflexion"),
+    JointKind.HIP: later("Hip flexion"),
+}
 OURS, PUBLISHED, REFERENCE = 1.3, 0.8, 1.1
 PUBLISHED_DASH, REFERENCE_DASH = "1.2 1.4", "4.5 2"
 
@@ -40,36 +49,36 @@ Scale = Callable[[FloatArray | float], FloatArray]
 def pictures_of(study: AgreementStudy, patient: Patient) -> dict[str, Picture]:
     """Give the figures by the names of their files; none of a kind of joint that was not compared."""
     drawn = {}
-    for name, is_knee in ((KNEE, True), (ANKLE, False)):
-        walk = shown_walk(study, is_knee=is_knee)
+    for kind, name in FIGURES.items():
+        walk = shown_walk(study, kind)
         if walk is not None:
-            drawn[name] = _figure(walk, patient, is_knee=is_knee, is_simulated=study.is_simulated)
+            drawn[name] = _figure(walk, patient, kind, is_simulated=study.is_simulated)
     return drawn
 
 
-def shown_walk(study: AgreementStudy, *, is_knee: bool) -> ComparedWalk | None:
+def shown_walk(study: AgreementStudy, kind: JointKind) -> ComparedWalk | None:
     """Give the walk whose error of these joints is in the middle."""
 
     def error(walk: ComparedWalk) -> float:
-        return float(np.mean([walk.figures[joint, AngleKind.RESULT].m_rad for joint in _joints(walk, is_knee)]))
+        return float(np.mean([walk.figures[joint, AngleKind.RESULT].m_rad for joint in _joints(walk, kind)]))
 
-    walks = sorted((walk for walk in study.with_angles if _joints(walk, is_knee)), key=error)
+    walks = sorted((walk for walk in study.with_angles if _joints(walk, kind)), key=error)
     return walks[(len(walks) - 1) // 2] if walks else None
 
 
-def _joints(walk: ComparedWalk, is_knee: bool) -> list[Joint]:
-    return [joint for joint in LEG_JOINTS if joint.is_knee == is_knee and (joint, AngleKind.RESULT) in walk.figures]
+def _joints(walk: ComparedWalk, kind: JointKind) -> list[Joint]:
+    return [joint for joint in Joint if joint.kind is kind and (joint, AngleKind.RESULT) in walk.figures]
 
 
-def _figure(walk: ComparedWalk, patient: Patient, *, is_knee: bool, is_simulated: bool) -> Picture:
-    joints = _joints(walk, is_knee)
+def _figure(walk: ComparedWalk, patient: Patient, kind: JointKind, *, is_simulated: bool) -> Picture:
+    joints = _joints(walk, kind)
     shown = _seconds(walk, joints)
     parts: list[str] = []
     top, alts = 0.0, []
     for joint in joints:
         m_deg = math.degrees(walk.figures[joint, AngleKind.RESULT].m_rad)
         title = tr("{joint}, {side}: {m:.2f}° RMSE with its mean removed").format(
-            joint=tr("Knee flexion") if is_knee else tr("Ankle dorsiflexion"),
+            joint=tr(ANGLES[kind]),
             side=side_role(joint.side, patient),
             m=m_deg,
         )
@@ -93,7 +102,7 @@ def _seconds(walk: ComparedWalk, joints: Sequence[Joint]) -> BoolArray:
 
 def _panel(walk: ComparedWalk, joint: Joint, shown: BoolArray, top: float) -> Iterator[str]:
     time_s = walk.recording.time_s[shown]
-    ours, published = (np.rad2deg(a[shown]) for a in (walk.recording.joints[joint].angle_rad, _published(walk, joint)))
+    ours = np.rad2deg(walk.recording.measured[joint].angle_rad[shown])
     reference = np.rad2deg(walk.reference_rad[joint][shown])
     start_s, last_s = float(time_s[0]), float(time_s[-1])
 
@@ -104,7 +113,9 @@ def _panel(walk: ComparedWalk, joint: Joint, shown: BoolArray, top: float) -> It
         yield from _strip(time_s, walk.recording.gait[joint.side].phase[shown], x, top)
     yield from _axis(top + STRIP, PLOT, _limits([ours, reference], STEP_DEG), STEP_DEG)
     y = _scale(top + STRIP, PLOT, _limits([ours, reference], STEP_DEG))
-    yield curve(x(time_s), y(published), PAPER.note, PUBLISHED, PUBLISHED_DASH)
+    if joint in walk.recording.joints:  # a hip has none
+        published = np.rad2deg(walk.recording.joints[joint].published_rad[shown])
+        yield curve(x(time_s), y(published), PAPER.note, PUBLISHED, PUBLISHED_DASH)
     yield curve(x(time_s), y(ours), COLOURS[joint.side], OURS)
     yield curve(x(time_s), y(reference), PAPER.ink, REFERENCE, REFERENCE_DASH)
     error = ours - reference - np.nanmean(ours - reference)
@@ -115,10 +126,6 @@ def _panel(walk: ComparedWalk, joint: Joint, shown: BoolArray, top: float) -> It
     for at_s in np.arange(math.ceil(start_s), last_s + 1e-9):
         yield text(float(x(at_s)), under + ERROR + 9, f"{at_s:.0f}", 6.6, anchor="middle")
     yield text(WIDTH - RIGHT, under + ERROR + 9, tr("s"), 6.6)
-
-
-def _published(walk: ComparedWalk, joint: Joint) -> FloatArray:
-    return walk.recording.joints[joint].published_rad
 
 
 def _strip(time_s: FloatArray, phase: IntArray, x: Scale, top: float) -> Iterator[str]:
@@ -150,10 +157,16 @@ def _axis(top: float, height: float, limits: tuple[float, float], step: float) -
         yield text(LEFT - 4, float(y(value)) + 2.4, f"{value:.0f}°".replace("-", "\u2212"), 6.6, anchor="end")
 
 
-def caption(study: AgreementStudy, *, is_knee: bool) -> str:
+def caption(study: AgreementStudy, kind: JointKind) -> str:
     """What the curves of a figure are."""
-    walk = shown_walk(study, is_knee=is_knee)
+    walk = shown_walk(study, kind)
     name = "" if walk is None else walk.recording.name
+    if kind is JointKind.HIP:
+        return tr(
+            "{walk}, the walk of median error. Coloured: this program's angle. Long dashes: the reference, brought to "
+            "its clock and sign. Below: the first less the reference, its mean removed. The strip: loading (black), "
+            "foot flat, pre-swing, swing (white)."
+        ).format(walk=capitalised(name))
     return tr(
         "{walk}, the walk of median error. Coloured: this program's angle. Long dashes: the reference, brought to its "
         "clock and sign. Dots: the published fusion (eq 15) on the same axes. Below: the first less the reference, its "

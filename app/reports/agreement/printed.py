@@ -5,15 +5,17 @@ from collections.abc import Callable, Iterator
 
 from app.reports.agreement.study import AgreementStudy, AngleKind, ComparedWalk
 from app.reports.agreement.tables import events_together, lengths_together
-from app.wording import capitalised, joined, name_of, tr
+from app.wording import capitalised, joined, later, name_of, tr
 from core.agreement.figures import Agreement, AgreementOverWalks
-from core.body import Joint, Side
+from core.body import Joint, JointKind, Side
 from core.samples import Patient
 from core.verdicts.model import Verdict
 from devices.files.refusal import one_line
 
 # their own measurements, ALGORITHMS section 4; the review's 5 degrees are of sessions, its abstract was read
 OPTICAL_DEG = (2, 4)
+IN_ORDER = (JointKind.KNEE, JointKind.ANKLE, JointKind.HIP)  # as Table 1 has them, and what it has not
+KINDS = {JointKind.KNEE: later("knee"), JointKind.ANKLE: later("ankle"), JointKind.HIP: later("hip")}
 
 
 def optical_words() -> str:
@@ -40,9 +42,9 @@ def side_role(side: Side, patient: Patient) -> str:
 
 
 def rows_of_table_1(study: AgreementStudy, patient: Patient) -> list[tuple[Joint, str]]:
-    """Knee before ankle, the prosthesis before the other side."""
+    """Knee before ankle before hip, the prosthesis before the other side."""
     first = Side(patient.prosthetic_side) if patient.prosthetic_side in set(Side) else Side.LEFT
-    joints = sorted(study.joints, key=lambda joint: (not joint.is_knee, joint.side is not first))
+    joints = sorted(study.joints, key=lambda joint: (IN_ORDER.index(joint.kind), joint.side is not first))
     return [(joint, side_role(joint.side, patient)) for joint in joints]
 
 
@@ -71,8 +73,7 @@ def printed(study: AgreementStudy, patient: Patient) -> Iterator[str]:
                 assert over is not None  # the joint is there because a walk has it
                 cells = [_of(walk, joint, of_walk) for walk in walks]
                 cells += [math.degrees(of_all(over)), math.degrees(of_walk(over.whole))]
-                kind = "knee" if joint.is_knee else "ankle"
-                yield f"  {kind:7} {role:22}" + "".join(f"{_short(cell):>8}" for cell in cells)
+                yield f"  {joint.kind:7} {role:22}" + "".join(f"{_short(cell):>8}" for cell in cells)
             yield ""
         yield f"  {'':30}{'bias':>8}{'limits of agreement':>22}{'r':>8}{'range':>14}{'in 1 sd':>9}{'in 2 sd':>9}"
         for joint, role in rows_of_table_1(study, patient):
@@ -152,14 +153,13 @@ def other_angles_words(study: AgreementStudy) -> list[str]:
 
 
 def _more(joint: Joint, role: str, found: Agreement) -> str:
-    kind = "knee" if joint.is_knee else "ankle"
     limits = f"{_short(math.degrees(found.low_rad))} .. {_short(math.degrees(found.high_rad))}"
     ranges = f"{_short(math.degrees(found.range_error_rad))} ({found.ranges})"
     shares = [
         f"{100 * share:.0f} %" if math.isfinite(share) else "-" for share in (found.within_1_sd, found.within_2_sd)
     ]
     return (
-        f"  {kind:7} {role:22}{_short(math.degrees(found.bias_rad)):>8}{limits:>22}{_short(found.correlation):>8}"
+        f"  {joint.kind:7} {role:22}{_short(math.degrees(found.bias_rad)):>8}{limits:>22}{_short(found.correlation):>8}"
         f"{ranges:>14}{shares[0]:>9}{shares[1]:>9}"
     )
 

@@ -16,7 +16,8 @@ from core.agreement.clock import MIN_OVERLAP_S, Alignment, FoundOffset, Misfit, 
 from core.agreement.curves import ComparedTrial, TimedAngle, angle_at
 from core.agreement.events import EventAgreement, EventKey, Events, compare_events, compare_lengths, event_offset
 from core.agreement.figures import Agreement, AgreementOverWalks, agreement_of, over_walks
-from core.body import LEG_JOINTS, Joint, Side
+from core.body import Joint, Side
+from core.hip.results import HipAngle
 from core.results import Analysis, JointAngle, RecordingAnalysis, ZeroKind
 from core.samples import FloatArray, IntArray, Recording, RecordingKind
 from devices.files.references.trial import EVENTS, ReferenceFile, ReferenceTrial
@@ -78,9 +79,7 @@ class AgreementStudy:
 
     @property
     def joints(self) -> tuple[Joint, ...]:
-        return tuple(
-            joint for joint in LEG_JOINTS if any((joint, AngleKind.RESULT) in walk.figures for walk in self.walks)
-        )
+        return tuple(joint for joint in Joint if any((joint, AngleKind.RESULT) in walk.figures for walk in self.walks))
 
     @property
     def with_angles(self) -> tuple[ComparedWalk, ...]:
@@ -176,7 +175,7 @@ def _overlap(walks: Sequence[RecordingAnalysis], one: int, its: FoundOffset, oth
 
 def _trial(walk: RecordingAnalysis, named: NamedTrial) -> ComparedTrial:
     return ComparedTrial(
-        {joint: TimedAngle(walk.time_s, angle.angle_rad) for joint, angle in walk.joints.items()},
+        {joint: TimedAngle(walk.time_s, angle.angle_rad) for joint, angle in walk.measured.items()},
         {joint: TimedAngle(time_s, angle) for joint, (time_s, angle) in named.trial.angles.items()},
     )
 
@@ -203,9 +202,9 @@ def _angles_compared(
         is_sure = walk.time_s < walk.slipped_from_s.get(joint.side, np.inf)
         references[joint] = np.where(is_sure, reference, np.nan)
         calibration = analysis.calibrated_for(walk).get(joint)
-        has_zero = calibration is not None and calibration.zero is not ZeroKind.NONE
-        for kind, angle in _angles_of(walk.joints[joint]):
-            sd = walk.joints[joint].sd_rad if kind is AngleKind.RESULT else None
+        has_zero = joint.is_hip or (calibration is not None and calibration.zero is not ZeroKind.NONE)
+        for kind, angle in _angles_of(walk.measured[joint]):
+            sd = walk.measured[joint].sd_rad if kind is AngleKind.RESULT else None
             phase = walk.gait[joint.side].phase if joint.side in walk.gait else None
             strides = _rows_of_strides(walk, joint.side)
             found = agreement_of(angle, references[joint], sd, phase, strides, has_zero=has_zero)
@@ -214,8 +213,10 @@ def _angles_compared(
     return ComparedWalk(walk, named, alignment, references, figures)
 
 
-def _angles_of(angle: JointAngle) -> Iterator[tuple[AngleKind, FloatArray]]:
+def _angles_of(angle: JointAngle | HipAngle) -> Iterator[tuple[AngleKind, FloatArray]]:
     yield AngleKind.RESULT, angle.angle_rad
+    if isinstance(angle, HipAngle):
+        return
     yield AngleKind.PUBLISHED, angle.published_rad
     if angle.orientation_rad is not None:
         yield AngleKind.ORIENTATION, angle.orientation_rad
@@ -289,7 +290,7 @@ def _refusal(
     """Say the reason that came nearest to a comparison."""
     where = ", ".join(dict.fromkeys(one.file for one in trials))
     theirs = sorted({str(joint) for one in trials for joint in one.trial.angles})
-    ours = sorted({str(joint) for walk in walks for joint in walk.joints})
+    ours = sorted({str(joint) for walk in walks for joint in walk.measured})
     if Misfit.NOT_ALIKE in misfits:
         what = "its angles move unlike those of any walk of the session"
         return FileRefusedError(where, what, "Give the reference of this session, and see that left is left in it")

@@ -11,8 +11,9 @@ from app.reports.agreement.study import AgreementStudy, AngleKind, ComparedWalk
 from app.reports.csv_report import typed_cell, write_table
 from core.agreement.events import EventAgreement, joined
 from core.agreement.figures import NAMED_PHASES, STANCE, Agreement
-from core.body import LEG_JOINTS, Joint
+from core.body import Joint
 from core.gait.phases import PHASES, Phase
+from core.results import JointAngle
 
 FORMAT = "gaitwright-agreement/1"
 SUMMARY, TABLE, EVENT_TABLE, LENGTHS, CURVES, MEANINGS = (
@@ -182,12 +183,13 @@ def _clock(walk: ComparedWalk, joint: Joint) -> list[str]:
 
 def curve_table(walk: ComparedWalk) -> tuple[list[str], Iterator[list[str]]]:
     """Both angles at every instant of the walk, what they differ by, and the phases of both feet."""
-    joints = [joint for joint in LEG_JOINTS if joint in walk.reference_rad]
+    joints = [joint for joint in Joint if joint in walk.reference_rad]
     header, columns = ["time_s"], [walk.recording.time_s]
     for joint in joints:
-        ours, reference = walk.recording.joints[joint], walk.reference_rad[joint]
+        ours, reference = walk.recording.measured[joint], walk.reference_rad[joint]
         kinds = {"": ours.angle_rad, "_reference": reference, "_error": ours.angle_rad - reference, "_sd": ours.sd_rad}
-        kinds["_published"] = ours.published_rad
+        if isinstance(ours, JointAngle):
+            kinds["_published"] = ours.published_rad
         header += [f"{joint}{kind}_deg" for kind in kinds]
         columns += [np.rad2deg(values) for values in kinds.values()]
     phases = {side: gait.phase for side, gait in walk.recording.gait.items()}

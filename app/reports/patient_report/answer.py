@@ -72,5 +72,5 @@ def _goal(facts: Facts) -> list[str]:
 
 def _brief_caveat(facts: Facts) -> list[str]:
     """Which joint or leg cannot be read; why, and what to do, stands one step behind the answer."""
-    withheld = [cause.where for cause in quality.causes(facts, (Verdict.WITHHELD,)) if not cause.is_between]
+    withheld = [cause.where for cause in quality.causes(facts, (Verdict.WITHHELD,)) if not cause.is_aside]
     return [tr("Withheld: {where}.").format(where=within_sentence(withheld[0]))] if withheld else []

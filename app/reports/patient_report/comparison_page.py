@@ -26,7 +26,7 @@ from app.reports.comparison import (
 from app.reports.patient_report import panels
 from app.reports.patient_report.blocks import Block, Cell, Column, Row, figures, heading, legend, note, paragraph, table
 from app.reports.patient_report.dates import day
-from app.reports.patient_report.facts import KINDS, Facts, joint_of, role
+from app.reports.patient_report.facts import Facts, joint_of, role
 from app.reports.patient_report.numbers_in_words import (
     CARE,
     NOTHING,
@@ -40,15 +40,17 @@ from app.reports.patient_report.numbers_in_words import (
 )
 from app.reports.patient_report.plain_text import CONDITION_LENGTH, typed
 from app.reports.patient_report.request import AnalysedVisit, ReportRequest
+from app.reports.patient_report.what_stands_out import measure_in_words
 from app.reports.visits import by_condition, condition_in_words
 from app.wording import capitalised, joined, tr
-from core.body import Side
+from core.body import JointKind, Side
 from core.verdicts.measurement_error import ComparisonKind, sigma_of
 from core.verdicts.model import Verdict, worst
-from core.verdicts.quantities import EXCURSIONS_BY_COLUMN
+from core.verdicts.quantities import EXCURSIONS_BY_COLUMN, OF_HIPS
 
 CHANGES_LENGTH = 300  # letters: three lines of the table
 PLOT_WIDTH = 53 * MM  # with the table of three parts, or a line more of words, this fills a Letter page
+WITH_HIP_WIDTH = 44 * MM  # of three beside each other
 
 
 def comparison_of(request: ReportRequest) -> Comparison | None:
@@ -118,8 +120,10 @@ def comparison_page(comparison: Comparison, shown: Facts) -> list[Block]:
     """`shown` is the walk that the other pages are of: it belongs to the last part."""
     title = tr("Comparison of visits") if comparison.kind is Contrast.VISITS else tr("Comparison of conditions")
     sides = [side for side in shown.first_and_second if side in comparison.sides]
-    kinds = [kind for kind in KINDS if any(joint_of(kind, side) in comparison.joints for side in Side)]
-    pictures = [_panel(comparison, shown, side, kind) for kind in kinds for side in sides]
+    kinds = [kind for kind in JointKind if any(joint_of(kind, side) in comparison.joints for side in Side)]
+    has_hips = JointKind.HIP in kinds  # three joints beside each other, a row for each leg
+    places = [(side, kind) for side in sides for kind in kinds] if has_hips else [(s, k) for k in kinds for s in sides]
+    pictures = [_panel(comparison, shown, side, kind) for side, kind in places]
     band = (
         panels.band_swatches()
         if any(_band(comparison, shown, kind, side) is not None for kind in kinds for side in comparison.sides)
@@ -131,7 +135,7 @@ def comparison_page(comparison: Comparison, shown: Facts) -> list[Block]:
         _parts_table(comparison),
         *_changes(comparison),
         *([legend(band, columns=3)] if band else []),
-        figures(pictures, columns=2),
+        figures(pictures, columns=3 if has_hips else 2),
         _table(comparison, shown, sides),
         note(" ".join(filter(None, [_how_judged(comparison), left_out_of_parts(comparison.parts)]))),
     ]
@@ -206,7 +210,7 @@ def _panel(comparison: Comparison, shown: Facts, side: Side, kind: str) -> Pictu
         is_simulated=comparison.is_simulated,
         alt=" ".join([tr("SIMULATED.")] * comparison.is_simulated + [panels.title_of(shown, kind) + ".", *alts]),
     )
-    return draw(chart, PLOT_WIDTH)
+    return draw(chart, WITH_HIP_WIDTH if any(joint.is_hip for joint in comparison.joints) else PLOT_WIDTH)
 
 
 def _title(shown: Facts, kind: str, side: Side, *, is_about_mean: bool) -> str:
@@ -214,7 +218,12 @@ def _title(shown: Facts, kind: str, side: Side, *, is_about_mean: bool) -> str:
     if is_about_mean or shown.has_no_zero(kind):
         return panels.title_with_side(shown, kind, side, is_about_mean=is_about_mean)
     said = tr("Left: {title}") if side is Side.LEFT else tr("Right: {title}")
-    title = tr("knee, degrees (flexion +)") if kind == "knee" else tr("ankle, degrees (dorsiflexion +)")
+    titles = {
+        JointKind.HIP: tr("hip, degrees (flexion +)"),
+        JointKind.KNEE: tr("knee, degrees (flexion +)"),
+        JointKind.ANKLE: tr("ankle, degrees (dorsiflexion +)"),
+    }
+    title = titles[JointKind(kind)]
     return said.format(title=title)
 
 
@@ -253,8 +262,7 @@ def _table(comparison: Comparison, shown: Facts, sides: Sequence[Side]) -> Block
         counts = ", ".join(count.format(count=part.strides(side), part=part.letter) for part in comparison.parts)
         rows.append(tr("{side}: strides {counts}").format(side=capitalised(role(shown, side)), counts=counts))
         for measure in MEASURES:
-            joint = measure.joint(side)
-            if not measure.is_of_walk and (joint is None or joint in comparison.joints):
+            if not measure.is_of_walk and any(part.is_measured(side, measure) for part in comparison.parts):
                 rows.append(_row(comparison, side, measure))
     rows.append(tr("Both legs"))
     rows += [_row(comparison, sides[0], measure) for measure in MEASURES if measure.is_of_walk]
@@ -298,6 +306,8 @@ def _measure(column: str) -> str:
     }
     if column in of_leg:
         return of_leg[column]
+    if column in OF_HIPS:
+        return capitalised(measure_in_words(column))
     kind = tr("Knee") if column.startswith("knee") else tr("Ankle")
     if column in EXCURSIONS_BY_COLUMN:
         return f"{kind}: {panels.excursion_name(column)}"

@@ -7,10 +7,12 @@ from app.reports.patient_report import quality
 from app.reports.patient_report.facts import Facts
 from app.reports.patient_report.quality import Cause
 from app.reports.patient_report.request import AnalysedVisit
-from app.wording import capitalised, joined, later, name_of, place, sentence, tr
-from core.body import LEG_JOINTS, Joint, Side
+from app.wording import capitalised, joined, later, name_of, place, sentence, side_name, tr
+from core.body import Joint, Side
 from core.findings import Finding, Severity
+from core.gait.clocks import ClockTie
 from core.quality import MIN_LOSS_PERCENT
+from core.results import RecordingAnalysis
 from core.verdicts.model import Verdict, worst
 
 # findings that a gate of the verdicts says with its own figure
@@ -36,6 +38,8 @@ ALL_READ = {
     2: later("Both joints can be read."),
     3: later("All three joints can be read."),
     4: later("All four joints can be read."),
+    5: later("All five joints can be read."),
+    6: later("All six joints can be read."),
 }
 
 
@@ -43,7 +47,7 @@ ALL_READ = {
 class QualityLine:
     """One thing that stands against a figure: `where` it is, `why`, and what `to_do`, which may be empty.
 
-    `side` is the leg whose free motion mends it, None where that does not. `is_between`: each leg alone can be read.
+    `side` is the leg whose free motion mends it, None where that does not. `is_aside`: each leg can be read.
     """
 
     verdict: Verdict
@@ -51,12 +55,12 @@ class QualityLine:
     why: str
     to_do: str
     side: Side | None = None
-    is_between: bool = False
+    is_aside: bool = False
 
     @property
     def is_grave(self) -> bool:
         """Whether it takes a joint or a leg away."""
-        return self.verdict is Verdict.WITHHELD and not self.is_between
+        return self.verdict is Verdict.WITHHELD and not self.is_aside
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,9 +107,9 @@ def _quality(first: str, then: str, lines: list[QualityLine], in_order: str) -> 
 
 
 def _of_cause(cause: Cause) -> QualityLine:
-    sides = {place.side for place in cause.places if isinstance(place, Joint)}
+    sides = {place.side for place in cause.places if isinstance(place, Joint) and not place.is_hip}
     side = sides.pop() if cause.gate in FREE_MOTION_MENDS and len(sides) == 1 else None
-    return QualityLine(cause.verdict, cause.where, cause.words.why, cause.words.to_do, side, cause.is_between)
+    return QualityLine(cause.verdict, cause.where, cause.words.why, cause.words.to_do, side, cause.is_aside)
 
 
 def _of_finding(finding: Finding) -> QualityLine:
@@ -138,7 +142,7 @@ def _noticed(visit: AnalysedVisit, recording: str, gates: set[str]) -> list[Find
 
 
 def _in_words(facts: Facts) -> tuple[str, str]:
-    joints = {joint: facts.verdicts.joint(joint).shape.verdict for joint in LEG_JOINTS if facts.is_measured(joint)}
+    joints = {joint: facts.verdicts.joint(joint).shape.verdict for joint in Joint if facts.is_measured(joint)}
     if not joints:
         return tr("No joint was measured in this walk."), ""
     out = [name_of(joint) for joint, verdict in joints.items() if verdict is Verdict.WITHHELD]
@@ -156,6 +160,20 @@ def _in_words(facts: Facts) -> tuple[str, str]:
     return first, tr("Of these joints the height is withheld: {joints}.").format(joints=joined(heights))
 
 
+def one_time_in_words(walk: RecordingAnalysis) -> str:
+    """What ties the clocks of both legs, inside a sentence: where the hips do, by how much they are apart."""
+    clock = walk.leg_clock
+    if clock is None or walk.clocks is None or walk.clocks.tie is not ClockTie.PELVIS:
+        return tr("one time for both legs")
+    sd = f"{1000 * clock.sd_s:.0f}"
+    if clock.applied_s == 0.0:
+        return tr("one time for both legs, found through the hips to ± {sd} ms").format(sd=sd)
+    late = f"{1000 * abs(clock.applied_s):.0f}"
+    side = side_name(Side.RIGHT if clock.applied_s > 0 else Side.LEFT)
+    said = tr("one time for both legs, found through the hips: the {side} leg's clock was {late} ms late, ± {sd} ms")
+    return said.format(side=side, late=late, sd=sd)
+
+
 def _in_order(facts: Facts) -> str:
     """What was looked at without finding anything."""
     said = []
@@ -164,5 +182,5 @@ def _in_order(facts: Facts) -> str:
     if max(facts.walk.lost_percent.values(), default=0.0) < MIN_LOSS_PERCENT:
         said.append(tr("no samples lost"))
     if facts.verdicts.between.verdict is Verdict.READ:
-        said.append(tr("one time for both legs"))
+        said.append(one_time_in_words(facts.walk))
     return tr("In order: {what}.").format(what=joined(said)) if said else ""

@@ -12,7 +12,7 @@ from app.reports.patient_report.blocks import Block
 from app.reports.patient_report.comparison_page import comparison_of, comparison_page, not_compared_page
 from app.reports.patient_report.curves_page import curves_page
 from app.reports.patient_report.dates import day
-from app.reports.patient_report.facts import KINDS, Facts
+from app.reports.patient_report.facts import Facts
 from app.reports.patient_report.first_page import first_page
 from app.reports.patient_report.method_page import words_page
 from app.reports.patient_report.patient_page import patient_page
@@ -22,6 +22,7 @@ from app.reports.patient_report.time_page import time_page
 from app.reports.patient_report.timed_page import timed_page
 from app.reports.patient_report.trend_page import trend_page
 from app.wording import spoken_language, tr
+from core.body import JointKind
 
 PAGES = files("resources") / "report" / "pages.typ"  # what all documents share
 TEMPLATE = files("resources") / "report" / "report.typ"
@@ -121,7 +122,7 @@ def report_data(request: ReportRequest) -> dict[str, Any]:
     pages: list[list[Block]] = [
         *of_walk,
         words_page(request, facts),
-        *([tests] if (tests := timed_page(request)) else []),
+        *([tests] if (tests := timed_page(request, facts)) else []),
         *([comparison_page(comparison, facts)] if comparison is not None else []),
         *([alone] if (alone := not_compared_page(request)) else []),
         *([course] if (course := trend_page(request.course, condition, facts)) else []),
@@ -162,7 +163,7 @@ def report_data(request: ReportRequest) -> dict[str, Any]:
 
 def pages_of_walk(facts: Facts) -> list[list[Block]]:
     """All figures of the walk, as far as there are some: of one without a stride page one says why."""
-    has_joint = any(map(facts.has_joint, KINDS))
+    has_joint = any(map(facts.has_joint, JointKind))
     return [*([curves_page(facts)] if has_joint else []), *([time_page(facts)] if facts.gait else [])]
 
 
@@ -171,7 +172,11 @@ def facts_of(request: ReportRequest) -> Facts:
 
 
 def _subject(facts: Facts) -> str:
-    said = tr("Knee and ankle angles in walking, from inertial sensors. Research use. Not a medical device.")
+    said = (
+        tr("Hip, knee and ankle angles in walking, from inertial sensors. Research use. Not a medical device.")
+        if facts.has_joint(JointKind.HIP)
+        else tr("Knee and ankle angles in walking, from inertial sensors. Research use. Not a medical device.")
+    )
     return " ".join([tr("SIMULATED DATA, not a person.")] * facts.is_simulated + [said])
 
 

@@ -7,32 +7,34 @@ import numpy as np
 
 from app.gates_in_words import verdict_word
 from app.reports.patient_report.blocks import Block, Cell, Column, Row, heading, note, table
-from app.reports.patient_report.facts import KINDS, Facts, joint_of
+from app.reports.patient_report.facts import Facts, joint_of
 from app.reports.patient_report.numbers_in_words import DAGGER, NOTHING, dagger_note, fixed, signed, signed_error
+from app.reports.patient_report.peaks_table import hips_note
 from app.reports.patient_report.quality import slipped_straps
-from app.wording import capitalised, name_of, tr
-from core.body import Joint, Side
+from app.wording import capitalised, name_of, side_name, tr
+from core.body import Joint, JointKind, Side, hip_of
 from core.calibration.clinical_sign import MIN_MARGIN
+from core.hip.results import ClockStatus, HipIdentification
 from core.results import JointCalibration, ZeroKind
 from core.samples import FloatArray
 from core.verdicts.gates import LIMITS, MIN_STRIDES_TO_SPLIT
 from core.verdicts.measurement_error import ComparisonKind, sigma_of
-from core.verdicts.model import GateReason, JointVerdicts
-from core.verdicts.quantities import raw_values
+from core.verdicts.model import NOT_MEASURED, GateReason, JointVerdicts
+from core.verdicts.quantities import assessment_of, raw_values
 
 MARGIN_BEYOND = 100.0  # how many times better says no more from here on
 
 
 def evidence(facts: Facts) -> list[Block]:
     """What each verdict rests on, and how large a difference must be."""
-    return [*evidence_table(facts), *error_table()]
+    return [*evidence_table(facts), *hips_table(facts), *error_table()]
 
 
 def evidence_table(facts: Facts) -> list[Block]:
     """A row for each gate, a column for each joint that was measured; what fails its limit is bold."""
     joints = [
         joint
-        for kind in KINDS
+        for kind in JointKind
         for side in Side
         if facts.is_measured(joint := joint_of(kind, side)) and joint in facts.calibrated
     ]
@@ -110,6 +112,105 @@ def evidence_table(facts: Facts) -> list[Block]:
     return [heading(tr("What each verdict rests on")), table(columns, rows, is_dense=True)]
 
 
+def hips_table(facts: Facts) -> list[Block]:
+    """The same of the hips, which have no axis, and what ties the clocks of both legs; nothing without a pelvis."""
+    hips = {joint: facts.walk.hips[joint] for side in Side if (joint := hip_of(side)) in facts.walk.hips}
+    if not hips:
+        return []
+    columns = [
+        Column(tr("Evidence, hips"), "1fr", is_number=False),
+        *(Column(capitalised(name_of(joint))) for joint in hips),
+        Column(tr("Needed for “{word}”").format(word=tr("can be read")), "58mm", is_number=False),
+    ]
+    centre, apart, of_range = LIMITS.hip_centre_m, LIMITS.hips_apart_m, LIMITS.hip_range_deg
+    gates: list[tuple[str, str, Callable[[Joint, HipIdentification], str], str]] = [
+        (
+            "pairing",
+            tr("Sensors are neighbours, margin"),
+            lambda _, found: _margin(found.margin),
+            tr("at least {limit}").format(limit=fixed(LIMITS.pairing_margin, 1)),
+        ),
+        (
+            "hip_disagreement",
+            tr("Disagreement about the hip"),
+            lambda _, found: fixed(found.disagreement, 2),
+            tr("under {limit}").format(limit=fixed(LIMITS.hip_disagreement, 1)),
+        ),
+        (
+            "hip_centre",
+            tr("Centre from pelvis, thigh sensor"),
+            lambda _, found: _cm(found.centre_proximal_m) + ", " + _cm(found.centre_distal_m),
+            tr("{least} to {most} cm").format(least=fixed(100 * centre[0], 0), most=fixed(100 * centre[1], 0)),
+        ),
+        (
+            "hips_apart",
+            tr("Left hip to the left of the right"),
+            lambda _, found: (
+                NOTHING if found.centres_apart_m is None else f"{fixed(100 * found.centres_apart_m, 0)} cm"
+            ),
+            tr("{least} to {most} cm").format(least=fixed(100 * apart[0], 0), most=fixed(100 * apart[1], 0)),
+        ),
+        (
+            "hip_heading",
+            tr("Heading of pelvis and thigh, 1 SD"),
+            lambda _, found: _degrees(math.degrees(found.heading_sd_rad)),
+            tr("at most {limit}°, of abduction alone").format(limit=fixed(LIMITS.hip_heading_sd_deg, 0)),
+        ),
+        (
+            "plausible",
+            tr("Range in walking, median"),
+            lambda joint, _: _degrees(float(np.median(found)) if len(found := _ranges_deg(facts, joint)) else math.nan),
+            f"{of_range[0]:.0f}–{of_range[1]:.0f}°",
+        ),
+        (
+            "halves",
+            tr("Range, second half less first"),
+            lambda joint, _: _degrees(halves_apart(_ranges_deg(facts, joint)), is_signed=True),
+            tr("at most {limit}°").format(limit=fixed(LIMITS.halves_deg, 0)),
+        ),
+    ]
+    rows: list[Row] = [
+        [
+            label,
+            *(
+                Cell(said(joint, hip.identification), is_bold=_has_failed_hip(facts, joint, gate))
+                for joint, hip in hips.items()
+            ),
+            limit,
+        ]
+        for gate, label, said, limit in gates
+    ]
+    said = facts.verdicts
+    verdicts = [
+        (tr("Shape, range"), [said.joint(joint).shape for joint in hips]),
+        (tr("Height"), [said.joint(joint).height for joint in hips]),
+        (tr("Abduction"), [assessment_of(said, joint.side, "hip_abduction_peak_deg") for joint in hips]),
+    ]
+    for label, found in verdicts:
+        words = [Cell(verdict_word(one.verdict), is_bold=True) for one in found]
+        rows.append([Cell(label, is_bold=True), *words, ""])
+    return [table(columns, rows, is_dense=True), note(" ".join([clocks_in_words(facts), hips_note()]))]
+
+
+def clocks_in_words(facts: Facts) -> str:
+    """How the clocks of both legs are tied, and by how much they are apart where the hips tell it."""
+    clock = facts.walk.leg_clock
+    if clock is None:
+        return ""
+    if clock.status is ClockStatus.PROVEN:
+        return tr("Clocks of both legs: proven to be one.")
+    if clock.status is ClockStatus.WITHHELD:
+        return tr("Clocks of both legs: not told by the hips.")
+    side = Side.RIGHT if clock.offset_s > 0 else Side.LEFT
+    pattern = (
+        tr("Clocks of both legs: found through the hips, the {side} leg's {late} ms late, 1 SD {sd} ms, taken out.")
+        if clock.applied_s
+        else tr("Clocks of both legs: found through the hips, the {side} leg's {late} ms late, 1 SD {sd} ms.")
+    )
+    late, sd = fixed(1000 * abs(clock.offset_s), 0), fixed(1000 * clock.sd_s, 0)
+    return pattern.format(side=side_name(side), late=late, sd=sd)
+
+
 def error_table() -> list[Block]:
     """What has to be exceeded at least, by what lies between two means, and what each comparison contains."""
     columns = [
@@ -162,7 +263,7 @@ def thirds_apart(values: FloatArray) -> float:
 def _ranges_deg(facts: Facts, joint: Joint) -> FloatArray:
     """Of every stride used, as evidence: whatever may be said of the joint."""
     gait = facts.gait[joint.side]
-    found = raw_values(gait, f"{'knee' if joint.is_knee else 'ankle'}_range_deg")[gait.strides.is_used]
+    found = raw_values(gait, f"{joint.kind}_range_deg")[gait.strides.is_used]
     return found[np.isfinite(found)]
 
 
@@ -176,11 +277,27 @@ def _axis(_: Joint, found: JointCalibration) -> str:
 
 
 def _pairing(_: Joint, found: JointCalibration) -> str:
-    if found.sign_margin is None:
-        return NOTHING
-    if found.sign_margin > MARGIN_BEYOND:
+    return NOTHING if found.sign_margin is None else _margin(found.sign_margin)
+
+
+def _margin(margin: float) -> str:
+    if margin > MARGIN_BEYOND:
         return tr("over {most}").format(most=fixed(MARGIN_BEYOND, 0))
-    return fixed(found.sign_margin, 2)
+    return fixed(margin, 2)
+
+
+def _apart(centres_apart_m: float | None) -> str:
+    return NOTHING if centres_apart_m is None else f"{fixed(100 * centres_apart_m, 0)} cm"
+
+
+def _cm(centre_m: FloatArray) -> str:
+    return f"{fixed(100 * float(np.linalg.norm(centre_m)), 0)} cm"
+
+
+def _has_failed_hip(facts: Facts, joint: Joint, gate: str) -> bool:
+    heading = facts.verdicts.abduction.get(joint.side, NOT_MEASURED)
+    is_heading = gate == "hip_heading" and not heading.is_told
+    return is_heading or _has_failed(facts.verdicts.joint(joint), gate)
 
 
 def _sign(_: Joint, found: JointCalibration) -> str:

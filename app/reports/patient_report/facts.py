@@ -10,7 +10,7 @@ import numpy as np
 
 from app.charts.cycles import is_mean_enough
 from app.reports.agreed import agreed_with
-from app.reports.comparison import Part, first_and_second
+from app.reports.comparison import Measure, Part, first_and_second
 from app.reports.goals import GoalFigure, of_part
 from app.reports.patient_report.numbers_in_words import Band
 from app.reports.patient_report.request import AnalysedVisit
@@ -18,7 +18,7 @@ from app.reports.reference_bands import age_and_height, bands_of, sides_with_ban
 from app.reports.summary import summarise
 from app.reports.walk_figures import Figure, band_of_peak, peak_place, side_cycle, strides_used, time_distance_figures
 from app.wording import side_name, tr
-from core.body import Joint, Side, ankle_of, knee_of
+from core.body import Joint, JointKind, Side
 from core.gait.cycles import POINTS
 from core.gait.spatiotemporal import BothFeet, MeanAndSd, mean_and_sd
 from core.norms import Bands, ReferenceCurves, ReferenceValues, height_offset_deg, peak_away_sd
@@ -27,7 +27,7 @@ from core.samples import FloatArray
 from core.verdicts.model import Assessment, Verdict, Verdicts
 from core.verdicts.quantities import WINDOWS, assessment_of, both_sides, mean_curve, peak_percent
 
-KINDS = ("knee", "ankle")
+KINDS = (JointKind.KNEE, JointKind.ANKLE)  # that every report tells of
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,8 +130,12 @@ class Facts:
 
     def is_worn(self, side: Side, column: str) -> bool:
         """Whether a column of strides.csv is of the leg itself, or of a joint that was measured."""
-        kind = column.split("_")[0]
-        return kind not in KINDS or self.is_measured(joint_of(kind, side))
+        return self.alone.is_measured(side, Measure.of(column))
+
+    @property
+    def kinds(self) -> tuple[JointKind, ...]:
+        """The kinds of joints that are told of, from the trunk down: hips where one was measured."""
+        return (JointKind.HIP, *KINDS) if self.has_joint(JointKind.HIP) else KINDS
 
     def has_joint(self, kind: str) -> bool:
         return any(self.is_measured(joint_of(kind, side)) for side in Side)
@@ -197,6 +201,8 @@ class Facts:
     def offset_deg(self, side: Side, kind: str) -> float:
         """How much higher than band [1] a leg's curve lies as a whole; NaN where that is not to be told."""
         group, joint = self.curves_group, joint_of(kind, side)
+        if joint.is_hip:  # the group's zero is that of the pelvis's markers
+            return math.nan
         if group is None or side not in self.sides_with_band or not self.verdicts.joint(joint).height.is_told:
             return math.nan
         return height_offset_deg(self._curve_deg(joint), group.mean_and_sd_deg(kind)[0])
@@ -229,7 +235,7 @@ def _parts_of(column: str) -> tuple[str, str, str | None]:
 
 
 def joint_of(kind: str, side: Side) -> Joint:
-    return knee_of(side) if kind == "knee" else ankle_of(side)
+    return JointKind(kind).of(side)
 
 
 def role(facts: Facts, side: Side) -> str:

@@ -10,7 +10,7 @@ from app.reports.comparison import Comparison
 from app.reports.goals import goal_sentence
 from app.reports.patient_report import panels, quality
 from app.reports.patient_report.dates import moment
-from app.reports.patient_report.facts import KINDS, Facts, joint_of
+from app.reports.patient_report.facts import Facts, joint_of
 from app.reports.patient_report.key_numbers import key_numbers
 from app.reports.patient_report.key_strips import height_scale
 from app.reports.patient_report.marks_on_curves import brackets_of
@@ -21,12 +21,13 @@ from app.reports.patient_report.request import ReportRequest
 from app.reports.patient_report.what_stands_out import MAX_AWAY_SD, caveat, nothing_found, printed_findings
 from app.reports.walk_figures import by_hand_in_words
 from app.wording import capitalised, joined, name_of, side_name, tr, tr_n
-from core.body import Joint, Side
+from core.body import Joint, JointKind, Side
 from core.verdicts.model import Assessment, Verdict, worst
 from core.verdicts.quantities import WINDOWS
 
 NOT_STATED = ("", "none")
 PLOT_WIDTH, ONE_LEG_WIDTH = 53 * MM, 68 * MM  # four panels, or two
+WITH_HIP_WIDTH, ONE_LEG_WITH_HIP_WIDTH = 34 * MM, 50 * MM  # six, or three
 
 
 def first_page(request: ReportRequest, facts: Facts, comparison: Comparison | None) -> dict[str, object]:
@@ -85,8 +86,8 @@ def what(request: ReportRequest, facts: Facts, comparison: Comparison | None) ->
 
 def measured(facts: Facts) -> str:
     """The joints and legs that were measured."""
-    joints = {side: [kind for kind in KINDS if facts.is_measured(joint_of(kind, side))] for side in facts.gait}
-    names = {"knee": tr("knee"), "ankle": tr("ankle")}
+    joints = {side: [kind for kind in facts.kinds if facts.is_measured(joint_of(kind, side))] for side in facts.gait}
+    names = {JointKind.HIP: tr("hip"), JointKind.KNEE: tr("knee"), JointKind.ANKLE: tr("ankle")}
     legs = (
         tr("both legs") if len(joints) > 1 else "".join(tr("the {side} leg").format(side=side_name(s)) for s in joints)
     )
@@ -113,7 +114,7 @@ def answer(facts: Facts, comparison: Comparison | None) -> dict[str, object]:
 
 def readable(facts: Facts) -> dict[str, object]:
     """What may be read, joint by joint, and the gravest reason why something may not."""
-    joints = [joint_of(kind, side) for kind in KINDS for side in Side if facts.is_measured(joint_of(kind, side))]
+    joints = [joint_of(kind, side) for kind in facts.kinds for side in Side if facts.is_measured(joint_of(kind, side))]
     head = ["", tr("Shape, range"), tr("Height"), tr("Timing")]
     rows = [
         [
@@ -167,21 +168,23 @@ def curves(facts: Facts, comparison: Comparison | None) -> dict[str, object]:
         band_in_words(facts, is_at_height=True),
         by_hand_in_words(facts.walk),
     ]
-    shown = [joint_of(kind, side) for kind in KINDS for side in Side if facts.is_measured(joint_of(kind, side))]
-    legs = {joint.side for joint in shown}
+    shown = [joint_of(kind, side) for kind in facts.kinds for side in Side if facts.is_measured(joint_of(kind, side))]
+    legs, has_hips = {joint.side for joint in shown}, JointKind.HIP in facts.kinds
     width = PLOT_WIDTH if len(legs) > 1 else ONE_LEG_WIDTH
+    if has_hips:
+        width = WITH_HIP_WIDTH if len(legs) > 1 else ONE_LEG_WITH_HIP_WIDTH
     brackets = brackets_of(facts, comparison)
     drawn = []
-    for kind in KINDS if shown else ():
+    for kind in facts.kinds if shown else ():
         for side in Side:
             joint = joint_of(kind, side)
             if joint in shown:
                 chart = panels.leg_chart(facts, joint, brackets.get(joint))
                 drawn.append({"picture": draw(chart, width).as_data(), "lines": _beside(facts, joint)})
-            elif len(legs) > 1 or not any(one.is_knee is (kind == "knee") for one in shown):
+            elif len(legs) > 1 or not any(one.kind is kind for one in shown):
                 drawn += [{"said": panels.why_missing(facts, joint)}] if side in facts.gait or len(legs) > 1 else []
     return {
-        "heading": tr("Knee and ankle over the stride"),
+        "heading": tr("Hip, knee and ankle over the stride") if has_hips else tr("Knee and ankle over the stride"),
         "note": " ".join(filter(None, said)),
         "columns": 2 if len(legs) > 1 else 1,
         "panels": drawn,
@@ -195,7 +198,7 @@ def _line(said: str, style: str = "small", picture: Picture | None = None) -> di
 
 def _beside(facts: Facts, joint: Joint) -> list[dict[str, object]]:
     """A joint's figures in the column beside its panel, or what to do where nothing of it may be read."""
-    side, kind = joint.side, "knee" if joint.is_knee else "ankle"
+    side, kind = joint.side, joint.kind
     found, verdicts = facts.value(side, f"{kind}_range_deg"), facts.verdicts.joint(joint)
     if not verdicts.shape.is_told or not is_mean_enough(found.n):
         return [_line(said) for said in quality.to_do(facts, joint)]
@@ -218,8 +221,7 @@ def _beside(facts: Facts, joint: Joint) -> list[dict[str, object]]:
 
 def _against_band(facts: Facts, joint: Joint) -> list[str]:
     """Which peaks lie beyond 2 SD of the band at the curve's height; where all could be judged and none does, that."""
-    kind = "knee" if joint.is_knee else "ankle"
-    away = {column: facts.away_sd(joint.side, column) for column in WINDOWS if column.startswith(kind)}
+    away = {column: facts.away_sd(joint.side, column) for column in WINDOWS if column.startswith(joint.kind)}
     judged = {column: sd for column, sd in away.items() if math.isfinite(sd)}
     beyond = [
         (tr("{peak}: more than 2\u00a0SD below") if sd < 0 else tr("{peak}: more than 2\u00a0SD above")).format(

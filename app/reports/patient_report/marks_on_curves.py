@@ -19,7 +19,7 @@ from app.wording import tr
 from core.body import Joint, Side
 from core.norms import KNEE_OVERREAD
 from core.samples import FloatArray
-from core.verdicts.quantities import EXCURSIONS_BY_COLUMN, QUANTITIES, QuantityClass
+from core.verdicts.quantities import CLASSES, EXCURSIONS_BY_COLUMN, QuantityClass
 
 CONTACT, ALL = (0.0, 0.0), (0.0, 100.0)  # percent of the stride
 
@@ -32,7 +32,7 @@ def deviations_of(facts: Facts) -> list[Deviation]:
     rows = {row.column: row for row in what_differs(facts)}
     told = [rows[one.column] for one in ranked_findings(facts, None, BANDS_ON_SCREEN) if one.column in rows]
     found: list[Deviation] = []
-    for kind in KINDS:
+    for kind in facts.kinds:
         row = next((row for row in told if _has_extremes(row, kind)), None)
         if row is not None:
             found.append(_on_leg(facts, row, kind))
@@ -47,7 +47,7 @@ def brackets_of(facts: Facts, comparison: Comparison | None) -> dict[Joint, Devi
     printed = [one.said for one in printed_findings(facts, comparison)]
     found: dict[Joint, Deviation] = {}
     for candidate, row in _told_between_legs(facts):
-        kind = next((kind for kind in KINDS if _has_extremes(row, kind)), None)
+        kind = next((kind for kind in facts.kinds if _has_extremes(row, kind)), None)
         if kind is None or joint_of(kind, Side.LEFT) in found or joint_of(kind, Side.RIGHT) in found:
             continue
         number = printed.index(candidate.said) + 1 if candidate.said in printed else None
@@ -70,7 +70,7 @@ def _told_between_legs(facts: Facts) -> list[tuple[Candidate, LegsRow]]:
 
 
 def _has_extremes(row: LegsRow, kind: str) -> bool:
-    return row.column.startswith(kind) and QUANTITIES[row.column] in (QuantityClass.SHAPE, QuantityClass.EXCURSION)
+    return row.column.startswith(kind) and CLASSES[row.column] in (QuantityClass.SHAPE, QuantityClass.EXCURSION)
 
 
 def _on_leg(facts: Facts, row: LegsRow, kind: str) -> Deviation:
@@ -110,7 +110,8 @@ def windows_of(column: str) -> tuple[tuple[float, float], tuple[float, float]]:
 def gaps_of(facts: Facts) -> list[Gap]:
     """Where a leg's curve lies beyond 2 SD both of the band as drawn and of the band laid at the curve's height.
 
-    A knee has to do so as measured and divided by what knees over-read; without a height nothing is said.
+    A knee has to do so as measured and divided by what knees over-read; without a height nothing is said, and of hips,
+    whose group has another zero, neither.
     """
     group = facts.curves_group
     if group is None or facts.bands.are_curves_of_other_ages:

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping
 
-from app.wording import tr
+from app.wording import figure_text, tr
 from core.body import Side
 from core.gait.spatiotemporal import MeanAndSd
 from core.norms import MIN_STRIDES_FOR_MEAN, MIN_STRIDES_FOR_SD
@@ -22,16 +22,16 @@ def fixed(value: float | None, decimals: int) -> str:
     """Write a number with its decimals; what is not known is a dash, and nothing is minus zero."""
     if value is None or not math.isfinite(value):
         return NOTHING
-    text = f"{value:.{decimals}f}"
+    text = figure_text(value, f".{decimals}f")
     if text.startswith("-"):
-        text = text[1:] if not text.strip("-0.") else MINUS + text[1:]
+        text = text[1:] if not text.strip("-0.,") else MINUS + text[1:]
     return text
 
 
 def signed(value: float | None, decimals: int) -> str:
     """Write a difference, always with its sign but for a zero."""
     text = fixed(value, decimals)
-    return text if text == NOTHING or text.startswith(MINUS) or not text.strip("0.") else f"+{text}"
+    return text if text == NOTHING or text.startswith(MINUS) or not text.strip("0.,") else f"+{text}"
 
 
 def spread(found: MeanAndSd, decimals: int) -> str:

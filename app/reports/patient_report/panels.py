@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from app.charts.axes import title_in_words
 from app.charts.cycles import Band, is_mean_enough, is_spread_enough
 from app.charts.drawing import COLOURS, DASHES, Picture, box, line, picture, text
 from app.charts.marks import Deviation, laid_at_height_of
@@ -17,7 +18,7 @@ from app.reports.patient_report.facts import KINDS, Facts, joint_of
 from app.reports.patient_report.numbers_in_words import fixed
 from app.reports.reference_bands import OTHER_AGES, WHY_NO_BAND
 from app.wording import capitalised, joined, name_of, side_name, tr, within_sentence
-from core.body import Joint, Side
+from core.body import Joint, JointKind, Side
 from core.norms import NoBand
 from core.verdicts.model import Verdict
 
@@ -26,30 +27,32 @@ DOT = 6.4
 PEAK_COLUMNS = {
     "knee": ("knee_loading_peak_deg", "knee_swing_peak_deg"),
     "ankle": ("ankle_stance_dorsiflexion_deg", "ankle_push_off_plantarflexion_deg"),
+    "hip": (),  # its peaks are those of the whole stride
 }
 
 
 def axis_of(facts: Facts, kind: str, *, is_about_mean: bool = False) -> Axis:
     """The same in every report; without a zero, about the mean of the stride."""
-    is_knee, is_about_mean = kind == "knee", is_about_mean or facts.has_no_zero(kind)
-    low, high = usual_range_deg(is_knee=is_knee, is_about_mean=is_about_mean)
-    if is_knee:
-        return Axis(low, high, 20, 10, tr("bent"), tr("straight"))
-    return Axis(low, high, 10, 10, tr("toes up"), tr("toes down"))
+    low, high = usual_range_deg(JointKind(kind), is_about_mean=is_about_mean or facts.has_no_zero(kind))
+    if kind == JointKind.ANKLE:
+        return Axis(low, high, 10, 10, tr("toes up"), tr("toes down"))
+    return Axis(low, high, 20, 10, tr("bent"), tr("straight") if kind == JointKind.KNEE else tr("extended"))
 
 
 def title_of(facts: Facts, kind: str) -> str:
     if facts.has_no_zero(kind):
-        return (
-            tr("Knee angle, degrees from the mean of the stride (flexion +)")
-            if kind == "knee"
-            else tr("Ankle angle, degrees from the mean of the stride (dorsiflexion +)")
-        )
-    return (
-        tr("Knee angle, degrees (flexion +, extension −)")
-        if kind == "knee"
-        else tr("Ankle angle, degrees (dorsiflexion +, plantarflexion −)")
-    )
+        from_mean = {
+            JointKind.HIP: tr("Hip angle, degrees from the mean of the stride (flexion +)"),
+            JointKind.KNEE: tr("Knee angle, degrees from the mean of the stride (flexion +)"),
+            JointKind.ANKLE: tr("Ankle angle, degrees from the mean of the stride (dorsiflexion +)"),
+        }
+        return from_mean[JointKind(kind)]
+    measured = {
+        JointKind.HIP: tr("Hip angle, degrees (flexion +, extension −)"),
+        JointKind.KNEE: tr("Knee angle, degrees (flexion +, extension −)"),
+        JointKind.ANKLE: tr("Ankle angle, degrees (dorsiflexion +, plantarflexion −)"),
+    }
+    return measured[JointKind(kind)]
 
 
 def title_with_side(facts: Facts, kind: str, side: Side, *, is_about_mean: bool = False) -> str:
@@ -62,15 +65,19 @@ def small_title(facts: Facts, kind: str, *, is_about_mean: bool = False) -> str:
     short = {
         "knee": tr("knee, degrees from the mean (flexion +)"),
         "ankle": tr("ankle, degrees from the mean (dorsiflexion +)"),
+        "hip": tr("hip, degrees from the mean (flexion +)"),
     }
     title = title_of(facts, kind)
     return short[kind] if is_about_mean or facts.has_no_zero(kind) else within_sentence(title)
 
 
 def band_of(facts: Facts, kind: str, sides: Sequence[Side]) -> Band | None:
-    """Mean and SD of band [1]; None where there is none for any of these legs, or nothing to compare."""
+    """Mean and SD of band [1]; None where there is none for any of these legs, or nothing to compare.
+
+    At the hip its zero is another one, so it is drawn only where it is laid at the height of one curve.
+    """
     group = facts.curves_group
-    if group is None or facts.has_no_zero(kind) or facts.sides_with_band.isdisjoint(sides):
+    if group is None or kind == JointKind.HIP or facts.has_no_zero(kind) or facts.sides_with_band.isdisjoint(sides):
         return None
     if not any(np.isfinite(facts.mean_curve_deg(side, kind)).any() for side in sides if side in facts.sides_with_band):
         return None
@@ -96,7 +103,7 @@ def curve_of(facts: Facts, side: Side, kind: str) -> StrideCurve:
 
 def leg_chart(facts: Facts, joint: Joint, bracket: Deviation | None) -> StrideChart:
     """One leg's joint with the band laid at its curve's height, so that the picture judges its shape alone."""
-    side, kind = joint.side, "knee" if joint.is_knee else "ankle"
+    side, kind = joint.side, joint.kind
     own = curve_of(facts, side, kind)
     band, said = None, [curve_alt(facts, kind, [side])]
     group = facts.curves_group
@@ -124,10 +131,16 @@ def joint_title(facts: Facts, side: Side, kind: str) -> str:
     return tr("{joint}, ° from its mean").format(joint=name) if facts.has_no_zero(kind) else f"{name}, °"
 
 
+def narrow_title(facts: Facts, kind: JointKind) -> str:
+    """Of both legs in a panel a third as wide as the page."""
+    name = title_in_words(kind)
+    return tr("{joint}, ° from its mean").format(joint=name) if facts.has_no_zero(kind) else f"{name}, °"
+
+
 def why_withheld(facts: Facts, joint: Joint) -> str:
     """Why neither mean nor single strides of a joint may be drawn; empty where one of them may."""
-    kind = "knee" if joint.is_knee else "ankle"
-    if np.isfinite(facts.mean_curve_deg(joint.side, kind)).any() or len(facts.strides_deg(joint.side, kind)):
+    side, kind = joint.side, joint.kind
+    if np.isfinite(facts.mean_curve_deg(side, kind)).any() or len(facts.strides_deg(side, kind)):
         return ""
     for cause in quality.causes(facts, (Verdict.WITHHELD,), is_of_joints=True):
         if joint in cause.places and cause.gate not in quality.HEIGHT_GATES:
@@ -179,6 +192,8 @@ def band_in_words(facts: Facts, *, is_at_height: bool) -> str:
     ]
     if is_at_height:
         said.append(tr("It is laid at the height of each curve, so the picture judges shape; height stands beside it."))
+    elif JointKind.HIP in facts.kinds:
+        said.append(tr("At the hip it has another zero and is on page 1 alone."))
     if facts.bands.are_curves_of_other_ages:
         said.append(tr(OTHER_AGES))
     if not facts.sides_with_band.issuperset(facts.gait):
@@ -273,6 +288,10 @@ def peak_name(column: str) -> str:
         "ankle_stance_dorsiflexion_deg": tr("most dorsiflexed, stance"),
         "ankle_push_off_plantarflexion_deg": tr("most plantarflexed, push\u2011off"),
         "ankle_swing_dorsiflexion_deg": tr("most dorsiflexed, swing"),
+        "hip_flexion_peak_deg": tr("most flexed"),
+        "hip_extension_peak_deg": tr("most extended"),
+        "hip_abduction_peak_deg": tr("most abducted"),
+        "hip_adduction_peak_deg": tr("most adducted"),
     }[column]
 
 

@@ -8,7 +8,7 @@ from app.gates_in_words import verdict_word
 from app.reports.comparison import compare_legs
 from app.reports.patient_report import quality
 from app.reports.patient_report.blocks import Block, Cell, Column, Row, note, table
-from app.reports.patient_report.facts import KINDS, Facts, joint_of
+from app.reports.patient_report.facts import Facts
 from app.reports.patient_report.numbers_in_words import (
     DAGGER,
     NOTHING,
@@ -26,12 +26,12 @@ from app.reports.patient_report.numbers_in_words import (
 )
 from app.reports.patient_report.panels import excursion_name, peak_name
 from app.reports.walk_figures import by_hand_in_words
-from app.wording import capitalised, tr
-from core.body import Side
+from app.wording import capitalised, later, tr
+from core.body import JointKind, Side
 from core.norms import KNEE_OVERREAD
 from core.verdicts.measurement_error import ComparisonKind, sigma_of
 from core.verdicts.model import Verdict
-from core.verdicts.quantities import EXCURSIONS_BY_COLUMN, WINDOWS
+from core.verdicts.quantities import ABDUCTION, EXCURSIONS_BY_COLUMN, WINDOWS
 
 SHAPES = {  # what needs no zero
     "knee": (
@@ -40,6 +40,7 @@ SHAPES = {  # what needs no zero
         "knee_straightening_deg",
         "knee_range_deg",
     ),
+    "hip": ("hip_range_deg", "hip_abduction_range_deg"),
     "ankle": (
         "ankle_push_off_deg",
         "ankle_rocker_deg",
@@ -55,6 +56,12 @@ HEIGHTS = {
         "knee_stance_minimum_deg",
         "knee_swing_peak_deg",
     ),
+    "hip": (
+        "hip_flexion_peak_deg",
+        "hip_extension_peak_deg",
+        "hip_abduction_peak_deg",
+        "hip_adduction_peak_deg",
+    ),
     "ankle": (
         "ankle_at_initial_contact_deg",
         "ankle_loading_plantarflexion_deg",
@@ -63,13 +70,23 @@ HEIGHTS = {
         "ankle_swing_dorsiflexion_deg",
     ),
 }
-TIMES = {"knee": ("knee_swing_peak_percent",), "ankle": ()}
+TIMES = {"hip": (), "knee": ("knee_swing_peak_percent",), "ankle": ()}
+MOVEMENTS = {
+    JointKind.HIP: later("Hip: how far it moves"),
+    JointKind.KNEE: later("Knee: how far it moves"),
+    JointKind.ANKLE: later("Ankle: how far it moves"),
+}
+ANGLES = {
+    JointKind.HIP: later("Hip: angles from standing"),
+    JointKind.KNEE: later("Knee: angles (flexion +)"),
+    JointKind.ANKLE: later("Ankle: angles (dorsiflexion +)"),
+}
 
 
 def peaks_table(facts: Facts) -> list[Block]:
     """Of each joint how far it moves, then its angles; below it what the words and marks mean."""
     one, other = facts.first_and_second
-    kinds = [kind for kind in KINDS if facts.has_joint(kind)]
+    kinds = [kind for kind in facts.kinds if facts.has_joint(kind)]
     if not kinds:
         return []
     columns = [
@@ -83,16 +100,16 @@ def peaks_table(facts: Facts) -> list[Block]:
     ]
     rows: list[Row] = []
     for kind in kinds:
-        rows.append(tr("Knee: how far it moves") if kind == "knee" else tr("Ankle: how far it moves"))
-        rows += [_row(facts, column) for column in (*SHAPES[kind], *TIMES[kind])]
+        rows.append(tr(MOVEMENTS[kind]))
+        rows += [_row(facts, column) for column in (*SHAPES[kind], *TIMES[kind]) if _is_any_told(facts, kind, column)]
         rows.append(_head_of_heights(facts, kind))
         rows += [_row(facts, column) for column in HEIGHTS[kind] if _is_any_told(facts, kind, column)]
     return [table(columns, rows, is_dense=True), note(" ".join(_notes(facts, kinds)))]
 
 
-def _head_of_heights(facts: Facts, kind: str) -> str:
+def _head_of_heights(facts: Facts, kind: JointKind) -> str:
     """With how far each leg's whole curve lies from the band."""
-    title = tr("Knee: angles (flexion +)") if kind == "knee" else tr("Ankle: angles (dorsiflexion +)")
+    title = tr(ANGLES[kind])
     offsets = [
         f"{side[0].upper()}\u00a0{signed(offset, 1)}°"
         for side in Side
@@ -104,7 +121,15 @@ def _head_of_heights(facts: Facts, kind: str) -> str:
     return said.format(title=title, offsets=", ".join(offsets))
 
 
-def _notes(facts: Facts, kinds: Sequence[str]) -> list[str]:
+def hips_note() -> str:
+    """What hips and pelvis cannot say."""
+    return tr(
+        "Of hips and pelvis no error of a difference is known: differences are told and not judged. Rotation of the "
+        "hip is not readable and not given."
+    )
+
+
+def _notes(facts: Facts, kinds: Sequence[JointKind]) -> list[str]:
     said = [
         tr("Mean ± SD over strides; each is found stride by stride. Windows in brackets are % of the stride."),
         _movements(kinds),
@@ -114,7 +139,11 @@ def _notes(facts: Facts, kinds: Sequence[str]) -> list[str]:
         judged = tr("Exceeds, inside: the measurement error between legs, at least {error}°.")
         said.append(judged.format(error=signed_error(sigma_of("knee_range_deg", ComparisonKind.LEGS))))
         said.append(tr("For the ankle the knee's figure is borrowed.") + " " + dagger_note())
-    shown = [(side, column) for side in facts.gait for kind in KINDS for column in (*SHAPES[kind], *HEIGHTS[kind])]
+    if JointKind.HIP in kinds:
+        said.append(hips_note())
+    shown = [
+        (side, column) for side in facts.gait for kind in facts.kinds for column in (*SHAPES[kind], *HEIGHTS[kind])
+    ]
     if any(math.isfinite(facts.away_sd(side, column)) for side, column in shown):
         judged = tr("Against the band: after laying it at each curve's height; knees as measured and divided by {by}.")
         said.append(judged.format(by=fixed(KNEE_OVERREAD, 2)))
@@ -131,6 +160,10 @@ def _side_column(facts: Facts, side: Side) -> Column:
 
 def measure(column: str) -> str:
     """Name a row, with the window its peak is looked for in."""
+    if column == "hip_abduction_range_deg":
+        return tr("Abduction, range over the stride")
+    if column.startswith("hip") and column.endswith("_peak_deg"):
+        return capitalised(peak_name(column))
     if column.endswith("_at_initial_contact_deg"):
         return tr("At initial contact")
     if column.endswith("_range_deg"):
@@ -143,7 +176,7 @@ def measure(column: str) -> str:
     return f"{capitalised(peak_name(column))} ({window.first}–{window.last}\u00a0%)"
 
 
-def _movements(kinds: Sequence[str]) -> str:
+def _movements(kinds: Sequence[JointKind]) -> str:
     """Between which parts of the stride each movement is measured."""
     each = []
     for column in (column for kind in kinds for column in SHAPES[kind] if column in EXCURSIONS_BY_COLUMN):
@@ -159,14 +192,14 @@ def _movements(kinds: Sequence[str]) -> str:
 
 
 def _verdict(facts: Facts, side: Side, column: str) -> Verdict:
-    if not facts.is_measured(joint_of(column.split("_")[0], side)):
+    if not facts.is_worn(side, column):
         return Verdict.NOT_MEASURED
     return facts.assessment(side, column).verdict
 
 
-def _is_any_told(facts: Facts, kind: str, column: str) -> bool:
-    """Whether a row has anything to tell: at initial contact there is nothing but a height."""
-    return "initial_contact" not in column or any(
+def _is_any_told(facts: Facts, kind: JointKind, column: str) -> bool:
+    """Whether a row has anything to tell: at initial contact, and of a hip outwards, there is nothing but a height."""
+    return ("initial_contact" not in column and not column.startswith(ABDUCTION)) or any(
         _verdict(facts, side, column) in (Verdict.READ, Verdict.CARE) for side in Side
     )
 
@@ -176,7 +209,7 @@ def _row(facts: Facts, column: str) -> list[Cell | str]:
     cells += [value_cell(facts, side, column) for side in Side]
     is_any = any(facts.value(side, column).n for side in facts.sides_with_band)
     band, kind = facts.band(column) if is_any else None, column.split("_")[0]
-    group_range = facts.group_range_deg(kind) if is_any and column.endswith("_range_deg") else None
+    group_range = facts.group_range_deg(kind) if is_any and column == f"{kind}_range_deg" else None
     if band is not None:
         in_band = band_in_figures(band, 1)
         away = {side: facts.away_sd(side, column) for side in Side}

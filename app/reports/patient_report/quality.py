@@ -9,7 +9,7 @@ from app.gates_in_words import GateWords, gate_words
 from app.reports.patient_report.facts import Facts
 from app.reports.patient_report.numbers_in_words import NOTHING, fixed
 from app.wording import NAMES, capitalised, joined, name_of, side_name, tr, tr_n, within_sentence
-from core.body import Joint, Side, Site
+from core.body import Joint, Side, Site, hip_of
 from core.findings import Finding
 from core.gait.strides import Reason
 from core.quality import MIN_LOSS_PERCENT
@@ -19,6 +19,7 @@ from core.verdicts.model import GateReason, Verdict, Verdicts, worst
 MAX_SENTENCES = 3  # more would push a page over its foot
 MAX_TO_DO = 2  # beside a panel
 HEIGHT_GATES = ("zero", "plausible_height")  # these leave the shape alone
+ABDUCTION_GATES = ("hip_heading",)  # and these all but abduction
 Place = Joint | Side | None
 """What a reason is about: a joint, a leg, or what lies between both legs."""
 
@@ -49,9 +50,9 @@ class Cause:
     words: GateWords
 
     @property
-    def is_between(self) -> bool:
-        """Whether it is only about instants of both legs, so that each leg can be read."""
-        return set(self.places) == {None}
+    def is_aside(self) -> bool:
+        """Whether each leg can be read: it is about instants of both legs alone, or about a hip's abduction."""
+        return set(self.places) == {None} or self.gate in ABDUCTION_GATES
 
     @property
     def said(self) -> str:
@@ -85,6 +86,10 @@ def _reasons(verdicts: Verdicts) -> Iterator[tuple[Place, GateReason]]:
         yield from ((joint, reason) for part in (found.shape, found.height, found.sign) for reason in part.reasons)
     for side, leg in verdicts.legs.items():
         yield from ((side, reason) for part in (leg.timing, leg.distance) for reason in part.reasons)
+    for side, abduction in verdicts.abduction.items():
+        if verdicts.joint(hip_of(side)).shape.verdict is Verdict.WITHHELD:
+            continue  # with the hip, whose own reason is told
+        yield from ((hip_of(side), reason) for reason in abduction.reasons)
     yield from ((None, reason) for reason in verdicts.between.reasons)
 
 
@@ -93,6 +98,8 @@ def _named(gate: str, where: str) -> str:
     inside = within_sentence(where)
     if gate in HEIGHT_GATES:
         return tr("Height of {joints}").format(joints=inside)
+    if gate in ABDUCTION_GATES:
+        return tr("Abduction of {joints}").format(joints=inside)
     return tr("All of {joints} but the range").format(joints=inside) if gate == "sign" else where
 
 

@@ -62,7 +62,12 @@ def stride_rail(facts: Facts, kind: str) -> Picture:
     def y(value: float) -> float:
         return bottom - (bottom - TOP) * (value - low) / (high - low)
 
-    title = tr("Knee range of each stride, °") if kind == "knee" else tr("Ankle range of each stride, °")
+    titles = {
+        "hip": tr("Hip range of each stride, °"),
+        "knee": tr("Knee range of each stride, °"),
+        "ankle": tr("Ankle range of each stride, °"),
+    }
+    title = titles[kind]
     parts = [text(0, 8, title, 7.6, weight=600)]
     for value in np.arange(low, high + 1, TICK_DEG):
         parts.append(line(LEFT_EDGE, y(value), right, y(value), PAPER.ink if value == low else PAPER.grid, 0.5))

@@ -12,7 +12,7 @@ from app.reports.comparison import compare_legs
 from app.reports.patient_report import panels
 from app.reports.patient_report.blocks import Block, Cell, Column, Row, figures, heading, note, table
 from app.reports.patient_report.evidence import evidence
-from app.reports.patient_report.facts import KINDS, Facts, joint_of
+from app.reports.patient_report.facts import Facts, joint_of
 from app.reports.patient_report.numbers_in_words import (
     CARE,
     DAGGER,
@@ -27,16 +27,18 @@ from app.reports.patient_report.numbers_in_words import (
     signed,
     spread,
 )
+from app.reports.patient_report.pelvis_table import pelvis_table
 from app.reports.patient_report.phase_bars import phase_bars, phases_of
 from app.reports.patient_report.stride_rails import reasons_in_words, stride_rail
 from app.reports.walk_figures import by_hand_in_words
 from app.wording import tr
-from core.body import Side
+from core.body import JointKind, Side
 from core.gait.spatiotemporal import MeanAndSd
 from core.verdicts.measurement_error import Difference
 from core.verdicts.model import Verdict
 
 PLOT_WIDTH, ALONE_WIDTH = 31 * MM, 66 * MM  # of single strides, below the rails or where there are none
+WITH_HIP_WIDTH = 21.5 * MM  # of three joints of each leg
 DOUBLE_SUPPORT = "double_support_percent"
 TOLD = ("stride_time_s", "stride_length_m", "step_time_s")  # of these kinds is the table: timing, distance, between
 ROCKERS = ("ankle_heel_rocker_deg", "ankle_rocker_deg", "ankle_push_off_deg")
@@ -46,6 +48,7 @@ def time_page(facts: Facts) -> list[Block]:
     return [
         heading(tr("Time, distance and strides")),
         *time_distance_table(facts),
+        *pelvis_table(facts),
         *_phases(facts),
         *_every_stride(facts),
         *(evidence(facts) if is_evidence_beside_time(facts) else []),
@@ -54,7 +57,7 @@ def time_page(facts: Facts) -> list[Block]:
 
 def is_evidence_beside_time(facts: Facts) -> bool:
     """Whether no stride of any joint may be shown, so that this page has room and its reader asks why."""
-    joints = [(side, kind) for side in facts.gait for kind in KINDS if facts.is_measured(joint_of(kind, side))]
+    joints = [(side, kind) for side in facts.gait for kind in facts.kinds if facts.is_measured(joint_of(kind, side))]
     return bool(joints) and not any(_has_strides(facts, side, kind) for side, kind in joints)
 
 
@@ -233,7 +236,7 @@ def _turn(facts: Facts, side: Side, column: str) -> Cell | str:
 
 
 def _every_stride(facts: Facts) -> list[Block]:
-    kinds = [kind for kind in KINDS if facts.has_joint(kind)]
+    kinds = [kind for kind in facts.kinds if facts.has_joint(kind)]
     told = [kind for kind in kinds if any(facts.value(side, f"{kind}_range_deg").n for side in facts.gait)]
     rails = [figures([stride_rail(facts, kind)]) for kind in told]
     if not kinds or is_evidence_beside_time(facts):
@@ -244,6 +247,8 @@ def _every_stride(facts: Facts) -> list[Block]:
         by_hand_in_words(facts.walk),
     ]
     columns, width = (4, PLOT_WIDTH) if rails else (2, ALONE_WIDTH)
+    if rails and JointKind.HIP in kinds:
+        columns, width = 6, WITH_HIP_WIDTH
     small = [_strides(facts, side, kind, width) for kind in kinds for side in Side if _has_strides(facts, side, kind)]
     return [
         heading(tr("Every stride"), level=2),

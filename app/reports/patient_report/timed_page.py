@@ -2,11 +2,14 @@
 
 import math
 
-from app.reports.patient_report.blocks import Block, Cell, Column, Row, heading, note, paragraph, table
-from app.reports.patient_report.numbers_in_words import NOTHING, dagger_note
-from app.reports.patient_report.plain_text import isolated, plain
+from app.reports.patient_report.blocks import Block, Cell, Column, Row, figures, heading, note, paragraph, table
+from app.reports.patient_report.facts import Facts
+from app.reports.patient_report.numbers_in_words import DAGGER, NOTHING, dagger_note, fixed
+from app.reports.patient_report.plain_text import CONDITION_LENGTH, isolated, plain, typed
 from app.reports.patient_report.request import ReportRequest
+from app.reports.patient_report.trend_page import charts_of_tests
 from app.reports.timed_csv import timed_walks
+from app.reports.visits import condition_in_words
 from app.timed_words import (
     course_sentence,
     error_words,
@@ -21,14 +24,16 @@ from app.timed_words import (
 from app.wording import tr
 from core.results import RecordingAnalysis
 from core.timed.found import TimedPart, TimedTest
+from core.timed.measures import COLUMNS
 from core.timed.protocols import DEFINITIONS, TimedProtocol
+from core.verdicts.attempts import error_between_visits
 
 MOST_TESTS = 12  # of one page
 MOST_LAPS = 16
 
 
-def timed_page(request: ReportRequest) -> list[Block]:
-    """All timed tests of the visit; none where no walk was one."""
+def timed_page(request: ReportRequest, facts: Facts) -> list[Block]:
+    """All timed tests of the visit, and their course over the visits; none where no walk was one."""
     walks = timed_walks(request.visit.analysis)[:MOST_TESTS]
     tests = [(walk, walk.timed) for walk in walks if walk.timed is not None]
     if not tests:
@@ -49,11 +54,31 @@ def timed_page(request: ReportRequest) -> list[Block]:
     if longest:
         blocks += [heading(tr("Over the test: {test}").format(test=name_of_test(longest[-1].protocol)), 2)]
         blocks += [_parts(longest[-1])]
+    course, has_whiskers = _course(request, facts)
+    blocks += course
     known = [_known(protocol) for protocol in protocols]
     errors = {error for _, test in tests for error in test.definition.errors}
-    if any(not error.is_verified for error in errors):
+    if has_whiskers or any(not error.is_verified for error in errors):
         known.append(dagger_note())
     return [*blocks, note(" ".join(known))]
+
+
+def _course(request: ReportRequest, facts: Facts) -> tuple[list[Block], bool]:
+    """What each test is made for over the visits, under the report's condition; whether an error is drawn."""
+    condition = request.visit.recording(request.shown).condition
+    charts = charts_of_tests(request.course, condition, facts)
+    if not charts:
+        return [], False
+    stated = typed(condition, CONDITION_LENGTH) if condition else condition_in_words("")
+    said = [tr("Condition: {condition}. Of several attempts the mean.").format(condition=stated)]
+    error = error_between_visits(COLUMNS[TimedProtocol.TEN_METRES])
+    if TimedProtocol.TEN_METRES in charts:
+        whisker = tr("Whisker: half of the error of a change of speed, {error} m/s {dagger}.")
+        said.append(whisker.format(error=fixed(error, 2), dagger=DAGGER))
+    if set(charts) - {TimedProtocol.TEN_METRES}:
+        said.append(tr("Of distances in a set time and of times from a chair no error is known: they are not judged."))
+    drawn = figures(list(charts.values()), columns=2)
+    return [heading(tr("Over the visits"), 2), note(" ".join(said)), drawn], TimedProtocol.TEN_METRES in charts
 
 
 def _name(request: ReportRequest, walk: RecordingAnalysis) -> str:

@@ -40,17 +40,20 @@ def trend_chart(
     *,
     is_simulated: bool,
     goals: Sequence[tuple[float, str]] = (),
+    least_span: float = 0.0,
 ) -> Picture:
     """A line for each leg, or one for both; visits are numbered from 1 in order of time.
 
-    `goals` are values with the words that stand beside the title: what was agreed, and when.
+    `goals` are values with the words that stand beside the title: what was agreed, and when. Of less than `least_span`
+    the axis is none: what nobody judges is not to look large.
     """
     told = [one for values in lines.values() for one in values if math.isfinite(one.value)]
     reach = [
         one.value + sign * (one.whisker if math.isfinite(one.whisker) else 0.0) for one in told for sign in (-1, 1)
     ]
     reach += [value for value, _ in goals]
-    low, high, step = _axis(min(reach), max(reach))
+    middle, half = 0.5 * (min(reach) + max(reach)), 0.5 * max(max(reach) - min(reach), least_span)
+    low, high, step = _axis(middle - half, middle + half) if least_span else _axis(min(reach), max(reach))
     agreed = "; ".join(words for _, words in goals)
     right, bottom, top = WIDTH - RIGHT_EDGE, HEIGHT - FOOT, TOP + OF_GOALS * len(goals)
     first, last = days[0].toordinal(), days[-1].toordinal()

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from app.charts.drawing import Picture
 from app.dates import date, short_date
-from app.measure_names import measure_name, unit_name
+from app.measure_names import least_span, measure_name, short_unit, unit_name
 from app.reports.course import KNEE, PUSH_OFF, SPEED, STANCE, CourseCondition, change
 from app.reports.course_lanes import CourseVisit
 from app.reports.goals import goal_mark, goal_sentence, in_course
@@ -20,7 +20,9 @@ from app.reports.patient_report.what_stands_out import measure_in_words, unit_an
 from app.reports.visits import condition_in_words
 from app.wording import capitalised, tr
 from core.body import Side
-from core.goals import OF_WALKS, AgreedGoals, Goal, GoalOf
+from core.goals import AgreedGoals, Goal, GoalOf, is_of_walk
+from core.timed.measures import COLUMNS, PROTOCOLS
+from core.timed.protocols import TimedProtocol
 from core.verdicts.measurement_error import Difference
 from core.verdicts.model import Verdict
 
@@ -57,10 +59,10 @@ def trend_page(visits: Sequence[CourseVisit], condition: str, facts: Facts) -> l
     visits
         In order of time; the last is that of the report.
     """
-    walked = [visit for visit in visits if visit.course is not None and visit.course.condition(condition) is not None]
+    walked = _walked(visits, condition)
     agreed = facts.alone.agreed
     columns = _columns(agreed)
-    lines = _lines(walked, condition, columns, agreed)
+    lines = _lines(walked, condition, (*columns, *COLUMNS.values()), agreed)
     shown = [line for line in lines if len(line.told) > 1]
     if not shown:
         return []
@@ -87,9 +89,22 @@ def trend_page(visits: Sequence[CourseVisit], condition: str, facts: Facts) -> l
     ]
 
 
+def charts_of_tests(visits: Sequence[CourseVisit], condition: str, facts: Facts) -> dict[TimedProtocol, Picture]:
+    """One for each timed test that two visits and more have under a condition."""
+    walked, columns = _walked(visits, condition), tuple(COLUMNS.values())
+    lines = _lines(walked, condition, columns, facts.alone.agreed)
+    shown, days = [line for line in lines if len(line.told) > 1], [visit.day for visit in walked]
+    return {PROTOCOLS[column]: _chart(column, shown, days, facts) for column in columns if _of(shown, column)}
+
+
+def _walked(visits: Sequence[CourseVisit], condition: str) -> list[CourseVisit]:
+    return [visit for visit in visits if visit.course is not None and visit.course.condition(condition) is not None]
+
+
 def _columns(agreed: AgreedGoals) -> tuple[str, ...]:
     """What has a chart: what goals are of, then the usual measures as far as there is room."""
-    wanted = dict.fromkeys(goal.column for goal in agreed.held if goal.of is not GoalOf.BETWEEN)
+    own = (goal for goal in agreed.held if goal.of is not GoalOf.BETWEEN and goal.column not in PROTOCOLS)
+    wanted = dict.fromkeys(goal.column for goal in own)
     few = list(wanted)[:MOST_CHARTS]
     others = [column for column in MEASURES if column not in few][: MOST_CHARTS - len(few)]
     shown = {*few, *others}
@@ -122,7 +137,7 @@ def _lines(
     at = [part for part in parts if part is not None]
     found = []
     for column in columns:
-        for side in (None,) if column in OF_WALKS else tuple(Side):
+        for side in (None,) if is_of_walk(column) else tuple(Side):
             values = [value for number, part in enumerate(at) if (value := _value(part, column, side, number))]
             told = [value.visit for value in values if math.isfinite(value.value)]
             if not told:
@@ -142,6 +157,9 @@ def _lines(
 
 def _value(part: CourseCondition, column: str, side: Side | None, number: int) -> TrendValue | None:
     """None where it was not measured."""
+    if column in PROTOCOLS:
+        test = part.test(column)
+        return TrendValue(number, test.found.mean, test.whisker) if test is not None else None
     figure = part.figure(column, side)
     if figure is None or figure.verdict is Verdict.NOT_MEASURED:
         return None
@@ -157,7 +175,10 @@ def _chart(column: str, lines: Sequence[_TrendLine], days: Sequence[datetime.dat
     drawn = {line.side: line.values for line in _of(lines, column)}
     held = [goal for goal in facts.alone.agreed.of(column) if goal.of is not GoalOf.BETWEEN]
     goals = [(goal.value, _agreed_in_words(goal)) for goal in held]
-    return trend_chart(_name(column), decimals, days, drawn, is_simulated=facts.is_simulated, goals=goals)
+    least = least_span(column) if column in PROTOCOLS else 0.0
+    return trend_chart(
+        _name(column), decimals, days, drawn, is_simulated=facts.is_simulated, goals=goals, least_span=least
+    )
 
 
 def _agreed_in_words(goal: Goal) -> str:
@@ -175,6 +196,8 @@ def _name(column: str) -> str:
     }
     if column in names:
         return names[column]
+    if column in PROTOCOLS:
+        return tr("{measure}, {unit}").format(measure=measure_name(column), unit=short_unit(column).strip())
     unit = "°" if column.endswith("_deg") else unit_name(column)
     return tr("{measure}, {unit}").format(measure=measure_name(column), unit=unit)
 
@@ -198,7 +221,13 @@ def _sentences(lines: Sequence[_TrendLine], facts: Facts, visits: int) -> list[s
             return [said]
         return [tr("No change is larger than its error.")]
     ordered = sorted(worth, key=lambda line: -line.since_first.ratio if line.since_first is not None else 0.0)
-    return [_sentence(line, facts, visits) for line in ordered[:MOST_SENTENCES]]
+    told = {_movement(line): line for line in reversed(ordered)}  # of each the largest
+    return [_sentence(line, facts, visits) for line in ordered if told[_movement(line)] is line][:MOST_SENTENCES]
+
+
+def _movement(line: _TrendLine) -> tuple[str, Side | None]:
+    """What is told of once: speed is one, in a timed test or out of it."""
+    return (SPEED if line.column.endswith(SPEED) else line.column), line.side
 
 
 def _sentence(line: _TrendLine, facts: Facts, visits: int) -> str:

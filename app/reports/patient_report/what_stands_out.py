@@ -5,6 +5,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from enum import IntEnum
 
+from app.measure_names import decimals, short_unit
 from app.reports.comparison import Compared, Comparison, Contrast, compare_legs
 from app.reports.patient_report import quality
 from app.reports.patient_report.facts import KINDS, Facts, joint_of, role
@@ -12,9 +13,11 @@ from app.reports.patient_report.numbers_in_words import band_in_figures, fixed, 
 from app.reports.patient_report.panels import peak_name
 from app.reports.patient_report.peaks_table import HEIGHTS
 from app.reports.patient_report.plain_text import CONDITION_LENGTH, typed
+from app.timed_words import name_of_test
 from app.wording import capitalised, later, name_of, tr
-from core.body import LEG_JOINTS, Joint, Side
+from core.body import Joint, Side
 from core.results import ZeroKind
+from core.timed.measures import PROTOCOLS
 from core.verdicts.measurement_error import Z95, ComparisonKind, Difference, sigma_of
 from core.verdicts.model import Verdict
 from core.verdicts.quantities import QUANTITIES, QuantityClass
@@ -37,6 +40,7 @@ BETWEEN_LEGS = (
     "ankle_range_deg",
     "stance_percent",
     "step_time_s",
+    "hip_range_deg",  # no error of a difference is known: it stands in tables and never in a sentence
 )  # not the stride's length: in walking straight on both feet travel equally far
 
 
@@ -128,7 +132,7 @@ def nothing_found(facts: Facts, comparison: Comparison | None) -> list[str]:
         said.append(
             tr("No difference is so much larger than its error that it is told here; the tables mark what exceeds it.")
         )
-    elif judged and (has_angles or not any(map(facts.is_measured, LEG_JOINTS))):
+    elif judged and (has_angles or not any(map(facts.is_measured, Joint))):
         said.append(tr("No difference is larger than its error."))
     elif judged:
         said.append(tr("No angle can be compared. No difference of times or steps is larger than its error."))
@@ -376,6 +380,8 @@ def _topic(side: Side, column: str, is_more: bool) -> Topic:
 
 def unit_and_decimals(column: str) -> tuple[str, int]:
     """A column's unit as it follows a number, and its decimals."""
+    if column in PROTOCOLS:
+        return short_unit(column), decimals(column)
     if column.endswith("_deg"):
         return "°", 1
     if column.endswith("_m_s"):
@@ -387,6 +393,8 @@ def unit_and_decimals(column: str) -> tuple[str, int]:
 
 def measure_in_words(column: str) -> str:
     """A column's name inside a sentence."""
+    if column in PROTOCOLS:
+        return name_of_test(PROTOCOLS[column])
     names = {
         "stance_percent": tr("stance, share of the stride"),
         "step_time_s": tr("step time"),
@@ -402,6 +410,10 @@ def measure_in_words(column: str) -> str:
         "ankle_toes_lifted_deg": tr("ankle, toes lifted in swing"),
         "knee_range_deg": tr("knee range over the stride"),
         "ankle_range_deg": tr("ankle range over the stride"),
+        "hip_range_deg": tr("hip range over the stride"),
+        "hip_extension_peak_deg": tr("hip, most extended"),
+        "pelvis_obliquity_range_deg": tr("pelvis, obliquity over the stride"),
+        "pelvis_drop_deg": tr("pelvis drop in swing"),
     }
     if column in names:
         return names[column]

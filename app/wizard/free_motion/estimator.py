@@ -7,8 +7,9 @@ import numpy as np
 
 from app.acquisition.chain_search import ChainSearch
 from app.acquisition.motion_memory import KEPT_S, Looks, MotionMemory, tracks_in_steps
-from core.body import Side, Site
+from core.body import Joint, Side, Site
 from core.live.free_motion import FreeMotionState, LiveFreeMotion
+from core.live.hip_heading import HipHeadingState
 from core.live.sensors import LiveSensor
 from core.placement.arrangements import joints_between
 from core.placement.chains import LIFTED_RAD_S, Chains
@@ -77,6 +78,7 @@ class FreeMotionEstimator:
         sides = [side for side in Side if any(site.side is side for site in self._sensors)]
         self._legs = {side: self._new_leg(side) for side in sides}
         self._states: dict[Side, FreeMotionState] = {}
+        self._hips: dict[Joint, HipHeadingState] = {}  # known before their leg was repeated
         self._labels = _LabelCheck(self._sensors, {site_of[k]: v for k, v in (standing or {}).items() if k in site_of})
         self._first_s: float | None = None
         self._now_s = -np.inf
@@ -93,7 +95,8 @@ class FreeMotionEstimator:
         wish, self._wish = self._wish, None
         if wish in self._legs:
             self._legs[wish], self._repeated, self._first_s = self._new_leg(wish), wish, None
-            self._states.pop(wish, None)
+            before = self._states.pop(wish, FreeMotionState())
+            self._hips |= {joint: hip for joint, hip in before.hips.items() if hip.is_sure}
         worn = {self._site_of[name]: block for name, block in blocks.items() if name in self._site_of and len(block)}
         if not worn:
             return
@@ -102,10 +105,10 @@ class FreeMotionEstimator:
         self._now_s = max(self._now_s, *(float(block.time_s[-1]) for block in worn.values()))
         for side, leg in self._legs.items():
             if self._repeated in (None, side):
-                self._states[side] = leg.update({s: block for s, block in worn.items() if s.side is side})
+                self._states[side] = leg.update({s: block for s, block in worn.items() if s.side in (side, None)})
         self._labels.update(worn)
         self.state = FreeMotionView(
-            motion=_both(self._states),
+            motion=_both(self._states, self._hips),
             elapsed_s=self._now_s - self._first_s,
             repeated=self._repeated,
             exchanged=self._labels.exchanged,
@@ -113,7 +116,7 @@ class FreeMotionEstimator:
         )
 
     def _new_leg(self, side: Side) -> LiveFreeMotion:
-        of_leg = {site: sensor for site, sensor in self._sensors.items() if site.side is side}
+        of_leg = {site: sensor for site, sensor in self._sensors.items() if site.side in (side, None)}
         return LiveFreeMotion(of_leg, self._prosthetic_sides, self._without_ankle)
 
 
@@ -228,8 +231,10 @@ class _LabelCheck:
         ends = {end for joint in joints_between(tuple(map(Site, blocks))) for end in (joint.proximal, joint.distal)}
         yield
         joined = {site: block for site, block in blocks.items() if Site(site) in ends}
-        moved_s = {Site(site).side: 0.0 for site in joined}
+        moved_s = {Site(site).side: 0.0 for site in joined if Site(site) is not Site.PELVIS}
         for site, block in joined.items():
+            if Site(site) is Site.PELVIS:  # it sways while the legs move
+                continue
             is_moving = np.linalg.norm(block.gyr_rad_s, axis=1) > LIFTED_RAD_S
             seconds = float(np.count_nonzero(is_moving)) * self._sensors[site].step_s
             moved_s[Site(site).side] = max(moved_s[Site(site).side], seconds)
@@ -241,12 +246,14 @@ class _LabelCheck:
         self._last = found
 
 
-def _both(legs: Mapping[Side, FreeMotionState]) -> FreeMotionState:
-    """The state of both legs together."""
+def _both(legs: Mapping[Side, FreeMotionState], known: Mapping[Joint, HipHeadingState]) -> FreeMotionState:
+    """The state of both legs together; what was known of a hip holds until it is known anew."""
     joints = {joint: state for leg in legs.values() for joint, state in leg.joints.items()}
     lags = {joint: state for leg in legs.values() for joint, state in leg.lags.items()}
     weakest = [leg.weakest for leg in legs.values() if leg.weakest is not None]
-    return FreeMotionState(joints, lags, max(weakest, key=lambda joint: joints[joint].wanting, default=None))
+    hips = {joint: state for leg in legs.values() for joint, state in leg.hips.items()}
+    hips |= {joint: state for joint, state in known.items() if joint in hips and not hips[joint].is_sure}
+    return FreeMotionState(joints, lags, max(weakest, key=lambda joint: joints[joint].wanting, default=None), hips)
 
 
 def _begin_s(worn: Mapping[str, ImuBlock]) -> float:

@@ -91,6 +91,10 @@ def last_hint(motion: FreeMotionState, prosthetic_sides: frozenset[Side] = froze
     if all(state in CLOSED for state in states.values()):
         ankles = [joint for joint in states if not joint.is_knee]
         finds = tr_n("It finds the ankle's axis.", "It finds the ankles' axes.", len(ankles)) if ankles else ""
+        if open_hip(motion) is not None:
+            hips = tr("With a turn it shows the hips.")
+            with_axes = tr("It finds the ankles' axes and, with a turn, the hips.")
+            finds = with_axes if ankles else hips
         how = " ".join(filter(None, [then, finds]))
         return Hint(tr("Enough motion"), how, tr("Walking comes next."), Icon.CHECK)
     loose = [joint for joint, state in states.items() if state is GaugeState.LOOSE]
@@ -102,6 +106,18 @@ def last_hint(motion: FreeMotionState, prosthetic_sides: frozenset[Side] = froze
         return Hint(sentence, f"{angle} {then}", tr("Walking comes next."), Icon.WARNING)
     how = tr("Go on to walking, or repeat one leg.")
     return Hint(tr("As good as it gets"), how, how, Icon.INFO)
+
+
+def open_hip(motion: FreeMotionState) -> Joint | None:
+    """The hip that is known least of those that are not known well enough."""
+    left = {joint: hip.sd_rad for joint, hip in motion.hips.items() if not hip.is_sure}
+    return max(left, key=lambda joint: left[joint], default=None)
+
+
+def hip_hint() -> Hint:
+    """Ask for what shows the hips: they accelerate little while one leg circles."""
+    how = tr("Or lunges, left and right. Circling legs do not show the hips; a walk does.")
+    return Hint(tr("Walk 15 s, with a turn"), how, tr("Or lunges, left and right."), Icon.NEXT)
 
 
 def played_hint(has_played: bool) -> Hint:
@@ -125,7 +141,8 @@ def recorded_hint(motion: FreeMotionState, prosthetic_sides: frozenset[Side] = f
 
 def absent_note(joint: Joint, worn: Collection[Site], without_ankle: Collection[Side]) -> str:
     """Say why a joint has no gauge; empty where it has one."""
-    if not joint.is_knee and joint.side in without_ankle and joint.proximal in worn and joint.distal in worn:
+    is_ankle = not joint.is_knee and not joint.is_hip
+    if is_ankle and joint.side in without_ankle and joint.proximal in worn and joint.distal in worn:
         return tr("Foot without ankle joint: nothing to find. Its angle is called foot against shank.")
     missing = [site for site in (joint.proximal, joint.distal) if site not in worn]
     if not missing:
@@ -175,11 +192,20 @@ class HintHold:
         else:
             self._settled_s = None
         if weakest is None:
-            return Asked(last_hint(motion, self._prosthetic_sides) if motion.is_done else first_hint())
+            return self._rest(motion)
         missing = motion.joints[weakest].missing
         if missing is None or not any(state.moved_s for state in motion.joints.values()):
             return Asked(first_hint())
         return Asked(hint_for(missing, self._prosthetic_sides), weakest, missing.site)
+
+    def _rest(self, motion: FreeMotionState) -> Asked:
+        """With nothing left to ask of knees and ankles: hips may still be shown where some did not close."""
+        hip = open_hip(motion)
+        if not motion.is_done:
+            return Asked(first_hint())
+        if hip is None or all(state.is_closed for state in motion.joints.values()):
+            return Asked(last_hint(motion, self._prosthetic_sides))
+        return Asked(hip_hint(), hip, Site.PELVIS)
 
     def _given_up(self, motion: FreeMotionState, now_s: float) -> Joint | None:
         """The worst joint that wants more motion and was not asked for a second time, or is just being."""
@@ -199,6 +225,8 @@ class HintHold:
     def _is_answered(self, asked: Asked, motion: FreeMotionState) -> bool:
         if asked.joint is None:
             return True  # "Move any leg" has been answered by moving
+        if asked.joint.is_hip:
+            return asked.joint in motion.hips and motion.hips[asked.joint].is_sure
         state = motion.joints.get(asked.joint)
         return state is None or state.is_closed or state.is_plateau
 

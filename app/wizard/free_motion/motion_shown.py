@@ -4,8 +4,9 @@ from typing import TYPE_CHECKING
 
 from app.widgets.body_figure import SensorMark
 from app.widgets.gauge import GaugeFace, GaugeState, gauge_face
+from app.widgets.hip_gauge import HipFace, hip_face
 from app.wizard.free_motion.hints import absent_note, wanted_of
-from core.body import LEG_JOINTS, Joint, Site
+from core.body import LEG_JOINTS, Joint, Side, Site, hip_of
 from core.live.free_motion import FreeMotionState
 
 if TYPE_CHECKING:
@@ -26,6 +27,16 @@ def gauge_faces(visit: "Visit", motion: FreeMotionState, now: Joint | None) -> d
         else:
             wanted = wanted_of(joint, prosthetic)
             faces[joint] = gauge_face(joint, motion.joints.get(joint), wanted, is_now=joint is now)
+    return faces
+
+
+def hip_faces(visit: "Visit", motion: FreeMotionState, now: Joint | None) -> dict[Joint, HipFace]:
+    """Give each hip's gauge; none without a sensor on the pelvis."""
+    worn = visit.sensors.sensor_at
+    faces = {}
+    for joint in (hip_of(side) for side in Side if Site.PELVIS in worn):
+        note = absent_note(joint, worn, visit.without_ankle)
+        faces[joint] = HipFace(note=note) if note else hip_face(motion.hips.get(joint), is_now=joint is now)
     return faces
 
 

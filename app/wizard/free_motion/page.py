@@ -1,4 +1,7 @@
-"""How well do the joints show in the motion so far, and which motion comes next? Four gauges round both legs."""
+"""How well do the joints show in the motion so far, and which motion comes next? Four gauges round both legs.
+
+With a sensor on the pelvis both hips stand above them, on slim cards: nothing waits for them.
+"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -13,9 +16,10 @@ from app.widgets.body_figure import BodyFigure, SensorMark
 from app.widgets.button import Button, ButtonKind
 from app.widgets.gauge import Gauge, GaugeFace
 from app.widgets.hint import Hint, HintBand
+from app.widgets.hip_gauge import HipFace, HipGauge
 from app.widgets.notice import Notice
 from app.widgets.themed import Themed
-from core.body import LEG_JOINTS, Joint, Site
+from core.body import LEG_JOINTS, Joint, Side, Site, hip_of
 
 USUAL_S = 10.0
 FACING = (Joint.RIGHT_KNEE, Joint.LEFT_KNEE, Joint.RIGHT_ANKLE, Joint.LEFT_ANKLE)  # the patient faces you
@@ -24,13 +28,17 @@ FIGURE_WIDTH = 232
 
 @dataclass(frozen=True, slots=True)
 class FreeMotionFace:
-    """What the motion looks like now. `emphasised` is the limb to move; `elapsed_s` None before it is recorded."""
+    """What the motion looks like now. `emphasised` is the limb to move; `elapsed_s` None before it is recorded.
+
+    `hips` is empty without a sensor on the pelvis.
+    """
 
     gauges: Mapping[Joint, GaugeFace] = field(default_factory=dict)
     hint: Hint = field(default_factory=lambda: Hint(""))
     elapsed_s: float | None = None
     emphasised: Site | None = None
     worn: Mapping[Site, SensorMark] = field(default_factory=dict)
+    hips: Mapping[Joint, HipFace] = field(default_factory=dict)
 
 
 class FreeMotionPage(Themed):
@@ -51,8 +59,11 @@ class FreeMotionPage(Themed):
         self.question = _Question(look)
         self.band = HintBand(look)
         self.gauges = {joint: Gauge(look, joint) for joint in LEG_JOINTS}
+        self.hips = {hip_of(side): HipGauge(look, hip_of(side)) for side in Side}
         self.figure = BodyFigure(look, legs_only=True)
-        self._grid = QGridLayout()
+        self._hips, self._grid = QHBoxLayout(), QGridLayout()
+        for hip in self.hips.values():
+            hip.hide()
         self._place(is_from_behind=False)
         self._grid.addWidget(self.figure, 0, 1, 2, 1)
         for column in (0, 2):
@@ -62,6 +73,7 @@ class FreeMotionPage(Themed):
         self._column = QVBoxLayout(self)
         self._column.addWidget(self.question)
         self._column.addWidget(self.band)
+        self._column.addLayout(self._hips)
         self._column.addLayout(self._grid, 1)
         self.question.answered.connect(self.answered)
         self._on_look_changed()
@@ -87,6 +99,8 @@ class FreeMotionPage(Themed):
         self.band.set_compact(is_compact)
         for gauge in self.gauges.values():
             gauge.set_compact(is_compact)
+        for hip in self.hips.values():
+            hip.set_compact(is_compact)
         self.figure.setVisible(not is_compact)
         self._on_look_changed()
 
@@ -103,6 +117,9 @@ class FreeMotionPage(Themed):
         self.band.show_elapsed(view.elapsed_s, USUAL_S)
         for joint, gauge in self.gauges.items():
             gauge.show_face(view.gauges.get(joint, GaugeFace()))
+        for joint, hip in self.hips.items():
+            hip.setVisible(joint in view.hips)
+            hip.show_face(view.hips.get(joint, HipFace()))
         self.figure.emphasise(view.emphasised)
         self.figure.show_worn(view.worn)
 
@@ -128,12 +145,16 @@ class FreeMotionPage(Themed):
         for number, joint in enumerate(FACING):
             self._grid.removeWidget(self.gauges[joint])  # else PySide goes on holding its old item, which Qt deletes
             self._grid.addWidget(self.gauges[joint], number // 2, 2 * ((number + is_from_behind) % 2))
+        for side in (Side.LEFT, Side.RIGHT) if is_from_behind else (Side.RIGHT, Side.LEFT):
+            self._hips.removeWidget(self.hips[hip_of(side)])
+            self._hips.addWidget(self.hips[hip_of(side)])
 
     def _on_look_changed(self) -> None:
         px = self._look.theme.px
         across, down = (16, 12) if self._is_compact else (24, 20)
         self._column.setContentsMargins(px(across), px(down), px(across), px(down))
         self._column.setSpacing(px(12 if self._is_compact else 16))
+        self._hips.setSpacing(px(12))
         self._grid.setVerticalSpacing(px(12))
         self._grid.setHorizontalSpacing(px(6) if self._is_compact else 0)
         self._grid.setColumnMinimumWidth(1, 0 if self._is_compact else px(FIGURE_WIDTH))

@@ -27,7 +27,7 @@ from app.wizard.free_motion.hints import (
     recorded_hint,
     unplaced_hint,
 )
-from app.wizard.free_motion.motion_shown import gauge_faces, sensor_marks
+from app.wizard.free_motion.motion_shown import gauge_faces, hip_faces, sensor_marks
 from app.wizard.free_motion.page import FreeMotionFace, FreeMotionPage
 from app.wizard.free_motion.side_question import SILENT, SideQuestion, Words
 from app.wizard.keys import Intent, KeyAction
@@ -326,7 +326,7 @@ class FreeMotionStep(Step):
             self._doubt(view.exchanged)
         else:
             self._ask_for_side(view.chains if view.is_side_open else None)
-        enough = self._with_enough()
+        enough = self._with_enough() | {joint for joint, hip in self._motion.hips.items() if hip.is_sure}
         if enough - self._enough:
             sounds.play(Sound.READY)
         self._enough = enough
@@ -346,12 +346,17 @@ class FreeMotionStep(Step):
     def _joined(self, motion: FreeMotionState) -> FreeMotionState:
         """With what the other leg's motion told before, if one leg alone is repeated."""
         return replace(
-            motion, joints={**self._before.joints, **motion.joints}, lags={**self._before.lags, **motion.lags}
+            motion,
+            joints={**self._before.joints, **motion.joints},
+            lags={**self._before.lags, **motion.lags},
+            hips={**self._before.hips, **motion.hips},
         )
 
     def _other_leg(self, side: Side) -> FreeMotionState:
+        """What stays while this leg is repeated; its hip too, for the pelvis is left out."""
         joints = {joint: state for joint, state in self._motion.joints.items() if joint.side is not side}
-        return FreeMotionState(joints, {joint: lag for joint, lag in self._motion.lags.items() if joint in joints})
+        lags = {joint: lag for joint, lag in self._motion.lags.items() if joint in joints}
+        return FreeMotionState(joints, lags, hips=self._motion.hips)
 
     def _repeat(self, side: Side) -> None:
         """Begin one leg anew, and leave the other as it is."""
@@ -406,7 +411,8 @@ class FreeMotionStep(Step):
         if chains is not None:
             session = self._visit.session
             placed = session.placements[-1].site_of if session is not None and session.placements else {}
-            self._side.look(chains, {name: site.leg_side for name, site in placed.items()} | self._sides_told)
+            earlier = {name: site.side for name, site in placed.items() if site.side is not None}
+            self._side.look(chains, earlier | self._sides_told)
             self._show_question()
 
     def _show_question(self) -> None:
@@ -467,6 +473,7 @@ class FreeMotionStep(Step):
         self._page.show_state(
             FreeMotionFace(
                 gauges=gauge_faces(self._visit, self._motion, asked.joint),
+                hips=hip_faces(self._visit, self._motion, asked.joint),
                 hint=asked.hint,
                 elapsed_s=self._elapsed_s if self._is_recording else None,
                 emphasised=asked.site,

@@ -1,4 +1,4 @@
-"""Are six sensors on, and which is where? Dragged onto the figure, shaken in turn, or left to the motion."""
+"""Are six sensors on, or seven, and which is where? Dragged onto the figure, shaken in turn, or left to the motion."""
 
 from collections.abc import Mapping, Sequence
 from enum import StrEnum
@@ -89,10 +89,9 @@ class SensorsPage(Themed):
         self._flash_end = QTimer(self)
         self._flash_end.setSingleShot(True)
         self._flash_end.setInterval(FLASH_MS)
-        self._title = Text(look, tr("Six sensors, any way round"), size=26, weight=SEMIBOLD, wraps=True)
-        self._subtitle = Text(
-            look, tr("Strap them on thigh, shank and foot. Direction does not matter."), 15, tone="ink2", wraps=True
-        )
+        self.title = Text(look, size=26, weight=SEMIBOLD, wraps=True)
+        self.subtitle = Text(look, "", 15, tone="ink2", wraps=True)
+        self._name(has_pelvis=False)
         self.sources = Choice(look, tr("Source of the sensors"))
         self.sources.setPlaceholderText(tr("Choose a source"))
         self.places = SensorPlaces(look)
@@ -121,12 +120,18 @@ class SensorsPage(Themed):
         return Way(self.ways.choice)
 
     @property
+    def offered_places(self) -> tuple[Site, ...]:
+        """Where sensors can be worn: the pelvis only where there is a seventh, or one was put there."""
+        has_pelvis = len(self._sensors) > len(LEG_SITES) or any(one.site is Site.PELVIS for one in self._sensors)
+        return tuple(Site) if has_pelvis else LEG_SITES
+
+    @property
     def next_place(self) -> Site | None:
         """Where the sensor that is shaken next goes: the place that was pressed, or the first that is free."""
         worn = {sensor.site for sensor in self._sensors}
         if self._wanted_next is not None and self._wanted_next not in worn:
             return self._wanted_next
-        return next((site for site in LEG_SITES if site not in worn), None)
+        return next((site for site in self.offered_places if site not in worn), None)
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -159,7 +164,7 @@ class SensorsPage(Themed):
         self._is_compact = is_compact
         self.ways.set_brief(is_compact)
         self.list.set_narrow(is_compact)
-        self._subtitle.setVisible(not is_compact)
+        self.subtitle.setVisible(not is_compact)
         self._fit()
 
     def set_from_behind(self, is_from_behind: bool) -> None:
@@ -177,7 +182,8 @@ class SensorsPage(Themed):
                 self.sources.addItem(words if option.note else option.name, option.key)
             self.sources.setCurrentIndex(self.sources.findData(chosen))
         self.sources.updateGeometry()
-        self.nothing.show_options(options[:OFFERED_AT_ONCE])
+        usual = [option for option in options if not option.is_last][:OFFERED_AT_ONCE]
+        self.nothing.show_options([*usual, *(option for option in options if option.is_last)])
         for before, after in pairwise(
             [self.sources, *self.nothing.buttons, self.searching.stop, *self.stored.tab_order]
         ):
@@ -223,7 +229,7 @@ class SensorsPage(Themed):
             return
         self._sensors = tuple(sensors)
         self._bared -= {sensor.site for sensor in sensors if sensor.site is not None}
-        self.list.show_sensors(sensors)
+        self.list.show_sensors(sensors, self.offered_places)
         names = tuple(sorted(sensor.name for sensor in sensors))
         if names != self._names:
             self._names = names
@@ -272,10 +278,10 @@ class SensorsPage(Themed):
             self._refresh()
 
     def place_selected(self, number: int) -> bool:
-        """Wear the selected sensor at place 1 to 6; returns whether there is such a place and a sensor."""
-        if not self.list.selection or not 1 <= number <= len(LEG_SITES) or self._in_sight is not self._lists:
+        """Wear the selected sensor at place 1 to 7; returns whether there is such a place and a sensor."""
+        if not self.list.selection or not 1 <= number <= len(Site) or self._in_sight is not self._lists:
             return False
-        self._assign(self.list.selection, LEG_SITES[number - 1])
+        self.assign(self.list.selection, list(Site)[number - 1])
         return True
 
     def identify_selected(self) -> bool:
@@ -297,12 +303,12 @@ class SensorsPage(Themed):
 
     @property
     def _tiles(self) -> list[QWidget]:
-        return [self.places.tiles[site] for site in LEG_SITES]
+        return list(self.places.shown_tiles.values())
 
     def _build(self) -> None:
         words = QVBoxLayout()
-        words.addWidget(self._title)
-        words.addWidget(self._subtitle)
+        words.addWidget(self.title)
+        words.addWidget(self.subtitle)
         self._words = words
         self._head = QHBoxLayout()
         self._head.addLayout(words, 1)
@@ -345,10 +351,10 @@ class SensorsPage(Themed):
         self.nothing.chosen.connect(self.source_chosen)
         self.searching.stop.clicked.connect(self.stop_pressed)
         self.ways.chosen.connect(self._on_way_chosen)
-        self.places.dropped.connect(self._assign)
+        self.places.dropped.connect(self.assign)
         self.places.hovered.connect(self._on_hovered)
         self.places.pressed.connect(self._on_place_pressed)
-        self.list.assigned.connect(self._assign)
+        self.list.assigned.connect(self.assign)
         self.list.selected.connect(self._on_selected)
         self.list.identify_pressed.connect(self.identify_pressed)
         self.list.reconnect_pressed.connect(self.reconnect_pressed)
@@ -367,7 +373,7 @@ class SensorsPage(Themed):
         if had_focus:
             self.focus()
 
-    def _assign(self, sensor: str, site: Site | None) -> None:
+    def assign(self, sensor: str, site: Site | None) -> None:
         before = next((one.site for one in self._sensors if one.name == sensor), None)
         if site is None and before is not None:
             self._bared.add(before)
@@ -390,7 +396,10 @@ class SensorsPage(Themed):
     def _refresh(self) -> None:
         """Show the places and the one sentence that matters most."""
         worn = {sensor.site: sensor for sensor in self._sensors if sensor.site is not None}
-        self.places.show_places({site: self._place(site, worn.get(site)) for site in LEG_SITES})
+        places = self.offered_places
+        if self.places.has_pelvis is not (Site.PELVIS in places):
+            self._name(has_pelvis=Site.PELVIS in places)
+        self.places.show_places({site: self._place(site, worn.get(site)) for site in places})
         self.notice.tell(*self._sentence(worn))
         self.nothing.tell(*self._told)
 
@@ -418,7 +427,16 @@ class SensorsPage(Themed):
         if self._shaken_together:
             return said_of_shaken_together(self._shaken_together)
         next_place = self.next_place if self.way is Way.SHAKE else None
-        return said_of_sensors(self._sensors, worn, self._bared, next_place, self.way is Way.MOTION)
+        is_left_to_motion = self.way is Way.MOTION
+        return said_of_sensors(self._sensors, worn, self._bared, next_place, is_left_to_motion, self.offered_places)
+
+    def _name(self, has_pelvis: bool) -> None:
+        """Say how many sensors there are, and where they go."""
+        six, seven = tr("Six sensors, any way round"), tr("Seven sensors, any way round")
+        legs = tr("Strap them on thigh, shank and foot. Direction does not matter.")
+        pelvis = tr("On thigh, shank and foot, and on the sacrum, not on a waistband. Direction does not matter.")
+        self.title.setText(seven if has_pelvis else six)
+        self.subtitle.setText(pelvis if has_pelvis else legs)
 
     def _fit(self) -> None:
         """Lay figure and list side by side while both have room."""
@@ -468,7 +486,7 @@ class SensorsPage(Themed):
             self._wanted_next = site
             self._refresh()
         elif self.list.selection:
-            self._assign(self.list.selection, site)
+            self.assign(self.list.selection, site)
 
     def _on_selected(self, name: str) -> None:
         """Bring the row into sight that keys mean now."""

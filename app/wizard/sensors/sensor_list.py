@@ -6,15 +6,15 @@ from PySide6.QtCore import QRect, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QFont, QFontMetrics, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QVBoxLayout, QWidget
 
+from app.body_words import segment_name
 from app.theme import ThemeNotifier
 from app.widgets.battery import WIDTH as CELL_WIDTH
 from app.widgets.painted_text import LEFT, RIGHT, PaintedText
 from app.widgets.text import MEDIUM, SEMIBOLD
 from app.widgets.themed import Themed
-from app.wizard.sensors.sensor_places import segment_name
 from app.wizard.sensors.sensor_row import CHEVRON, CHIP, ROW, SensorRow, SensorRowView
 from app.wording import tr
-from core.body import LEG_SITES
+from core.body import LEG_SITES, Site
 from core.samples import FloatArray
 
 HEADING = 26
@@ -44,6 +44,7 @@ class SensorList(Themed):
         super().__init__()
         self._look, self._is_narrow = look, False
         self.selection = ""
+        self._places = LEG_SITES
         self._columns: tuple[int, dict[str, QRect]] | None = None  # measuring words takes longer than painting them
         self.rows: dict[str, SensorRowView] = {}
         self._heading = _Heading(look, self)
@@ -55,13 +56,14 @@ class SensorList(Themed):
         self.setAccessibleName(tr("Sensors"))
         self._on_look_changed()
 
-    def show_sensors(self, sensors: Sequence[SensorRow]) -> None:
-        """Show these in this order; a row that stays keeps its focus."""
+    def show_sensors(self, sensors: Sequence[SensorRow], places: tuple[Site, ...] = LEG_SITES) -> None:
+        """Show these in this order, to be worn at these places; a row that stays keeps its focus."""
         for name in self.rows.keys() - {sensor.name for sensor in sensors}:
             row = self.rows.pop(name)
             row.setParent(None)
             row.deleteLater()
-        is_other = len(sensors) != len(self.rows)
+        is_other = len(sensors) != len(self.rows) or places != self._places
+        self._places = places
         for place, sensor in enumerate(sensors, start=1):  # the heading is the first
             if sensor.name not in self.rows:
                 self._add_row(sensor.name)
@@ -70,6 +72,7 @@ class SensorList(Themed):
                 self._column.insertWidget(place, row)
             is_other |= row.takes_other_room(sensor)
             row.show_sensor(sensor)
+            row.offer(places)
         if is_other:
             self._arrange()
         self._heading.setVisible(bool(sensors))
@@ -132,7 +135,7 @@ class SensorList(Themed):
                 widest(theme.font(12), [tr("Battery")]),
             ),
             "worn": px(CHIP + 6 + CHEVRON + 6)
-            + max(widest(text, [tr("nowhere"), *(segment_name(site) for site in LEG_SITES)]), px(50)),
+            + max(widest(text, [tr("nowhere"), *(segment_name(site.segment) for site in self._places)]), px(50)),
             "identify": max(px(IDENTIFY), widest(theme.font(12), [tr("Identify")])),
         }
         if self._is_narrow:

@@ -17,6 +17,7 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
+from app.body_words import segment_name
 from app.theme import ThemeNotifier
 from app.tokens import CARD_RADIUS, CONTROL_RADIUS
 from app.widgets.body_figure import SENTENCE_ROOM, BodyFigure, SensorMark
@@ -26,7 +27,7 @@ from app.widgets.text import MEDIUM, SEMIBOLD
 from app.widgets.themed import Themed
 from app.wizard.sensors.sensor_drag import DRAGGED, DraggedButton, sensor_in
 from app.wording import name_of, tr
-from core.body import LEG_SEGMENTS, LEG_SITES, Segment, Side, Site
+from core.body import LEG_SEGMENTS, Segment, Side, Site
 
 TILE = (112, 50)
 LINE = 17  # more, where name and note need a line each
@@ -69,7 +70,7 @@ class SensorPlaces(Themed):
 
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
-        self._look, self._is_narrow = look, False
+        self._look, self._is_narrow, self._has_pelvis = look, False, False
         self._hovered: Site | None = None
         self._next: Site | None = None
         self._names: tuple[str, ...] = ()
@@ -78,12 +79,21 @@ class SensorPlaces(Themed):
         self.figure = BodyFigure(look)
         self.figure.setParent(self)
         self._lines = _Lines(look, self)
-        self.tiles = {site: _Tile(look, site, self) for site in LEG_SITES}
+        self.tiles = {site: _Tile(look, site, self) for site in Site}
+        self.tiles[Site.PELVIS].hide()
         for tile in self.tiles.values():
             tile.clicked.connect(self._on_tile_clicked)
 
+    @property
+    def has_pelvis(self) -> bool:
+        return self._has_pelvis
+
     def show_places(self, places: Mapping[Site, PlaceShown]) -> None:
-        """Show what is worn at each of the six sites."""
+        """Show what is worn at each of the six sites of the legs, and on the pelvis where that is among them."""
+        if (has_pelvis := Site.PELVIS in places) is not self._has_pelvis:
+            self._has_pelvis = has_pelvis
+            self.tiles[Site.PELVIS].setVisible(has_pelvis)
+            self._arrange()
         self.figure.show_worn({site: place.mark for site, place in places.items() if place.mark is not None})
         self._next = next((site for site, place in places.items() if place.is_next), None)
         self.figure.emphasise(self._hovered or self._next)
@@ -107,9 +117,14 @@ class SensorPlaces(Themed):
         self.figure.set_from_behind(is_from_behind)
         self._arrange()
 
+    @property
+    def shown_tiles(self) -> "dict[Site, _Tile]":
+        """The tiles that are in sight, left leg first."""
+        return {site: tile for site, tile in self.tiles.items() if site is not Site.PELVIS or self._has_pelvis}
+
     def site_at(self, point: QPoint) -> Site | None:
         """The site whose tile or segment lies under `point`."""
-        for site, tile in self.tiles.items():
+        for site, tile in self.shown_tiles.items():
             if tile.geometry().contains(point):
                 return site
         return self.figure.site_at(QPointF(self.figure.mapFrom(self, point)))
@@ -180,7 +195,7 @@ class SensorPlaces(Themed):
         if not self.has_notes_below:
             lines += [" · ".join((name, note)) for name in self._names for note in _notes()]
         widest = max(metrics.horizontalAdvance(line) for line in lines) + theme.px(2 * PADDING + 2)
-        return max(least, widest, *(tile.first_line_width for tile in self.tiles.values()))
+        return max(least, widest, *(tile.first_line_width for tile in self.shown_tiles.values()))
 
     def _tile_height(self) -> int:
         return self._look.theme.px(TILE[1] + (LINE if self.has_notes_below else 0))
@@ -211,6 +226,9 @@ class SensorPlaces(Themed):
                 top = min(wanted, bottom - height)
                 self.tiles[site].setGeometry(x, top, width, height)
                 bottom = top - px(GAP)
+            if not is_right:  # it has no side; reading begins here
+                wanted = round(self.figure.anchor(Site.PELVIS).y()) - height // 2
+                self.tiles[Site.PELVIS].setGeometry(x, min(wanted, bottom - height), width, height)
         self._lines.setGeometry(self.rect())
         self._lines.update()
         self.updateGeometry()
@@ -235,7 +253,7 @@ class _Lines(QWidget):
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         painter.setPen(theme.pen(theme.colours.control, 1))
         figure = self._places.figure
-        for site, tile in self._places.tiles.items():
+        for site, tile in self._places.shown_tiles.items():
             to = figure.anchor(site) + QPointF(figure.pos())
             is_right = tile.x() > to.x()
             sign = 1 if is_right else -1
@@ -283,8 +301,12 @@ class _Tile(DraggedButton):
     @property
     def first_line_width(self) -> int:
         theme = self._look.theme
-        word = QFontMetrics(theme.font(14, SEMIBOLD)).horizontalAdvance(segment_name(self.site))
-        return word + theme.px(CHIP + 6 + 18 + 2 * PADDING)  # chip before it, the key's figure behind it
+        word = QFontMetrics(theme.font(14, SEMIBOLD)).horizontalAdvance(segment_name(self.site.segment))
+        return word + theme.px(self._chip_room + 18 + 2 * PADDING)  # chip before it, the key's figure behind it
+
+    @property
+    def _chip_room(self) -> int:
+        return CHIP + 6 if self.site.side is not None else 0
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         theme = self._look.theme
@@ -309,12 +331,13 @@ class _Tile(DraggedButton):
         self.paint_veil(painter, box)
         chip = px(CHIP)
         where = QRectF(px(PADDING), px(16) - chip / 2 + 1, chip, chip)
-        if place.is_flashing:  # the legs' hues do not stand out on dark; the letter does
+        side = self.site.side
+        if side is not None and place.is_flashing:  # the legs' hues do not stand out on dark; the letter does
             painter.setPen(QColor(ink))
             painter.setFont(theme.font(14, SEMIBOLD))
-            painter.drawText(where, Qt.AlignmentFlag.AlignCenter, LETTERS[self.site.leg_side])
-        else:
-            paint_chip(painter, where, self.site.leg_side, theme)
+            painter.drawText(where, Qt.AlignmentFlag.AlignCenter, LETTERS[side])
+        elif side is not None:
+            paint_chip(painter, where, side, theme)
         for text in self.painted_texts():
             text.paint(painter, c)
 
@@ -329,9 +352,10 @@ class _Tile(DraggedButton):
         number_font, line_font = theme.font(12), theme.font(12, SEMIBOLD if place.is_next else MEDIUM, is_code=True)
         left, right = px(PADDING), self.width() - px(PADDING)
         digit = px(14)
-        name = QRectF(left + px(CHIP + 6), px(7), right - digit - left - px(CHIP + 6), px(18))
+        chip = px(self._chip_room)
+        name = QRectF(left + chip, px(7), right - digit - left - chip, px(18))
         return [
-            PaintedText(segment_name(self.site), name, theme.font(14, SEMIBOLD), tone),
+            PaintedText(segment_name(self.site.segment), name, theme.font(14, SEMIBOLD), tone),
             PaintedText(
                 str(number_of(self.site)), QRectF(right - digit, px(7), digit, px(18)), number_font, second, RIGHT
             ),
@@ -347,11 +371,6 @@ def _notes() -> tuple[str, ...]:
     return tuple(sorted((tr("silent"), tr("charge"), tr("losses")), key=len, reverse=True))
 
 
-def segment_name(site: Site) -> str:
-    """Name the segment alone, where a chip says the side."""
-    return {Segment.THIGH: tr("Thigh"), Segment.SHANK: tr("Shank"), Segment.FOOT: tr("Foot")}[site.segment]
-
-
 def number_of(site: Site) -> int:
-    """The key that says this place: 1 to 6, left leg first."""
+    """The key that says this place: 1 to 6, left leg first; 7 the pelvis."""
     return list(Site).index(site) + 1

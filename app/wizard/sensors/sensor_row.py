@@ -16,6 +16,7 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QMenu, QSizePolicy, QWidget
 
+from app.body_words import segment_name
 from app.icons import Icon, paint_icon
 from app.theme import ThemeNotifier
 from app.tokens import CHIP_RADIUS, CONTROL_RADIUS
@@ -28,9 +29,9 @@ from app.widgets.painted_text import PaintedText
 from app.widgets.sensor_tile import quiet_words
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD
 from app.wizard.sensors.sensor_drag import DraggedButton
-from app.wizard.sensors.sensor_places import number_of, segment_name
+from app.wizard.sensors.sensor_places import number_of
 from app.wizard.sensors.sensor_trace import Trace
-from app.wording import name_of, tr
+from app.wording import capitalised, name_of, tr
 from core.body import LEG_SITES, Site
 from devices.live import Quiet
 
@@ -134,6 +135,7 @@ class SensorRowView(DraggedButton):
         super().__init__(look)
         self._columns, self._second_line = columns, second_line
         self._is_selected = False
+        self._places_offered: tuple[Site, ...] = ()
         self.name = self.dragged = name
         self.sensor = SensorRow(name)
         self.trace = Trace(look)
@@ -144,7 +146,15 @@ class SensorRowView(DraggedButton):
         self.identify.clicked.connect(self._on_identify_clicked)
         self.clicked.connect(self._on_clicked)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Maximum)
-        self.setAccessibleDescription(tr("1 to 6 say where it is worn, Space opens a list of the places"))
+        self.offer(LEG_SITES)
+
+    def offer(self, places: tuple[Site, ...]) -> None:
+        """Let it be worn at these places."""
+        if places == self._places_offered:
+            return
+        self._places_offered = places
+        described = tr("1 to {count} say where it is worn, Space opens a list of the places")
+        self.setAccessibleDescription(described.format(count=len(places)))
 
     def takes_other_room(self, sensor: SensorRow) -> bool:
         """Whether a column may have to be wider for `sensor` as it is now."""
@@ -191,7 +201,7 @@ class SensorRowView(DraggedButton):
     def ask(self) -> None:
         """Open the list of places under the button that says the present one."""
         self.selected.emit(self.name)
-        menu = _PlaceMenu(self._look, self.sensor.site, self)
+        menu = _PlaceMenu(self._look, self.sensor.site, self._places_offered, self)
         menu.chosen.connect(self._on_place_chosen)
         menu.popup(self.worn.mapToGlobal(QPoint(0, self.worn.height())))
 
@@ -323,9 +333,9 @@ class _WornOn(PaintedButton):
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         self.paint_veil(painter, QRectF(self.rect()), CHIP_RADIUS)
-        if self._site is not None:
+        if self._site is not None and self._site.side is not None:
             chip = px(CHIP)
-            paint_chip(painter, QRectF(0, (self.height() - chip) / 2, chip, chip), self._site.leg_side, theme)
+            paint_chip(painter, QRectF(0, (self.height() - chip) / 2, chip, chip), self._site.side, theme)
         (word,) = self.painted_texts()
         word.paint(painter, c)
         side, end = px(CHEVRON), word.needed.right() + px(6)
@@ -335,10 +345,10 @@ class _WornOn(PaintedButton):
     def painted_texts(self) -> list[PaintedText]:
         theme = self._look.theme
         px = theme.px
-        left = px(CHIP + 6) if self._site is not None else 0
+        left = px(CHIP + 6) if self._site is not None and self._site.side is not None else 0
         return [
             PaintedText(
-                segment_name(self._site) if self._site is not None else tr("nowhere"),
+                segment_name(self._site.segment) if self._site is not None else tr("nowhere"),
                 QRectF(left, 0, self.width() - left - px(CHEVRON + 6), self.height()),
                 theme.font(14, MEDIUM if self._site is not None else REGULAR),
                 "caution_ink" if self._row.sensor.wants_look else "ink",
@@ -375,18 +385,18 @@ class _Identify(PaintedButton):
 
 
 class _PlaceMenu(QMenu):
-    """The six places and nowhere; the present one is checked, and their numbers are keys."""
+    """The places and nowhere; the present one is checked, and their numbers are keys."""
 
     chosen = Signal(object)
 
-    def __init__(self, look: ThemeNotifier, site: Site | None, parent: QWidget) -> None:
+    def __init__(self, look: ThemeNotifier, site: Site | None, places: tuple[Site, ...], parent: QWidget) -> None:
         super().__init__(parent)
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.setAccessibleName(tr("Worn on"))
         self.setFont(look.theme.font(16, SEMIBOLD))  # what the width is reckoned from
         group = QActionGroup(self)
-        for one in (*LEG_SITES, None):
-            words = tr("Nowhere") if one is None else f"&{number_of(one)}  {name_of(one)}"
+        for one in (*places, None):
+            words = tr("Nowhere") if one is None else f"&{number_of(one)}  {capitalised(name_of(one))}"
             action = QAction(words, self)
             action.setCheckable(True)
             action.setChecked(one is site)

@@ -4,7 +4,7 @@ from collections.abc import Collection, Mapping, Sequence
 
 from app.icons import Icon
 from app.wizard.sensors.sensor_row import SensorRow
-from app.wording import name_of, tr
+from app.wording import capitalised, name_of, tr
 from core.body import LEG_SITES, Segment, Side, Site
 
 NEARLY_EMPTY = 0.05  # of a battery: minutes
@@ -18,8 +18,8 @@ def said_of_dragged(sensor: str, site: Site, worn: Mapping[Site, SensorRow]) -> 
     other = worn.get(site)
     if other is not None and other.name != sensor:
         what = tr("{site} is already worn by {sensor}.").format(site=name_of(site), sensor=other.name)
-        return Icon.INFO, what, tr("Drop here to swap the two."), False
-    return Icon.INFO, name_of(site), tr("Drop {sensor} here.").format(sensor=sensor), False
+        return Icon.INFO, capitalised(what), tr("Drop here to swap the two."), False
+    return Icon.INFO, capitalised(name_of(site)), tr("Drop {sensor} here.").format(sensor=sensor), False
 
 
 def said_of_shaken_together(sensors: Sequence[str]) -> Said:
@@ -39,6 +39,7 @@ def said_of_sensors(
     bared: Collection[Site],
     next_place: Site | None,
     is_left_to_motion: bool,
+    places: Sequence[Site] = LEG_SITES,
 ) -> Said:
     """How the sensors are, and what is missing.
 
@@ -48,9 +49,12 @@ def said_of_sensors(
         Sites that a sensor was taken off from.
     next_place
         Where the sensor that is shaken next goes; None where places are told otherwise.
+    places
+        Where sensors can be worn.
     """
+    has_pelvis = Site.PELVIS in places
     if silent := [sensor for sensor in sensors if sensor.silent_s > 0]:
-        return Icon.WARNING, *_said_of_silent(silent[0]), True
+        return Icon.WARNING, *_said_of_silent(silent[0], has_hips=Site.PELVIS in worn), True
     if (foot := _missing_foot(sensors, worn, bared, is_left_to_motion)) is not None:
         return Icon.WARNING, *_said_of_missing_foot(foot), True
     if low := [sensor for sensor in sensors if sensor.is_low]:
@@ -68,15 +72,26 @@ def said_of_sensors(
         return Icon.WARNING, what, nearer, True
     if is_left_to_motion and not worn:
         what = tr("The free motion tells which sensor is where.")
-        return Icon.INFO, what, tr("Strap one on each thigh, shank and foot, in any order."), False
-    if len(worn) == len(LEG_SITES):
-        return Icon.CHECK, tr("All six are worn and heard."), "", False
+        legs = tr("Strap one on each thigh, shank and foot, in any order.")
+        pelvis = tr("Strap one on each thigh, shank and foot and one on the sacrum, in any order.")
+        return Icon.INFO, what, pelvis if has_pelvis else legs, False
+    if len(worn) == len(places):
+        all_worn = tr("All seven are worn and heard.") if has_pelvis else tr("All six are worn and heard.")
+        return Icon.CHECK, all_worn, "", False
+    if Site.PELVIS in bared and has_pelvis and len(worn) == len(LEG_SITES):
+        what = tr("No sensor on the pelvis: no hip angles.")
+        return Icon.INFO, what, tr("Knees, ankles and steps stay as they are."), False
     if sensors and len(worn) == len(sensors):
         return Icon.INFO, tr("All sensors have their place."), "", False
     if next_place is not None:
         what = tr("Shake the sensor of the {site}.").format(site=_in_sentence(next_place))
         return Icon.NEXT, what, tr("Its place goes dark when it is known."), False
-    return Icon.NEXT, tr("Drag each sensor to its place."), tr("Or choose one and press 1 to 6."), False
+    return (
+        Icon.NEXT,
+        tr("Drag each sensor to its place."),
+        tr("Or choose one and press 1 to {count}.").format(count=len(places)),
+        False,
+    )
 
 
 def _missing_foot(
@@ -95,7 +110,7 @@ def _missing_foot(
 
 def _called(sensor: SensorRow) -> str:
     """A sensor by its place, or by its name while it has none."""
-    return name_of(sensor.site) if sensor.site is not None else sensor.name
+    return capitalised(name_of(sensor.site)) if sensor.site is not None else sensor.name
 
 
 def _in_sentence(site: Site) -> str:
@@ -106,10 +121,11 @@ def _in_sentence(site: Site) -> str:
         Site.RIGHT_THIGH: tr("right thigh"),
         Site.RIGHT_SHANK: tr("right shank"),
         Site.RIGHT_FOOT: tr("right foot"),
+        Site.PELVIS: tr("pelvis"),
     }[site]
 
 
-def _said_of_silent(sensor: SensorRow) -> tuple[str, str]:
+def _said_of_silent(sensor: SensorRow, has_hips: bool) -> tuple[str, str]:
     seconds = max(round(sensor.silent_s), 1)
     what = tr("{name} has been silent for {seconds} s.").format(name=_called(sensor), seconds=seconds)
     if sensor.site is None:
@@ -121,8 +137,14 @@ def _said_of_silent(sensor: SensorRow) -> tuple[str, str]:
         Site.RIGHT_THIGH: tr("right knee angles"),
         Site.RIGHT_SHANK: tr("right knee and ankle angles"),
         Site.RIGHT_FOOT: tr("right ankle angles"),
-    }[sensor.site]
-    return what, tr("Switch it off and on, or go on without {angles}.").format(angles=lost)
+        Site.PELVIS: tr("hip angles; knees and ankles stay"),
+    }
+    if has_hips:
+        lost |= {
+            Site.LEFT_THIGH: tr("left knee and hip angles"),
+            Site.RIGHT_THIGH: tr("right knee and hip angles"),
+        }
+    return what, tr("Switch it off and on, or go on without {angles}.").format(angles=lost[sensor.site])
 
 
 def _said_of_missing_foot(foot: Site) -> tuple[str, str]:

@@ -17,11 +17,15 @@ from app.wording import tr
 
 @dataclass(frozen=True, slots=True)
 class SourceOption:
-    """Something that sensors can be heard through; `note` is what was found there: "6 found"."""
+    """Something that sensors can be heard through; `note` is what was found there: "6 found".
+
+    `is_last`: offered after all others, and takes the place of none.
+    """
 
     key: str
     name: str
     note: str = ""
+    is_last: bool = False
 
 
 class NoSource(Themed):

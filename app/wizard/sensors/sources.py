@@ -24,14 +24,16 @@ from devices.live import SourceRefusedError
 from devices.lsl import GROUP, PORT
 from devices.networks import THIS_COMPUTER, own_addresses
 from devices.prosthesis_user import ProsthesisUser
-from devices.replay import demonstration
+from devices.replay import DEMONSTRATION_SESSION, DEMONSTRATION_WITH_PELVIS, demonstration
 from devices.search import search, search_streams
 
 if TYPE_CHECKING:
     from app.acquisition.dot_fleet import DotFleet
     from devices.search import FoundSensor, SearchResult
+    from devices.walker import WalkerSettings
 
 DEMONSTRATION = "demonstration"
+WITH_PELVIS = "demonstration with pelvis"
 SEARCH = "search"
 COLUMNS = "columns"
 STREAMS = "streams "  # and the address that is asked
@@ -100,9 +102,16 @@ class Sources(Sequence[SourceChoice]):
             is_simulated=True,
             make_prosthetic=_prosthesis_user,
         )
+        with_pelvis = SourceChoice(
+            WITH_PELVIS,
+            tr("Simulated patient, seven sensors"),
+            partial(_demonstration, DEMONSTRATION_WITH_PELVIS),
+            is_simulated=True,
+            make_prosthetic=partial(_prosthesis_user, settings=DEMONSTRATION_WITH_PELVIS),
+        )
         anew = SourceChoice(SEARCH, tr("Search for sensors"), self._open_all)
         streams = [_of_streams(address) for address in self._networks]
-        return (demonstration, *self._of_drivers(), *self._of_lines(), anew, *streams)
+        return (demonstration, *self._of_drivers(), *self._of_lines(), anew, *streams, with_pelvis)
 
     def _of_drivers(self) -> list[SourceChoice]:
         found = self._found
@@ -160,12 +169,12 @@ def _remedy(deaf: SourceRefusedError | None) -> str:
     return later("Plug in the receiver or switch the sensors on, then search again")
 
 
-def _demonstration() -> Acquisition:
-    return Acquisition([demonstration()])
+def _demonstration(settings: "WalkerSettings" = DEMONSTRATION_SESSION) -> Acquisition:
+    return Acquisition([demonstration(settings)])
 
 
-def _prosthesis_user(side: Side) -> Acquisition:
-    return Acquisition([ProsthesisUser(side)])
+def _prosthesis_user(side: Side, settings: "WalkerSettings" = DEMONSTRATION_SESSION) -> Acquisition:
+    return Acquisition([ProsthesisUser(side, settings)])
 
 
 def _networks() -> Sequence[str]:

@@ -1,4 +1,4 @@
-"""Six sensors on, and each known: heard through a source, and told where they are worn."""
+"""Six sensors on, or seven, and each known: heard through a source, and told where they are worn."""
 
 import datetime
 from dataclasses import replace
@@ -28,7 +28,7 @@ from app.wizard.sensors.page import SensorsPage, Way
 from app.wizard.sensors.replays import Replays
 from app.wizard.sensors.sensor_row import SensorRow
 from app.wizard.sensors.source_pages import SourceOption
-from app.wizard.sensors.sources import SEARCH
+from app.wizard.sensors.sources import SEARCH, WITH_PELVIS
 from app.wizard.step import Step
 from app.wizard.worn_sensors import SourceChoice
 from app.wording import name_of, tr, tr_n
@@ -119,7 +119,7 @@ class SensorsStep(Step):
             return tr("not for this patient")
         if sensors.is_left_to_motion and not sensors.site_of:
             return tr("left to the motion")
-        return tr("{count} of 6 worn").format(count=len(sensors.site_of))
+        return tr("{count} of {most} worn").format(count=len(sensors.site_of), most=len(sensors.places))
 
     @property
     def state(self) -> StepState:
@@ -234,7 +234,8 @@ class SensorsStep(Step):
             return BarState(primary=other, others=(demonstration,), note=reason)
         if (silent := self._silent_site) is not None:
             again = BarAction(tr("Reconnect {site}").format(site=name_of(silent)), tr("Enter"), Icon.REPEAT)
-            lost = tr(" and ").join(name_of(one) for one in LEG_JOINTS if silent in (one.proximal, one.distal))
+            joints = (*LEG_JOINTS, *sensors.hips)
+            lost = tr(" and ").join(name_of(one) for one in joints if silent in (one.proximal, one.distal))
             without = BarAction(tr("Go on without {joints}").format(joints=lost), is_wished=False)
             return BarState(primary=again, others=(without,) if sensors.joints else ())
         if sensors.is_left_to_motion:
@@ -242,7 +243,7 @@ class SensorsStep(Step):
         if not sensors.joints:
             note = tr("Two sensors that share a joint are needed: thigh and shank, or shank and foot.")
             return BarState(primary=BarAction(go_on, tr("Enter"), is_enabled=False), note=note)
-        is_whole = len(sensors.site_of) == len(LEG_SITES)
+        is_whole = set(LEG_SITES) <= sensors.sensor_at.keys()  # a pelvis is for whoever wants hips
         return BarState(primary=BarAction(go_on, tr("Enter"), is_wished=is_whole), note=sensors.price_of_missing())
 
     def on_primary(self) -> None:
@@ -341,7 +342,7 @@ class SensorsStep(Step):
     def _show_sources(self) -> None:
         """Offer what there is for this patient: what was found, what is simulated, and what is played at the moment."""
         visit, sensors = self._visit, self._visit.sensors
-        options = [SourceOption(choice.key, choice.name) for choice in visit.choices]
+        options = [SourceOption(one.key, one.name, is_last=one.key == WITH_PELVIS) for one in visit.choices]
         if visit.may_simulate:
             options.append(SourceOption(REPLAY, tr("Replay of a stored session")))
         chosen = sensors.choice or self.setup.choice
@@ -350,7 +351,8 @@ class SensorsStep(Step):
             note = tr("{count} found").format(count=found) if found else ""
             keys = [option.key for option in options]
             at = keys.index(chosen.key) if chosen.key in keys else len(options)
-            options[at : at + 1] = [SourceOption(chosen.key, chosen.name, note)]
+            options[at : at + 1] = [SourceOption(chosen.key, chosen.name, note, chosen.key == WITH_PELVIS)]
+        options.sort(key=lambda option: option.is_last)
         page = self.page
         page.show_sources(options, chosen.key if chosen is not None else "")
         asks = next((choice.asks for choice in visit.choices if choice.key == self._told_of), ("", ""))

@@ -29,11 +29,13 @@ class StandingView:
 
 
 class StandingEstimator:
-    """One attempt to stand still; another begins with another estimator."""
+    """One attempt to stand still; another begins with another estimator. Nobody waits for what is `optional`."""
 
-    def __init__(self, sensors: Iterable[str], wanted_s: float = WANTED_S) -> None:
+    def __init__(
+        self, sensors: Iterable[str], wanted_s: float = WANTED_S, optional: frozenset[str] = frozenset()
+    ) -> None:
         self._names = frozenset(sensors)
-        self._standing = LiveStanding(sorted(self._names), wanted_s)
+        self._standing = LiveStanding(sorted(self._names), wanted_s, optional)
         self.state = StandingView(self._standing.state)
 
     def update(self, blocks: Mapping[str, ImuBlock]) -> None:

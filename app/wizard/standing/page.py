@@ -18,8 +18,8 @@ from app.widgets.notice import Notice
 from app.widgets.stillness import INSET, STEPS, CountRing, MovementBars, RingFace
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.themed import Themed
-from app.wording import name_of, tr
-from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site
+from app.wording import capitalised, name_of, tr
+from core.body import LEG_JOINTS, Joint, Side, Site
 from core.calibration.rest import MAX_SPREAD_RAD_S
 from core.live.standing import WANTED_S
 
@@ -380,6 +380,9 @@ def verdict(view: StandStillView, is_short: bool = False) -> tuple[Icon | None, 
         return None, "", "", False
     if view.phase is StandPhase.DONE:
         return Icon.CHECK, _all_still(len(view.movement_deg_s)), tr("Goes on by itself."), False
+    if view.silent == (Site.PELVIS,):
+        goes_on = tr("The count goes on; hip angles will be missing.")
+        return Icon.SILENT, tr("The pelvis is silent"), tr("No hip angles.") if is_short else goes_on, True
     if view.silent:
         is_one = len(view.silent) == 1
         what = (tr("{sites} is silent") if is_one else tr("{sites} are silent")).format(sites=_names(view.silent))
@@ -409,9 +412,11 @@ def way_round(view: StandStillView, is_short: bool = False) -> tuple[Icon | None
 
 
 def _moved(view: StandStillView, is_short: bool) -> str:
-    sides = {Site(sensor).leg_side for sensor in view.moved if sensor in set(LEG_SITES)}
-    legs = [_leg_moved(side) for side in sides]
+    sides = {Site(sensor).side for sensor in view.moved if sensor in set(Site)}
+    legs = [_leg_moved(side) for side in sides if side is not None]
     what = tr("Both legs moved.") if len(legs) > 1 else "".join(legs)
+    if sides == {None}:
+        what = tr("The pelvis moved.")
     again = tr("The count starts again by itself.") if view.phase is StandPhase.COUNTING else ""
     return again or what if is_short else " ".join(filter(None, [what, again]))
 
@@ -421,15 +426,17 @@ def _leg_moved(side: Side) -> str:
 
 
 def _all_still(count: int) -> str:
-    words = (tr("It is still"), tr("Both are still"), tr("All three are still"), tr("All four are still"))
-    return (*words, tr("All five are still"), tr("All six are still"))[count - 1]
+    few = (tr("It is still"), tr("Both are still"), tr("All three are still"), tr("All four are still"))
+    words = (*few, tr("All five are still"), tr("All six are still"), tr("All seven are still"))
+    return words[count - 1] if count <= len(words) else tr("All are still")
 
 
 def _names(sensors: Sequence[str]) -> str:
-    names = [name_of(Site(sensor)) if sensor in set(LEG_SITES) else sensor for sensor in sensors]
+    names = [name_of(Site(sensor)) if sensor in set(Site) else sensor for sensor in sensors]
     if len(names) > 2:  # more cannot be read in the time
         return tr("{count} sensors").format(count=len(names))
-    return tr("{first} and {last}").format(first=names[0], last=names[1]) if len(names) == 2 else names[0]
+    said = tr("{first} and {last}").format(first=names[0], last=names[1]) if len(names) == 2 else names[0]
+    return capitalised(said) if sensors[0] in set(Site) else said
 
 
 def _no_field(joints: Sequence[Joint]) -> str:

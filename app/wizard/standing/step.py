@@ -18,7 +18,7 @@ from app.wizard.standing.estimator import StandingEstimator
 from app.wizard.standing.page import StandPhase, StandStillPage, StandStillView
 from app.wizard.step import Step
 from app.wording import tr
-from core.body import LEG_JOINTS, Joint
+from core.body import LEG_JOINTS, Joint, Site
 from core.live.standing import WANTED_S
 from core.samples import RecordingKind
 
@@ -199,7 +199,9 @@ class StandStillStep(Step):
         self._moved = ()
         acquisition = self._visit.sensors.acquisition
         if acquisition is not None:
-            self._estimator = StandingEstimator(self._visit.sensors.site_of or acquisition.sensors)
+            site_of = self._visit.sensors.site_of
+            pelvis = frozenset(name for name, site in site_of.items() if site is Site.PELVIS)
+            self._estimator = StandingEstimator(site_of or acquisition.sensors, optional=pelvis)
             acquisition.set_estimator(self._estimator)
 
     def _finish(self) -> None:

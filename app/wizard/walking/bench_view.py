@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QVBoxLayout, QWidget
 
 from app.icons import Icon
@@ -23,7 +22,7 @@ from app.wizard.walking.alignment_card import AlignmentCard, AlignmentRow
 from app.wizard.walking.bench import ChangeEntry
 from app.wizard.walking.bench_differences import BenchDifferences
 from app.wording import tr
-from core.body import Side, ankle_of, knee_of
+from core.body import JointKind, Side
 from core.verdicts.model import worst
 
 LIST, CURVES_LEAST, DIFFERENCES = 284, 308, 312
@@ -60,7 +59,7 @@ class BenchView(Themed):
 
     def __init__(self, look: ThemeNotifier, entry: ChangeEntry) -> None:
         super().__init__()
-        self._look, self._is_compact = look, False
+        self._look, self._is_compact, self._room = look, False, 0
         self._mark = IconMark(look, Icon.WARNING, size=24)
         self.first = Text(look, size=20, weight=SEMIBOLD, wraps=True)
         self.then = Text(look, tone="ink2", wraps=True)
@@ -72,7 +71,7 @@ class BenchView(Themed):
         self.alignments = AlignmentCard(look, entry)
         self.differences = BenchDifferences(look)
         self._curves = QWidget()
-        self._frames: dict[tuple[Side, bool], ComparedFrame] = {}
+        self._frames: dict[tuple[Side, JointKind], ComparedFrame] = {}
         self._build()
         self.alignments.chosen.connect(self.chosen)
         self.alignments.told.connect(self.told)
@@ -109,30 +108,39 @@ class BenchView(Themed):
         self._on_look_changed()
         self._arrange()
 
+    def fit(self, room: int) -> None:
+        """Arrange the cards for this width, px of the screen.
+
+        It is the page's and not the bench's own: inside the page's scroll area the cards widen the bench, so an
+        arrangement that went by its width could widen or narrow it into the other one, and back, without end.
+        """
+        self._room = room
+        self._arrange()
+
     def _show_curves(self, state: BenchState) -> None:
         marks = changes_on_curves(state.found) if state.found is not None else []
         has_one_zero = state.found is None or state.found.has_one_zero_throughout
-        for is_knee in (True, False):
+        for kind in (JointKind.KNEE, JointKind.ANKLE):
             for side in Side:
-                frame = self._frame(side, is_knee)
+                frame = self._frame(side, kind)
                 frame.setVisible(side is state.side)
-            joint = knee_of(state.side) if is_knee else ankle_of(state.side)
+            joint = kind.of(state.side)
             measured = [part for part in state.parts if joint in part.joints]
             curves = [part.curve(joint, is_about_mean=not has_one_zero) for part in measured if part.is_drawn(joint)]
             notes = [withheld_in_words(part, joint) for part in measured if not part.is_drawn(joint)]
-            frame = self._frame(state.side, is_knee)
+            frame = self._frame(state.side, kind)
             frame.chart.deviations = tuple(
-                one for one in marks if one.is_knee is is_knee and one.first.joint is joint and has_one_zero
+                one for one in marks if one.kind is kind and one.first.joint is joint and has_one_zero
             )
             frame.show_verdict(worst(part.verdicts.joint(joint).shape.verdict for part in state.parts))
             frame.show_curves(curves, " ".join(notes), state.is_simulated, is_about_mean=not has_one_zero)
 
-    def _frame(self, side: Side, is_knee: bool) -> ComparedFrame:
-        if (side, is_knee) not in self._frames:
-            frame = ComparedFrame(self._look, ComparedChart(self._look, is_knee=is_knee), side, is_knee)
-            self._frames[side, is_knee] = frame
+    def _frame(self, side: Side, kind: JointKind) -> ComparedFrame:
+        if (side, kind) not in self._frames:
+            frame = ComparedFrame(self._look, ComparedChart(self._look, kind), side, kind)
+            self._frames[side, kind] = frame
             self._curves_column.addWidget(frame, 1)
-        return self._frames[side, is_knee]
+        return self._frames[side, kind]
 
     def _build(self) -> None:
         self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
@@ -162,7 +170,7 @@ class BenchView(Themed):
         list_width = max(px(LIST), self.alignments.minimumSizeHint().width())
         curves = max([px(CURVES_LEAST), *(frame.minimumSizeHint().width() for frame in self.frames)])
         changes = max(px(DIFFERENCES), self.differences.needed)
-        is_tabbed = self._is_compact or list_width + curves + changes + 2 * px(BETWEEN) > self.width()
+        is_tabbed = self._is_compact or list_width + curves + changes + 2 * px(BETWEEN) > self._room
         self.tabs.setVisible(is_tabbed)
         self._curves_column.setDirection(ACROSS if is_tabbed else DOWN)
         cards: tuple[tuple[str, QWidget, int], ...] = (
@@ -175,10 +183,6 @@ class BenchView(Themed):
             is_fixed = width and not is_tabbed
             card.setMinimumWidth(width if is_fixed else 0)
             card.setMaximumWidth(width if is_fixed else ANY_WIDTH)
-
-    def resizeEvent(self, event: QResizeEvent) -> None:
-        super().resizeEvent(event)
-        self._arrange()
 
     def _on_look_changed(self) -> None:
         px = self._look.theme.px

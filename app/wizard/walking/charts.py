@@ -19,24 +19,30 @@ from app.wording import tr
 from core.body import Side
 from core.gait.phases import Phase
 
-KNEE_TICK_DEG, ANKLE_TICK_DEG = 30, 20
-KNEE_SHARE, ANKLE_SHARE = 5, 4  # of the height: the knee's axis is half as long again
+HIP_DEG = (-20.0, 50.0)
+HIP_TICK_DEG, KNEE_TICK_DEG, ANKLE_TICK_DEG = 20, 30, 20
+HIP_SHARE, KNEE_SHARE, ANKLE_SHARE = 4, 5, 4  # of the height: the knee's axis is half as long again
 
 
 class WalkingCharts(Card):
-    """Knee, ankle and phases in one frame."""
+    """Knee, ankle and phases in one frame, the hip above them where the pelvis wears a sensor."""
 
     def __init__(self, look: ThemeNotifier) -> None:
+        self.hip = LiveStrip(look, HIP_DEG, HIP_TICK_DEG)
         self.knee = LiveStrip(look, KNEE_DEG, KNEE_TICK_DEG)
         self.ankle = LiveStrip(look, ANKLE_DEG, ANKLE_TICK_DEG)
         self.lanes = LiveLanes(look)
         self._simulated: list[Text] = []  # over each joint's curves and the phases: one may be cut out alone
         self._provisional = Text(look, size=12, weight=MEDIUM, tone="ink2")
+        self._hip_note = Text(look, size=12, weight=MEDIUM, tone="ink2")
+        self._hip_head = QWidget()  # to be hidden at once
+        self._has_hips = False
         self._keys = {side: SideKey(look, side) for side in Side}
         self._is_compact = False
         self._legend_pairs: list[QHBoxLayout] = []
         self._legend_gaps: list[QSpacerItem] = []  # they give way where words are long
         self._lines = Hairline(look), Hairline(look)
+        self._hip_line = Hairline(look)
         self._heads: list[QHBoxLayout] = []
         self._legend, self._key_row = QHBoxLayout(), QHBoxLayout()
         self._phases_title = Text(look, tr("Gait phases"), size=14, tone="ink2")
@@ -49,33 +55,45 @@ class WalkingCharts(Card):
         for mark in self._simulated:
             mark.setVisible(is_simulated)
 
+    def set_hips(self, has_hips: bool) -> None:
+        """Show the hips' curves, or leave their place to the others."""
+        self._has_hips = has_hips
+        self._hip_head.setVisible(has_hips)
+        self.hip.setVisible(has_hips)
+        self._hip_line.setVisible(has_hips and not self._is_compact)
+
     def set_compact(self, is_compact: bool) -> None:
         """Keep the room for the curves."""
         self._is_compact = is_compact
         for widget in (self._phases_title, *self._lines):
             widget.setVisible(not is_compact)
+        self._hip_line.setVisible(self._has_hips and not is_compact)
         self.lanes.set_compact(is_compact)
         self._padding, self._spacing = (8.0, 2.0) if is_compact else (16.0, 4.0)
         self._on_look_changed()
 
     def set_seconds(self, seconds: float) -> None:
-        for chart in (self.knee, self.ankle, self.lanes):
+        for chart in (self.hip, self.knee, self.ankle, self.lanes):
             chart.set_seconds(seconds)
 
     def show_live(self, live: WalkingReadout) -> None:
         """Draw up to now; a side that is left out has no curve or lane."""
-        knees, ankles = live.knees, live.ankles
+        hips, knees, ankles = live.hips, live.knees, live.ankles
+        if self._has_hips:
+            self.hip.show_traces(live.now_s, hips)
+            self._say_of_hips([side for side in Side if side in hips and hips[side].is_provisional], bool(hips))
         self.knee.show_traces(live.now_s, knees)
         self.ankle.show_traces(live.now_s, ankles)
         self.lanes.show_lanes(live.now_s, live.lanes)
         for side, key in self._keys.items():
-            key.setVisible(side in knees or side in ankles)
+            key.setVisible(side in knees or side in ankles or side in hips)
         self._say_provisional([side for side in Side if side in ankles and ankles[side].is_provisional])
 
     def clear(self) -> None:
-        for chart in (self.knee, self.ankle, self.lanes):
+        for chart in (self.hip, self.knee, self.ankle, self.lanes):
             chart.clear()
         self._say_provisional([])
+        self._say_of_hips([], are_known=True)
 
     def _say_provisional(self, sides: list[Side]) -> None:
         words = tr("{sides} provisional") if self._is_compact else tr("{sides} provisional until five strides")
@@ -83,7 +101,20 @@ class WalkingCharts(Card):
         if said != self._provisional.text():
             self._provisional.setText(said)
 
+    def _say_of_hips(self, provisional: list[Side], are_known: bool) -> None:
+        words = tr("{sides} provisional") if self._is_compact else tr("{sides} provisional until the walk has shown it")
+        said = words.format(sides=", ".join(LETTERS[side] for side in provisional)) if provisional else ""
+        if not are_known:
+            said = tr("not known yet") if self._is_compact else tr("not known before the first strides")
+        if said != self._hip_note.text():
+            self._hip_note.setText(said)
+
     def _build(self) -> None:
+        hip = self._head(Text(self._look, tr("Hip"), size=16, weight=SEMIBOLD), tr("flexion + (°)"))
+        hip.addStretch(1)
+        hip.addWidget(self._hip_note)
+        hip.setContentsMargins(0, 0, 0, 0)
+        self._hip_head.setLayout(hip)
         knee = self._head(Text(self._look, tr("Knee"), size=16, weight=SEMIBOLD), tr("flexion + (°)"))
         knee.addStretch(1)
         knee.addLayout(self._key_row)
@@ -110,6 +141,9 @@ class WalkingCharts(Card):
             self._legend.addLayout(pair)
             self._legend_pairs.append(pair)
         phases.addLayout(self._legend)
+        self.column.addWidget(self._hip_head)
+        self.column.addWidget(self.hip, HIP_SHARE)
+        self.column.addWidget(self._hip_line)
         self.column.addLayout(knee)
         self.column.addWidget(self.knee, KNEE_SHARE)
         self.column.addWidget(self._lines[0])
@@ -119,6 +153,7 @@ class WalkingCharts(Card):
         self.column.addLayout(phases)
         self.column.addWidget(self.lanes)
         self.set_simulated(is_simulated=False)
+        self.set_hips(has_hips=False)
 
     def _head(self, title: Text, sign: str) -> QHBoxLayout:
         head = QHBoxLayout()
@@ -164,18 +199,15 @@ class Hairline(QWidget):
 
 def last_angles_in_words(live: WalkingReadout) -> str:
     """Say each joint's newest angle, for who cannot see the curves."""
-    words = {
-        (Side.LEFT, True): tr("Left knee {angle}."),
-        (Side.RIGHT, True): tr("Right knee {angle}."),
-        (Side.LEFT, False): tr("Left ankle {angle}."),
-        (Side.RIGHT, False): tr("Right ankle {angle}."),
-    }
+    hips = {Side.LEFT: tr("Left hip {angle}."), Side.RIGHT: tr("Right hip {angle}.")}
+    knees = {Side.LEFT: tr("Left knee {angle}."), Side.RIGHT: tr("Right knee {angle}.")}
+    ankles = {Side.LEFT: tr("Left ankle {angle}."), Side.RIGHT: tr("Right ankle {angle}.")}
     said = []
-    for traces, is_knee in ((live.knees, True), (live.ankles, False)):
+    for traces, words in ((live.hips, hips), (live.knees, knees), (live.ankles, ankles)):
         for side in Side:
             if side in traces:
                 angles = traces[side].angle_rad
                 last = math.degrees(angles[-1]) if len(angles) else math.nan
                 known = degrees_in_words(last, 0) if math.isfinite(last) else tr("missing")
-                said.append(words[side, is_knee].format(angle=known))
+                said.append(words[side].format(angle=known))
     return " ".join(said)

@@ -9,10 +9,11 @@ from itertools import pairwise
 import numpy as np
 
 from app.wizard.walking.readout import LiveLane, LiveTrace, PhaseSpan, WalkingReadout
-from core.body import LEG_JOINTS, LEG_SITES, Joint, Segment, Site
+from core.body import LEG_JOINTS, Joint, Segment, Site
 from core.gait.live import PHASE_AFTER, FootEvent, LiveEvent, PhaseChange
 from core.gait.phases import Phase
 from core.gait.strides import MAX_STRIDE_S
+from core.hip.results import HipIdentification
 from core.live.angle import AngleSamples
 from core.live.sensors import LiveSensor
 from core.live.stride_values import StrideValue, StrideValues
@@ -33,6 +34,8 @@ class WalkingEstimator:
     ----------
     live_sensors
         By name. Sensors that are missing here, or in `site_of`, are not worn.
+    hips
+        What was found of the hips until now.
 
     Attributes
     ----------
@@ -47,14 +50,16 @@ class WalkingEstimator:
         site_of: Mapping[str, Site],
         live_sensors: Mapping[str, LiveSensor],
         calibration: Mapping[Joint, JointCalibration],
+        hips: Mapping[Joint, HipIdentification] | None = None,
     ) -> None:
         self._site_of = {name: site for name, site in site_of.items() if name in live_sensors}
         sensors = {site: live_sensors[name] for name, site in self._site_of.items()}
-        self._walking = LiveWalk(sensors, calibration)
+        self._walking = LiveWalk(sensors, calibration, hips)
         known = [
             joint for joint in LEG_JOINTS if joint in calibration and {joint.proximal, joint.distal} <= set(sensors)
         ]
-        self._curves = {joint: _Curve(sensors[joint.proximal].step_s) for joint in known}
+        self._steps_s = {site: sensor.step_s for site, sensor in sensors.items()}
+        self._curves = {joint: _Curve(self._steps_s[joint.proximal]) for joint in known}
         self._feet = {site.leg_side: _Foot() for site in sensors if site.segment is Segment.FOOT}
         self._heard_s: dict[Site, float] = {}
         self._first_s: float | None = None
@@ -66,6 +71,7 @@ class WalkingEstimator:
         self.on_value: Callable[[], None] | None = None
         self.test: LiveTest | None = None  # set by the screen
         self._wishes: deque[tuple[Joint, JointCalibration]] = deque()  # put in by the screen, taken by the estimator
+        self._hips: deque[Mapping[Joint, HipIdentification]] = deque()  # the same
         self.state = WalkingReadout()
 
     def recalibrate(self, joint: Joint, calibration: JointCalibration) -> None:
@@ -74,6 +80,13 @@ class WalkingEstimator:
         From any thread.
         """
         self._wishes.append((joint, calibration))
+
+    def find_hips(self, hips: Mapping[Joint, HipIdentification]) -> None:
+        """Show hips that were not known before, and go over to other frames of the others without a jump.
+
+        From any thread, from the next update on.
+        """
+        self._hips.append(hips)
 
     def count_from(self, time_s: float) -> None:
         """Count strides from here on, as a walk begins. From any thread."""
@@ -85,6 +98,8 @@ class WalkingEstimator:
             joint, calibration = self._wishes.popleft()
             if joint in self._curves:
                 self._walking.recalibrate(joint, calibration)
+        while self._hips:
+            self._walking.find_hips(self._hips.popleft())
         worn = {self._site_of[name]: block for name, block in blocks.items() if name in self._site_of and len(block)}
         if not worn:
             return
@@ -97,10 +112,10 @@ class WalkingEstimator:
         self._told.extend(values)
         self._values_told += len(values)
         kept_from_s = self._now_s - KEPT_S
-        joints = {}
-        for joint, curve in self._curves.items():
-            curve.add(told.joints[joint].samples)
-            joints[joint] = curve.since(kept_from_s, told.joints[joint].is_provisional)
+        for joint, new in told.joints.items():
+            if joint not in self._curves:  # a hip
+                self._curves[joint] = _Curve(self._steps_s[joint.proximal])
+            self._curves[joint].add(new.samples, new.is_provisional)
         missing = tuple(site for site in self._walking_sites() if self._is_silent(site))
         lanes, cadences = {}, []
         for side, foot in self._feet.items():
@@ -112,7 +127,7 @@ class WalkingEstimator:
                 cadences.append(cadence)
         self.state = WalkingReadout(
             now_s=self._now_s,
-            joints=joints,
+            joints={joint: curve.since(kept_from_s) for joint, curve in self._curves.items()},
             lanes=lanes,
             strides={side: foot.strides_since(self._count_from_s, kept_from_s) for side, foot in self._feet.items()},
             cadence_steps_min=float(np.mean(cadences)) if cadences else math.nan,
@@ -133,7 +148,7 @@ class WalkingEstimator:
         self._now_s = max(self._heard_s.values())
 
     def _walking_sites(self) -> list[Site]:
-        return [site for site in LEG_SITES if site in self._site_of.values()]
+        return [site for site in Site if site in self._site_of.values()]
 
     def _is_silent(self, site: Site) -> bool:
         assert self._first_s is not None
@@ -149,9 +164,11 @@ class _Curve:
         self._time_s, self._angle_rad = np.empty(self._room), np.empty(self._room)
         self._begin = self._end = 0
         self._last_tick: int | None = None
+        self._is_provisional = False
 
-    def add(self, samples: AngleSamples) -> None:
+    def add(self, samples: AngleSamples, is_provisional: bool) -> None:
         """Take the next samples; where ticks jump, a NaN parts the stretches."""
+        self._is_provisional = is_provisional
         if not len(samples):
             return
         before = samples.tick[:1] - 1 if self._last_tick is None else [self._last_tick]
@@ -167,10 +184,10 @@ class _Curve:
         self._time_s[self._end : end], self._angle_rad[self._end : end] = time_s, angle_rad
         self._end = end
 
-    def since(self, time_s: float, is_provisional: bool) -> LiveTrace:
+    def since(self, time_s: float) -> LiveTrace:
         self._begin += int(np.searchsorted(self._time_s[self._begin : self._end], time_s))
         part = slice(self._begin, self._end)
-        return LiveTrace(_read_only(self._time_s[part]), _read_only(self._angle_rad[part]), is_provisional)
+        return LiveTrace(_read_only(self._time_s[part]), _read_only(self._angle_rad[part]), self._is_provisional)
 
     def _move(self, coming: int) -> int:
         """Go over to new arrays with what is still needed; returns where the coming samples end there."""

@@ -1,6 +1,7 @@
 """How does the patient walk now, and what becomes of each walk? Live curves and steps, and the next walk's label."""
 
 import math
+from collections.abc import Mapping
 
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QResizeEvent
@@ -42,6 +43,7 @@ FIGURE_WIDE, FIGURE_COMPACT = 72, 36
 NARROW_BELOW = 660  # of the page: a question stands above its answers, a word above its figure
 WIDE_FROM = 1400  # of the page
 MOST_WIDTH = 1600
+HIPS_FROM = 680  # of the page
 SECONDS, SECONDS_WIDE = 8.0, 12.0
 DESCRIBED_EVERY_S = 1.0  # who listens is not told every frame
 ANY_WIDTH = 16777215  # what Qt calls no limit
@@ -74,7 +76,8 @@ class WalkingPage(Themed):
     def __init__(self, look: ThemeNotifier, entry: ChangeEntry | None = None) -> None:
         super().__init__()
         self._look = look
-        self._is_compact = self._has_bench = self._has_test = self._has_result = self._has_memory = False
+        self._is_compact = self._has_bench = self._has_test = self._has_result = False
+        self._has_memory = self._has_hips = False
         self.bench = BenchView(look, entry or ChangeEntry())
         self.rows: tuple[WalkRow, ...] = ()
         self._asked: WalkRow | None = None
@@ -179,8 +182,14 @@ class WalkingPage(Themed):
             if self._has_test:
                 self.timed.setFocus()
 
-    def show_tests(self, protocol: TimedProtocol | None, state: TimedResult | None) -> None:
-        """Show which test comes next, and what came of the latest in the place of the curves; None: it was no test."""
+    def show_tests(
+        self, protocol: TimedProtocol | None, state: TimedResult | None, before: Mapping[TimedProtocol, str]
+    ) -> None:
+        """Show which test comes next, and what came of the latest in the place of the curves; None: it was no test.
+
+        `before`: what came of each at an earlier visit.
+        """
+        self.next.test.show_before(before)
         self.next.test.show_choice(protocol)
         self._has_result = state is not None
         if state is not None:
@@ -217,6 +226,11 @@ class WalkingPage(Themed):
 
     def set_simulated(self, is_simulated: bool) -> None:
         self.charts.set_simulated(is_simulated)
+
+    def set_hips(self, has_hips: bool) -> None:
+        """Keep a place for the hips above the knees, or none."""
+        self._has_hips = has_hips
+        self._fit()
 
     def set_compact(self, is_compact: bool) -> None:
         if is_compact != self._is_compact:
@@ -331,6 +345,9 @@ class WalkingPage(Themed):
         px = self._look.theme.px
         is_wide = self.width() >= px(WIDE_FROM) and not self._is_compact
         self.charts.set_seconds(SECONDS_WIDE if is_wide else SECONDS)
+        # between walks what comes next needs the room more
+        is_high = self.is_recording or self._is_compact or self.height() >= px(HIPS_FROM)
+        self.charts.set_hips(self._has_hips and is_high)
         self.figures.set_size(FIGURE_COMPACT if self._is_compact else FIGURE_WIDE if is_wide else FIGURE)
         is_narrow = self.width() < px(NARROW_BELOW)
         self.stopped.set_narrow(is_narrow)
@@ -343,6 +360,7 @@ class WalkingPage(Themed):
         top = px(MARGIN_COMPACT if self._is_compact else 16)
         aside = max(margin, (self.width() - px(MOST_WIDTH)) // 2)
         self._column.setContentsMargins(aside, top, aside, top)
+        self.bench.fit(self.width() - 2 * aside - self._scroll.verticalScrollBar().sizeHint().width())
 
     def _name_next(self) -> None:
         """Say which letter the next walk gets: the one of its label, or the next."""

@@ -4,7 +4,7 @@ import math
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 
-from core.body import LEG_SITES, Joint, Side, Site
+from core.body import Joint, Side, Site
 from core.gait.phases import Phase
 from core.live.stride_values import StrideValue
 from core.samples import FloatArray
@@ -16,7 +16,8 @@ from core.timed.live import LiveReadout
 class LiveTrace:
     """The last seconds of one joint, both (n,): ascending times on the acquisition's clock, radians, NaN where missing.
 
-    `is_provisional`: the newest samples of an ankle whose axis comes from free motion alone.
+    `is_provisional`: the newest samples of an ankle whose axis comes from free motion alone, or of a hip whose heading
+    is not sure yet.
     """
 
     time_s: FloatArray
@@ -50,7 +51,7 @@ class WalkingReadout:
     now_s
         The newest sample of any sensor, NaN before the first; while all are silent, the time that goes on meanwhile.
     joints
-        Of every joint with a calibration whose two sensors are worn.
+        Of every joint with a calibration, or hip that was found, whose two sensors are worn.
     lanes, strides
         Of every side with a foot sensor; strides since the walk began.
     cadence_steps_min
@@ -81,14 +82,18 @@ class WalkingReadout:
 
     @property
     def ankles(self) -> dict[Side, LiveTrace]:
-        return {joint.side: trace for joint, trace in self.joints.items() if not joint.is_knee}
+        return {joint.side: trace for joint, trace in self.joints.items() if not joint.is_knee and not joint.is_hip}
+
+    @property
+    def hips(self) -> dict[Side, LiveTrace]:
+        return {joint.side: trace for joint, trace in self.joints.items() if joint.is_hip}
 
     def while_silent(self, now_s: float, sites: Collection[Site]) -> "WalkingReadout":
         """The same at `now_s` while no sensor is heard: time goes on, what came last ends there, nothing is made up."""
         if math.isnan(self.now_s) or now_s <= self.now_s:
             return self
         lanes = {side: _silent_since(lane, self.now_s) for side, lane in self.lanes.items()}
-        missing = tuple(site for site in LEG_SITES if site in sites)
+        missing = tuple(site for site in Site if site in sites)
         return replace(self, now_s=now_s, lanes=lanes, cadence_steps_min=math.nan, missing=missing)
 
 

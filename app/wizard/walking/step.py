@@ -41,6 +41,7 @@ if TYPE_CHECKING:
 
 STAND_STILL = 2  # the step that sensors strapped anew begin with
 WATCH_TICKS = 3  # of 30 a second: sensors are looked at ten times a second
+HIPS_AFTER_S = 22.0  # of a walk, with a turn as a rule, that shows them if any does
 LOOKED_BACK_S = 29.0  # of a walk that goes on; the ring buffer holds a second more
 
 
@@ -55,7 +56,7 @@ class WalkingStep(Step):
         self._at_stop: WalkingReadout | None = None
         self._counted_before: dict[Side, int] = {}
         self._label = ""
-        self._is_in_sight = self._is_ankle_asked = False
+        self._is_in_sight = self._is_ankle_asked = self._are_hips_asked = False
         self._ticks = 0
         self._was_silent = False  # all sensors
         self._notice = WalkNotice(visit)
@@ -179,8 +180,10 @@ class WalkingStep(Step):
 
     def enter(self) -> None:
         self._is_in_sight = True
+        self._timed.earlier.read()
         self._begin_estimator()
         self.page.set_simulated(self._visit.is_simulated)
+        self.page.set_hips(bool(self._visit.sensors.hips))
         if not self._label:
             self._label = label_after(self._visit.patient.details, self._used)
         if not self._cannot_start:
@@ -219,6 +222,7 @@ class WalkingStep(Step):
         strides = self._strides(view)
         self.page.show_view(replace(view, strides=strides))
         self._ask_for_ankles(strides)
+        self._ask_for_hips()
 
     def bar(self) -> BarState:
         bar = self._bar()
@@ -417,7 +421,7 @@ class WalkingStep(Step):
     def _start(self) -> None:
         acquisition, recordings = self._visit.sensors.acquisition, self._visit.recordings
         assert acquisition is not None
-        self._is_ankle_asked = False
+        self._is_ankle_asked = self._are_hips_asked = False
         self._notice.is_troubled = self._visit.controller.is_gone
         self._shown = self._at_stop = None
         self._counted_before = {}
@@ -467,7 +471,9 @@ class WalkingStep(Step):
         if acquisition is None:
             return
         calibration = self._visit.evaluation.calibration
-        self._estimator = WalkingEstimator(self._visit.sensors.site_of, self._visit.live_sensors(), calibration)
+        live = self._visit.live_sensors()
+        hips = self._visit.evaluation.hips
+        self._estimator = WalkingEstimator(self._visit.sensors.site_of, live, calibration, hips)
         if self._visit.recordings.ongoing is not None:
             self._estimator.count_from(self._visit.recordings.ongoing.began_s)
         self._timed.watch(self._estimator)
@@ -479,6 +485,21 @@ class WalkingStep(Step):
         """Those of this walk, also where another estimator began amid it."""
         return {side: count + self._counted_before.get(side, 0) for side, count in view.strides.items()}
 
+    def _ask_for_hips(self) -> None:
+        """Look once more, where neither the free motion nor the first strides have shown the hips."""
+        recordings, acquisition, evaluation = (
+            self._visit.recordings,
+            self._visit.sensors.acquisition,
+            self._visit.evaluation,
+        )
+        if self._are_hips_asked or recordings.ongoing is None or acquisition is None or evaluation.is_busy:
+            return
+        if acquisition.now_s - recordings.ongoing.began_s < HIPS_AFTER_S:
+            return
+        self._are_hips_asked = True
+        if set(self._visit.sensors.hips) - evaluation.hips.keys():
+            self._evaluate_walk()
+
     def _ask_for_ankles(self, strides: dict[Side, int]) -> None:
         """Find the ankles' axes anew, once, from free motion and this walk together."""
         recordings, acquisition = self._visit.recordings, self._visit.sensors.acquisition
@@ -487,6 +508,13 @@ class WalkingStep(Step):
         if min(strides.values()) < STRIDES_FOR_ANKLE or self._visit.evaluation.is_busy:
             return
         self._is_ankle_asked = True
+        self._evaluate_walk()
+
+    def _evaluate_walk(self) -> None:
+        """Find out what the walk that goes on has told until now, with what was recorded before."""
+        recordings, acquisition = self._visit.recordings, self._visit.sensors.acquisition
+        assert recordings.ongoing is not None  # whoever asks has seen to both
+        assert acquisition is not None
         seconds = min(acquisition.now_s - recordings.ongoing.began_s, LOOKED_BACK_S)
         worn = self._visit.sensors.site_of
         imu = {site: acquisition.latest(sensor, seconds) for sensor, site in worn.items()}
@@ -515,6 +543,7 @@ class WalkingStep(Step):
             for joint in LEG_JOINTS:
                 if not joint.is_knee and joint in calibration:
                     self._estimator.recalibrate(joint, calibration[joint])
+            self._estimator.find_hips(self._visit.evaluation.hips)
         if self._feedback is not None:
             self._feedback.show_reasons()
         self._show()
@@ -567,7 +596,7 @@ class WalkingStep(Step):
         self._page.show_walks(rows_of(self._visit), facts)
         self._page.show_bench(self._bench.state() if self._is_bench and ongoing is None else None)
         self._page.show_labels(labels_for(self._visit.patient.details, conditions), self._label)
-        self._page.show_tests(self._timed.protocol, self._timed.result())
+        self._page.show_tests(self._timed.protocol, self._timed.result(), self._timed.before(self._label))
         self._page.show_memory(self._memory.shown)
         self.changed.emit()
 
@@ -600,6 +629,7 @@ class WalkingStep(Step):
     @Slot(str)
     def _on_label_chosen(self, label: str) -> None:
         self._label = label
+        self.page.next.test.show_before(self._timed.before(label))
         self.changed.emit()
 
     @Slot()

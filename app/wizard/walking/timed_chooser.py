@@ -1,5 +1,7 @@
 """Which timed test is the next walk, if it is one?"""
 
+from collections.abc import Mapping
+
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QHBoxLayout, QWidget
 
@@ -9,7 +11,7 @@ from app.widgets.choice import Choice
 from app.wording import tr
 from core.timed.protocols import TimedProtocol
 
-LEAST, MOST = 120, 300  # px of the box
+LEAST, MOST = 120, 340  # px of the box
 
 
 class TimedChooser(QWidget):
@@ -28,6 +30,13 @@ class TimedChooser(QWidget):
         row.addWidget(self.box)
         self.box.let_shrink(LEAST, MOST)
         self.box.activated.connect(self._on_activated)
+
+    def show_before(self, before: Mapping[TimedProtocol, str]) -> None:
+        """Name with each test what came of it at an earlier visit."""
+        for row, protocol in enumerate(TimedProtocol, 1):
+            words = " \N{MIDDLE DOT} ".join(filter(None, [name_of_test(protocol), before.get(protocol, "")]))
+            if words != self.box.itemText(row):
+                self.box.setItemText(row, words)
 
     def show_choice(self, protocol: TimedProtocol | None) -> None:
         self.box.setCurrentIndex(0 if protocol is None else 1 + list(TimedProtocol).index(protocol))

@@ -6,18 +6,26 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject, Signal, Slot
 
 from app import sounds
+from app.dates import short_date
+from app.measure_names import decimals, short_unit
+from app.reports.course_lanes import LaneKind, lanes
+from app.reports.patient_report.numbers_in_words import fixed
 from app.sounds import Sound
 from app.storage.journal.payloads import key_text
 from app.timed_words import name_of_test
+from app.wizard.walking.earlier_tests import EarlierTests
 from app.wizard.walking.timed_result import TimedAttempt, TimedResult
 from app.wizard.walking.timed_view import TimedViewState
 from app.wording import tr
 from core.body import Segment
 from core.timed.found import TimedTest
 from core.timed.live import RUN_OUT_S, LiveReadout, LiveTest
+from core.timed.measures import COLUMNS
 from core.timed.protocols import DEFINITIONS, KeyMeaning, PlannedTest, TimedProtocol
 
 if TYPE_CHECKING:
+    from app.reports.course import Course
+    from app.reports.course_lanes import CourseLane, CourseVisit
     from app.wizard.recordings import SessionRecording
     from app.wizard.visit import Visit
     from app.wizard.walking.estimator import WalkingEstimator
@@ -37,6 +45,8 @@ class TimedControl(QObject):
     def __init__(self, visit: "Visit", parent: QObject) -> None:
         super().__init__(parent)
         self._visit = visit
+        self.earlier = EarlierTests(visit, self)
+        self.earlier.changed.connect(self.changed)
         self.protocol: TimedProtocol | None = None
         self._live: LiveTest | None = None
         self._has_begun = self._is_over = False
@@ -162,7 +172,28 @@ class TimedControl(QObject):
         every = self.attempts()
         same = [one for one in every if one.protocol is every[-1].protocol]
         names = recordings.shown_names
-        return TimedResult(same, [str(names[one.name]) for one in same])
+        return TimedResult(same, [str(names[one.name]) for one in same], *self._course(every[-1].protocol))
+
+    def _course(self, protocol: TimedProtocol) -> "tuple[tuple[CourseVisit, ...], CourseLane | None]":
+        """The visits, and over them what a test is made for, under the condition of the latest walk."""
+        if protocol not in COLUMNS:
+            return (), None
+        condition, goals = self._visit.recordings.walks[-1].details.condition, self._visit.patient.details.goals
+        kind = LaneKind(COLUMNS[protocol])
+        own = [goal for goal in goals if goal.column == kind.column]
+        visits = [one for one in self.earlier.with_this_one() if one.course and _has(one.course, kind, condition)]
+        (lane,) = lanes(visits, condition, own, (kind,))
+        return tuple(visits), lane if len(visits) > 1 else None
+
+    def before(self, condition: str) -> dict[TimedProtocol, str]:
+        """What came of each test at the latest earlier visit under a condition: "3 Oct: 11.4 s"."""
+        said = {}
+        for protocol, column in COLUMNS.items():
+            if (found := self.earlier.latest(column, condition)) is not None:
+                visit, test = found
+                value = fixed(test.found.mean, decimals(column)) + short_unit(column)
+                said[protocol] = f"{short_date(visit.day)}: {value}"
+        return said
 
     def next_words(self, label: str) -> str:
         """What the next walk is."""
@@ -187,3 +218,8 @@ class TimedControl(QObject):
     def on_chosen(self, value: str) -> None:
         """Of the card: the value of a protocol, or nothing."""
         self.choose(TimedProtocol(value) if value else None)
+
+
+def _has(course: "Course", kind: LaneKind, condition: str) -> bool:
+    walked = course.condition(condition)
+    return walked is not None and walked.test(kind.column) is not None

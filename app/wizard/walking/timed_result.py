@@ -9,6 +9,9 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
 
 from app.icons import Icon
+from app.pages.home_course import CourseCard
+from app.reports.course_lanes import CourseLane, CourseVisit
+from app.reports.course_words import changes_since_in_words
 from app.theme import ThemeNotifier
 from app.timed_words import (
     course_sentence,
@@ -48,10 +51,15 @@ class TimedAttempt:
 
 @dataclass(frozen=True, slots=True)
 class TimedResult:
-    """The latest test, and every attempt at the same one in this session; `called`: each walk's name on the screen."""
+    """The latest test, and every attempt at the same one in this session; `called`: each walk's name on the screen.
+
+    `lane`: what the test is made for over the `visits` that have it, this one the last; None where it is the first.
+    """
 
     attempts: Sequence[TimedAttempt]
     called: Sequence[str]
+    visits: Sequence[CourseVisit] = ()
+    lane: CourseLane | None = None
 
     @property
     def latest(self) -> TimedAttempt:
@@ -69,6 +77,7 @@ class TimedResultView(Themed):
         self.then = Text(look, tone="ink2", wraps=True)
         self.attempts = CellTable(look, tr("Attempts"))
         self.parts = CellTable(look, tr("Over the test"))
+        self.course = CourseCard(look)
         self.errors = Text(look, size=12, tone="ink2", wraps=True)
         self._build()
         self._on_look_changed()
@@ -81,6 +90,7 @@ class TimedResultView(Themed):
         else:
             self.first.setText(result_sentence(found))
             said = [
+                changes_since_in_words(state.lane, state.visits) if state.lane is not None else "",
                 why_sentence(found),
                 tape_sentence(found),
                 stairs_sentence(found),
@@ -92,6 +102,9 @@ class TimedResultView(Themed):
         self._mark.set_icon(Icon.CHECK if found is not None and not found.missing else Icon.INFO)
         self.setAccessibleDescription(f"{self.first.text()} {self.then.text()}")
         self.attempts.show_rows(*_attempts(state))
+        self.course.setVisible(state.lane is not None)
+        if state.lane is not None:
+            self.course.show_course(state.visits, [state.lane], [line.condition for line in state.lane.lines])
         parts = _parts(found) if found is not None else []
         self._parts_card.setVisible(bool(parts))
         if parts:
@@ -120,6 +133,7 @@ class TimedResultView(Themed):
             card.column.addWidget(Text(self._look, title, size=16, weight=SEMIBOLD))
             card.column.addWidget(table)
             self._column.addWidget(card)
+        self._column.insertWidget(2, self.course)
         self._column.addWidget(self.errors)
         self._column.addStretch(1)
         scroll = QScrollArea()

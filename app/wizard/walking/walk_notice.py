@@ -41,7 +41,7 @@ class WalkNotice:
         """What is to be said now; `view`: what the walk that goes on has told last."""
         recordings, sensors = self._visit.recordings, self._visit.sensors
         now_s = sensors.acquisition.now_s if sensors.acquisition is not None else 0.0
-        lost = self._losses.message(recordings.has_begun, sensors.joints, now_s)
+        lost = self._losses.message(recordings.has_begun, [*sensors.joints, *sensors.hips], now_s)
         trouble = recordings.trouble_message() if self.is_troubled else NOTHING
         for message in (trouble, recordings.standstill_message(sensors.site_of), lost):
             if message != NOTHING:

@@ -73,7 +73,7 @@ def read_c3d(path: Path) -> ReferenceFile:
     if not angles:
         raise FileRefusedError(
             path.name,
-            "it holds no angles of knees or ankles, and not the markers to make them of",
+            "it holds no angles of hips, knees or ankles, and not the markers to make them of",
             "Export LKneeAngles and so on with it, or name markers LHIP, LKNE, LANK, LHEE, LTOE and R...",
         )
     return ReferenceFile(FORMAT, source, (ReferenceTrial(angles=angles, events=_events(c3d["parameters"])),))

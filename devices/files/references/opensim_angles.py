@@ -1,4 +1,4 @@
-"""References as OpenSim motions and states: `knee_angle_r`, `ankle_angle_l` and so on in a .mot or .sto."""
+"""References as OpenSim motions and states: `knee_angle_r`, `ankle_angle_l`, `hip_flexion_r` and so on."""
 
 import re
 from pathlib import Path
@@ -19,6 +19,8 @@ JOINTS = {
     "knee_angle_r": Joint.RIGHT_KNEE,
     "ankle_angle_l": Joint.LEFT_ANKLE,
     "ankle_angle_r": Joint.RIGHT_ANKLE,
+    "hip_flexion_l": Joint.LEFT_HIP,
+    "hip_flexion_r": Joint.RIGHT_HIP,
 }
 FORMAT, SOURCE = "opensim", "angles"
 QUATERNION = re.compile(r"DataType\s*=\s*Quaternion", re.IGNORECASE)
@@ -30,7 +32,7 @@ def is_opensim(_path: Path, head: bytes) -> bool:
 
 
 def read_opensim(path: Path) -> ReferenceFile:
-    """Read the knees and ankles among a motion's coordinates.
+    """Read the hips, knees and ankles among a motion's coordinates.
 
     Raises
     ------
@@ -54,7 +56,7 @@ def read_opensim(path: Path) -> ReferenceFile:
         raise FileRefusedError(
             f"{path.name}, line {end + 2}",
             "there is no column time, or none of {names}",
-            "Export coordinates of a model whose knees and ankles have these names",
+            "Export coordinates of a model whose joints have these names",
             names=", ".join(JOINTS),
         )
     values = numbers_below(lines, end + 2, [0, *found.values()], len(names), path.name)

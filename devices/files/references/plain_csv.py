@@ -1,7 +1,8 @@
 """References as CSV: angles by `time_s`, events as in events.csv, strides as in strides.csv.
 
-`time_s, left_knee, right_knee, left_ankle, right_ankle` in degrees, any of the joints, with or without `_deg`, so that
-an angles.csv is a reference too. A column `recording` divides a file into trials. Other columns are passed over.
+`time_s, left_knee, right_knee, left_ankle, right_ankle, left_hip, right_hip` in degrees, any of the joints, with or
+without `_deg`, so that an angles.csv is a reference too. A column `recording` divides a file into trials. Other columns
+are passed over.
 """
 
 from pathlib import Path
@@ -9,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from core.body import LEG_JOINTS, Joint, Side
+from core.body import Joint, Side
 from core.samples import FloatArray
 from devices.files.references.numbers import check_ascending
 from devices.files.references.trial import EVENTS, ReferenceFile, ReferenceTrial
@@ -41,7 +42,7 @@ def read_plain_csv(path: Path) -> ReferenceFile:
         None of them, or a table that is not what it says it is.
     """
     _, names = header_of(path, path.name, comment=COMMENT, delimiters=DELIMITERS)
-    joints = {joint: name for joint in LEG_JOINTS for name in (str(joint), f"{joint}_deg") if name in names}
+    joints = {joint: name for joint in Joint for name in (str(joint), f"{joint}_deg") if name in names}
     if TIME in names and joints:
         return ReferenceFile(FORMAT, SOURCE, _angles(path, joints))
     if {TIME, SIDE, EVENT} <= set(names):
@@ -51,8 +52,8 @@ def read_plain_csv(path: Path) -> ReferenceFile:
     raise FileRefusedError(
         path.name,
         "its columns are neither angles nor events nor strides ({names})",
-        "Name them time_s and left_knee, left_ankle, right_knee, right_ankle in degrees; time_s, side, event; or side, "
-        "start_s, end_s, stride_length_m",
+        "Name them time_s and left_knee, left_ankle, left_hip, right_knee, right_ankle, right_hip in degrees; time_s, "
+        "side, event; or side, start_s, end_s, stride_length_m",
         names=quoted(", ".join(names), 200),
     )
 

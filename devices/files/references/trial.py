@@ -9,7 +9,7 @@ from core.samples import FloatArray
 
 EVENTS = ("initial_contact", "full_contact", "heel_rise", "toe_off")
 SIDES = {"l": Side.LEFT, "left": Side.LEFT, "r": Side.RIGHT, "right": Side.RIGHT}
-JOINTS = {"kne": "knee", "knee": "knee", "ank": "ankle", "ankle": "ankle"}
+JOINTS = {"hip": "hip", "kne": "knee", "knee": "knee", "ank": "ankle", "ankle": "ankle"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,5 +60,5 @@ def joint_of_name(name: str) -> Joint | None:
 
 def _parted(word: str) -> list[str]:
     """`rknee` as `r` and `knee`."""
-    found = re.fullmatch(r"([lr])(kne|knee|ank|ankle)(angles?)?", word)
+    found = re.fullmatch(r"([lr])(hip|kne|knee|ank|ankle)(angles?)?", word)
     return [part for part in found.groups() if part] if found else [word]

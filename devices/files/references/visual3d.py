@@ -33,7 +33,7 @@ def is_visual3d(_path: Path, head: bytes) -> bool:
 
 
 def read_visual3d(path: Path) -> ReferenceFile:
-    """Read the knees and ankles of every trial.
+    """Read the hips, knees and ankles of every trial.
 
     Raises
     ------
@@ -55,7 +55,7 @@ def read_visual3d(path: Path) -> ReferenceFile:
     if not trials:
         raise FileRefusedError(
             f"{path.name}, line 2",
-            "no signal is the angle of a knee or an ankle",
+            "no signal is the angle of a hip, a knee or an ankle",
             "Export joint angles that are named so, such as LKneeAngle, with all components",
         )
     shared = next((columns[TIME] for columns in wanted.values() if TIME in columns), None)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from app.charts.cycles import PERCENT
+from app.charts.drawing import COLOURS
 from app.charts.marks import Deviation, extreme_of
 from app.charts.on_paper import BRACKET_WIDTH, draw, frame_of, places_of
 from app.charts.stride_chart import Axis, StrideChart, StrideCurve
@@ -50,6 +51,16 @@ def test_a_bracket_reaches_from_one_extreme_to_the_other_and_has_its_size_and_nu
     assert drawn.svg.count(">55°</text>") == 1
     assert drawn.svg.count(">1</text>") == 1
     assert drawn.alt == "Knee. L bends 55° from stance to swing."
+
+
+@pytest.mark.parametrize("side", Side)
+def test_sides_are_told_by_letter_and_line_and_not_by_colour_alone(side: Side) -> None:
+    """As they print in grey: left is solid with its letter, right dashed with its."""
+    curve = StrideCurve(side[0].upper(), side, KNEE, 60.0, toe_off_label=f"{side[0].upper()} toe-off 60.0 %")
+    svg = draw(replace(CHART, curves=(curve,)), WIDTH).svg
+    (drawn,) = re.findall(rf'<path [^>]*stroke="{re.escape(COLOURS[side])}"[^>]*>', svg)
+    assert ("stroke-dasharray" in drawn) is (side is Side.RIGHT)
+    assert f">{side[0].upper()}</text>" in svg
 
 
 def test_the_leg_without_a_sentence_has_its_bracket_without_a_number() -> None:

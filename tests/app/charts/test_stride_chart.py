@@ -6,7 +6,7 @@ import pytest
 from app.charts.axes import angle_in_words
 from app.charts.cycles import PERCENT, SideCycle
 from app.charts.stride_chart import StrideCurve, curves_of_walk, toe_off_labels, toe_offs_in_order, usual_range_deg
-from core.body import Side
+from core.body import JointKind, Side
 from core.gait.cycles import mean_cycle
 
 
@@ -50,9 +50,9 @@ def test_the_earlier_toe_off_stands_first_as_far_as_it_is_written() -> None:
 
 
 def test_axes_are_the_usual_ones_and_their_labels_never_minus_zero() -> None:
-    assert usual_range_deg(is_knee=True, is_about_mean=False) == (-10, 80)
-    assert usual_range_deg(is_knee=True, is_about_mean=True) == (-40, 50)
-    assert usual_range_deg(is_knee=False, is_about_mean=True) == (-30, 30)
+    assert usual_range_deg(JointKind.KNEE, is_about_mean=False) == (-10, 80)
+    assert usual_range_deg(JointKind.KNEE, is_about_mean=True) == (-40, 50)
+    assert usual_range_deg(JointKind.ANKLE, is_about_mean=True) == (-30, 30)
     assert [angle_in_words(value) for value in (-20.0, -0.0, 20.0)] == ["\N{MINUS SIGN}20", "0", "20"]
 
 

@@ -148,6 +148,15 @@ def test_a_withheld_figure_has_its_reason_in_place_of_a_value(
     assert not any({"interpretation", "referenceRange"} & set(one) for one in found.values())
 
 
+def test_a_bundle_interprets_nothing(visit: tuple[Session, Analysis]) -> None:
+    """No figure is high, low, normal or abnormal: what it means is for who reads it."""
+    resources = [entry["resource"] for entry in bundle(*visit)["entry"]]
+    observations = [one for one in resources if one["resourceType"] == "Observation"]
+    assert len(observations) > 40
+    for told in (*observations, *(part for one in observations for part in one.get("component", ()))):
+        assert "interpretation" not in told
+
+
 def test_what_nobody_wore_was_not_performed(visit: tuple[Session, Analysis], walk: RecordingAnalysis) -> None:
     joints = {joint: angle for joint, angle in walk.joints.items() if joint.side is Side.LEFT}
     alone = replace(walk, joints=joints, gait={Side.LEFT: walk.gait[Side.LEFT]}, clocks=None)

@@ -7,13 +7,16 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
-from app.pages.goals_page import GoalDraft, GoalsPage, about
+from app.pages.goals_page import AT_LEAST, GoalDraft, GoalsPage, about
 from app.theme import ThemeNotifier
 from app.widgets.text import Text
 from core.goals import GOAL_COLUMNS, Goal, GoalOf, with_goal
+from core.timed.measures import COLUMNS
+from core.timed.protocols import TimedProtocol
 from tests.app.room import words_cut
 
 KNEE, SPEED, STANCE, LENGTH = "knee_stance_to_swing_deg", "speed_m_s", "stance_percent", "stride_length_m"
+SIT_TO_STAND = COLUMNS[TimedProtocol.SIT_TO_STAND]
 DAY = datetime.date(2026, 9, 30)
 LATER = datetime.date(2026, 11, 24)
 GOALS = with_goal(
@@ -150,3 +153,14 @@ def test_no_word_is_cut_in_a_longer_language(qtbot: QtBot, look: ThemeNotifier, 
     page.submit()
     page.resize(width, max(height, page.minimumHeight()))
     assert words_cut(page) == []
+
+
+def test_a_time_is_wanted_to_be_at_most_so_long_unless_somebody_says_otherwise(qtbot: QtBot, page: GoalsPage) -> None:
+    choose(page, SIT_TO_STAND)
+    assert not page.whose.isVisible()
+    QTest.keyClicks(page.value.line_edit, "15")
+    with qtbot.waitSignal(page.agreed) as told:
+        QTest.keyClick(page.value.line_edit, Qt.Key.Key_Return)
+    assert told.args == [GoalDraft(SIT_TO_STAND, GoalOf.WALK, 15.0, is_at_most=True, weeks=None, note="")]
+    choose(page, SPEED)
+    assert page.sense.choice == AT_LEAST

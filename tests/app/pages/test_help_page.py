@@ -7,11 +7,11 @@ import pytest
 from PySide6.QtCore import Qt, QUrl
 from PySide6.QtGui import QColor, QTextDocument
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QApplication, QWidget
+from PySide6.QtWidgets import QApplication, QLabel, QWidget
 from pytestqt.qtbot import QtBot
 
 from app.pages.help_page import HelpPage
-from app.pages.help_topics import Topic, topic_title
+from app.pages.help_topics import Topic, TopicGroup, group_title, topic_title
 from app.theme import ThemeNotifier
 from tests.app.watchdog import Watchdog
 
@@ -60,14 +60,8 @@ def test_every_step_of_the_wizard_has_its_topic() -> None:
 @pytest.mark.parametrize("topic", Topic)
 def test_a_topic_keeps_the_tone_of_the_house(topic: Topic) -> None:
     text = (FOLDER / f"{topic}.md").read_text(encoding="utf-8").replace("![", "[")
-    assert text.startswith(f"# {topic_title(topic)}\n")
-    assert FORBIDDEN.findall(text.replace("measurement error", "")) == []
-
-
-@pytest.mark.parametrize("topic", Topic)
-def test_every_picture_of_a_topic_is_there(topic: Topic) -> None:
-    text = (FOLDER / f"{topic}.md").read_text(encoding="utf-8")
-    assert [name for name in re.findall(r"!\[[^\]]*\]\(([^)]+)\)", text) if not (FOLDER / name).exists()] == []
+    ours = re.sub(r"\*\*.+?\*\*|“[^”]+”|(?m:^\| [^|]+ \|)", "", text)  # less what is quoted from the screen
+    assert FORBIDDEN.findall(ours.replace("measurement error", "").replace("standard errors", "")) == []
 
 
 @pytest.mark.parametrize("topic", Topic)
@@ -81,9 +75,10 @@ def test_a_topic_is_read_from_its_beginning(page: HelpPage, qapp: QApplication, 
 
 def test_a_topic_is_chosen_by_mouse_and_by_arrows(page: HelpPage) -> None:
     rows = page.topics.rows
-    QTest.mouseClick(rows[3], Qt.MouseButton.LeftButton)
+    row = rows[list(Topic).index(Topic.STAND_STILL)]
+    QTest.mouseClick(row, Qt.MouseButton.LeftButton)
     assert page.text.toPlainText().startswith("Stand still")
-    rows[3].setFocus()
+    row.setFocus()
     QTest.keyClick(focused(), Qt.Key.Key_Down)
     assert page.topic is Topic.FREE_MOTION
     assert page.text.toPlainText().startswith("Free motion")
@@ -94,6 +89,19 @@ def test_in_a_small_window_the_topics_fold_into_one_choice(page: HelpPage) -> No
     assert not page.topics.isVisible()
     page.choice.setCurrentIndex(list(Topic).index(Topic.KEYS))
     assert page.topic is Topic.KEYS
+
+
+def test_a_link_leads_to_another_page_and_nowhere_else(page: HelpPage) -> None:
+    led_to = []
+    for link in ("walking.md", "https://example.org/keys.md", "nowhere.md", "keys.html", "keys.md"):
+        page.text.anchorClicked.emit(QUrl(link))
+        led_to.append(page.topic)
+    assert led_to == [*[Topic.WALKING] * 4, Topic.KEYS]
+
+
+def test_groups_of_topics_have_titles(page: HelpPage) -> None:
+    said = [label.text() for label in page.topics.findChildren(QLabel)]
+    assert said == [group_title(group) for group in TopicGroup]
 
 
 def test_what_is_searched_for_is_counted_in_every_topic_and_marked(page: HelpPage) -> None:

@@ -12,11 +12,14 @@ from pytestqt.qtbot import QtBot
 
 from app.pages.home_course import CourseCard
 from app.pages.home_page import PATIENT, HomePage
+from app.pages.patient_panel import SESSION_ROW
 from app.reports.course_lanes import CourseVisit
 from app.reports.course_words import NextStep
 from app.theme import ThemeNotifier
 from app.widgets.text import Text
 from core.goals import Goal, GoalOf
+from core.timed.protocols import TimedProtocol
+from tests.app.course_material import course, timed
 from tests.app.home.course_library import SHOES, STICK, VISITS
 from tests.app.pages.test_home_page import patient, session
 from tests.app.room import words_cut
@@ -209,3 +212,37 @@ def test_lanes_of_other_measures_come_and_go_with_their_goals(page: HomePage, qa
     page.panel.show_course(VISITS, [*many, Goal("ankle_range_deg", GoalOf.LEFT, 25.0, day)])
     assert len(card.rows) == 4
     assert "Ankle range, left: at least 25°" in page.panel.count.text()
+
+
+def test_timed_tests_have_a_course_of_their_own_where_there_are_some(qtbot: QtBot, page: HomePage) -> None:
+    panel = page.panel
+    assert not panel.shown.isVisible()
+    tests = [course((timed(TimedProtocol.UP_AND_GO, time_s=time_s), SHOES)) for time_s in (30.0, 24.0)]
+    visits = [replace(one, course=found) for one, found in zip(VISITS[-2:], tests, strict=True)]
+    page.show_sessions([session(0, "Shoes", "")], visits)
+    assert panel.shown.isVisible()
+    assert "Walking speed" in said(panel.course)
+    panel.shown.focus()
+    QTest.keyClick(panel.shown.segments[0], Qt.Key.Key_Right)
+    qtbot.waitUntil(lambda: "Timed up and go" in said(panel.course))
+    found = said(panel.course)
+    assert "24.0\N{NO-BREAK SPACE}s" in found
+    assert "not judged" in found
+    assert "Walking speed" not in found
+    page.show_sessions([session(0, "Shoes", "")], VISITS)  # another patient, without a test
+    assert not panel.shown.isVisible()
+    qtbot.waitUntil(lambda: "Walking speed" in said(panel.course))
+
+
+def test_the_first_sessions_are_whole_however_many_rows_their_words_take(page: HomePage) -> None:
+    long = "; ".join(f"Alignment {letter}, carbon foot" for letter in "ABCD")
+    page.show_sessions([session(number, long, "report not written") for number in range(5)], VISITS)
+    heights = [page.panel.sessions.rowHeight(row) for row in range(2)]
+    assert page.panel.sessions.minimumHeight() == sum(heights) > 2 * SESSION_ROW
+
+
+def test_sessions_that_come_by_themselves_are_said_to(page: HomePage) -> None:
+    page.show_sessions([])
+    assert page.panel.none_yet.text() == "No sessions yet."
+    page.panel.say_none_yet(is_awaited=True)
+    assert page.panel.none_yet.text() == "This patient's visits are being recorded. They appear here."

@@ -193,7 +193,7 @@ def test_without_room_for_charts_every_line_draws_its_own_curves(page: ResultPag
     row = first_used(page)
     line = strides.lines[row]
     for shape, joint in zip(shapes, (Joint.LEFT_KNEE, Joint.LEFT_ANKLE), strict=True):
-        np.testing.assert_array_equal(line.shapes_deg[shape], np.rad2deg(walk.gait[Side.LEFT].cycles[joint][row]))
+        np.testing.assert_array_equal(line.shapes_deg[joint.kind], np.rad2deg(walk.gait[Side.LEFT].cycles[joint][row]))
         room = strides.visualRect(strides.cells.index(row, shape))
         picture = strides.viewport().grab(room).toImage()
         colours = {picture.pixelColor(x, y).rgb() for x in range(picture.width()) for y in range(4, picture.height())}

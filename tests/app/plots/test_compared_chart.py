@@ -12,7 +12,7 @@ from app.charts.stride_chart import StrideCurve
 from app.plots.compared_chart import ComparedChart
 from app.reports.reference_bands import reference_curves
 from app.theme import ThemeNotifier
-from core.body import Side
+from core.body import JointKind, Side
 
 BAND = Band(*reference_curves().mean_and_sd_deg("knee"))
 
@@ -22,7 +22,7 @@ def flat(letter: str, angle_deg: float) -> StrideCurve:
 
 
 def chart_of(qtbot: QtBot, look: ThemeNotifier) -> ComparedChart:
-    chart = ComparedChart(look, is_knee=True)
+    chart = ComparedChart(look, JointKind.KNEE)
     qtbot.addWidget(chart)
     chart.resize(600, 500)
     return chart

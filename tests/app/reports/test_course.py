@@ -21,9 +21,12 @@ from app.reports.course import (
 )
 from core.body import Joint, Side
 from core.samples import Recording
+from core.timed.measures import COLUMNS
+from core.timed.protocols import TimedProtocol
 from core.verdicts.measurement_error import Judgement
 from core.verdicts.model import Verdict
-from tests.app.course_material import analysis, course, recordings, unsure, walked
+from core.verdicts.quantities import OF_HIPS
+from tests.app.course_material import analysis, course, recordings, timed, unsure, walked
 from tests.core.verdicts.built_walk import calibrations, judged_walk
 
 
@@ -138,7 +141,8 @@ def test_what_is_kept_is_what_was_found() -> None:
     written = json.dumps(course_in_json(found), allow_nan=False)
     read = course_from_json(json.loads(written))
     assert repr(read) == repr(found)
-    assert [one.column for one in read.conditions[0].figures] == [SPEED, CADENCE, *OF_A_LEG, *OF_A_LEG]
+    of_leg = [column for column in OF_A_LEG if column not in OF_HIPS]  # no sensor is on the pelvis
+    assert [one.column for one in read.conditions[0].figures] == [SPEED, CADENCE, *of_leg, *of_leg]
     assert read.conditions[0].figure(STANCE, Side.RIGHT) is not None
 
 
@@ -152,3 +156,54 @@ def test_a_visit_without_a_walk_has_no_conditions() -> None:
     found = course_of(analysis(), list[Recording]())
     assert found.conditions == ()
     assert course_from_json(course_in_json(found)) == found
+
+
+def test_a_timed_test_stands_with_its_condition_as_the_mean_of_its_attempts() -> None:
+    found = course(
+        (walked("walk 1"), "shoes"),
+        (timed(TimedProtocol.TEN_METRES, time_s=10.0, name="walk 2"), "shoes"),
+        (timed(TimedProtocol.TEN_METRES, time_s=8.0, name="walk 3"), "shoes"),
+        (timed(TimedProtocol.TEN_METRES, time_s=20.0, name="walk 4"), "stick"),
+        (timed(TimedProtocol.STAIRS, name="walk 5"), "shoes"),
+    )
+    shoes, stick = found.conditions
+    (test,) = shoes.tests
+    assert test.column == COLUMNS[TimedProtocol.TEN_METRES]
+    assert test.found.mean == pytest.approx(1.125)
+    assert test.found.attempts == 2
+    assert test.whisker == pytest.approx(0.10)
+    assert stick.tests[0].found.mean == pytest.approx(0.5)
+
+
+def test_a_condition_of_tests_from_a_chair_alone_has_no_figure_of_walking() -> None:
+    found = course((walked(), "shoes"), (timed(TimedProtocol.SIT_TO_STAND, time_s=14.0), "barefoot"))
+    barefoot = found.condition("barefoot")
+    assert barefoot is not None
+    assert (barefoot.strides, barefoot.figures) == (0, ())
+    test = barefoot.test(COLUMNS[TimedProtocol.SIT_TO_STAND])
+    assert test is not None
+    assert test.found.mean == pytest.approx(14.0)
+    assert not math.isfinite(test.whisker)
+    assert change(barefoot, barefoot, SPEED) is None
+
+
+def test_what_rests_on_the_feet_is_withheld_with_them_and_what_ends_at_the_tape_is_not() -> None:
+    def told(*, is_end_by_key: bool) -> Verdict:
+        slow = walked("walk 9", speed_m_s=0.05)  # no speed that anybody walks at
+        test = timed(TimedProtocol.TEN_METRES, is_end_by_key=is_end_by_key)
+        found = only(course((replace(slow, timed=test.timed), "shoes"))).test(COLUMNS[TimedProtocol.TEN_METRES])
+        assert found is not None
+        assert found.is_told is (found.verdict is not Verdict.WITHHELD)
+        return found.verdict
+
+    assert told(is_end_by_key=False) is Verdict.WITHHELD
+    assert told(is_end_by_key=True) is Verdict.READ
+
+
+def test_a_test_that_was_broken_off_has_no_value_and_is_kept_as_it_is() -> None:
+    found = course((timed(TimedProtocol.UP_AND_GO, time_s=math.nan), "shoes"))
+    test = only(found).test(COLUMNS[TimedProtocol.UP_AND_GO])
+    assert test is not None
+    assert not test.is_told
+    again = course_from_json(json.loads(json.dumps(course_in_json(found))))
+    assert str(again) == str(found)

@@ -16,6 +16,7 @@ from app.reports.course_lanes import (
     CourseVisit,
     LaneKind,
     conditions_of_visits,
+    kinds_of_tests,
     lane_kinds,
     lanes,
     without_lane,
@@ -23,6 +24,7 @@ from app.reports.course_lanes import (
 from app.reports.course_words import (
     LatestVisit,
     NextStep,
+    changes_since_in_words,
     judged_in_words,
     key_in_words,
     lane_in_words,
@@ -36,9 +38,11 @@ from app.reports.course_words import (
 from app.reports.goals import reached_at
 from core.body import Joint, Side
 from core.goals import Goal, GoalOf
+from core.timed.measures import COLUMNS
+from core.timed.protocols import TimedProtocol
 from core.verdicts.measurement_error import Difference, ErrorSource, Judgement
 from core.verdicts.model import Verdict
-from tests.app.course_material import course, unsure, walked
+from tests.app.course_material import course, timed, unsure, walked
 
 SHOES, STICK = "shoes", "shoes, stick"
 TODAY = datetime.date(2026, 11, 23)
@@ -270,3 +274,55 @@ def test_a_goal_that_is_reached_is_next_after_the_report_and_before_a_long_time(
     assert unwritten is not None
     assert unwritten.verb == "Open"
     assert reached_at([goal(SPEED_LANE.column, GoalOf.WALK, 1.05)], shoes(speed_m_s=1.0)) == ()
+
+
+TEN_METRES, UP_AND_GO = (LaneKind(COLUMNS[one]) for one in (TimedProtocol.TEN_METRES, TimedProtocol.UP_AND_GO))
+
+
+def with_tests(time_s: float, up_and_go_s: float = math.nan) -> Course:
+    tests = [(timed(TimedProtocol.TEN_METRES, time_s=time_s), SHOES)]
+    if math.isfinite(up_and_go_s):
+        tests.append((timed(TimedProtocol.UP_AND_GO, time_s=up_and_go_s, name="walk 8"), SHOES))
+    return course(*tests)
+
+
+def test_a_test_that_was_done_once_has_a_lane_and_one_that_a_goal_is_of() -> None:
+    visits = [visit(1, shoes()), visit(2, with_tests(12.5, 30.0)), visit(3, with_tests(10.0))]
+    assert kinds_of_tests(visits, ()) == (TEN_METRES, UP_AND_GO)
+    assert kinds_of_tests(visits[:1], ()) == ()
+    wanted = Goal(COLUMNS[TimedProtocol.SIX_MINUTES], GoalOf.WALK, 400.0, TODAY)
+    assert kinds_of_tests(visits[:1], [wanted]) == (LaneKind(wanted.column),)
+    assert lane_kinds([wanted]) == lane_kinds()
+    assert without_lane([wanted]) == ()
+
+
+def test_the_lane_of_a_test_has_whiskers_and_a_verdict_where_an_error_is_known_only() -> None:
+    visits = [visit(1, with_tests(12.5, 30.0)), visit(2, with_tests(11.0, 24.0)), visit(3, with_tests(8.0, 20.0))]
+    ten, up = lanes(visits, kinds=(TEN_METRES, UP_AND_GO))
+    assert [point.value for point in ten.lines[0].points] == pytest.approx([0.8, 0.909, 1.25], abs=1e-3)
+    assert [point.whisker for point in ten.lines[0].points] == pytest.approx([0.1] * 3)
+    assert ten.band == pytest.approx((0.6, 1.0))
+    assert all(not math.isfinite(point.whisker) for point in up.lines[0].points)
+    assert up.band is None
+    space = "\N{NO-BREAK SPACE}"
+    assert changes_since_in_words(ten, visits) == (
+        f"+0.34{space}m/s since 20 Mar, larger than error (0.20 †). "
+        f"+0.45{space}m/s since 20 Feb, larger than error (0.20 †)."
+    )
+    minus = "\N{MINUS SIGN}"
+    assert changes_since_in_words(up, visits) == (
+        f"{minus}4.0{space}s since 20 Mar, not judged. {minus}10.0{space}s since 20 Feb, not judged."
+    )
+    assert changes_since_in_words(lanes(visits[:1], kinds=(UP_AND_GO,))[0], visits[:1]) == ""
+    assert lane_in_words(up, visits).startswith("Timed up and go: 30.0 seconds on 20 Feb, 24.0 seconds on 20 Mar")
+
+
+def test_a_goal_of_a_test_is_reached_where_the_test_was_done_and_told_of_speed_alone() -> None:
+    both = course((walked(), STICK), (timed(TimedProtocol.TEN_METRES, time_s=8.0), SHOES))
+    ten = goal(TEN_METRES.column, GoalOf.WALK, 1.0)
+    (reached,) = reached_at([ten], both)
+    assert reached.value == pytest.approx(1.25)
+    assert reached.error == pytest.approx(0.20)
+    assert reached_at([replace(ten, value=1.3)], both) == ()
+    up = Goal(UP_AND_GO.column, GoalOf.WALK, 40.0, ten.agreed, is_at_most=True)
+    assert reached_at([up], with_tests(8.0, 30.0)) == ()  # nobody knows by how much a time from a chair is off

@@ -17,18 +17,28 @@ from app.measure_names import goal_in_words, spoken_value, wanted
 from app.reports.agreed import agreed_with
 from app.reports.comparison import Part
 from app.reports.course import Course, CourseCondition
-from app.reports.goals import GoalFigure, goal_mark, goal_sentence, in_course, measured, of_part, reached_at
-from app.reports.goals_csv import GOALS, HEADER, goal_rows
+from app.reports.goals import (
+    GoalFigure,
+    goal_mark,
+    goal_sentence,
+    in_course,
+    measured,
+    of_part,
+    reached_at,
+    value_in_words,
+)
+from app.reports.goals_csv import GOALS, HEADER, goal_figures, goal_rows
 from app.reports.result_folder import write_results
 from core.analysis import analyse
 from core.body import Joint, Side
-from core.goals import Goal, GoalOf, agreed_by
+from core.goals import NO_GOALS, Goal, GoalOf, agreed_by
 from core.results import RecordingAnalysis
 from core.samples import Patient, Session
+from core.timed.protocols import TimedProtocol
 from core.verdicts.goals import GoalStanding
 from core.verdicts.model import Verdict
 from devices.walker import DEMONSTRATION, simulate
-from tests.app.course_material import analysis, course, recordings, unsure, walked
+from tests.app.course_material import analysis, course, recordings, timed, unsure, walked
 from tests.core.verdicts.built_walk import judged_walk
 
 KNEE, SPEED, STANCE = "knee_stance_to_swing_deg", "speed_m_s", "stance_percent"
@@ -250,3 +260,20 @@ def test_a_leg_that_was_not_worn_has_no_value(side: Side) -> None:
     assert measured(Goal(STANCE, GoalOf.BETWEEN, 2.0, DAY, is_at_most=True), part(alone)).standing is (
         GoalStanding.UNKNOWN
     )
+
+
+def test_a_goal_of_a_timed_test_is_held_against_the_tests_of_the_walks_and_no_other() -> None:
+    ten = Goal("ten_metres_speed_m_s", GoalOf.WALK, 1.0, DAY)
+    up = Goal("up_and_go_time_s", GoalOf.WALK, 12.0, DAY, is_at_most=True)
+    walk = timed(TimedProtocol.TEN_METRES, time_s=8.0)
+    told, other = measured(ten, part(walk)), measured(up, part(walk))
+    assert told.value == pytest.approx(1.25)
+    assert (told.standing, told.verdict) == (GoalStanding.REACHED, Verdict.READ)
+    assert (other.standing, other.verdict) == (GoalStanding.UNKNOWN, Verdict.NOT_MEASURED)
+    assert measured(ten, part(walked())).verdict is Verdict.NOT_MEASURED
+    risen = measured(up, part(timed(TimedProtocol.UP_AND_GO, time_s=9.0)))
+    assert risen.value == pytest.approx(9.0)
+    assert risen.standing is GoalStanding.NOT_JUDGED
+    assert [goal_figures(one, NO_GOALS)["unit"] for one in (told, risen)] == ["m/s", "s"]
+    assert value_in_words(told) == "1.25\N{NO-BREAK SPACE}m/s"
+    assert goal_mark(up) == "goal \N{LESS-THAN OR EQUAL TO}12\N{NO-BREAK SPACE}s"

@@ -2,22 +2,25 @@
 
 import csv
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from app.gates_in_words import WORDS, gate_sentence
+from app.gates_in_words import WORDS, gate_sentence, gate_words
 from app.reports.columns import column_of
 from app.reports.result_folder import write_results
 from app.storage.analysis_content import packed, unpacked
-from core.body import LEG_SITES, Joint, Side, Site
+from core.body import LEG_SITES, Joint, Side, Site, hip_of
+from core.verdicts.gates import judged
 from core.verdicts.model import GateReason, Verdict
 from devices.files.session_folder import read_session, write_session
 from devices.walker import Tissue
-from tests.core.hip.hip_sessions import analysed
+from tests.core.hip.hip_sessions import analysed, with_hip
 
 HIP_GATES = ("hip_disagreement", "hip_centre", "hips_apart")
+OF_DEGREES = ("hip_heading", "hip_deep", "pelvis_tilt")
 
 
 @pytest.fixture(scope="module")
@@ -55,11 +58,55 @@ def test_strides_hold_figures_of_hips_and_pelvis(results: Path) -> None:
 
 def test_every_column_is_explained(results: Path) -> None:
     explained = {(row["file"], row["column"]) for row in rows(results / "columns.csv")}
-    for file in ("angles.csv", "strides.csv"):
+    for file in ("angles.csv", "strides.csv", "cycles.csv"):
         with (results / "walk_1" / file).open(encoding="utf-8") as table:
             for name in table.readline().strip().split(","):
                 assert (file, name) in explained
                 assert column_of(file, name).definition
+    with (results / "peaks.csv").open(encoding="utf-8") as table:
+        of_hips = [name for name in table.readline().strip().split(",") if name.startswith("hip")]
+    assert of_hips == ["hip_flexion_peak_percent", "hip_extension_peak_percent", "hip_status"]
+    assert {("peaks.csv", name) for name in of_hips} <= explained
+
+
+def test_mean_curves_of_hips_and_their_abduction_are_those_of_the_strides_used(results: Path) -> None:
+    walk = analysed(late_s=0.04)[1].recordings[-1]
+    table = rows(results / "walk_1" / "cycles.csv")
+    for side in Side:
+        gait = walk.gait[side]
+        mean = np.rad2deg(gait.cycles[hip_of(side)][gait.strides.is_used].mean(axis=0))
+        assert [float(row[f"{side}_hip_mean_deg"]) for row in table] == pytest.approx(mean, abs=1e-4)
+        abduction = [float(row[f"{side}_hip_abduction_mean_deg"]) for row in table]
+        assert -12.0 < min(abduction) < -4.0 < 4.0 < max(abduction) < 15.0
+        assert {row[f"{side}_hip_abduction_status"] for row in table} == {"read"}
+
+
+def test_differences_of_hips_and_pelvis_have_no_published_figure(results: Path) -> None:
+    told = {row["parameter"]: row for row in rows(results / "sides.csv")}
+    of_hips = [row for name, row in told.items() if name.startswith(("hip", "pelvis"))]
+    assert len(of_hips) == 11
+    for row in of_hips:
+        is_tilt = row["parameter"] == "pelvis_tilt_range_deg"
+        assert row["verdict"] == ("withheld" if is_tilt else "no_published_figure")
+        assert (row["error"], row["difference"] == "") == ("", is_tilt)
+    assert told["knee_range_deg"]["verdict"] != "no_published_figure"
+
+
+def test_what_is_withheld_of_a_hip_is_empty_and_its_status_says_so(tmp_path: Path) -> None:
+    made, analysis = analysed(late_s=0.04)
+    write_results(made.session, with_hip(analysis, Joint.LEFT_HIP, margin=1.2), tmp_path)
+    cycles, strides = rows(tmp_path / "walk_1" / "cycles.csv"), rows(tmp_path / "walk_1" / "strides.csv")
+    for part in ("left_hip", "left_hip_abduction"):
+        assert {row[f"{part}_mean_deg"] for row in cycles} == {""}
+        assert {row[f"{part}_status"] for row in cycles} == {"withheld"}
+        assert {row[f"{part.replace('left', 'right')}_status"] for row in cycles} == {"read"}
+    left = [row for row in strides if row["side"] == "left"]
+    for name in ("hip_range_deg", "hip_flexion_peak_deg", "hip_abduction_range_deg"):
+        assert {row[name] for row in left} == {""}
+        assert any(row[name] for row in strides if row["side"] == "right")
+    assert any(row["pelvis_drop_deg"] for row in left)  # the other hip gives the pelvis its frame
+    verdicts = json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))["walks"]["walk 1"]["verdicts"]
+    assert "neighbours" in json.dumps(verdicts)
 
 
 def test_the_summary_tells_the_clock_and_the_hips(results: Path) -> None:
@@ -98,7 +145,58 @@ def test_real_tissue_that_parts_the_hips_is_withheld_in_words() -> None:
     assert "0.29" in gate_sentence(gates["hips_apart"])
 
 
-@pytest.mark.parametrize("gate", HIP_GATES)
-def test_each_gate_of_a_hip_has_its_sentence(gate: str) -> None:
-    assert gate in WORDS
-    assert "0.31" in gate_sentence(GateReason(gate, Verdict.WITHHELD, 0.31, 0.28, "m"))
+@pytest.mark.parametrize(
+    ("wrong", "gate", "told"),
+    [
+        ({"margin": 1.4}, "pairing", "1.40"),
+        ({"disagreement": 0.31}, "hip_disagreement", "0.31"),
+        ({"centre_proximal_m": np.array([0.0, 0.0, 0.44])}, "hip_centre", "0.44 m"),
+        ({"centre_distal_m": np.array([0.03, 0.0, 0.0])}, "hip_centre", "0.03 m"),
+        ({"centres_apart_m": 0.31}, "hips_apart", "0.31 m"),
+        ({"centres_apart_m": -0.17}, "hips_apart", "-0.17 m"),  # the legs' sensors are swapped
+    ],
+)
+def test_a_hip_of_which_one_thing_is_wrong_is_withheld_in_words_and_the_other_hip_is_not(
+    wrong: dict[str, object], gate: str, told: str
+) -> None:
+    left, analysis = Joint.LEFT_HIP, analysed(late_s=0.04)[1]
+    walk = analysis.recordings[-1]
+    changed = replace(walk.hips[left], identification=replace(walk.hips[left].identification, **wrong))  # type: ignore[arg-type]  # fields by name
+    found = judged(replace(analysis, recordings=(replace(walk, hips={**walk.hips, left: changed}),))).recordings[-1]
+    shape = found.verdicts.joint(left).shape
+    assert shape.verdict is Verdict.WITHHELD
+    (reason,) = shape.reasons
+    assert reason.gate == gate
+    assert told in gate_sentence(reason).replace("\u00a0", " ")
+    assert found.verdicts.joint(Joint.RIGHT_HIP) == walk.verdicts.joint(Joint.RIGHT_HIP)
+    assert walk.verdicts.joint(left).shape.verdict is Verdict.READ
+    assert found.verdicts.pelvis == walk.verdicts.pelvis  # one sound hip is enough for it
+
+
+def test_where_no_hip_can_be_read_there_is_no_pelvis() -> None:
+    analysis = analysed(late_s=0.04)[1]
+    walk = analysis.recordings[-1]
+    hips = {
+        joint: replace(hip, identification=replace(hip.identification, margin=1.4)) for joint, hip in walk.hips.items()
+    }
+    found = judged(replace(analysis, recordings=(replace(walk, hips=hips),))).recordings[-1]
+    assert found.verdicts.pelvis.verdict is Verdict.WITHHELD
+    assert {reason.gate for reason in found.verdicts.pelvis.reasons} == {"pairing"}
+
+
+@pytest.mark.parametrize("gate", OF_DEGREES)
+def test_each_gate_with_a_limit_in_degrees_says_both_figures(gate: str) -> None:
+    said = gate_sentence(GateReason(gate, Verdict.WITHHELD, 7.25, 6.0, "deg"))
+    assert "7.2" in said
+    assert "6" in said
+
+
+@pytest.mark.parametrize("gate", ["hip_found", "leg_clock"])
+def test_what_was_not_found_says_what_it_takes(gate: str) -> None:
+    words = gate_words(GateReason(gate, Verdict.WITHHELD))
+    assert words.why
+    assert words.to_do
+
+
+def test_every_gate_of_a_hip_has_its_words() -> None:
+    assert set(HIP_GATES) <= set(WORDS)

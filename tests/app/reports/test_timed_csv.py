@@ -1,13 +1,18 @@
 """timed_test.csv, the summary and the report's page: what a test gave, nothing of walks that are none."""
 
+import datetime
 import math
 from dataclasses import replace
+from uuid import UUID
 
 import pytest
 
-from app.reports.patient_report.document import make_report, report_data
+from app.reports.course import Course
+from app.reports.course_lanes import CourseVisit
+from app.reports.patient_report.document import facts_of, make_report, report_data
 from app.reports.patient_report.request import AnalysedVisit, ReportRequest
 from app.reports.patient_report.timed_page import timed_page
+from app.reports.patient_report.trend_page import charts_of_tests
 from app.reports.summary import summarise
 from app.reports.timed_csv import HEADER, timed_rows
 from core.analysis import analyse
@@ -17,6 +22,8 @@ from core.samples import RecordingKind, Session
 from core.timed.found import NotMeasured, Rise, Silence, StairStride, TimedPart, TimedTest, Turn
 from core.timed.protocols import PlannedTest, TimedProtocol
 from devices.walker import DEMONSTRATION, Standing, Walk, simulate
+from tests.app.course_material import course as course_of_walks
+from tests.app.course_material import timed
 from tests.app.reports.patient_report.conftest import MADE_AT
 
 TWO = TimedTest(
@@ -106,8 +113,8 @@ def test_the_report_has_a_page_of_tests_where_there_were_some(visit: AnalysedVis
     unknown = replace(TWO, distance_m=math.nan)
     whole = ReportRequest(AnalysedVisit(*with_test(visit, TWO)), ("walk 2",), MADE_AT, "1.2.3")
     request = ReportRequest(AnalysedVisit(*with_test(visit, unknown)), ("walk 2",), MADE_AT, "1.2.3")
-    assert "2-minute walk: 132 m, 1.10 m/s." in str(timed_page(whole))
-    said = str(timed_page(request))
+    assert "2-minute walk: 132 m, 1.10 m/s." in str(timed_page(whole, facts_of(whole)))
+    said = str(timed_page(request, facts_of(request)))
     for words in (
         "2-minute walk: no distance can be told.",
         "First third 1.10 m/s, last third 1.05 m/s.",
@@ -119,6 +126,33 @@ def test_the_report_has_a_page_of_tests_where_there_were_some(visit: AnalysedVis
     ):
         assert words in said
     without = ReportRequest(AnalysedVisit(*with_test(visit, None)), ("walk 2",), MADE_AT, "1.2.3")
-    assert timed_page(without) == []
+    assert timed_page(without, facts_of(without)) == []
     assert len(report_data(request)["pages"]) == len(report_data(without)["pages"]) + 1
     assert make_report(request).startswith(b"%PDF")
+
+
+def test_the_page_of_tests_shows_the_course_of_those_that_two_visits_have(visit: AnalysedVisit) -> None:
+    course = tuple(
+        CourseVisit(UUID(int=number), datetime.date(2026, 9 + number, 2), found)
+        for number, found in enumerate(
+            (
+                with_tests((TimedProtocol.TEN_METRES, 14.0), (TimedProtocol.UP_AND_GO, 30.0)),
+                with_tests((TimedProtocol.TEN_METRES, 10.0), (TimedProtocol.SIT_TO_STAND, 20.0)),
+            )
+        )
+    )
+    request = ReportRequest(AnalysedVisit(*with_test(visit, TWO)), ("walk 2",), MADE_AT, "1.2.3", course=course)
+    facts = facts_of(request)
+    assert list(charts_of_tests(course, "=shoes", facts)) == [TimedProtocol.TEN_METRES]
+    said = str(timed_page(request, facts))
+    assert "10-metre walk, m/s" in said
+    assert "half of the error of a change of speed, 0.20 m/s" in said
+    assert "they are not judged" not in said
+    assert charts_of_tests(course, "barefoot", facts) == {}
+    alone = replace(request, course=course[1:])
+    assert "Over the visits" not in str(timed_page(alone, facts))
+
+
+def with_tests(*tests: tuple[TimedProtocol, float]) -> Course:
+    walks = [(timed(one, time_s=time_s, name=f"walk {k}"), "=shoes") for k, (one, time_s) in enumerate(tests)]
+    return course_of_walks(*walks)

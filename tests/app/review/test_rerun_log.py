@@ -185,6 +185,11 @@ def test_the_log_says_what_may_be_read_and_why_not(tmp_path: Path) -> None:
     assert "| both legs | between | not measured |  |" in first
 
 
+def test_the_log_says_what_it_is_for(tmp_path: Path) -> None:
+    write_log(*visit(), tmp_path / "session.rrd")
+    assert "Research use. Not a medical device." in text_of(tmp_path / "session.rrd", "/may_be_read")
+
+
 def test_a_recording_is_a_timeline_and_a_discarded_one_is_not_there(tmp_path: Path) -> None:
     write_log(*visit(), tmp_path / "session.rrd")
     chunks = list(RrdReader(tmp_path / "session.rrd").stream())

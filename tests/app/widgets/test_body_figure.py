@@ -22,8 +22,8 @@ def figure(qtbot: QtBot) -> BodyFigure:
 def test_the_drawing_names_every_segment_joint_and_sensor() -> None:
     shapes = body_shapes()
     assert {"body", "head", "pelvis", "left_arm", "right_arm", *LEG_SITES} == set(shapes.outlines)
-    assert {*LEG_JOINTS, *(f"{site}_sensor" for site in LEG_SITES), "left_eye", "right_eye"} == set(shapes.points)
-    for site in LEG_SITES:
+    assert {*LEG_JOINTS, *(f"{site}_sensor" for site in Site), "left_eye", "right_eye"} == set(shapes.points)
+    for site in Site:
         assert shapes.outlines[site].contains(shapes.points[f"{site}_sensor"])
 
 
@@ -47,9 +47,9 @@ def test_the_patients_right_stands_at_the_left_and_changes_over_from_behind(figu
 @pytest.mark.parametrize("is_legs_only", [False, True])
 def test_each_place_is_found_where_it_is_drawn(figure: BodyFigure, is_legs_only: bool) -> None:
     figure.set_legs_only(is_legs_only)
-    for site in LEG_SITES:
+    for site in Site:
         assert figure.site_at(figure.anchor(site)) is site
-    assert figure.site_at(QPointF(figure.width() / 2, 40)) is None
+    assert figure.site_at(QPointF(figure.width() / 2, 4 if is_legs_only else 40)) is None
     for joint in LEG_JOINTS:
         thigh_or_shank, below = figure.anchor(joint.proximal).y(), figure.anchor(joint.distal).y()
         assert thigh_or_shank < figure.joint_anchor(joint).y() < below

@@ -114,7 +114,7 @@ def test_only_what_changed_is_painted(look: ThemeNotifier, qtbot: QtBot, monkeyp
     assert set(painted) == set(LEG_SITES)
     painted.clear()
     changed = {FOOT: tile(silent_s=2.0), Site.LEFT_FOOT: tile(Site.LEFT_FOOT, lost_share=0.00041)}
-    strip._show(fine() | changed)
+    strip.show_at_once(fine() | changed)
     settle()
     assert painted == [FOOT]
 
@@ -132,7 +132,7 @@ def test_it_tells_once_that_a_sensor_turned_bad(strip: SensorStrip) -> None:
     told: list[int] = []
     strip.turned_bad.connect(lambda: told.append(1))
     for tiles in (fine(), fine() | {FOOT: tile(silent_s=2.0)}, fine() | {FOOT: tile(silent_s=3.0)}, fine()):
-        strip._show(tiles)
+        strip.show_at_once(tiles)
     assert told == [1]
 
 
@@ -170,7 +170,7 @@ def test_no_word_is_cut_in_any_state(
     strip.set_compact(is_compact)
     strip.resize(width, 72)
     for shown, _, _ in STATES:
-        strip._show({site: SensorTile(site, *_rest(shown)) for site in LEG_SITES})
+        strip.show_at_once({site: SensorTile(site, *_rest(shown)) for site in LEG_SITES})
         strip._arrange()
         assert words_cut(strip) == []
 
@@ -208,3 +208,51 @@ def test_the_button_is_yellow_while_a_sensor_is_bad(look: ThemeNotifier, qtbot: 
         assert button.grab().toImage().pixelColor(button.width() - 6, 8) == QColor(colour)
         assert button.accessibleName() == sentence(tiles)
         assert words_cut(button) == []
+
+
+SEVEN = {site: tile(site) for site in Site}
+
+
+def test_a_seventh_tile_stands_between_the_legs_only_while_the_pelvis_wears_a_sensor(strip: SensorStrip) -> None:
+    strip.show_tiles(fine())
+    settle()
+    six = strip.grab().toImage()
+    assert Site.PELVIS not in strip.widgets
+    strip.show_at_once(SEVEN)
+    settle()
+    order = sorted(strip.widgets, key=lambda site: strip.widgets[site].x())
+    assert order[3] is Site.PELVIS
+    assert {widget.y() for widget in strip.widgets.values()} == {8}
+    assert strip.widgets[Site.PELVIS].accessibleName() == "Pelvis, 100 Hz · 0.0 % lost, moving"
+    assert words_cut(strip) == []
+    assert strip.grab().toImage() != six
+    strip.show_at_once(fine())
+    settle()
+    assert strip.grab().toImage() == six
+
+
+@pytest.mark.parametrize("width", [320, 640, 896, 1064, 1680])
+@pytest.mark.parametrize("is_compact", [False, True])
+def test_seven_tiles_have_room_and_lie_over_none(strip: SensorStrip, width: int, is_compact: bool) -> None:
+    strip.set_compact(is_compact)
+    strip.show_at_once(SEVEN | {Site.PELVIS: tile(Site.PELVIS, silent_s=3.0)})
+    strip.resize(width, strip.height())
+    settle()
+    places = [widget.geometry() for widget in strip.widgets.values()]
+    assert len(places) == 7
+    assert not any(one.intersects(other) for k, one in enumerate(places) for other in places[:k])
+    assert max(place.bottom() for place in places) < strip.height()
+
+
+def test_arrows_go_over_the_pelvis(strip: SensorStrip) -> None:
+    strip.show_at_once(SEVEN)
+    strip.widgets[Site.RIGHT_FOOT].setFocus()
+    QTest.keyClick(strip.widgets[Site.RIGHT_FOOT], Qt.Key.Key_Right)
+    assert strip.widgets[Site.PELVIS].hasFocus()
+    strip.show_at_once(fine())  # taken off
+    assert [widget.focusPolicy() for widget in strip.widgets.values()].count(Qt.FocusPolicy.StrongFocus) == 1
+
+
+def test_a_silent_pelvis_is_named_in_the_sentence() -> None:
+    assert sentence(SEVEN) == "7 sensors, all heard"
+    assert sentence(SEVEN | {Site.PELVIS: tile(Site.PELVIS, silent_s=3.2)}) == "Pelvis: silent 3 s"

@@ -6,7 +6,7 @@ import shutil
 import signal
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 from uuid import UUID
@@ -18,7 +18,7 @@ from pytestqt.qtbot import QtBot
 
 from app.home.home import Home
 from app.settings import Settings
-from app.storage.stored import RecordingState
+from app.storage.stored import PlacedSensor, RecordingState
 from app.theme import ThemeNotifier, load_fonts
 from app.widgets.rail_row import StepState
 from app.wizard import wizard as wizard_module
@@ -28,7 +28,7 @@ from app.wizard.visit import Visit
 from app.wizard.walking.step import WalkingStep
 from app.wizard.wizard import REPORT, RESULTS, WALKING, Wizard
 from app.workers.library_controller import LibraryController
-from core.body import LEG_SITES, Joint, Side
+from core.body import LEG_SITES, Joint, Side, Site
 from tests.app.wizard.conftest import PASSPHRASE
 from tests.safety.wizard_kills import COMMENT, CONDITION, SPEED, Point
 
@@ -41,10 +41,10 @@ pytestmark = [
 ]
 
 
-def killed_at(point: Point, folder: Path, untouched: Path) -> dict[str, Any]:
+def killed_at(point: Point, folder: Path, untouched: Path, *more: str) -> dict[str, Any]:
     """Lead the application to a point, and kill it there; returns what it said of what it had."""
     library = shutil.copytree(untouched, folder / "library")
-    command = [sys.executable, "-m", "tests.safety.wizard_kills", str(library), PASSPHRASE, str(point)]
+    command = [sys.executable, "-m", "tests.safety.wizard_kills", str(library), PASSPHRASE, str(point), *more]
     with subprocess.Popen(command, cwd=Path(__file__).parents[3], stdout=subprocess.PIPE, text=True) as child:
         try:
             assert child.stdout is not None
@@ -135,6 +135,24 @@ def test_amid_a_walk(qtbot: QtBot, start_again: Start, untouched_library: Path, 
         assert float(block.time_s[-1] - block.time_s[0]) > told["heard_s"] - LOST_S * SPEED
     assert {name: count for name, count in samples_of(visit).items() if name != "walk 1"} == told["takes"]
     assert "was recovered" in page_notice(qtbot, wizard)
+
+
+def test_amid_a_walk_with_a_sensor_on_the_pelvis(start_again: Start, untouched_library: Path, tmp_path: Path) -> None:
+    told = killed_at(Point.WALKING, tmp_path, untouched_library, "--pelvis")
+    _, wizard = start_again(told["session"])
+    (walk,) = visit_of(wizard).recordings.walks
+    assert walk.stored.state is RecordingState.RECOVERED
+    assert walk.read_back is not None
+    assert set(walk.read_back.imu) == set(Site)
+    for block in walk.read_back.imu.values():
+        assert float(block.time_s[-1] - block.time_s[0]) > told["heard_s"] - LOST_S * SPEED
+    assert set(visit_of(wizard).rests) == {worn.name for worn in placed(visit_of(wizard)).values()}
+
+
+def placed(visit: Visit) -> Mapping[Site, PlacedSensor]:
+    placement = visit.recordings.walks[-1].stored.placement
+    assert placement is not None
+    return placement.sensors
 
 
 def page_notice(qtbot: QtBot, wizard: Wizard) -> str:

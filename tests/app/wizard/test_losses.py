@@ -1,7 +1,7 @@
 """Silent sensors: told after two seconds, with what they cost, and once more when they are back."""
 
 from app.wizard.losses import NOTHING, Losses
-from core.body import LEG_JOINTS, LEG_SITES, Site
+from core.body import LEG_JOINTS, LEG_SITES, Joint, Site
 
 ALL = list(LEG_JOINTS)
 
@@ -71,3 +71,37 @@ def test_where_none_is_heard_the_receiver_is_told_of_and_their_return_is_told_to
     losses.update({**dict.fromkeys(LEG_SITES, 0.02), Site.LEFT_FOOT: 2.1}, 20.0)
     losses.update(dict.fromkeys(LEG_SITES, 0.02), 20.5)
     assert losses.message(True, ALL, 20.5)[0] == "L foot is back after 2.1 s."
+
+
+HIPS = [Joint.LEFT_HIP, Joint.RIGHT_HIP]
+
+
+def test_a_silent_pelvis_costs_the_hips_and_says_that_the_rest_goes_on() -> None:
+    losses = Losses()
+    assert losses.update({Site.PELVIS: 3.1, Site.LEFT_FOOT: 0.0}, 10.0) == (Site.PELVIS,)
+    assert losses.message(True, [*ALL, *HIPS], 11.0) == (
+        "The pelvis has been silent for 3 s.",
+        "Recording goes on, and so do knees and ankles. The hips are missing until it is back.",
+    )
+    assert losses.message(False, [*ALL, *HIPS], 11.0)[1] == "Switch it off and on, or go on without hip angles."
+    losses.update({Site.PELVIS: 0.02, Site.LEFT_FOOT: 0.0}, 12.0)
+    assert losses.message(True, [*ALL, *HIPS], 12.5) == (
+        "Pelvis is back after 3.1 s.",
+        "Only the hips are missing in between.",
+    )
+
+
+def test_a_silent_thigh_costs_its_knee_and_its_hip() -> None:
+    losses = Losses()
+    losses.update({Site.LEFT_THIGH: 3.1, Site.PELVIS: 0.0}, 10.0)
+    assert losses.message(True, [*ALL, *HIPS], 11.0)[1] == (
+        "Recording goes on. Missing until it is back: left knee, left hip."
+    )
+
+
+def test_a_pelvis_that_is_silent_with_a_foot_is_one_of_two() -> None:
+    losses = Losses()
+    losses.update({Site.LEFT_FOOT: 3.1, Site.PELVIS: 3.1, Site.RIGHT_FOOT: 0.0}, 10.0)
+    what, then = losses.message(True, [*ALL, *HIPS], 11.0)
+    assert what == "L foot, pelvis have been silent for 3 s."
+    assert then.endswith("left ankle, left hip, right hip, left phases.")

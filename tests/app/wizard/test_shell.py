@@ -347,7 +347,7 @@ def test_no_word_of_the_frame_is_cut(
         Site.RIGHT_THIGH: SensorTile(Site.RIGHT_THIGH, "", None, 0.0, 0.0, 0.0, is_moving=False, is_worn=False),
     }
     assert isinstance(shell.strip, SensorStrip)
-    shell.strip._show(bad)
+    shell.strip.show_at_once(bad)
     for state in (stop_early(), recording(), reconnect()):
         shell.bar.show_state(state)
         shell.toast.offer(tr("Walk 2 discarded."))

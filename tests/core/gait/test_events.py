@@ -9,10 +9,13 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+import core.gait.events as events_module
 from core.body import Side, Site
 from core.calibration.rest import rest_of
 from core.gait.crossings import first_crossing, onset
 from core.gait.events import SOURCES, EventSource, FootEvents, Timing, gait_of, without_stray_toe_offs
+from core.gait.foot import FootMotion
+from core.gait.sole import SoleTravel, travel_of
 from core.orientation import oriented
 from core.pair import OrientedTrack
 from core.samples import BoolArray, FloatArray, ImuBlock, RateKind
@@ -52,6 +55,27 @@ def test_turning_the_sensor_in_its_mounting_changes_no_event() -> None:
     for name in EVENTS:
         np.testing.assert_allclose(getattr(turned, name), getattr(found, name), atol=1e-3)
     np.testing.assert_allclose(turned.length_m, found.length_m, atol=0.002)
+
+
+def test_a_swing_whose_sole_never_ceases_to_travel_has_no_contact_and_leaves_the_others(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """As where a recording begins while a leg still circles; it was met so, and ended the analysis."""
+    usual, _ = walk_of(walking())
+
+    def travelling(motion: FootMotion) -> SoleTravel:
+        found = travel_of(motion)
+        swing = motion.swings
+        share, lands = found.speed_share.copy(), found.lands.copy()
+        share[swing.anchor_before[3] : swing.anchor_after[3] + 1], lands[3] = 1.0, np.nan
+        return replace(found, speed_share=share, lands=lands)
+
+    monkeypatch.setattr(events_module, "travel_of", travelling)
+    found, _ = walk_of(walking())
+    assert np.isnan(found.initial_contact_s[3])
+    assert np.isnan(found.full_contact_s[3])
+    others = np.arange(len(usual.initial_contact_s)) != 3
+    np.testing.assert_allclose(found.initial_contact_s[others], usual.initial_contact_s[others], atol=0.03)
 
 
 @pytest.mark.parametrize(

@@ -1,14 +1,17 @@
 """Sessions of the simulated patient with a sensor on the pelvis, and what is true of their hips."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
 from core.analysis import analyse
-from core.body import LEG_SITES, Side, Site, hip_of
+from core.body import LEG_SITES, Joint, Side, Site, hip_of
 from core.results import Analysis, RecordingAnalysis
-from core.samples import FloatArray
+from core.samples import FloatArray, RecordingKind
+from core.verdicts.gates import judged
 from devices.walker import (
     FreeMotion,
     Motion,
@@ -37,6 +40,30 @@ def analysed(seed: int = 1, tissue: Tissue = Tissue.RIGID, late_s: float = 0.0) 
     """One of them, analysed."""
     made = simulate(settings(seed, tissue, late_s))
     return made, analyse(made.session)
+
+
+def walk_of(analysis: Analysis) -> RecordingAnalysis:
+    """The only walk."""
+    return analysis.recordings[-1]
+
+
+def rewalked(analysis: Analysis, change: Callable[[RecordingAnalysis], RecordingAnalysis]) -> Analysis:
+    """With every walk changed, and judged anew."""
+    walks = tuple(change(one) if one.kind is RecordingKind.WALKING else one for one in analysis.recordings)
+    return judged(replace(analysis, recordings=walks))
+
+
+def with_hip(analysis: Analysis, *joints: Joint, **change: Any) -> Analysis:
+    """With what was identified of some hips changed, and judged anew."""
+
+    def changed(walk: RecordingAnalysis) -> RecordingAnalysis:
+        hips = {
+            joint: replace(hip, identification=replace(hip.identification, **change)) if joint in joints else hip
+            for joint, hip in walk.hips.items()
+        }
+        return replace(walk, hips=hips)
+
+    return rewalked(analysis, changed)
 
 
 def truth(made: SimulatedSession, side: Side, recording: int = -1, late_s: float = 0.0) -> HipTruth:

@@ -13,7 +13,7 @@ from scipy.spatial.transform import Rotation
 from core.body import Joint, Site
 from core.live.excitation import HUMAN, PROSTHESIS, Excitation, ExcitationState, Missing, Movement
 from core.live.orientation import OrientedSamples
-from core.live.sample_sets import MAX_SETS, _matrices
+from core.live.sample_sets import MAX_SETS, matrices_of
 from core.rotations import matrix_from_quaternion
 from core.samples import FloatArray
 from tests.benchmarks.excitation import QUANTITIES, stopped_calibrations
@@ -317,7 +317,7 @@ def test_the_sets_of_the_last_forty_seconds_count() -> None:
 
 def test_matrices_are_those_of_the_quaternions() -> None:
     q = Rotation.random(20, rng=np.random.default_rng(0)).as_quat(scalar_first=True)
-    assert _matrices(1.1 * q) == pytest.approx(matrix_from_quaternion(q))
+    assert matrices_of(1.1 * q) == pytest.approx(matrix_from_quaternion(q))
 
 
 @pytest.mark.endurance

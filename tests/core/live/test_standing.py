@@ -138,3 +138,21 @@ def test_long_standing_keeps_memory_and_the_latest_seconds(stood: Recording) -> 
         state = standing.update({Site.LEFT_SHANK: replace(block, time_s=block.time_s + 5.01 * k)})
     assert state.still_s == pytest.approx(100.0, abs=0.5)
     assert state.rest[Site.LEFT_SHANK].duration_s <= 10.5
+
+
+@pytest.mark.parametrize("is_optional", [True, False])
+def test_nobody_waits_for_a_silent_sensor_that_is_optional(stood: Recording, is_optional: bool) -> None:
+    silent = stood.imu[Site.RIGHT_FOOT]
+    imu = {**stood.imu, Site.RIGHT_FOOT: only(silent, silent.time_s < 1.0)}
+    standing = LiveStanding(imu, optional=frozenset({Site.RIGHT_FOOT} if is_optional else ()))
+    states = [standing.update(blocks) for blocks in in_blocks(imu, BLOCK_S)]
+    assert states[-1].silent == (Site.RIGHT_FOOT,)
+    assert states[-1].is_done is is_optional
+    assert set(states[-1].rest) == (set(LEG_SITES) - {Site.RIGHT_FOOT} if is_optional else set())
+
+
+def test_an_optional_sensor_that_moves_restarts_the_count_as_any_other(stood: Recording) -> None:
+    imu = {**stood.imu, Site.LEFT_SHANK: knocked(stood.imu[Site.LEFT_SHANK], 2.0)}
+    standing = LiveStanding(imu, optional=frozenset({Site.LEFT_SHANK}))
+    states = [standing.update(blocks) for blocks in in_blocks(imu, BLOCK_S)]
+    assert states[-1].restarts == 1

@@ -7,6 +7,7 @@ import pytest
 
 from core.verdicts.measurement_error import ComparisonKind, Difference, Judgement, compare, sigma_of, whisker
 from core.verdicts.model import NOT_MEASURED, READ, Assessment, GateReason, Verdict, assess
+from core.verdicts.quantities import CLASSES
 from core.verdicts.stride_means import MeanOfStrides, mean_of_strides
 
 ATTACHED, LEGS = ComparisonKind.ATTACHED, ComparisonKind.LEGS
@@ -132,6 +133,35 @@ def test_what_another_speed_alone_may_make_of_an_angle_or_of_stance_is_no_differ
     assert error("stance_percent", 0.2).sources == ("chance", "drift", "speed", "walk_to_walk")
     for name in ("stride_time_s", "stride_length_m"):
         assert error(name, 0.2) == error(name, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("name", "per_m_s"),
+    [
+        *((name, 11.0) for name in ("knee_range_deg", "knee_swing_peak_deg", "ankle_range_deg", "ankle_rocker_deg")),
+        *((name, 11.0) for name in ("ankle_at_initial_contact_deg", "shank_over_flat_foot_deg", "foot_heel_rise_deg")),
+        *((name, 11.0) for name in ("shank_at_mid_stance_deg", "thigh_at_toe_off_deg")),
+        *((name, 4.8) for name in ("swing_percent", "foot_flat_percent", "knee_extended_before_contact_percent")),
+    ],
+)
+def test_each_kind_of_figure_has_what_speed_makes_of_it(name: str, per_m_s: float) -> None:
+    """What is larger than it is at one speed was added in squares: 1.96 x a metre per second's part."""
+    apart, together = (
+        compare(name, ATTACHED, sure(60.0), sure(60.0), TOLD, speed_apart_m_s=apart).error for apart in (1.0, 0.0)
+    )
+    assert math.sqrt(apart**2 - together**2) == pytest.approx(1.96 * per_m_s, rel=1e-6)
+
+
+def test_every_absolute_angle_is_judged_as_a_height_and_every_movement_as_a_shape() -> None:
+    """Told by what the columns are called, not by the table: a height needs 12.4 degrees, a shape 9.2."""
+    heights = ["at_initial_contact", "peak_deg", "minimum", "terminal_extension", "plantarflexion", "dorsiflexion"]
+    heights += ["at_mid_stance", "at_toe_off"]
+    angles = [name for name in CLASSES if name.endswith("_deg") and not name.startswith(("hip", "pelvis", "foot"))]
+    assert len(angles) > 20
+    for name in angles:
+        is_height = any(word in name for word in heights)
+        found = compare(name, VISITS, sure(60.0), sure(60.0), TOLD)
+        assert found.error == pytest.approx(12.4 if is_height else 9.2, abs=1e-6), name
 
 
 def test_speeds_that_read_the_same_are_not_called_another_speed() -> None:

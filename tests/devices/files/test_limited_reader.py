@@ -395,6 +395,22 @@ def test_a_limited_process_reads_and_does_nothing_else(tmp_path: Path) -> None:
     assert a_signal == ("PermissionError" if int(version.stdout) >= 6 else "done")
 
 
+@on_linux
+def test_not_a_byte_is_written_on_a_kernel_without_landlock_either(tmp_path: Path) -> None:
+    """Each of both walls is tried without the other: the limit of a file's size holds on macOS as well."""
+    without = ATTEMPTS.replace("limit_this_process(", "limits._forbid_writing = lambda: None; limit_this_process(", 1)
+    without = f"from devices.files import limits\n{without}"
+    (tmp_path / "old").write_text("as it was")
+    # the port is nobody's: what is asked here is only what becomes of files
+    told = subprocess.run(
+        [sys.executable, "-c", without, str(tmp_path), "9"], capture_output=True, text=True, check=True
+    ).stdout
+    came = dict(line.split() for line in told.splitlines())
+    assert came["create"] == "done"  # so Landlock is off
+    assert came["write"] == "OSError"
+    assert all(path.stat().st_size in (0, len("as it was")) for path in tmp_path.iterdir() if path.is_file())
+
+
 LANDLOCK_VERSION = "import ctypes; print(ctypes.CDLL(None).syscall(444, None, 0, 1))"
 
 

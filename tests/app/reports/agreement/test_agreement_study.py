@@ -9,12 +9,12 @@ import pytest
 
 from app.exports.c3d_angles import write_c3d
 from app.exports.opensim_motion import write_motion
-from app.reports.agreement.pictures import ANKLE, KNEE, pictures_of
+from app.reports.agreement.pictures import FIGURES, pictures_of
 from app.reports.agreement.printed import printed
 from app.reports.agreement.study import AgreementStudy, AngleKind, study_of
 from app.reports.agreement.tables import agreement_table, curve_table, summary_of
 from core.analysis import analyse
-from core.body import LEG_JOINTS, Joint, Side
+from core.body import LEG_JOINTS, Joint, JointKind, Side
 from core.results import Analysis, RecordingAnalysis, ZeroKind
 from core.samples import Patient, Session
 from core.verdicts.model import Assessment, JointVerdicts, Verdict
@@ -286,8 +286,8 @@ def test_a_joint_that_is_withheld_is_named_and_another_is_not(study: AgreementSt
 
 def test_both_figures_are_drawn_with_the_phases_and_say_what_they_are(study: AgreementStudy) -> None:
     drawn = pictures_of(study, Patient())
-    assert set(drawn) == {KNEE, ANKLE}
-    assert "Knee flexion, left" in drawn[KNEE].alt
-    assert "SIMULATED" in drawn[KNEE].svg
-    assert drawn[KNEE].svg.count("<path") == 2 * 4  # per side ours, published, reference and error
-    assert drawn[KNEE].svg.count("<rect") > 20  # phases of some strides
+    assert set(drawn) == {FIGURES[JointKind.KNEE], FIGURES[JointKind.ANKLE]}
+    assert "Knee flexion, left" in drawn[FIGURES[JointKind.KNEE]].alt
+    assert "SIMULATED" in drawn[FIGURES[JointKind.KNEE]].svg
+    assert drawn[FIGURES[JointKind.KNEE]].svg.count("<path") == 2 * 4  # per side ours, published, reference and error
+    assert drawn[FIGURES[JointKind.KNEE]].svg.count("<rect") > 20  # phases of some strides

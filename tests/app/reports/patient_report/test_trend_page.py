@@ -18,7 +18,8 @@ from app.reports.patient_report.trend_chart import TrendValue, trend_chart
 from app.reports.patient_report.trend_page import trend_page
 from core.body import Joint, Side
 from core.goals import Goal, GoalOf
-from tests.app.course_material import course, unsure, walked
+from core.timed.protocols import TimedProtocol
+from tests.app.course_material import course, timed, unsure, walked
 
 LEGS = (GoalOf.LEFT, GoalOf.RIGHT)
 DAYS = ("2026-09-02", "2026-09-16", "2026-09-30", "2026-10-28", "2026-11-25")
@@ -185,3 +186,20 @@ def test_two_goals_of_one_chart_have_a_line_each_and_of_many_five_are_said(
     (drawn,) = (block["pictures"] for block in blocks if block["kind"] == "figures")
     lines = re.findall(r'y="([\d.]+)"[^>]*>· · · goal ([LR]) 20', str(drawn))
     assert lines[:2] == [("17.00", "L"), ("27.00", "R")]
+
+
+def with_test(time_s: float, speed_m_s: float = 1.0, protocol: TimedProtocol = TimedProtocol.TEN_METRES) -> Course:
+    return course((walked(speed_m_s=speed_m_s), ""), (timed(protocol, time_s=time_s), ""))
+
+
+def test_timed_tests_stand_in_the_table_and_speed_is_told_once(request_of_demonstration: ReportRequest) -> None:
+    blocks = page(request_of_demonstration, visits(with_test(20.0, 0.6), with_test(8.0, 1.0)))
+    assert rows(blocks)["10-metre walk, m/s", ""] == ["0.50", "1.25", "–", "+0.75", "0.20†", "exceeds"]
+    told = [one for one in sentences(blocks) if "m/s" in one]
+    assert len(told) == 1
+    assert told[0].startswith("10-metre walk: 0.50 m/s at visit 1, 1.25 m/s at visit 2; +0.75 m/s, error between")
+    chair = visits(*(with_test(time_s, protocol=TimedProtocol.SIT_TO_STAND) for time_s in (30.0, 12.0)))
+    blocks = page(request_of_demonstration, chair)
+    assert rows(blocks)["Sit to stand, 5 ×, s", ""] == ["30.0", "12.0", "–", "-18.0", "–", "not judged"]
+    assert sentences(blocks) == ["No change is larger than its error."]
+    assert not any("10-metre" in name for name, _ in rows(page(request_of_demonstration, visits(walk(), walk()))))

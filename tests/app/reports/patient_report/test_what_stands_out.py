@@ -23,7 +23,7 @@ from core.body import Joint, Side
 from core.goals import Goal, GoalOf
 from core.results import Analysis, ZeroKind
 from core.verdicts.gates import judged
-from core.verdicts.quantities import QUANTITIES, QuantityClass
+from core.verdicts.quantities import CLASSES, QUANTITIES, QuantityClass
 from tests.app.changed_analysis import recalibrated, rewalked, walk_of, with_few_strides
 
 NO_DIFFERENCE = "No difference is larger than its error."
@@ -354,4 +354,4 @@ def test_of_excursions_as_large_against_their_errors_the_swing_is_told_first(
 
 
 def test_between_the_legs_no_height_is_compared() -> None:
-    assert not any(QUANTITIES[column] is QuantityClass.HEIGHT for column in BETWEEN_LEGS)
+    assert not any(CLASSES[column] is QuantityClass.HEIGHT for column in BETWEEN_LEGS)

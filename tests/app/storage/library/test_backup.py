@@ -3,6 +3,7 @@
 import datetime
 import json
 import os
+import shutil
 import stat
 from collections.abc import Callable
 from functools import partial
@@ -54,6 +55,17 @@ def test_a_restored_library_opens_with_the_same_passphrase_and_holds_the_same(
             original, copy = ((place.recordings / journal.file).read_bytes() for place in (opened, restored))
             assert copy == original
             assert list(JournalReader(restored.recordings / journal.file, key).records())
+
+
+def test_a_backup_that_is_copied_to_a_librarys_place_is_that_library_as_the_manual_says(
+    opened: OpenedLibrary, session_id: UUID, record: Record, tmp_path: Path
+) -> None:
+    record("walk 1")
+    backup = back_up(opened, tmp_path / "backups", now=lambda: NOON)
+    shutil.copytree(backup.folder, tmp_path / "copied")
+    with open_library(tmp_path / "copied", PASSPHRASE) as copied:
+        assert copied.library.faults() == ()
+        assert copied.library.sessions.get(session_id) == opened.library.sessions.get(session_id)
 
 
 def test_a_backup_is_encrypted_and_its_owners(opened: OpenedLibrary, record: Record, tmp_path: Path) -> None:

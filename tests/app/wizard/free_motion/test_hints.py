@@ -16,6 +16,7 @@ from app.wizard.free_motion.hints import (
     enough_for,
     first_hint,
     hint_for,
+    hip_hint,
     last_hint,
     played_hint,
     price_of_stopping,
@@ -25,6 +26,7 @@ from app.wizard.free_motion.hints import (
 from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site
 from core.live.excitation import ExcitationState, Missing, Movement
 from core.live.free_motion import FreeMotionState
+from core.live.hip_heading import HipHeadingState
 
 LEFT_LEG = Missing(Site.LEFT_SHANK, Movement.CIRCLE)
 RIGHT_KNEE = Missing(Site.RIGHT_SHANK, Movement.BEND)
@@ -229,3 +231,58 @@ def test_a_joint_without_gauge_says_why() -> None:
     assert absent_note(Joint.RIGHT_KNEE, worn, ()) == ""
     assert absent_note(Joint.LEFT_ANKLE, worn, {Side.LEFT}).startswith("Foot without ankle joint: nothing to find.")
     assert absent_note(Joint.LEFT_KNEE, worn, {Side.LEFT}) == ""
+
+
+def hip(sd_deg: float, *, is_sure: bool = False) -> HipHeadingState:
+    return HipHeadingState(1.0, 0.0, float(np.deg2rad(sd_deg)), 4.0, 0.05, 9.0, is_sure)
+
+
+OPEN_HIPS = {Joint.LEFT_HIP: hip(12.0), Joint.RIGHT_HIP: hip(4.0, is_sure=True)}
+ALL_ENOUGH = dict.fromkeys(LEG_JOINTS, state(0.8, 6, None, is_closed=True))
+
+
+def test_hips_never_keep_anybody_from_walking() -> None:
+    still_open = replace(motion(ALL_ENOUGH), hips=OPEN_HIPS)
+    assert still_open.is_done
+    assert price_of_stopping(still_open) == ""
+    assert enough_for(still_open, frozenset()) == "enough motion"
+    hint = last_hint(still_open)
+    assert hint.sentence == "Enough motion"
+    assert hint.how == "Walking comes next, by itself. It finds the ankles' axes and, with a turn, the hips."
+
+
+def test_the_walk_is_not_said_to_show_hips_that_are_shown_or_not_worn() -> None:
+    shown = dict.fromkeys(OPEN_HIPS, hip(4.0, is_sure=True))
+    for hips in (shown, {}):
+        assert "hips" not in last_hint(replace(motion(ALL_ENOUGH), hips=hips)).how
+
+
+def test_hips_are_asked_for_once_nothing_else_brings_more() -> None:
+    plateau = dict.fromkeys(LEG_JOINTS, state(2.4, 6, is_plateau=True))
+    hold = HintHold()
+    asked = hold.ask(replace(motion(plateau), hips=OPEN_HIPS), 0.0)
+    assert asked.hint == hip_hint()
+    assert (asked.joint, asked.site) == (Joint.LEFT_HIP, Site.PELVIS)
+    assert "Circling legs do not show the hips" in asked.hint.how
+    without = HintHold().ask(motion(plateau), 0.0)
+    assert without.hint.sentence == "As good as it gets"
+    open_knee = {**plateau, Joint.LEFT_KNEE: state(3.0, 6)}
+    assert HintHold().ask(replace(motion(open_knee), hips=OPEN_HIPS), 0.0).joint is Joint.LEFT_KNEE
+
+
+def test_a_hip_that_is_shown_is_asked_for_no_longer() -> None:
+    plateau = dict.fromkeys(LEG_JOINTS, state(2.4, 6, is_plateau=True))
+    hold = HintHold()
+    hold.ask(replace(motion(plateau), hips=OPEN_HIPS), 0.0)
+    shown = dict.fromkeys(OPEN_HIPS, hip(4.0, is_sure=True))
+    assert hold.ask(replace(motion(plateau), hips=shown), 0.5).hint.sentence == "As good as it gets"
+
+
+def test_the_hint_of_the_hips_can_be_read_from_two_metres() -> None:
+    assert len(hip_hint().sentence) <= LETTERS
+
+
+def test_a_hip_says_which_sensor_it_lacks() -> None:
+    worn = {Site.PELVIS, Site.LEFT_SHANK, Site.RIGHT_THIGH}
+    assert absent_note(Joint.LEFT_HIP, worn, ()) == "L thigh without sensor: no left hip angle."
+    assert absent_note(Joint.RIGHT_HIP, worn, {Side.RIGHT}) == ""

@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Iterator
+from dataclasses import replace
 
 import pytest
 from PySide6.QtCore import QEvent, QObject
@@ -12,9 +13,11 @@ from pytestqt.qtbot import QtBot
 from app.theme import ThemeNotifier, load_fonts
 from app.widgets.gauge import Gauge, GaugeFace, GaugeMeasure, GaugeState
 from app.widgets.hint import Hint
+from app.widgets.hip_gauge import hip_face
 from app.wizard.free_motion.page import FreeMotionFace, FreeMotionPage
 from core.body import LEG_JOINTS, Joint, Site
 from tests.app.layout_items import item_of, items_held
+from tests.app.room import words_cut
 
 
 def measure(figure: str, unit: str = "°", share: float = 0.4) -> GaugeMeasure:
@@ -130,3 +133,34 @@ def test_turned_round_it_leaves_no_layout_item_behind(page: FreeMotionPage) -> N
     page.set_from_behind(True)
     held = items_held()
     assert not held & {item_of(gauge, page._grid) for gauge in page.gauges.values()}
+
+
+HIPS = {Joint.LEFT_HIP: hip_face(None), Joint.RIGHT_HIP: hip_face(None)}
+
+
+def test_hips_stand_above_the_knees_only_where_the_pelvis_wears_a_sensor(page: FreeMotionPage) -> None:
+    before = page.grab().toImage()
+    page.show_state(replace(view(), hips=HIPS))
+    QApplication.processEvents()
+    at = {joint: hip.geometry() for joint, hip in page.hips.items()}
+    assert at[Joint.RIGHT_HIP].right() < at[Joint.LEFT_HIP].left()
+    assert at[Joint.RIGHT_HIP].bottom() < page.gauges[Joint.RIGHT_KNEE].y()
+    page.set_from_behind(True)
+    QApplication.processEvents()
+    assert page.hips[Joint.LEFT_HIP].x() < page.hips[Joint.RIGHT_HIP].x()
+    page.set_from_behind(False)
+    page.show_state(view())
+    QApplication.processEvents()
+    assert page.grab().toImage() == before
+
+
+@pytest.mark.parametrize(
+    ("size", "is_compact"), [((1064, 600), False), ((1064, 520), False), ((896, 420), True), ((736, 388), True)]
+)
+def test_six_gauges_have_their_room(page: FreeMotionPage, size: tuple[int, int], is_compact: bool) -> None:
+    page.show_state(replace(view(), hips=HIPS))
+    page.set_compact(is_compact)
+    page.resize(*size)
+    QApplication.processEvents()
+    assert page.minimumSizeHint().height() <= size[1]
+    assert words_cut(page) == []

@@ -17,7 +17,7 @@ from app.wizard.sensors.sensor_row import SensorRow
 from app.wizard.sensors.sensor_trace import _lines
 from app.wizard.sensors.source_pages import SourceOption
 from core.body import LEG_SITES, Side, Site
-from tests.app.room import settle
+from tests.app.room import settle, words_cut
 
 NAMES = ("0A09", "0A31", "0A2C", "0A17", "0A1B", "0A22")
 OPTIONS = (
@@ -129,7 +129,7 @@ def test_a_row_and_a_number_say_the_place(page: SensorsPage, assigned: list[tupl
     assert page.list.rows["0A31"].hasFocus()
     assert page.place_selected(5)
     assert assigned == [("0A31", Site.RIGHT_SHANK)]
-    assert not page.place_selected(7)
+    assert not page.place_selected(8)
 
 
 @pytest.mark.qt_log_ignore("This plugin does not support", extend=True)  # offscreen has no popups of its own
@@ -299,7 +299,7 @@ def test_left_to_the_motion_no_place_is_a_gap(page: SensorsPage) -> None:
 def test_tiles_turn_with_the_figure(page: SensorsPage) -> None:
     for is_from_behind in (False, True):
         page.set_from_behind(is_from_behind)
-        for site, tile in page.places.tiles.items():
+        for site, tile in page.places.shown_tiles.items():
             is_right_half = tile.geometry().center().x() > page.places.width() / 2
             assert is_right_half == ((site.side is Side.LEFT) != is_from_behind)
 
@@ -356,3 +356,95 @@ def test_a_page_asks_no_room_for_another(page: SensorsPage) -> None:
     page.show_no_source()
     settle()
     assert (page._whole.horizontalScrollBar().maximum(), scroll.maximum()) == (0, low)
+
+
+SEVENTH = "0A3E"
+
+
+def seven(*sites: Site | None, **changes: dict[str, object]) -> tuple[SensorRow, ...]:
+    worn = sites[6] if len(sites) > 6 else None
+    facts: dict[str, object] = {"rate_hz": 100.0, "battery": 0.8, "can_identify": True, "site": worn}
+    pelvis = SensorRow(SEVENTH, "x-IMU3", **(facts | changes.get(f"s{SEVENTH}", {})))  # type: ignore[arg-type]  # facts by name, as `rows` has them
+    return (*rows(*sites[:6], **changes), pelvis)
+
+
+def test_a_seventh_place_comes_and_goes_with_a_seventh_sensor(page: SensorsPage) -> None:
+    settle()
+    before = page.grab().toImage()
+    assert not page.places.tiles[Site.PELVIS].isVisible()
+    page.show_sensors(seven())
+    settle()
+    assert page.places.tiles[Site.PELVIS].isVisible()
+    assert "Seven sensors" in page.title.text()
+    assert "sacrum" in page.subtitle.text()
+    assert page.list.rows["0A09"].accessibleDescription().startswith("1 to 7")
+    page.show_sensors(rows())
+    settle()
+    assert page.grab().toImage() == before
+
+
+def test_who_wants_the_pelvis_with_six_sensors_puts_one_there(
+    page: SensorsPage, assigned: list[tuple[str, Site | None]]
+) -> None:
+    page.list.select("0A22")
+    assert page.place_selected(7)
+    middle = page.places.figure.anchor(Site.PELVIS).toPoint() + page.places.figure.pos()
+    drop(page, "0A2C", middle)
+    assert assigned == [("0A22", Site.PELVIS), ("0A2C", Site.PELVIS)]
+    page.show_sensors(rows(*LEG_SITES[:5], Site.PELVIS))
+    settle()
+    assert page.places.tiles[Site.PELVIS].isVisible()
+
+
+def test_a_seventh_is_dropped_on_the_tile_of_the_pelvis(
+    page: SensorsPage, assigned: list[tuple[str, Site | None]]
+) -> None:
+    page.show_sensors(seven())
+    settle()
+    drop(page, SEVENTH, page.places.tiles[Site.PELVIS].geometry().center())
+    assert assigned == [(SEVENTH, Site.PELVIS)]
+
+
+def test_shaken_in_turn_the_pelvis_comes_last(page: SensorsPage, assigned: list[tuple[str, Site | None]]) -> None:
+    page.show_way(Way.SHAKE)
+    page.show_sensors(seven(*LEG_SITES))
+    assert page.notice.text.startswith("Shake the sensor of the pelvis.")
+    page.show_shaken(SEVENTH)
+    assert assigned == [(SEVENTH, Site.PELVIS)]
+
+
+def test_what_is_said_of_a_pelvis_costs_the_hips_alone(page: SensorsPage) -> None:
+    page.show_sensors(seven(*Site))
+    assert page.notice.text == "All seven are worn and heard."
+    page.show_sensors(seven(*Site, s0A3E={"silent_s": 4.0}))
+    assert page.notice.text == (
+        "Pelvis has been silent for 4 s. Switch it off and on, or go on without hip angles; knees and ankles stay."
+    )
+    page.show_sensors(seven(*Site, s0A09={"silent_s": 4.0}))
+    assert page.notice.text.endswith("go on without left knee and hip angles.")
+    page.show_sensors(seven(*Site))
+    page.assign(SEVENTH, None)
+    page.show_sensors(seven(*LEG_SITES))
+    assert page.notice.text == "No sensor on the pelvis: no hip angles. Knees, ankles and steps stay as they are."
+
+
+def test_without_a_pelvis_nothing_is_said_of_hips(page: SensorsPage) -> None:
+    page.show_sensors(rows(*LEG_SITES))
+    assert page.notice.text == "All six are worn and heard."
+    page.show_sensors(rows(*LEG_SITES, s0A09={"silent_s": 4.0}))
+    assert page.notice.text.endswith("go on without left knee angles.")
+
+
+@pytest.mark.parametrize("is_from_behind", [False, True])
+@pytest.mark.parametrize(("size", "is_compact"), [((1064, 672), False), ((896, 472), True)])
+def test_the_seventh_tile_lies_over_no_other(
+    page: SensorsPage, size: tuple[int, int], is_compact: bool, is_from_behind: bool
+) -> None:
+    page.set_compact(is_compact)
+    page.set_from_behind(is_from_behind)
+    page.show_sensors(seven(*Site))
+    page.resize(*size)
+    assert words_cut(page) == []
+    places = [tile.geometry() for tile in page.places.shown_tiles.values()]
+    assert not any(one.intersects(other) for k, one in enumerate(places) for other in places[:k])
+    assert all(page.places.rect().contains(place) for place in places)

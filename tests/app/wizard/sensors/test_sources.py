@@ -9,7 +9,7 @@ from pytestqt.qtbot import QtBot
 
 from app.acquisition.acquisition import Acquisition
 from app.wizard.sensors import sources as sources_module
-from app.wizard.sensors.sources import DEMONSTRATION, SEARCH, Sources, choices
+from app.wizard.sensors.sources import DEMONSTRATION, SEARCH, WITH_PELVIS, Sources, choices
 from app.wizard.worn_sensors import SetUpFirstError, SourceChoice, WornSensors
 from core.alignment import NetChange, ProsthesisPart
 from core.body import Side
@@ -52,16 +52,16 @@ def test_the_list_is_there_at_once_and_grows(qtbot: QtBot) -> None:
     sources = Sources(search)
     begin_s = time.monotonic()
     sources.look()
-    assert [one.key for one in sources] == [DEMONSTRATION, SEARCH]
+    assert [one.key for one in sources] == [DEMONSTRATION, SEARCH, WITH_PELVIS]
     assert time.monotonic() - begin_s < 0.5
     may_end.set()
-    qtbot.waitUntil(lambda: len(sources) == 4, timeout=5000)
-    assert [one.key for one in sources] == [DEMONSTRATION, "ximu3", "witmotion", SEARCH]
+    qtbot.waitUntil(lambda: len(sources) == 5, timeout=5000)
+    assert [one.key for one in sources] == [DEMONSTRATION, "ximu3", "witmotion", SEARCH, WITH_PELVIS]
     assert [one.name for one in sources][1:3] == [
         "x-io x-IMU3, 2 sensors",
         "WitMotion, standard protocol, 1 sensor",
     ]
-    assert [one.is_simulated for one in sources] == [True, False, True, False]
+    assert [one.is_simulated for one in sources] == [True, False, True, False, True]
 
 
 def test_a_choice_opens_all_sensors_of_its_driver() -> None:
@@ -79,14 +79,14 @@ def test_a_search_looks_anew_and_opens_whatever_is_there() -> None:
     sources = Sources(lambda: every.pop(0))
     sources.look()
     sources.wait()
-    assert len(sources) == 2
-    acquisition = sources[-1].make()
+    assert len(sources) == 3
+    acquisition = sources[-2].make()
     try:
         acquisition.start()
         assert len(acquisition.sensors) == 2
     finally:
         acquisition.close()
-    assert len(sources) == 4
+    assert len(sources) == 5
 
 
 @pytest.mark.parametrize(
@@ -99,7 +99,7 @@ def test_a_search_looks_anew_and_opens_whatever_is_there() -> None:
 )
 def test_where_nothing_is_found_it_says_why(found: SearchResult, what: str) -> None:
     with pytest.raises(SourceRefusedError, match=what):
-        found_by(found)[-1].make()
+        found_by(found)[-2].make()
 
 
 def test_a_search_that_fails_leaves_the_rest(caplog: pytest.LogCaptureFixture) -> None:
@@ -110,14 +110,14 @@ def test_a_search_that_fails_leaves_the_rest(caplog: pytest.LogCaptureFixture) -
     sources.look()
     sources.wait()
     assert "could not be looked for" in caplog.text
-    assert [one.key for one in sources] == [DEMONSTRATION, SEARCH]
+    assert [one.key for one in sources] == [DEMONSTRATION, SEARCH, WITH_PELVIS]
 
 
 def test_the_machines_own_search_begins_with_the_list(monkeypatch: pytest.MonkeyPatch, qtbot: QtBot) -> None:
     monkeypatch.setattr(sources_module, "_search", lambda: SearchResult((sensor("A"),)))
     monkeypatch.setattr(sources_module, "_networks", tuple)
     listed = choices()
-    qtbot.waitUntil(lambda: len(listed) == 3, timeout=5000)
+    qtbot.waitUntil(lambda: len(listed) == 4, timeout=5000)
 
 
 def test_streams_are_asked_for_by_a_choice_only_that_says_whom(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -131,7 +131,7 @@ def test_streams_are_asked_for_by_a_choice_only_that_says_whom(monkeypatch: pyte
     sources = Sources(SearchResult, ("127.0.0.1", "192.0.2.9"))
     sources.look()
     sources.wait()
-    *_, search, here, network = sources
+    *_, search, here, network, _with_pelvis = sources
     assert (search.key, asked) == (SEARCH, [])
     assert (here.name, here.asks) == ("Streams of this computer's programs", ("", ""))
     assert network.name == "Streams in the network of 192.0.2.9"
@@ -174,7 +174,7 @@ def test_a_patient_with_one_prosthesis_is_simulated_with_it(sides: tuple[Side, .
 def test_where_nothing_is_found_it_says_what_bluetooth_lacks(deaf: SourceRefusedError | None, said: str) -> None:
     sources = Sources(lambda: SearchResult(deaf=deaf))
     with pytest.raises(SourceRefusedError, match="No sensor was found") as refused:
-        sources[-1].make()
+        sources[-2].make()
     assert re.search(said, refused.value.remedy)
 
 
@@ -203,3 +203,13 @@ def test_sensors_that_have_to_be_set_up_are_told_by_their_key(qtbot: QtBot) -> N
         sensors.search(SourceChoice(SEARCH, "Search", make))
     assert wanted.args == [MOVELLA_DOT]
     sensors.finish()
+
+
+def test_a_patient_is_simulated_with_a_seventh_sensor_where_that_is_chosen() -> None:
+    acquisition = found_by(SearchResult())[-1].make()
+    try:
+        acquisition.start()
+        assert len(acquisition.sensors) == 7
+        assert acquisition.is_simulated
+    finally:
+        acquisition.close()

@@ -193,3 +193,33 @@ def test_only_the_row_whose_figure_changed_is_painted(
     bars.show_movement(STILL | {Site.LEFT_FOOT: 0.9}, 3.4, (), ())
     QApplication.processEvents()
     assert painted == [32]
+
+
+def test_seven_are_counted_and_the_pelvis_has_a_row_without_a_side(page: StandStillPage) -> None:
+    seven = StandStillView(StandPhase.COUNTING, 1.2, movement_deg_s=dict.fromkeys(Site, 0.4))
+    assert verdict(seven)[1] == "All seven are still"
+    page.show_state(seven)
+    assert page.findChildren(MovementBars)[0].sizeHint().height() == 7 * 32
+
+
+def test_a_silent_pelvis_holds_up_nothing(page: StandStillPage) -> None:
+    silent = counting(1.2, silent=(Site.PELVIS,))
+    _, what, then, is_caution = verdict(silent)
+    assert (what, then) == ("The pelvis is silent", "The count goes on; hip angles will be missing.")
+    assert is_caution
+    assert verdict(silent, is_short=True)[2] == "No hip angles."
+    assert "The count waits." in verdict(counting(0.0, silent=(Site.PELVIS, Site.LEFT_FOOT)))[2]
+
+
+def test_a_pelvis_that_moves_is_named() -> None:
+    _, what, then, _ = verdict(counting(0.0, moved=(Site.PELVIS,)))
+    assert what == "Pelvis moves"
+    assert then.startswith("The pelvis moved.")
+    _, what, then, _ = verdict(counting(0.0, moved=(Site.LEFT_FOOT, Site.PELVIS)))
+    assert what == "L foot and pelvis move"
+    assert then.startswith("The left leg moved.")
+
+
+def test_more_sensors_than_places_are_all_still() -> None:
+    names = {f"0A{number}": 0.3 for number in range(9)}
+    assert verdict(StandStillView(StandPhase.COUNTING, 1.0, movement_deg_s=names))[1] == "All are still"

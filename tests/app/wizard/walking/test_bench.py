@@ -351,6 +351,17 @@ def test_no_word_of_the_bench_is_cut_in_a_language_as_long_as_german(
     assert words_cut(page) == []
 
 
+@pytest.mark.usefixtures("pseudo_language")
+def test_as_the_window_widens_the_cards_come_apart_once(page: WalkingPage) -> None:
+    page.resize(1400, 500)  # curves that were never shown ask for less
+    is_tabbed = []
+    for width in range(1000, 1400, 2):
+        page.resize(width, 500)
+        is_tabbed.append(page.bench.tabs.isVisible())
+    assert is_tabbed == sorted(is_tabbed, reverse=True)
+    assert set(is_tabbed) == {False, True}
+
+
 def test_in_a_small_window_the_next_change_is_told_without_scrolling(page: WalkingPage) -> None:
     """896 x 420 is what 960 x 600 leaves of the window between header and a bar of two rows."""
     page.set_compact(True)

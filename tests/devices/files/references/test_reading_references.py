@@ -139,7 +139,7 @@ def test_a_state_is_named_by_its_path(read: Read) -> None:
     ("content", "said"),
     [
         (
-            motion(names="time\tpelvis_tilt\thip_flexion_r\tlumbar"),
+            motion(names="time\tpelvis_tilt\tpelvis_list\tlumbar"),
             "line 9: there is no column time, or none of knee_ang",
         ),
         (motion()[:-30], r"line 6[89]: the line has \d columns, the header 4\. Copy the file again"),
@@ -187,7 +187,7 @@ def test_visual3d_has_trials_beside_one_another(read: Read) -> None:
     ("content", "said"),
     [
         (visual3d(time="FRAMES"), "there is no signal TIME, so the frames have no instants. Export TIME with them"),
-        (visual3d(knee="RElbowAngle"), "no signal is the angle of a knee or an ankle"),
+        (visual3d(knee="RElbowAngle"), "no signal is the angle of a hip, a knee or an ankle"),
         (visual3d() + "61\t0.1\n", "line 66: the line has 2 columns, the header 5"),
     ],
 )
@@ -207,7 +207,10 @@ def test_a_visual3d_text_that_lacks_something_is_refused(read: Read, content: st
         ("LKneeAngles_SHAPE", Joint.LEFT_KNEE),
         ("LKneeMoment", None),
         ("LKNE", None),
-        ("LHipAngles", None),
+        ("LHipAngles", Joint.LEFT_HIP),
+        ("RHIP", None),
+        ("Left Hip Angle", Joint.LEFT_HIP),
+        ("LPelvisAngles", None),
         ("KneeAngle", None),
         ("LKneeAngleVelocity", None),
         ("Left Right Knee", None),
@@ -289,7 +292,9 @@ def test_markers_may_go_any_way_and_one_that_is_hidden_is_a_gap() -> None:
 
 def test_a_c3d_of_other_points_and_a_broken_one_are_refused(read: Read, tmp_path: Path) -> None:
     content = c3d_of(tmp_path / "made.c3d", {"C7": bent(KNEE_DEG)})
-    with pytest.raises(FileRefusedError, match="no angles of knees or ankles, and not the markers to make them of"):
+    with pytest.raises(
+        FileRefusedError, match="no angles of hips, knees or ankles, and not the markers to make them of"
+    ):
         read(content)
     for length in (512, 700, len(content) // 2, len(content) - 512):
         with pytest.raises(

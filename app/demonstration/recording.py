@@ -1,0 +1,87 @@
+"""A visit of the demonstration's library as its sensors recorded it, and how it gets among the library's sessions."""
+
+import datetime
+import os
+from dataclasses import replace
+from uuid import UUID
+
+from app.demonstration.patients import BY, SimulatedPatient, SimulatedVisit, ToldOfWalk
+from app.logs import version_of
+from app.storage.audit import REPORT_FORMAT, about
+from app.storage.exchange import import_session
+from app.storage.opened import OpenedLibrary
+from app.storage.stored import Action
+from core.samples import Recording, Session
+from core.timed.protocols import PlannedTest
+
+NICE = 5  # beside a live recording of a demonstration's patient nothing else is to be late
+BETWEEN_WALKS = datetime.timedelta(minutes=2)
+
+
+def record_visit(visit: SimulatedVisit) -> Session:
+    """Let the patient move, and give what the sensors send, with what was said of it."""
+    from devices.replay import labelled  # scipy takes a second that home is not to wait for
+    from devices.walker import simulate
+
+    moved = labelled(simulate(visit.settings).session)
+    recordings = tuple(
+        _told(recording, visit.told.get(recording.name), visit.started + number * BETWEEN_WALKS)
+        for number, recording in enumerate(moved.recordings)
+    )
+    return replace(
+        moved,
+        recordings=recordings,
+        started=visit.started.isoformat(timespec="seconds"),
+        operator=BY,
+        software=f"gaitwright {version_of('gaitwright')}",
+    )
+
+
+def record_beside(visit: SimulatedVisit) -> Session:
+    """The same in a process that lets the screen go first."""
+    if hasattr(os, "nice") and os.nice(0) < NICE:
+        os.nice(NICE)
+    return record_visit(visit)
+
+
+def add_patients(opened: OpenedLibrary, patients: tuple[SimulatedPatient, ...]) -> None:
+    """Add them without their visits, the first of them last: of equal ones the list has the latest first.
+
+    Raises
+    ------
+    LibraryError
+        A code is taken.
+    """
+    for patient in reversed(patients):
+        opened.library.patients.create(patient.details)
+
+
+def take_in(opened: OpenedLibrary, visit: SimulatedVisit, session: Session) -> UUID:
+    """Write what was recorded into journals of the library, as the next visit of its patient.
+
+    That its report was written is said and not done: nobody is to look for a file.
+
+    Raises
+    ------
+    LibraryError, JournalRefusedError, OSError
+        As of `import_session`.
+    """
+    known = opened.library.patients.find(visit.code)
+    told = replace(session, patient=known.details) if known is not None else session
+    session_id = import_session(opened, told, _silent, visit.code, limits=visit.limits).session_id
+    if visit.is_reported:
+        subject = about("session", session_id)
+        opened.library.audit.note(Action.EXPORT, subject, format=REPORT_FORMAT, is_simulated=True)
+    return session_id
+
+
+def _told(recording: Recording, told: ToldOfWalk | None, started: datetime.datetime) -> Recording:
+    at = replace(recording, started=started.isoformat(timespec="seconds"))
+    if told is None:
+        return at
+    test = PlannedTest(told.test) if told.test is not None else None
+    return replace(at, condition=told.condition, alignment=told.alignment, test=test)
+
+
+def _silent(_share: float, _what: str) -> None:
+    """For whom progress is nothing."""

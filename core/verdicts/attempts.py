@@ -1,0 +1,78 @@
+"""By how much a timed test has to differ between visits before more than another day is behind it.
+
+A test is its own measurement: what attempts of one day differ by is part of what days differ by, and nothing is added.
+Only walking speed has a figure between visits; distances in a set time and times from a chair are told and not judged.
+"""
+
+import math
+from collections.abc import Mapping
+
+from core.timed.measures import COLUMNS, MeanOfAttempts
+from core.timed.protocols import TimedProtocol
+from core.verdicts.measurement_error import (
+    SENTENCE_FACTOR,
+    SIGMAS,
+    Z95,
+    ComparisonKind,
+    Difference,
+    ErrorSource,
+    Judgement,
+    QuantityKind,
+    Sigma,
+)
+from core.verdicts.model import Assessment
+
+BETWEEN_VISITS: Mapping[str, Sigma] = {
+    COLUMNS[TimedProtocol.TEN_METRES]: SIGMAS[ComparisonKind.VISITS][QuantityKind.SPEED]
+}
+
+
+def error_between_visits(column: str) -> float:
+    """What a change of a test's figure has to exceed; NaN where no error is known.
+
+    Returns
+    -------
+    float
+        In the unit of the column.
+    """
+    sigma = BETWEEN_VISITS.get(column)
+    return Z95 * math.sqrt(2) * sigma.value if sigma is not None else math.nan
+
+
+def compare_attempts(
+    column: str,
+    one: MeanOfAttempts,
+    other: MeanOfAttempts,
+    assessments: tuple[Assessment, ...],
+    *,
+    is_chosen_before: bool = False,
+) -> Difference:
+    """A test's figure at one visit less that at another.
+
+    Parameters
+    ----------
+    assessments
+        What may be said of each of the two; a difference of what is withheld is none.
+    is_chosen_before
+        The measure was chosen before the visit, as a goal is: a sentence then needs the error alone.
+
+    Returns
+    -------
+    Difference
+        In the unit of the column.
+    """
+    difference = one.mean - other.mean
+    if any(not found.is_told for found in assessments) or not math.isfinite(difference):
+        return Difference(math.nan, math.nan, Judgement.WITHHELD)
+    error = error_between_visits(column)
+    if not math.isfinite(error):
+        return Difference(difference, math.nan, Judgement.NO_PUBLISHED_FIGURE)
+    factor = 1.0 if is_chosen_before or BETWEEN_VISITS[column].is_published_error else SENTENCE_FACTOR
+    return Difference(
+        difference,
+        error,
+        Judgement.EXCEEDS_ERROR if abs(difference) > error else Judgement.INSIDE_ERROR,
+        (ErrorSource.CHANCE, ErrorSource.DAYS),
+        is_worth_a_sentence=abs(difference) > factor * error,
+        is_unverified=not BETWEEN_VISITS[column].is_verified,
+    )

@@ -1,0 +1,71 @@
+"""Build the site of the manual and the reference, English and German: `python3 packaging/build_site.py [OUT]`.
+
+Its pages are those of `resources/help`, those of `packaging/site/pages`, the scripts of `tests/examples`, and the
+meaning of every column. What turns them into a site, mkdocs-material, has an environment of its own in `build`, made of
+`packaging/site/requirements.lock`; that lock was made by
+
+    uv pip compile requirements.in --universal --python-version 3.11 --generate-hashes --no-annotate --no-header
+        -o requirements.lock
+
+Every warning ends it: a link that leads nowhere, a page that is in no list. (A script called `site.py` would stand
+before Python's own module of that name.)
+"""
+
+import os
+import shutil
+import subprocess
+import sys
+import venv
+from pathlib import Path
+
+from setup_environment import ROOT, SetUpError, prepare, say
+
+BUILD = ROOT / "build" / "site"
+PARTS = ROOT / "build" / "site-environment"
+RECIPES = ROOT / "packaging" / "site"
+LOCK = RECIPES / "requirements.lock"
+STAMP = PARTS / "made-from"
+LANGUAGES = {"en": "mkdocs.yml", "de": "mkdocs.de.yml"}
+
+
+def main(arguments: list[str]) -> None:
+    try:
+        python = prepare(is_screen_needed=True)
+    except SetUpError as missing:
+        sys.exit(str(missing))
+    out = Path(arguments[0]).resolve() if arguments else ROOT / "dist" / "site"
+    # in the application's environment: the pages ask the code, and the films are drawn by it
+    run = [
+        "-c",
+        "import sys, pathlib; from site_pages import assemble; assemble(pathlib.Path(sys.argv[1]))",
+        str(BUILD),
+    ]
+    subprocess.run([str(python), *run], cwd=ROOT / "packaging", check=True)
+    for language in LANGUAGES:
+        films = BUILD / language / "manual" / "films"
+        script = ROOT / "packaging" / "draw_films.py"
+        subprocess.run([str(python), str(script), str(films), "--lang", language], check=True)
+    mkdocs = builder()
+    shutil.rmtree(out, ignore_errors=True)
+    for language, recipe in LANGUAGES.items():
+        place = out if language == "en" else out / language
+        command = [str(mkdocs), "build", "--strict", "--quiet", "--config-file", str(RECIPES / recipe)]
+        # its makers' advertisement is none of ours; what is true of it stands in packaging/site/requirements.in
+        subprocess.run([*command, "--site-dir", str(place)], check=True, env={**os.environ, "NO_MKDOCS_2_WARNING": "1"})
+    say(f"The site is in {out}.")
+
+
+def builder() -> Path:
+    """Give the command that builds, with its parts as the lock has them."""
+    folder = PARTS / ("Scripts" if sys.platform == "win32" else "bin")
+    if not STAMP.exists() or STAMP.read_bytes() != LOCK.read_bytes():
+        shutil.rmtree(PARTS, ignore_errors=True)
+        venv.create(PARTS, with_pip=True)
+        pip = [str(folder / "python"), "-m", "pip", "--disable-pip-version-check", "install", "--quiet", "--no-deps"]
+        subprocess.run([*pip, "--require-hashes", "--requirement", str(LOCK)], check=True)
+        STAMP.write_bytes(LOCK.read_bytes())
+    return folder / "mkdocs"
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

@@ -1,0 +1,102 @@
+"""Who is in the demonstration's library: nobody real, each visit with what was said of it, in the screen's language."""
+
+import datetime
+
+import pytest
+
+from app.demonstration.patients import SimulatedPatient, simulated_patients
+from app.wording import use_language
+from core.alignment import changed_between
+from core.body import Side
+from core.goals import GoalOf
+from core.timed.protocols import TimedProtocol
+from devices.fitted_prosthesis import BUILT
+from devices.walker import FreeMotion, Standing, TimedCourse, Walk
+
+NOW = datetime.datetime(2026, 11, 24, 15, 0, tzinfo=datetime.UTC)
+
+
+@pytest.fixture
+def patients() -> dict[str, SimulatedPatient]:
+    return {one.details.code: one for one in simulated_patients(NOW)}
+
+
+def test_three_are_simulated_and_their_codes_say_so(patients: dict[str, SimulatedPatient]) -> None:
+    assert list(patients) == ["DEMO-KNEE", "DEMO-STROKE", "DEMO-AK"]
+    assert [len(one.visits) for one in patients.values()] == [4, 2, 1]
+    assert all(visit.code == code for code, one in patients.items() for visit in one.visits)
+
+
+def test_visits_lie_behind_today_and_the_latest_of_the_first_patient_is_the_latest_of_all(
+    patients: dict[str, SimulatedPatient],
+) -> None:
+    last = [one.visits[-1].started for one in patients.values()]
+    assert last == sorted(last, reverse=True)
+    for one in patients.values():
+        started = [visit.started for visit in one.visits]
+        assert started == sorted(started)
+        assert all(at < NOW for at in started)
+    knee = patients["DEMO-KNEE"].visits
+    assert 140 < (knee[-1].started - knee[0].started).days < 160
+    assert [visit.is_reported for visit in knee] == [True, True, True, False]
+
+
+def test_of_every_walk_is_said_what_it_was_and_of_no_other(patients: dict[str, SimulatedPatient]) -> None:
+    for one in patients.values():
+        for visit in one.visits:
+            moved = {made.name: made for made in visit.settings.recordings}
+            walks = {name for name, made in moved.items() if not isinstance(made, Standing | FreeMotion)}
+            assert set(visit.told) == walks
+            for name, told in visit.told.items():
+                made = moved[name]
+                assert told.condition
+                assert (told.test is None) is isinstance(made, Walk)
+                assert told.test is None or (isinstance(made, TimedCourse) and str(made.kind) == str(told.test))
+
+
+def test_a_patient_is_the_same_body_at_each_visit_with_other_straps(patients: dict[str, SimulatedPatient]) -> None:
+    for one in patients.values():
+        assert len({visit.settings.body for visit in one.visits}) == 1
+        assert len({visit.settings.seed for visit in one.visits}) == len(one.visits)
+
+
+def test_goals_are_agreed_at_the_first_visit_so_that_the_later_ones_are_held_against_them(
+    patients: dict[str, SimulatedPatient],
+) -> None:
+    knee = patients["DEMO-KNEE"]
+    first = knee.visits[0].started.date()
+    assert {goal.agreed for goal in knee.details.goals} == {first}
+    assert {goal.of for goal in knee.details.goals} >= {GoalOf.LEFT, GoalOf.WALK}
+    assert any(goal.column.startswith("sit_to_stand") for goal in knee.details.goals)
+
+
+def test_the_prosthesis_is_walked_as_it_was_said_to_be_changed_from_the_alignment_before(
+    patients: dict[str, SimulatedPatient],
+) -> None:
+    (visit,) = patients["DEMO-AK"].visits
+    told = list(visit.told.values())
+    assert [one.condition for one in told] == ["Alignment A", "Alignment B", "Alignment C"]
+    changes = {one.condition: one.alignment for one in told}
+    assert [one.alignment.since if one.alignment else "" for one in told] == ["", "Alignment A", "Alignment B"]
+    set_so = [made.prosthesis for made in visit.settings.recordings if isinstance(made, Walk)]
+    assert set_so[0] == BUILT
+    assert (set_so[1].plantar_deg, set_so[1].back_mm) == (4.0, 6.0)
+    assert set_so[2].plantar_deg == set_so[1].plantar_deg
+    assert set_so[2].swing_flexion_deg > set_so[1].swing_flexion_deg
+    assert changed_between(changes, "Alignment A", "Alignment C")
+    assert visit.limits.without_ankle == {Side.LEFT}
+
+
+def test_conditions_are_words_of_the_language_on_the_screen() -> None:
+    use_language("de")
+    try:
+        told = simulated_patients(NOW)[0].visits[0].told["walk 1"]
+        assert told.condition == "Schuhe"
+    finally:
+        use_language("en")
+
+
+def test_a_stroke_is_seen_twice_with_both_tests(patients: dict[str, SimulatedPatient]) -> None:
+    for visit in patients["DEMO-STROKE"].visits:
+        tests = {told.test for told in visit.told.values()}
+        assert tests == {None, TimedProtocol.TEN_METRES, TimedProtocol.UP_AND_GO}

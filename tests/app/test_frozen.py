@@ -1,0 +1,93 @@
+"""Frozen into a program of its own, does Gaitwright begin its child processes anew as itself?"""
+
+import os
+import sys
+from pathlib import Path
+
+import pytest
+
+from app import __main__ as opening
+from devices.files import child
+from devices.files.limited_reader import LimitedReader, LimitedReading
+
+ROOT = Path(__file__).parents[2]
+PROGRAM = f"""#!{sys.executable}
+import sys
+sys.frozen = True
+sys.path.insert(0, {str(ROOT)!r})
+from app.__main__ import begin
+sys.exit(begin())
+"""
+
+
+@pytest.fixture
+def program(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A stand-in for the frozen program, which takes no `-m`; this process is told that it is one."""
+    file = tmp_path / "gaitwright"
+    file.write_text(PROGRAM)
+    file.chmod(0o755)
+    monkeypatch.setattr(sys, "frozen", True, raising=False)
+    monkeypatch.setattr(sys, "executable", str(file))
+    monkeypatch.setenv("PYINSTALLER_RESET_ENVIRONMENT", "")  # what is set meanwhile is taken back
+    return file
+
+
+@pytest.mark.skipif(os.name == "nt", reason="a script stands in for the program")
+@pytest.mark.usefixtures("program")
+def test_foreign_files_are_read_by_the_program_itself(tmp_path: Path) -> None:
+    (tmp_path / "session.toml").write_text('patient = "P-1"\n')
+    reader = LimitedReader()
+    try:
+        reading = LimitedReading(reader, lambda: None)
+        assert reading.read_toml(tmp_path / "session.toml") == {"patient": "P-1"}
+        assert reader.process is not None
+        assert reader.process.args[:2] == [sys.executable, child.WORD]  # type: ignore[index]  # a list, as it was given
+    finally:
+        reader.close()
+
+
+def test_who_is_started_as_a_child_never_comes_to_the_command_line(monkeypatch: pytest.MonkeyPatch) -> None:
+    done: list[str] = []
+    monkeypatch.setenv("PYINSTALLER_RESET_ENVIRONMENT", "")
+    monkeypatch.setattr(sys, "frozen", True, raising=False)
+    monkeypatch.setattr(sys, "argv", ["gaitwright", child.WORD, "1000"])
+    monkeypatch.setattr(child, "main", lambda: done.append("read"))
+    monkeypatch.setattr("multiprocessing.freeze_support", lambda: done.append("worker?"))
+    with pytest.raises(SystemExit) as ended:
+        opening.begin()
+    assert ended.value.code is None
+    assert done == ["worker?", "read"]
+
+
+@pytest.mark.parametrize("is_frozen", [True, False])
+def test_any_other_word_is_a_command(is_frozen: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PYINSTALLER_RESET_ENVIRONMENT", "")
+    monkeypatch.setattr(sys, "frozen", is_frozen, raising=False)
+    monkeypatch.setattr(sys, "argv", ["gaitwright", "demo"])
+    monkeypatch.setattr(child, "main", lambda: pytest.fail("it is no child"))
+    monkeypatch.setattr("app.cli.main", lambda: 7)
+    assert opening.begin() == 7
+
+
+@pytest.mark.parametrize("before", [None, "/opt/theirs"])
+def test_other_programs_get_the_systems_libraries_and_ours_begin_anew(
+    before: str | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sys, "frozen", True, raising=False)
+    monkeypatch.setattr(sys, "argv", ["gaitwright", "demo"])
+    monkeypatch.setattr("app.cli.main", lambda: 0)
+    monkeypatch.setenv("LD_LIBRARY_PATH", "/opt/gaitwright/_internal")
+    monkeypatch.setenv("PYINSTALLER_RESET_ENVIRONMENT", "")
+    if before:
+        monkeypatch.setenv("LD_LIBRARY_PATH_ORIG", before)
+    opening.begin()
+    assert os.environ.get("LD_LIBRARY_PATH") == before
+    assert "LD_LIBRARY_PATH_ORIG" not in os.environ
+    assert os.environ["PYINSTALLER_RESET_ENVIRONMENT"] == "1"
+
+
+def test_the_word_is_no_subcommand_and_no_option() -> None:
+    from app.cli import SUBCOMMANDS
+
+    assert child.WORD not in SUBCOMMANDS
+    assert not child.WORD.startswith("-")

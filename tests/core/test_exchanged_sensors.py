@@ -1,0 +1,62 @@
+"""Are sensors that hang where another should be named, in the default run? `test_placement.py` tries many more."""
+
+from dataclasses import replace
+
+import pytest
+
+from app.wording import sentence
+from core.analysis import analyse
+from core.body import Joint, Site
+from core.findings import Finding
+from core.results import Analysis
+from core.samples import Session
+from core.verdicts.model import Verdict
+from devices.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
+from tests.benchmarks.placement import swapped
+
+LEFT_LEG = (Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT)
+
+
+@pytest.fixture(scope="module")
+def worn() -> Session:
+    """The left leg's three sensors, standing, moving freely and walking."""
+    recordings = (Standing(), FreeMotion(duration_s=6.0), Walk(strides=8))
+    made = simulate(WalkerSettings(seed=4, sites=LEFT_LEG, recordings=recordings))
+    return made.session
+
+
+def about_labels(analysis: Analysis) -> list[Finding]:
+    return [finding for finding in analysis.findings if finding.key.startswith("labels")]
+
+
+def test_sensors_where_their_labels_say_are_not_doubted(worn: Session) -> None:
+    analysis = analyse(worn)
+    assert about_labels(analysis) == []
+    assert analysis.recordings[-1].verdicts.joint(Joint.LEFT_KNEE).shape.is_told
+
+
+@pytest.mark.parametrize(
+    ("exchanged", "named", "withheld"),
+    [
+        ((Site.LEFT_THIGH, Site.LEFT_SHANK), "L thigh and L shank", Joint.LEFT_ANKLE),
+        ((Site.LEFT_SHANK, Site.LEFT_FOOT), "L shank and L foot", Joint.LEFT_KNEE),
+    ],
+)
+def test_exchanged_sensors_of_a_leg_are_named_and_the_joint_between_strangers_is_withheld(
+    worn: Session, exchanged: tuple[Site, Site], named: str, withheld: Joint
+) -> None:
+    analysis = analyse(swapped(worn, *exchanged))
+    (finding,) = about_labels(analysis)
+    assert sentence(finding).startswith(f"{named}, free motion: seem swapped")
+    assert analysis.recordings[-1].verdicts.joint(withheld).shape.verdict is Verdict.WITHHELD
+
+
+def test_sensors_of_a_leg_in_a_circle_are_one_finding(worn: Session) -> None:
+    circled = swapped(swapped(worn, Site.LEFT_THIGH, Site.LEFT_SHANK), Site.LEFT_SHANK, Site.LEFT_FOOT)
+    (finding,) = about_labels(analyse(circled))
+    assert finding.key == "labels_look_mixed"
+
+
+def test_what_was_swapped_twice_is_as_it_was(worn: Session) -> None:
+    twice = swapped(swapped(worn, *LEFT_LEG[:2]), *LEFT_LEG[:2])
+    assert replace(twice, findings=()) == replace(worn, findings=()) or about_labels(analyse(twice)) == []

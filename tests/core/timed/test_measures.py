@@ -1,0 +1,49 @@
+"""Which one figure of a timed test stands in the course, and what does it rest on?"""
+
+import math
+from dataclasses import replace
+
+import pytest
+
+from core.goals import OF_TESTS, GoalOf, whose
+from core.timed.measures import COLUMNS, PROTOCOLS, figure_of, mean_of_attempts, rests_on_feet
+from core.timed.protocols import TimedProtocol
+from tests.core.timed.built_tests import built_test
+
+
+def test_every_test_but_stairs_has_a_figure_that_goals_can_be_of() -> None:
+    assert set(TimedProtocol) - set(COLUMNS) == {TimedProtocol.STAIRS}
+    assert set(COLUMNS.values()) == set(OF_TESTS)
+    assert all(PROTOCOLS[column] is protocol for protocol, column in COLUMNS.items())
+    assert {whose(column) for column in OF_TESTS} == {(GoalOf.WALK,)}
+
+
+@pytest.mark.parametrize(
+    ("protocol", "figure"),
+    [
+        (TimedProtocol.TEN_METRES, 0.8),
+        (TimedProtocol.TWO_MINUTES, 10.0),
+        (TimedProtocol.SIX_MINUTES, 10.0),
+        (TimedProtocol.UP_AND_GO, 12.5),
+        (TimedProtocol.SIT_TO_STAND, 12.5),
+    ],
+)
+def test_speed_distance_or_time_by_the_test(protocol: TimedProtocol, figure: float) -> None:
+    test = built_test(protocol, time_s=12.5)
+    assert figure_of(test) == pytest.approx(figure)
+    assert not math.isfinite(figure_of(replace(test, end_s=math.nan, distance_m=math.nan)))
+
+
+def test_only_a_way_that_the_feet_tell_rests_on_them() -> None:
+    by_feet = {TimedProtocol.TEN_METRES, TimedProtocol.TWO_MINUTES, TimedProtocol.SIX_MINUTES}
+    for protocol in TimedProtocol:
+        test = built_test(protocol)
+        assert rests_on_feet(test) is (protocol in by_feet)
+    at_the_tape = built_test(TimedProtocol.TEN_METRES, is_end_by_key=True)
+    assert not rests_on_feet(at_the_tape)
+
+
+def test_the_mean_is_of_attempts_that_were_measured() -> None:
+    found = mean_of_attempts([10.0, math.nan, 12.0])
+    assert (found.mean, found.attempts) == (11.0, 2)
+    assert not math.isfinite(mean_of_attempts([math.nan]).mean)

@@ -1,0 +1,84 @@
+"""Has every requirement a test, every risk a control, every use error its message, and are their tables current?"""
+
+import importlib
+from dataclasses import replace
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+PACKAGING = Path(__file__).parents[2] / "packaging"
+
+
+@pytest.fixture
+def tables(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
+    monkeypatch.syspath_prepend(PACKAGING)
+    return importlib.import_module("safety_tables")
+
+
+def test_requirements_risks_and_use_errors_lead_to_tests_that_are_there(tables: ModuleType) -> None:
+    assert tables.faults() == []
+
+
+def test_the_tables_are_those_of_what_was_written_by_hand(tables: ModuleType) -> None:
+    made = tables.pages()
+    assert len(made) == 3
+    for name, text in made.items():
+        assert (tables.SAFETY / name).read_text(encoding="utf-8") == text, f"{name}: run packaging/safety_tables.py"
+
+
+def test_a_requirement_that_leads_nowhere_is_named(tables: ModuleType) -> None:
+    known = tables.requirements()[0]
+    gone = "tests/core/test_goals.py::test_that_was_renamed"
+    recorded = "tests/core/test_hinge_recordings.py::test_a_mechanical_hinge_is_called_one"
+    wrong = {
+        f"{known.id} has no test": replace(known, tests=()),
+        f"{known.id}: there is no test {gone}": replace(known, tests=(*known.tests, gone)),
+        f"{known.id}: no test of the default run holds it where the shared recordings are not at hand": replace(
+            known, tests=(recorded,)
+        ),
+        f"{known.id}: there is no script tests.safety.nothing": replace(known, runs=("tests.safety.nothing",)),
+        f"{known.id}: the source 'hearsay' is not among the sources": replace(known, source="hearsay"),
+        "R1 is no id, such as R-REC-01": replace(known, id="R1"),
+    }
+    for fault, changed in wrong.items():
+        assert fault in list(tables.faults_of_requirements([changed], {known.source})), fault
+    assert list(tables.faults_of_requirements([known, known], {known.source})) == [f"{known.id} is there twice"]
+
+
+def test_a_risk_without_a_control_or_whose_controls_leave_it_is_named(tables: ModuleType) -> None:
+    risk = tables.risks()[0]
+    known = set(risk.controls)
+    wrong = {
+        f"{risk.id} has no control": replace(risk, controls=()),
+        f"{risk.id}: there is no requirement R-REC-99": replace(risk, controls=("R-REC-99",)),
+        f"{risk.id}: 9 x 1 is not on the scale": replace(risk, before=(9, 1)),
+        f"{risk.id}: the controls leave 9 of 9": replace(risk, before=(3, 3), after=(3, 3)),
+        f"{risk.id}: the controls leave 4 of 2": replace(risk, before=(1, 2), after=(2, 2)),
+    }
+    for fault, changed in wrong.items():
+        assert list(tables.faults_of_risks([changed], known)) == [fault]
+    assert list(tables.faults_of_risks([risk], known)) == []
+
+
+def test_a_use_error_that_nothing_tells_of_is_named(tables: ModuleType) -> None:
+    error = tables.use_errors()[0]
+    wrong = {
+        f"{error.id}: nothing says 'Well done.'": replace(error, messages=("Well done.",)),
+        f"{error.id} meets no message": replace(error, messages=()),
+        f"{error.id} has no test": replace(error, tests=()),
+    }
+    for fault, changed in wrong.items():
+        assert list(tables.faults_of_use_errors([changed])) == [fault]
+
+
+def test_each_test_bears_the_requirements_that_it_holds(request: pytest.FixtureRequest, tables: ModuleType) -> None:
+    """Of the tests that were collected with this one: by the whole run, of all."""
+    held = {(test, one.id) for one in tables.requirements() for test in one.tests}
+    collected = {item.nodeid.partition("[")[0] for item in request.session.items}
+    marked = {
+        (item.nodeid.partition("[")[0], mark.kwargs["id"])
+        for item in request.session.items
+        for mark in item.iter_markers("requirement")
+    }
+    assert marked == {(test, one) for test, one in held if test in collected}

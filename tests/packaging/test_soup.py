@@ -1,0 +1,83 @@
+"""Is every locked part listed with why it is there, and under the licence that it tells of itself?"""
+
+import importlib
+import re
+from importlib import metadata
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+from packaging.requirements import Requirement
+
+PACKAGING = Path(__file__).parents[2] / "packaging"
+PROJECT = "gaitwright"
+
+
+@pytest.fixture
+def soup(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
+    monkeypatch.syspath_prepend(PACKAGING)
+    return importlib.import_module("soup")
+
+
+def name_of(part: str) -> str:
+    return re.sub(r"[-_.]+", "-", part).lower()
+
+
+def needed() -> set[str]:
+    """Everything that the program needs with any of its extras but the developer's, on this system."""
+    extras = set(metadata.metadata(PROJECT).get_all("Provides-Extra") or ()) - {"dev"}
+    found: set[tuple[str, frozenset[str]]] = set()
+    waiting = [(PROJECT, frozenset(extras))]
+    while waiting:
+        name, asked = waiting.pop()
+        if (name, asked) in found:
+            continue
+        found.add((name, asked))
+        try:
+            requires = metadata.requires(name) or []
+        except metadata.PackageNotFoundError:  # of another system, or of an extra that is not in the lock
+            continue
+        for one in map(Requirement, requires):
+            if one.marker is None or any(one.marker.evaluate({"extra": extra}) for extra in {"", *asked}):
+                waiting.append((name_of(one.name), frozenset(one.extras)))
+    return {name for name, _ in found} - {PROJECT}
+
+
+def test_every_locked_part_is_listed_once_and_no_other(soup: ModuleType) -> None:
+    assert list(soup.faults()) == []
+
+
+def test_the_list_is_that_of_what_was_written_by_hand(soup: ModuleType) -> None:
+    assert (soup.SAFETY / "soup.md").read_text(encoding="utf-8") == soup.page(), "run packaging/soup.py"
+
+
+def test_what_runs_with_the_program_is_not_called_a_tool(soup: ModuleType) -> None:
+    listed = {name for part in soup.parts() for name in part.names}
+    assert len(needed()) > 50
+    assert sorted((needed() & soup.locked().keys()) - listed) == []
+    assert sorted(needed() - soup.locked().keys() - listed - {"keyring"}) == []
+
+
+def test_a_licence_is_the_one_that_the_part_tells_of_itself(soup: ModuleType) -> None:
+    differing = {}
+    for part in soup.parts():
+        for name, licence in part.names.items():
+            try:
+                said = metadata.metadata(name).get_all("License-Expression")
+            except metadata.PackageNotFoundError:
+                continue
+            if said and said != [licence]:
+                differing[name] = (licence, said)
+    assert differing == {}
+
+
+def test_what_is_missing_or_there_twice_is_named(soup: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(soup, "locked", lambda: {"numpy": "2.0", "new-part": "1.0", "pytest": "9.0"})
+    twice = soup.Soup({"numpy": "BSD", "gone": "MIT", "pytest": "MIT"}, "Figures", "", "", "")
+    monkeypatch.setattr(soup, "parts", lambda: [twice])
+    monkeypatch.setattr(soup, "told", lambda: {"development": {"names": ["pytest"]}})
+    assert list(soup.faults()) == [
+        "pytest is there twice",
+        "new-part is locked, and nothing says why",
+        "gone is not in the lock",
+    ]
