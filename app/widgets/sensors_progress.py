@@ -70,7 +70,7 @@ class SensorsProgress(Themed):
         self._sentence = Text(look, size=15, tone="ink2", wraps=True)
         self._bar = QProgressBar()
         self._bar.setTextVisible(False)
-        self._lines = _Lines(look)
+        self._lines = _SensorLines(look)
         self.notice = Notice(look, size=16)
         self.stop = Button(look, tr("Cancel"), ButtonKind.SECONDARY, Icon.STOP)
         self._inside = QWidget()
@@ -137,7 +137,7 @@ class SensorsProgress(Themed):
         self._fit()
 
 
-class _Lines(Themed):
+class _SensorLines(Themed):
     """The sensors one below the other; readers of screens are told all of them."""
 
     def __init__(self, look: ThemeNotifier) -> None:

@@ -95,7 +95,7 @@ class FetchControl(QObject):
         if not fetches.waiting:
             return ProgressShown(tr("The walk is being read back"))
         if not fetches.is_running:
-            return ProgressShown(tr("The sensors are being let be"), tr("This takes some seconds."))
+            return ProgressShown(tr("The sensors are being let go"), tr("This takes some seconds."))
         title = tr("The walk is being fetched from the sensors")
         if view.waiting > 1:
             title = tr("{count} walks are being fetched from the sensors").format(count=view.waiting)

@@ -397,6 +397,7 @@ def look(session: WindowSession, shots: Path | None, name: str) -> None:
     """Take a picture of the window."""
     if shots is not None:
         session.linger(0.3)
+        shots.mkdir(parents=True, exist_ok=True)
         session.wizard.grab().save(str(shots / f"{name}.png"))
 
 
