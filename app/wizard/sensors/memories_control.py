@@ -114,7 +114,8 @@ class MemoriesControl(QObject):
         if self.is_busy:
             return BarState()
         if self._error is not None:
-            return BarState(primary=BarAction(tr("Try again"), tr("Enter"), Icon.REPEAT))
+            again = BarAction(tr("Try again"), tr("Enter"), Icon.REPEAT)
+            return BarState(primary=again, quiet=(BarAction(tr("Back to the sensors")),))
         if not self._held:
             return BarState(primary=BarAction(tr("Back to the sensors"), tr("Enter")))
         words = tr("Erase the memories")
@@ -308,7 +309,7 @@ class MemoriesControl(QObject):
                 tr("A sensor is out of reach."),
                 tr("Bring all sensors nearer to this computer, then try again."),
             )
-        self._form.tell(what, then)
+        self._form.show_unknown(what, then)
         self._show()
 
     @Slot()

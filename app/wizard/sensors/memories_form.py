@@ -54,6 +54,7 @@ class MemoriesForm(Themed):
         card.column.addWidget(self._lead)
         card.column.addWidget(self.notice)
         card.column.addWidget(self.list, 1)
+        card.column.addStretch()  # where there is no list
         self._column = QVBoxLayout(self)
         self._column.setContentsMargins(0, 0, 0, 0)
         self._column.addWidget(card, 1)
@@ -76,7 +77,7 @@ class MemoriesForm(Themed):
         return self.list.currentIndex().row()
 
     def focus(self) -> None:
-        self.list.setFocus()
+        (self.list if self._lines else self).setFocus()  # else Enter would press the button that is next
 
     def show_lines(self, lines: Sequence[HeldLine]) -> None:
         """Show these, oldest first; the first that can be fetched is chosen."""
@@ -100,6 +101,12 @@ class MemoriesForm(Themed):
         self._title.setText(title)
         self._lead.setText(tr("Memories are erased as a whole, once what they hold is kept.") if count else "")
         self._lead.setVisible(bool(count))
+
+    def show_unknown(self, what: str, then: str) -> None:
+        """Say why it is not known what they hold, and what to do."""
+        self.show_lines(())
+        self._title.setText(tr("It is not known what the sensors hold"))
+        self.tell(what, then)
 
     def tell(self, what: str, then: str = "") -> None:
         """Say what is the matter, and what to do; "" takes it back."""

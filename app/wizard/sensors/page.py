@@ -466,6 +466,8 @@ class SensorsPage(Themed):
             grown = px(usual) + max(0, room - px(USUAL_WIDTH)) // 2
             self.places.setFixedWidth(max(figure, min(grown, px(widest), room - gap - rows)))
         self._rows.setMinimumHeight(self.list.minimumSizeHint().height() if is_stacked else 0)
+        self._body.invalidate()  # of a width that is changed while Qt lays out it does not always hear
+        self._body.activate()
 
     def _on_source_activated(self, index: int) -> None:
         self.source_chosen.emit(self.sources.itemData(index))

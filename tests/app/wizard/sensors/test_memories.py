@@ -170,13 +170,16 @@ def test_a_sensor_that_is_out_of_reach_is_told_and_asked_again(
     radio.air.drop(radio.dots[1])
     look(qtbot, opened)
     assert "A sensor is out of reach." in opened.page.memories.notice.text
+    assert opened.page.memories.title == "It is not known what the sensors hold"
     bar = opened.bar()
     assert bar.primary is not None
     assert bar.primary.text == "Try again"
+    assert [quiet.text for quiet in bar.quiet] == ["Back to the sensors"]
     radio.dots[1].faults.unreachable_until_ns = 0
     opened.on_primary()
     wait(qtbot, opened)
     assert opened.page.memories.notice.isHidden()
+    assert opened.page.memories.title == "The sensors' memories are empty"
 
 
 def test_a_recording_is_found_by_the_second_in_which_it_was_begun(
