@@ -110,6 +110,7 @@ def test_what_is_kept_is_erased_after_a_second_press(
     wait(qtbot, opened)
     assert [len(dot.files) for dot in radio.dots] == [0, 0]
     assert opened.page.memories.title == "The sensors' memories are empty"
+    assert opened.page.focusWidget() is opened.page.memories, "Enter would press another button"
 
 
 @pytest.mark.endurance
