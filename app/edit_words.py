@@ -12,7 +12,7 @@ from app.patient_words import when
 from app.storage.edited_fields import ALIGNMENT, GOALS, KEPT, PLACEMENT, TEST
 from app.storage.three_way import OtherChange, Value
 from app.timed_words import planned_words
-from app.wording import capitalised, name_of, side_name, tr, tr_n
+from app.wording import capitalised, figure_text, name_of, short_figure, side_name, tr, tr_n
 from core.alignment import alignment_of_text
 from core.body import Joint, Side, Site
 from core.goals import GoalOf, goals_of_text, held
@@ -77,16 +77,16 @@ def value_words(field: str, value: Value) -> str:
         return tr("turned by hand") if value == -1 else tr("confirmed by hand") if value == 1 else tr("as found")
     if isinstance(value, tuple):
         amount = tr_n("{count} stride", "{count} strides", len(value)).format(count=len(value))
-        at = ", ".join(tr("{time} s").format(time=f"{time_s:.1f}") for time_s in value)
+        at = ", ".join(tr("{time} s").format(time=figure_text(time_s, ".1f")) for time_s in value)
         return f"{amount}: {at}" if value else tr("none")
     if value is None or value == "":
         return tr("nothing said")
     if isinstance(value, str):
         return _text(name, value)
     number = {
-        "height_m": lambda: tr("{height} cm").format(height=f"{value * 100:.1f}".removesuffix(".0")),
-        "mass_kg": lambda: tr("{mass} kg").format(mass=f"{value:.1f}".removesuffix(".0")),
-        "zero_rad": lambda: f"{np.rad2deg(value):.1f}°".replace("-", MINUS).replace(".0°", "°"),
+        "height_m": lambda: tr("{height} cm").format(height=short_figure(value * 100, 1)),
+        "mass_kg": lambda: tr("{mass} kg").format(mass=short_figure(value, 1)),
+        "zero_rad": lambda: f"{short_figure(np.rad2deg(value), 1)}°".replace("-", MINUS),
     }.get(name)
     return number() if number is not None else str(value)
 

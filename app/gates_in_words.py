@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from app.wording import later, tr
+from app.wording import figure_text, later, tr
 from core.verdicts.model import GateReason, Verdict
 
 VERDICTS = {
@@ -33,6 +33,10 @@ WORDS = {
     "pairing": GateWords(
         later("The two sensors do not move as neighbours (margin {value}, {limit} wanted)."),
         later("Check which sensor is where, or record free motion."),
+    ),
+    "labels": GateWords(
+        later("The motion fits better if the sensors were worn in another order."),
+        later("Check which sensor is where."),
     ),
     "hip_disagreement": GateWords(
         later("Pelvis and thigh disagree about what the hip feels ({value} of it, under {limit} wanted)."),
@@ -157,6 +161,6 @@ def _figure(value: float | None, unit: str) -> str:
     if value is None:
         return tr("unknown")
     if not unit:
-        return f"{value:.0f}" if value == round(value) else f"{value:.2f}"
-    number = f"{value:.{DECIMALS[unit]}f}"
+        return f"{value:.0f}" if value == round(value) else figure_text(value, ".2f")
+    number = figure_text(value, f".{DECIMALS[unit]}f")
     return f"{number}°" if unit == "deg" else f"{number}\N{NO-BREAK SPACE}{unit}"

@@ -3,7 +3,7 @@
 from enum import Enum, auto
 
 from app.timed_words import name_of_test
-from app.wording import later, side_name, tr
+from app.wording import figure_text, later, side_name, tr
 from core.goals import Goal, GoalOf
 from core.timed.measures import PROTOCOLS
 
@@ -96,7 +96,7 @@ def limit(goal: Goal) -> str:
     """The value of a goal with its unit: "60°"; decimals that say nothing are left out but of metres and speed."""
     whole = (_Unit.DEGREES, _Unit.PERCENT, _Unit.SECONDS)
     count = max(1, decimals(goal.column)) if _unit(goal.column) in whole else decimals(goal.column)
-    number = f"{goal.value:.{count}f}"
+    number = figure_text(goal.value, f".{count}f")
     return (number.removesuffix(".0") if count == 1 else number) + short_unit(goal.column)
 
 

@@ -5,7 +5,7 @@ A sentence comes from what was measured: without a time no time is told, without
 
 import math
 
-from app.wording import joined, name_of, tr, tr_n
+from app.wording import figure_text, joined, name_of, tr, tr_n
 from core.timed.found import NotMeasured, TimedTest
 from core.timed.protocols import DEFINITIONS, KnownError, PlannedTest, TimedProtocol
 
@@ -73,7 +73,7 @@ def reason_words(reason: NotMeasured) -> str:
 
 def seconds(value: float) -> str:
     """A time as it is told: "8.9 s", "2:00"."""
-    return f"{int(value) // 60}:{int(value) % 60:02d}" if value >= 100.0 else f"{value:.1f} s"
+    return f"{int(value) // 60}:{int(value) % 60:02d}" if value >= 100.0 else f"{figure_text(value, '.1f')} s"
 
 
 def result_sentence(test: TimedTest) -> str:
@@ -83,11 +83,11 @@ def result_sentence(test: TimedTest) -> str:
         return tr("{test}: no time was taken.").format(test=name)
     said = []
     if test.definition.duration_s is not None and math.isfinite(test.distance_m):
-        said = [f"{test.distance_m:.0f} m", f"{test.speed_m_s:.2f} m/s"]
+        said = [f"{test.distance_m:.0f} m", f"{figure_text(test.speed_m_s, '.2f')} m/s"]
     elif test.protocol is TimedProtocol.TEN_METRES and math.isfinite(test.speed_m_s):
-        said = [f"{test.speed_m_s:.2f} m/s", f"{test.time_s:.1f} s"]
+        said = [f"{figure_text(test.speed_m_s, '.2f')} m/s", f"{figure_text(test.time_s, '.1f')} s"]
     elif test.definition.duration_s is None:
-        said = [f"{test.time_s:.1f} s"]
+        said = [f"{figure_text(test.time_s, '.1f')} s"]
     if not said:
         return tr("{test}: no distance can be told.").format(test=name)
     return tr("{test}: {figures}.").format(test=name, figures=", ".join(said))

@@ -388,6 +388,12 @@ def figure_text(value: float, spec: str, language: str = "") -> str:
     return text.replace(".", ",") if (language or _language) in WITH_COMMAS else text
 
 
+def short_figure(value: float, decimals: int) -> str:
+    """Write a number without noughts that say nothing: 15, 82.5."""
+    written = figure_text(value, f".{decimals}f")
+    return written.rstrip("0").rstrip(".,") if decimals else written
+
+
 def later(message: str) -> str:
     """Tell the catalogue of a message that is written here but shown, through `tr`, later: as a constant is."""
     return message

@@ -22,7 +22,7 @@ from core.hip.analysis import HipsOfSpan, find_hips, with_hips
 from core.identified import Identified, clock_moved_s, identify
 from core.joint_findings import about_angles, about_joint, about_missing_joints, about_session
 from core.measure import Twist, measure
-from core.placement.labels import about_labels
+from core.placement.labels import about_labels, doubted_sites
 from core.published.angles import DEFAULT_TAU_S
 from core.quality import look_at, lost_percent
 from core.rate_kind import tracks_of_kind
@@ -102,7 +102,8 @@ def analyse(
         steps = _Steps(progress, number / len(spans), 1 / len(spans))
         tracks, noticed = tracks_of_kind(session, span, quality.unusable)
         findings += noticed
-        findings += about_labels(tracks)
+        of_labels = about_labels(tracks)
+        findings += of_labels
         drifts = clock_drifts(tracks)
         findings += about_clocks(drifts)
         bases = _bases(tracks)
@@ -128,6 +129,7 @@ def analyse(
                 found = replace(found, timed=time_test(tracks, recording, recording.test))
             found = replace(found, clocks=clocks_in(tracks, recording, found.gait, _lags_in(recording, lags)))
             found = replace(found, drifting_percent={s: p for (name, s), p in drifts.items() if name == recording.name})
+            found = replace(found, doubted_sites=doubted_sites(of_labels))
             here = {joint: calibrated[bases[recording.name, joint]] for joint in found.joints}
             found = with_hips(found, tracks, recording, hips, here)
             found = replace(found, verdicts=verdicts_of(found, here, stiff_sides))

@@ -148,6 +148,8 @@ class RecordingAnalysis:
         From when on a side's straps are not to be trusted, on the recording's clock; -inf throughout.
     drifting_percent
         How much faster than its leg's clock that of a site runs, where it does.
+    doubted_sites
+        Whose sensors the motion wants exchanged: what they show is of another segment.
     clocks
         What ties the clocks of both legs; None where not both were measured.
     hips, pelvis, turns, leg_clock
@@ -168,6 +170,7 @@ class RecordingAnalysis:
     lost_percent: Mapping[Site, float] = field(default_factory=dict)
     slipped_from_s: Mapping[Side, float] = field(default_factory=dict)
     drifting_percent: Mapping[Site, float] = field(default_factory=dict)
+    doubted_sites: frozenset[Site] = frozenset()
     clocks: LegClocks | None = None
     hips: Mapping[Joint, HipAngle] = field(default_factory=dict)
     pelvis: PelvisAngles | None = None

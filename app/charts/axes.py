@@ -4,7 +4,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from app.wording import capitalised, later, name_of, tr
+from app.wording import capitalised, figure_text, later, name_of, tr
 from core.body import JointKind, Side
 from core.samples import FloatArray
 
@@ -43,7 +43,7 @@ def range_for(fixed_deg: tuple[float, float], curves: Iterable[FloatArray]) -> t
 
 
 def degrees_in_words(value: float | np.floating, decimals: int = 1) -> str:
-    return f"{value:.{decimals}f}°".replace("-", "\N{MINUS SIGN}")
+    return f"{figure_text(float(value), f'.{decimals}f')}°".replace("-", "\N{MINUS SIGN}")
 
 
 def angle_in_words(value: float) -> str:

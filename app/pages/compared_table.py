@@ -18,7 +18,7 @@ from app.widgets.table import TableColumn, TableRow
 from app.widgets.table_cells import EMPTY, RIGHT, TextCell
 from app.widgets.text import REGULAR, SEMIBOLD
 from app.widgets.trend_cell import TrendCell
-from app.wording import side_name, tr
+from app.wording import figure_text, side_name, tr
 from core.body import Side
 from core.gait.spatiotemporal import MeanAndSd
 from core.goals import Goal, GoalOf
@@ -137,7 +137,8 @@ def _trend_cell(found: Comparison, row: Compared) -> TrendCell:
 
 def side_table_row(row: SideRow, heads: Sequence[str]) -> TableRow:
     """One measure of both legs, their difference with its error, and symmetry."""
-    symmetry = f"{row.symmetry_percent:+.1f}".replace("-", MINUS) if math.isfinite(row.symmetry_percent) else NOTHING
+    is_known = math.isfinite(row.symmetry_percent)
+    symmetry = figure_text(row.symmetry_percent, "+.1f").replace("-", MINUS) if is_known else NOTHING
     each = zip((row.first, row.second), row.verdicts, strict=True)
     values = [value_cell(value, verdict, row.measure.decimals) for value, verdict in each]
     return _table_row(tr(row.measure.name), None, heads, (*values, _changed(row), _error_cell(row), _figure(symmetry)))

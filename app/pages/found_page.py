@@ -33,7 +33,7 @@ from app.widgets.line_keys import LineKeys
 from app.widgets.segmented import Segmented
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.themed import Themed
-from app.wording import capitalised, joined, name_of, sentence, tr
+from app.wording import capitalised, figure_text, joined, name_of, sentence, tr
 from core.body import Joint, Side
 from core.diagnostics import JointDiagnostics
 from core.findings import Finding
@@ -391,7 +391,7 @@ class _AngleCard(Card):
         self.chart.see(*((first, last) if is_whole else (middle - CLOSE_S / 2, middle + CLOSE_S / 2)))
         percent = 100 * self.chart.cut_share
         cut = tr("{percent} % of the accelerometers' angle lies beyond this axis and is cut off here.")
-        self._cut.setText(cut.format(percent=f"{percent:.1f}") if percent >= 0.05 else "")
+        self._cut.setText(cut.format(percent=figure_text(percent, ".1f")) if percent >= 0.05 else "")
         self._cut.setVisible(bool(self._cut.text()))
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from app.plots.thinning import thin
-from app.wording import later, tr, tr_n
+from app.wording import figure_text, later, tr, tr_n
 from core.body import Site
 from core.samples import FloatArray, ImuBlock, RecordingKind
 from core.tracks import MAX_REPORTED_GAP_S
@@ -47,7 +47,7 @@ def facts(trial: "ImportedTrial") -> str:
     keys = {finding.key for sensor in trial.sensors for finding in sensor.findings}
     parts = [
         tr_n("{count} sensor", "{count} sensors", count).format(count=count),
-        tr("{length} s").format(length=f"{last_s - first_s:.1f}"),
+        tr("{length} s").format(length=figure_text(last_s - first_s, ".1f")),
         _rates(trial),
         _gravity(filled),
         *(tr(words) for key, words in GRAVITY_WORDS.items() if key in keys),
@@ -104,14 +104,14 @@ def _gaps(blocks: Sequence[ImuBlock]) -> str:
     if not count:
         return tr("no gaps")
     said = tr_n("{count} gap of {lost} s", "{count} gaps of {lost} s together", count)
-    return said.format(count=count, lost=f"{lost_s:.1f}")
+    return said.format(count=count, lost=figure_text(lost_s, ".1f"))
 
 
 def _gravity(blocks: Sequence[ImuBlock]) -> str:
     """What the sensors feel in the middle: whoever reads it sees whether the unit was understood."""
     felt = np.concatenate([np.linalg.norm(block.acc_m_s2, axis=1) for block in blocks]) if blocks else np.empty(0)
     known = felt[np.isfinite(felt)]
-    return tr("gravity {felt} m/s²").format(felt=f"{np.median(known):.1f}") if len(known) else ""
+    return tr("gravity {felt} m/s²").format(felt=figure_text(np.median(known), ".1f")) if len(known) else ""
 
 
 def _clock(trial: "ImportedTrial") -> str:

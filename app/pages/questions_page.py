@@ -21,7 +21,7 @@ from app.widgets.table import CellTable
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.themed import Themed
 from app.widgets.toggle import Toggle
-from app.wording import tr, tr_n
+from app.wording import figure_text, tr, tr_n
 
 READ, WITH_CARE = "read", "care"
 LEAST_CHOICE, MOST_CHOICE = 150, 320  # px; a parameter that nobody named may be long
@@ -270,10 +270,10 @@ def _sessions(row: GroupRow) -> str:
 
 
 def _line_in_words(line: GroupLine, decimals: int, unit: str) -> str:
-    mean = f"{line.mean:.{decimals}f} {unit}".rstrip()
+    mean = f"{figure_text(line.mean, f'.{decimals}f')} {unit}".rstrip()
     if line.half != line.half:
         return f"{line.label}: {mean}, {line.count}"
-    half = tr("plus or minus {half}").format(half=f"{line.half:.{decimals}f}")
+    half = tr("plus or minus {half}").format(half=figure_text(line.half, f".{decimals}f"))
     return f"{line.label}: {mean}, {half}, {line.count}"
 
 

@@ -2,7 +2,7 @@
 
 from app.study.groups import AGE_EDGES, CHILDREN_UNDER, LEAST_SESSIONS, SPEED_EDGES, GroupAnswer, Grouping, GroupRow
 from app.study.measures import measure_words
-from app.wording import joined, tr, tr_n, within_sentence
+from app.wording import figure_text, joined, tr, tr_n, within_sentence
 
 MINUS = "\N{MINUS SIGN}"
 
@@ -122,7 +122,7 @@ def figure(value: float, decimals: int) -> str:
     """A number as it is shown, empty where it is none."""
     if value != value:
         return ""
-    return f"{value:.{decimals}f}".replace("-", MINUS) if round(value, decimals) else f"{0:.{decimals}f}"
+    return figure_text(round(value, decimals) or 0.0, f".{decimals}f").replace("-", MINUS)
 
 
 def _in_sentence(grouping: Grouping) -> str:
@@ -139,8 +139,8 @@ def _age_band(low: int) -> str:
 
 def _speed_band(low: float) -> str:
     if low == 0:
-        return tr("under {speed} m/s").format(speed=f"{SPEED_EDGES[0]:.1f}")
+        return tr("under {speed} m/s").format(speed=figure_text(SPEED_EDGES[0], ".1f"))
     if low == SPEED_EDGES[-1]:
-        return tr("{speed} m/s and over").format(speed=f"{low:.1f}")
+        return tr("{speed} m/s and over").format(speed=figure_text(low, ".1f"))
     high = SPEED_EDGES[SPEED_EDGES.index(low) + 1]
-    return tr("{low} to {high} m/s").format(low=f"{low:.1f}", high=f"{high:.1f}")
+    return tr("{low} to {high} m/s").format(low=figure_text(low, ".1f"), high=figure_text(high, ".1f"))

@@ -12,6 +12,7 @@ from PySide6.QtWidgets import QStyleOptionGraphicsItem, QWidget
 from app.charts.axes import AXIS_WIDTH, RIGHT_MARGIN, range_for
 from app.plots.thinning import envelope, thin
 from app.theme import ThemeNotifier
+from app.wording import figure_text
 from core.body import Side
 from core.samples import FloatArray
 
@@ -190,7 +191,7 @@ class _TimeAxis(pg.AxisItem):  # type: ignore[misc]  # pyqtgraph has no types
     def tickStrings(self, values: list[float], _scale: float, spacing: float) -> list[str]:
         if self.range[1] <= 120 or spacing < 1:
             decimals = max(0, int(np.ceil(-np.log10(spacing) - 1e-9)))
-            return [f"{value:.{decimals}f} s".replace("-", "\N{MINUS SIGN}") for value in values]
+            return [f"{figure_text(value, f'.{decimals}f')} s".replace("-", "\N{MINUS SIGN}") for value in values]
         return [f"{int(value) // 60}:{int(value) % 60:02d}" for value in values]
 
 

@@ -14,7 +14,7 @@ from PySide6.QtWidgets import QSizePolicy
 from app.theme import ThemeNotifier
 from app.widgets.painted_text import LEFT, RIGHT, PaintedText
 from app.widgets.themed import Themed
-from app.wording import tr
+from app.wording import figure_text, tr
 from core.body import Side
 from core.published.figures import CostOverSphere
 from core.samples import BoolArray, FloatArray
@@ -50,7 +50,7 @@ class CostMap(Themed):
             "{high} °/s."
         )
         low, high = self.limits_deg_s
-        apart = f"{math.degrees(cost.apart_rad):.1f}"
+        apart = figure_text(math.degrees(cost.apart_rad), ".1f")
         self.setAccessibleName(tr("Map of all axes, {sensor}").format(sensor=name))
         self.setAccessibleDescription(said.format(sensor=name, apart=apart, low=f"{low:.0f}", high=f"{high:.0f}"))
         self._on_look_changed()

@@ -25,7 +25,7 @@ from app.widgets.chip import SideKey
 from app.widgets.icons import IconMark
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.themed import Themed
-from app.wording import later, name_of, tr
+from app.wording import figure_text, later, name_of, tr
 from core.body import Joint, JointKind, Side
 from core.results import SideGait
 from core.samples import FloatArray, IntArray
@@ -205,7 +205,8 @@ class JointCharts(Themed):
             self.go_on((time_s - (first + last) / 2) / (last - first))
         told = [*(frame.reading_in_words() for frame in self._shown), self.phases.reading_in_words()]
         said = " ".join(told)
-        QAccessible.updateAccessibility(QAccessibleAnnouncementEvent(self, f"{time_s:.2f} s. {said}".strip()))
+        said = f"{figure_text(time_s, '.2f')} s. {said}".strip()
+        QAccessible.updateAccessibility(QAccessibleAnnouncementEvent(self, said))
 
     def _see(self, first_s: float, last_s: float) -> None:
         first, last = self.knee.chart.whole_s
@@ -234,7 +235,7 @@ class JointCharts(Themed):
         length = self.knee.chart.whole_s[1] - self.knee.chart.whole_s[0]
         said = tr("Whole recording, {whole} s") if self.is_whole else tr("{first} to {last} s of {whole} s")
         shown = {"first": first, "last": last, "whole": length}
-        times = {name: f"{time_s:.1f}".replace("-", "\N{MINUS SIGN}") for name, time_s in shown.items()}
+        times = {name: figure_text(time_s, ".1f").replace("-", "\N{MINUS SIGN}") for name, time_s in shown.items()}
         self.view_changed.emit(self.is_whole, said.format_map(times))
 
     def _on_look_changed(self) -> None:
@@ -310,7 +311,7 @@ class ChartFrame(Card):
 
     def read(self, row: int | None, time_s: float | None) -> None:
         """Show the values of sample `row`."""
-        self._moment.setText("" if time_s is None else f"{time_s:.2f} s".replace("-", "\N{MINUS SIGN}"))
+        self._moment.setText("" if time_s is None else f"{figure_text(time_s, '.2f')} s".replace("-", "\N{MINUS SIGN}"))
         for side, value in self._values.items():
             curve = self.chart.curves.get(side)
             value.setText("" if row is None or curve is None else _reading(curve, row))
@@ -373,5 +374,5 @@ def _reading(curve: Curve, row: int) -> str:
         return tr(NO_VALUE)
     said = degrees_in_words(angle)
     if curve.sd_deg is not None and np.isfinite(curve.sd_deg[row]):
-        said += f" ± {2 * curve.sd_deg[row]:.1f}°"
+        said += f" ± {figure_text(2 * curve.sd_deg[row], '.1f')}°"
     return said

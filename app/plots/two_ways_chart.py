@@ -14,7 +14,7 @@ from app.plots.thinning import thin
 from app.theme import ThemeNotifier
 from app.widgets.painted_text import CENTRE, RIGHT, PaintedText
 from app.widgets.themed import Themed
-from app.wording import tr
+from app.wording import figure_text, tr
 from core.body import Joint, Side
 from core.samples import FloatArray
 
@@ -187,7 +187,7 @@ class TwoWaysChart(Themed):
         first, last = self.visible_s
         step = next((s for s in SECONDS if (last - first) / s <= MOST_TICKS), (last - first) / MOST_TICKS)
         ticks = [k * step for k in range(int(np.ceil(first / step - 1e-9)), int(np.floor(last / step + 1e-9)) + 1)]
-        said = [tr("{seconds} s").format(seconds=f"{t:.1f}" if step < 1 else f"{t:.0f}") for t in ticks]
+        said = [tr("{seconds} s").format(seconds=figure_text(t, ".1f") if step < 1 else f"{t:.0f}") for t in ticks]
         return [(float(t), words) for t, words in zip(ticks, said, strict=True)]
 
     def _redraw(self) -> None:

@@ -1,6 +1,7 @@
 """Which numbers stand behind the plotted curves? One table per recording, in degrees."""
 
 import csv
+import math
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
@@ -52,6 +53,11 @@ def write_table(header: Sequence[str], rows: Iterable[Sequence[str]], path: Path
     """
     with path.open("w", encoding="utf-8", errors="backslashreplace", newline="") as file:
         csv.writer(file, lineterminator="\n").writerows([header, *rows])
+
+
+def figure_cell(value: float) -> str:
+    """A figure as a table of CSV has it; empty where there is none."""
+    return f"{value:.5f}" if math.isfinite(value) else ""
 
 
 def typed_cell(text: str) -> str:

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from app.body_words import segment_name
-from app.reports.csv_report import write_table
-from app.wording import tr
+from app.reports.csv_report import figure_cell, write_table
+from app.wording import figure_text, tr
 from core.body import Joint
 from core.diagnostics import JointDiagnostics
 from core.samples import ComplexArray, FloatArray
@@ -37,7 +37,7 @@ class FoundFigure:
             return tr("over {most}").format(most=f"{MARGIN_BEYOND:.0f}") if self.value > 0 else tr("not known")
         if self.column == "pairing_margin" and self.value > MARGIN_BEYOND:
             return tr("over {most}").format(most=f"{MARGIN_BEYOND:.0f}")
-        number = f"{self.value:.{self.decimals}f}".replace("-", "\N{MINUS SIGN}")
+        number = figure_text(self.value, f".{self.decimals}f").replace("-", "\N{MINUS SIGN}")
         unit = UNIT_WORDS[self.unit]
         return f"{number}{unit}" if unit == "°" else f"{number} {unit}".strip()
 
@@ -140,7 +140,7 @@ def write_diagnostics(found: JointDiagnostics, is_simulated: bool, folder: Path)
         ("identified_from", "; ".join(found.from_recordings), ""),
         ("is_simulated", str(is_simulated).lower(), ""),
     ]
-    numbers = [(one.column, _cell(one.value), one.unit) for one in figures_of(found).values()]
+    numbers = [(one.column, figure_cell(one.value), one.unit) for one in figures_of(found).values()]
     write_table(("figure", "value", "unit"), [*texts, *numbers], paths[FIGURES])
     return list(paths.values())
 
@@ -150,12 +150,12 @@ def _write_costs(found: JointDiagnostics, path: Path) -> None:
     rows: list[Sequence[str]] = []
     for sensor, cost in zip(SENSORS, found.costs, strict=True):
         rows += [
-            [sensor, "axis_in_use", *map(_cell, cost.axis), ""],
-            [sensor, "best_fit", *map(_cell, cost.lowest), ""],
+            [sensor, "axis_in_use", *map(figure_cell, cost.axis), ""],
+            [sensor, "best_fit", *map(figure_cell, cost.lowest), ""],
         ]
         values = np.rad2deg(cost.rms_rad_s)
         for direction, value in zip(cost.direction.reshape(-1, 3).tolist(), values.ravel().tolist(), strict=True):
-            rows.append([sensor, "direction", *map(_cell, direction), _cell(value)])
+            rows.append([sensor, "direction", *map(figure_cell, direction), figure_cell(value)])
     write_table(header, rows, path)
 
 
@@ -174,7 +174,7 @@ def parts_deg_s(z: ComplexArray) -> tuple[FloatArray, FloatArray]:
 
 def _write_columns(header: Sequence[str], columns: Sequence[FloatArray], path: Path) -> None:
     rows = zip(*(column.tolist() for column in columns), strict=True)
-    write_table(header, ([_cell(value) for value in row] for row in rows if math.isfinite(row[0])), path)
+    write_table(header, ([figure_cell(value) for value in row] for row in rows if math.isfinite(row[0])), path)
 
 
 def _deg(value_rad: float | None) -> float:
@@ -183,7 +183,3 @@ def _deg(value_rad: float | None) -> float:
 
 def _or_nan(value: float | None) -> float:
     return math.nan if value is None else value
-
-
-def _cell(value: float) -> str:
-    return f"{value:.5f}" if math.isfinite(value) else ""

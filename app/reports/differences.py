@@ -20,7 +20,7 @@ from app.reports.comparison import (
     compare_legs,
     conditions_of,
 )
-from app.reports.csv_report import typed_cell, write_table
+from app.reports.csv_report import figure_cell, typed_cell, write_table
 from app.reports.status import status_of
 from app.reports.visits import by_condition
 from core.body import Joint, Side
@@ -173,7 +173,12 @@ def _curve(part: Part, joint: Joint) -> Iterator[tuple[str, ...]]:
     shape = cycle.mean - cycle.mean.mean()
     for percent in range(POINTS):
         height = float(cycle.mean[percent]) if said.height.is_told else math.nan
-        known = (_cell(height), _cell(float(cycle.sd[percent])), str(cycle.n), _cell(float(shape[percent])))
+        known = (
+            figure_cell(height),
+            figure_cell(float(cycle.sd[percent])),
+            str(cycle.n),
+            figure_cell(float(shape[percent])),
+        )
         yield (*known, status_of(said))
 
 
@@ -200,7 +205,7 @@ def write_sides(parts: Sequence[Part], sides: tuple[Side, Side], path: Path) -> 
             symmetry = symmetry_index_percent(one.mean, other.mean) if has_index else math.nan
             cells = [*_named(part), column, *_mean(one), *_mean(other)]
             judged = _judged(compare_legs(part, column, sides), status)
-            lines.append([*cells, *judged, _cell(symmetry), *left_out])
+            lines.append([*cells, *judged, figure_cell(symmetry), *left_out])
     if lines:
         write_table([*OF_PART, "parameter", *each, *JUDGED, "symmetry_index_percent", *by_hand], lines, path)
 
@@ -255,13 +260,9 @@ def _named(part: Part) -> list[str]:
 
 
 def _mean(value: MeanAndSd) -> list[str]:
-    return [str(value.n) if value.n else "", _cell(value.mean), _cell(value.sd)]
+    return [str(value.n) if value.n else "", figure_cell(value.mean), figure_cell(value.sd)]
 
 
 def _judged(found: Difference, status: Verdict) -> list[str]:
     sources = " ".join(found.sources)
-    return [_cell(found.difference), _cell(found.error), sources, str(status), str(found.judgement)]
-
-
-def _cell(value: float) -> str:
-    return f"{value:.5f}" if math.isfinite(value) else ""
+    return [figure_cell(found.difference), figure_cell(found.error), sources, str(status), str(found.judgement)]

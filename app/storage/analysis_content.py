@@ -35,7 +35,7 @@ from core.timed.found import NotMeasured, Rise, Silence, StairStride, TimedPart,
 from core.timed.protocols import TimedProtocol
 from core.verdicts.model import Assessment, GateReason, JointVerdicts, LegVerdicts, Verdict, Verdicts
 
-FORMAT = "gaitwright-kept-analysis/3"
+FORMAT = "gaitwright-kept-analysis/4"
 DIGEST, LENGTH = 32, 8
 KINDS = "biuf"  # of arrays: truth and figures
 VALUES: Mapping[str, type] = {

@@ -11,7 +11,7 @@ from app.icons import Icon
 from app.widgets.table import TableColumn, TableRow
 from app.widgets.table_cells import RIGHT, TextCell
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD
-from app.wording import later, name_of, tr
+from app.wording import figure_text, later, name_of, tr
 from core.body import Joint
 from core.hip.results import HipAngle, HipIdentification
 from core.results import AxisSource, JointCalibration, ZeroKind
@@ -103,7 +103,7 @@ def _axis_from(found: JointCalibration) -> Fact:
 def _axis_certainty(found: JointCalibration) -> Fact:
     if found.axis_sd_rad is None or not math.isfinite(found.axis_sd_rad):
         return Fact(tr("unknown"), needs_look=True)
-    return Fact(f"± {math.degrees(found.axis_sd_rad):.1f}°")
+    return Fact(f"± {figure_text(math.degrees(found.axis_sd_rad), '.1f')}°")
 
 
 def _margin(found: JointCalibration) -> Fact:
@@ -113,7 +113,7 @@ def _margin(found: JointCalibration) -> Fact:
 def _margin_of(margin: float, wanted: float = MARGIN_WANTED) -> Fact:
     if not math.isfinite(margin) or margin >= 100:
         return Fact(tr("over 100"))
-    return Fact(f"{margin:.1f}", margin < wanted)
+    return Fact(figure_text(margin, ".1f"), margin < wanted)
 
 
 def _direction(found: JointCalibration) -> Fact:
@@ -137,15 +137,15 @@ def _zero(found: JointCalibration) -> Fact:
 
 
 def _degrees(angle_rad: float) -> str:
-    return f"{math.degrees(angle_rad):.1f}°".replace("-", "\N{MINUS SIGN}")
+    return f"{figure_text(math.degrees(angle_rad), '.1f')}°".replace("-", "\N{MINUS SIGN}")
 
 
 def _heading(found: HipIdentification) -> Fact:
-    return Fact(f"± {math.degrees(found.heading_sd_rad):.1f}°", not found.is_3d)
+    return Fact(f"± {figure_text(math.degrees(found.heading_sd_rad), '.1f')}°", not found.is_3d)
 
 
 def _disagreement(found: HipIdentification) -> Fact:
-    return Fact(f"{found.disagreement:.2f}", found.disagreement >= LIMITS.hip_disagreement)
+    return Fact(figure_text(found.disagreement, ".2f"), found.disagreement >= LIMITS.hip_disagreement)
 
 
 def _centre(found: HipIdentification) -> Fact:

@@ -25,7 +25,7 @@ from app.widgets.chip import paint_chip
 from app.widgets.icons import IconMark
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD, Text
 from app.widgets.themed import Themed
-from app.wording import tr, within_sentence
+from app.wording import short_figure, tr, within_sentence
 from core.body import Side
 
 HEIGHT = 48
@@ -230,7 +230,7 @@ class NumberField(Field):
 
     def set_value(self, value: float | None) -> None:
         if value is None or value != self.value:  # else "15.0" would turn into "15" under the cursor
-            self.set_text("" if value is None else _plain(value, self.decimals))
+            self.set_text("" if value is None else short_figure(value, self.decimals))
         self._judge()
 
     def _on_text_edited(self, text: str) -> None:
@@ -251,7 +251,9 @@ class NumberField(Field):
         )
         unit = self._box.unit
         space = "" if unit in ("", "°", "%") else " "
-        low, high = (_plain(limit, self.decimals).replace("-", "\N{MINUS SIGN}") for limit in (self.low, self.high))
+        low, high = (
+            short_figure(limit, self.decimals).replace("-", "\N{MINUS SIGN}") for limit in (self.low, self.high)
+        )
         self.set_wrong(wanted.format(low=low, high=f"{high}{space}{unit}"))
 
 
@@ -342,9 +344,3 @@ def _number(text: str, decimals: int) -> float | None:
     if not math.isfinite(number) or (decimals == 0 and number != round(number)):
         return None
     return round(number, decimals)
-
-
-def _plain(value: float, decimals: int) -> str:
-    """Write a number without noughts that say nothing: 15, 82.5."""
-    written = f"{value:.{decimals}f}"
-    return written.rstrip("0").rstrip(".") if decimals else written

@@ -10,7 +10,7 @@ from app.widgets.chip import LETTERS
 from app.widgets.table import TableColumn, TableRow
 from app.widgets.table_cells import CENTRE, EMPTY, RIGHT, TextCell
 from app.widgets.text import SEMIBOLD
-from app.wording import capitalised, later, side_name, tr, tr_n, within_sentence
+from app.wording import capitalised, figure_text, later, side_name, tr, tr_n, within_sentence
 from core.body import Side
 from core.gait.spatiotemporal import MeanAndSd
 from core.verdicts.model import Verdict
@@ -97,7 +97,7 @@ def _of_side(row: Figure, side: Side) -> tuple[str, str]:
 def _mean(value: MeanAndSd | None, decimals: int) -> tuple[str, str]:
     if value is None or not math.isfinite(value.mean):
         return "", tr("none")
-    spread = f"± {value.sd:.{decimals}f}" if is_spread_enough(value.n) else ""
+    spread = f"± {figure_text(value.sd, f'.{decimals}f')}" if is_spread_enough(value.n) else ""
     return _number(value.mean, decimals), spread
 
 
@@ -116,4 +116,4 @@ def _range(figure: Figure) -> str:
 def _number(value: float, decimals: int) -> str:
     if not math.isfinite(value):
         return tr("none")
-    return f"{value:.{decimals}f}".replace("-", MINUS) if round(value, decimals) else f"{0:.{decimals}f}"
+    return figure_text(round(value, decimals) or 0.0, f".{decimals}f").replace("-", MINUS)

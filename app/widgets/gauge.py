@@ -14,7 +14,7 @@ from app.theme import ThemeNotifier
 from app.tokens import CARD_RADIUS
 from app.widgets.chip import paint_chip
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD
-from app.wording import capitalised, name_of, tr
+from app.wording import capitalised, figure_text, name_of, tr
 from core.body import Joint, Side
 from core.calibration.certainty import AXIS_FLOOR_HUMAN_RAD
 from core.live.excitation import ExcitationState, Wanted
@@ -107,9 +107,9 @@ def _words(face: GaugeFace) -> tuple[object, ...]:
 
 def two_digits(value: float, wanted: float = math.inf) -> str:
     """Write a certainty as it is told: 0.8, 2.4, 11. What is not yet as wanted never reads as if it were."""
-    figure = f"{value:.1f}" if round(value, 1) < 10 else f"{value:.0f}"
+    figure = figure_text(value, ".1f") if round(value, 1) < 10 else f"{value:.0f}"
     if value > wanted >= float(figure):
-        return f"{wanted + 0.1:.1f}" if wanted < 9.9 else f"{wanted + 1:.0f}"
+        return figure_text(wanted + 0.1, ".1f") if wanted < 9.9 else f"{wanted + 1:.0f}"
     return figure
 
 

@@ -14,7 +14,7 @@ from app.theme import ThemeNotifier
 from app.tokens import CHIP_RADIUS
 from app.widgets.chip import CHIP, paint_chip
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD
-from app.wording import tr
+from app.wording import figure_text, tr
 from core.body import Site
 
 ONE_TURN = 360 * 16  # as Qt counts
@@ -165,7 +165,7 @@ class MovementBars(QWidget):
         unplaced = sorted(set(movement_deg_s) - set(sites))
         rows = {
             site: _Row(
-                f"{movement_deg_s[site]:.1f}" if math.isfinite(movement_deg_s[site]) else "\N{EN DASH}",
+                figure_text(movement_deg_s[site], ".1f") if math.isfinite(movement_deg_s[site]) else "\N{EN DASH}",
                 round(min(movement_deg_s[site] / limit_deg_s * LIMIT_AT, 1.0), 2),
                 site in moved,
                 site in silent,

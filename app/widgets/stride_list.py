@@ -15,7 +15,7 @@ from app.widgets.chip import CHIP, paint_chip
 from app.widgets.table import CellTable, TableColumn, TableRow
 from app.widgets.table_cells import EMPTY, LEFT, RIGHT, TableCell, TextCell
 from app.widgets.text import MEDIUM
-from app.wording import capitalised, later, side_name, tr
+from app.wording import capitalised, figure_text, later, side_name, tr
 from core.body import JointKind, Side
 from core.samples import FloatArray
 
@@ -284,4 +284,4 @@ def _points(curve_deg: FloatArray, room: QRectF, reach: tuple[float, float]) -> 
 
 
 def _number(value: float, decimals: int) -> str:
-    return f"{value:.{decimals}f}" if math.isfinite(value) else ""
+    return figure_text(value, f".{decimals}f") if math.isfinite(value) else ""

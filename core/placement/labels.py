@@ -1,6 +1,6 @@
 """Labels that contradict the motion, and which sensors seem to have been exchanged."""
 
-from collections.abc import Generator, Mapping
+from collections.abc import Generator, Iterable, Mapping
 
 from core.body import Site
 from core.findings import Finding, Severity
@@ -37,6 +37,12 @@ def about_labels(tracks: SensorTracks) -> list[Finding]:
             Finding("labels_look_swapped" if len(group) == 2 else "labels_look_mixed", Severity.WARNING, where)
         )
     return found
+
+
+def doubted_sites(of_labels: Iterable[Finding]) -> frozenset[Site]:
+    """The sites that `about_labels` names: their sensors are of other segments, as the motion has it."""
+    named = {part for finding in of_labels for part in finding.where.split(", ")}
+    return frozenset(site for site in Site if site in named)
 
 
 def _telling(tracks: SensorTracks) -> Recording | None:

@@ -113,6 +113,7 @@ def _joint_verdicts(
     recording: RecordingAnalysis, joint: Joint, calibration: JointCalibration, may_be_stiff: bool
 ) -> JointVerdicts:
     shape = [
+        *_labels(recording, joint.proximal, joint.distal),
         *_calibrated(calibration),
         *_lost(recording, joint.proximal, joint.distal),
         *_drifting(recording, Verdict.WITHHELD, joint.proximal, joint.distal),
@@ -141,6 +142,7 @@ def _hip_verdicts(recording: RecordingAnalysis, joint: Joint, knee: JointCalibra
     """A hip has no axis of its own: its frames lean on the knee's, its sign on the knee's sign."""
     of_knee = [*_pairing(knee), *_axis(knee)] if knee is not None else [GateReason("axis", Verdict.WITHHELD)]
     shape = [
+        *_labels(recording, joint.proximal, joint.distal),
         *_neighbours(recording.hips[joint].identification),
         *of_knee,
         *_lost(recording, joint.proximal, joint.distal),
@@ -218,6 +220,7 @@ def _leg_verdicts(
         shared += [GateReason(r.gate, Verdict.CARE, r.value, r.limit, r.unit) for r in _pairing(ankle)]
     shared += _events(gait)
     foot = Site(f"{side}_{Segment.FOOT}")
+    shared += _labels(recording, foot)
     timing = [*shared, *_steady_times(gait), *_drifting(recording, Verdict.CARE, foot)]
     if gait.is_toe_off_biased:
         timing.append(GateReason(TOE_OFF_GATE, Verdict.CARE))
@@ -228,6 +231,12 @@ def _leg_verdicts(
 
 
 # joints
+
+
+def _labels(recording: RecordingAnalysis, *sites: Site) -> Iterator[GateReason]:
+    """A joint of which a sensor sits elsewhere may still look like one: thigh and foot turn about parallel axes too."""
+    if not recording.doubted_sites.isdisjoint(sites):
+        yield GateReason("labels", Verdict.WITHHELD)
 
 
 def _calibrated(found: JointCalibration) -> Iterator[GateReason]:

@@ -1,5 +1,6 @@
 """Is every sentence there in German, with the figures, spaces and marks of the English one?"""
 
+import ast
 import importlib
 import re
 from collections.abc import Iterator
@@ -219,3 +220,41 @@ def test_a_fraction_has_a_comma_and_what_only_looks_like_one_its_point() -> None
     assert (figure_text(1.25, ".2f"), figure_text(1.25, ".2f", "de")) == ("1.25", "1,25")
     assert tr("Speed {first} and {second} m/s.").format(first=1.05, second=1.1) == "Speed 1.05 and 1.1 m/s."
     assert spoken_in("de")("{value} degrees").format(value=1.5) == "1,5 Grad"
+
+
+WITH_POINTS = (  # files, drawings and what a terminal prints: read by programs, or English throughout
+    *("app/batch/", "app/exports/", "app/review/", "app/charts/drawing.py", "app/charts/on_paper.py"),
+    *(
+        "app/reports/patient_report/trend_chart.py",
+        "app/reports/agreement/printed.py",
+        "app/reports/agreement/tables.py",
+    ),
+    *("app/reports/csv_report.py", "app/reports/targets.py", "app/compare_command.py"),
+)
+
+
+def fractions_in(source: str) -> Iterator[int]:
+    """Find the lines on which a text takes a fraction in without `figure_text`; an SVG's attributes need the point."""
+    parts = [node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.JoinedStr)]
+    for text in parts:
+        said = "".join(str(part.value) for part in text.values if isinstance(part, ast.Constant))
+        is_svg = '="' in said or said.startswith("M")
+        for part in text.values:
+            spec = ast.unparse(part.format_spec) if isinstance(part, ast.FormattedValue) and part.format_spec else ""
+            if re.search(r"\.([1-9]|\{.*\})[fg]", spec) and not is_svg:
+                yield part.lineno
+
+
+def test_a_fraction_that_goes_round_the_language_is_found() -> None:
+    assert list(fractions_in("f'{a:.1f}'\nf'{a:+.{n}f} s'\nf'{a:.0f}'\nf'x=\"{a:.1f}\"'\nfigure_text(a, '.1f')")) == [
+        1,
+        2,
+    ]
+
+
+def test_every_fraction_on_a_screen_or_page_has_the_mark_of_its_language() -> None:
+    files = [file for file in sorted((ROOT / "app").rglob("*.py")) if "_csv" not in file.name]
+    named = {file.relative_to(ROOT).as_posix(): file for file in files}
+    shown = {name: file.read_text(encoding="utf-8") for name, file in named.items() if not name.startswith(WITH_POINTS)}
+    assert len(shown) > 300
+    assert [f"{name}:{line}" for name, source in shown.items() for line in fractions_in(source)] == []

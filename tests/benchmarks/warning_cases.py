@@ -13,7 +13,19 @@ from core.findings import Finding
 from core.quality import look_at
 from core.results import Method
 from core.samples import BoolArray, FloatArray, ImuBlock, RateKind, RecordingKind, Session
-from devices.walker import FreeMotion, Manner, Motion, Standing, Tissue, Walk, WalkerSettings, simulate
+from core.timed.protocols import PlannedTest, TimedProtocol
+from devices.walker import (
+    CourseKind,
+    FreeMotion,
+    Manner,
+    Motion,
+    Standing,
+    TimedCourse,
+    Tissue,
+    Walk,
+    WalkerSettings,
+    simulate,
+)
 
 LEFT = tuple(site for site in LEG_SITES if site.side is Side.LEFT)
 THIGH, SHANK, FOOT = LEFT
@@ -221,6 +233,16 @@ def discarded() -> Session:
     return replace(made, recordings=(*others, replace(walk, is_kept=False)))
 
 
+def turned_unseen_by_the_pelvis() -> Session:
+    course = TimedCourse(CourseKind.UP_AND_GO, seed=3, name="walk 1")
+    recordings = (Standing(), Walk(name="walk 0", strides=8, turn_rad=3.1), course)
+    session = walked(recordings=recordings, sites=tuple(Site))
+    *before, timed = session.recordings
+    planned = replace(timed, test=PlannedTest(TimedProtocol.UP_AND_GO))
+    session = replace(session, recordings=(*before, planned))
+    return changed(session, lambda b: replace(b, gyr_rad_s=0.3 * b.gyr_rad_s), (Site.PELVIS,), ("walk 1",))
+
+
 def walked_backward() -> Session:
     """A walk played from its end: the same accelerations, all rates turned round."""
     made = walked(recordings=(Standing(), Walk(strides=12)))
@@ -295,6 +317,7 @@ CASES: dict[str, Case] = {
     "labels_look_swapped": Case(lambda: exchanged({SHANK: Site.RIGHT_SHANK, Site.RIGHT_SHANK: SHANK})),
     "labels_look_mixed": Case(lambda: exchanged({THIGH: SHANK, SHANK: FOOT, FOOT: THIGH})),
     "strap_slipped": Case(slipped),
+    "turns_contradict": Case(turned_unseen_by_the_pelvis),
     # of the strides
     "no_strides": Case(standing_called_walk),
     "side_without_strides": Case(one_side_stands),

@@ -30,8 +30,10 @@ from core.goals import (
     whose,
     with_goal,
 )
+from core.verdicts.goals import GoalStanding, error_of_visit, standing
 from core.verdicts.measurement_error import ComparisonKind, sigma_of
-from core.verdicts.quantities import CLASSES, QuantityClass
+from core.verdicts.quantities import CLASSES, OF_HIPS, QuantityClass
+from core.verdicts.stride_means import MeanOfStrides
 
 KNEE, SPEED, STANCE = "knee_stance_to_swing_deg", "speed_m_s", "stance_percent"
 DAY = datetime.date(2026, 9, 30)
@@ -89,10 +91,18 @@ def test_what_is_no_goal_is_not_taken_for_one(change: dict[str, object]) -> None
 
 def test_every_measure_of_a_goal_is_judged_between_visits_and_none_is_a_height() -> None:
     for column in GOAL_COLUMNS:
-        assert (sigma_of(column, ComparisonKind.VISITS) is None) is (column in OF_TESTS)  # judged by what they are
+        assert (sigma_of(column, ComparisonKind.VISITS) is None) is (column in OF_TESTS or column in OF_HIPS)
         assert CLASSES.get(column) is not QuantityClass.HEIGHT
         if GoalOf.BETWEEN in whose(column):
-            assert sigma_of(column, ComparisonKind.LEGS) is not None
+            assert (sigma_of(column, ComparisonKind.LEGS) is None) is (column in OF_HIPS)
+
+
+def test_a_goal_of_a_hip_is_told_and_not_judged() -> None:
+    found = MeanOfStrides(42.0, 3.0, 20, 0.7, 0.0)
+    goal = replace(GOAL, column="hip_range_deg", value=45.0)
+    assert standing(goal, 42.0, error_of_visit("hip_range_deg", found)) is GoalStanding.NOT_JUDGED
+    goal = replace(GOAL, column="knee_range_deg", value=45.0)
+    assert standing(goal, 42.0, error_of_visit("knee_range_deg", found)) is not GoalStanding.NOT_JUDGED
     assert whose("knee_swing_peak_deg") == ()
 
 

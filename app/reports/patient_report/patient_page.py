@@ -19,7 +19,7 @@ from app.reports.patient_report.dates import date_of
 from app.reports.patient_report.facts import Facts
 from app.reports.patient_report.plain_text import isolated, shortened, typed
 from app.reports.patient_report.request import ReportRequest
-from app.wording import later, spoken_in
+from app.wording import figure_text, later, spoken_in
 from core.body import Side
 from core.goals import GoalOf
 from core.verdicts.goals import GoalStanding
@@ -214,13 +214,11 @@ def _speed(facts: Facts, first: _First | None, say: Say, language: str) -> str:
         return ""
     before = first.walked.figure(SPEED) if first is not None else None
     if before is None or before.verdict is not Verdict.READ or not before.is_told:
-        return say(SPEED_ALONE).format(now=_one_decimal(now, language))
-    said = say(SPEED_NOW).format(now=_one_decimal(now, language), first=_one_decimal(before.found.mean, language))
+        return say(SPEED_ALONE).format(now=figure_text(now, ".1f", language))
+    said = say(SPEED_NOW).format(
+        now=figure_text(now, ".1f", language), first=figure_text(before.found.mean, ".1f", language)
+    )
     return f"{said} {say(BY_ITSELF)}" if now - before.found.mean > FASTER_M_S else said
-
-
-def _one_decimal(value: float, language: str) -> str:
-    return f"{value:.1f}".replace(".", "," if language == "de" else ".")
 
 
 def _goals(facts: Facts, say: Say, language: str) -> list[str]:

@@ -21,7 +21,7 @@ from app.timed_words import (
     tape_sentence,
     why_sentence,
 )
-from app.wording import tr
+from app.wording import figure_text, tr
 from core.results import RecordingAnalysis
 from core.timed.found import TimedPart, TimedTest
 from core.timed.measures import COLUMNS
@@ -106,7 +106,7 @@ def _figures(request: ReportRequest, tests: list[tuple[RecordingAnalysis, TimedT
                 str(len(test.laps)) if test.laps else NOTHING,
                 str(len(test.turns)),
                 str(len(test.pauses_s)),
-                f"{apart_m:+.2f}" if math.isfinite(apart_m) else NOTHING,
+                figure_text(apart_m, "+.2f") if math.isfinite(apart_m) else NOTHING,
             ]
         )
     return table(columns, rows, is_dense=True)
@@ -145,4 +145,4 @@ def _known(protocol: TimedProtocol) -> str:
 
 
 def _figure(value: float, decimals: int) -> str:
-    return f"{value:.{decimals}f}" if math.isfinite(value) else NOTHING
+    return figure_text(value, f".{decimals}f") if math.isfinite(value) else NOTHING

@@ -12,7 +12,7 @@ from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.icons import IconMark
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
-from app.wording import tr
+from app.wording import figure_text, tr
 from core.norms import ReferenceCurves
 
 DRAWING_HEIGHT = 108
@@ -34,7 +34,7 @@ class BandCard(Card):
         super().__init__(look, padding=20, spacing=6)
         self._ages_years = curves.ages_years
         group = tr("{n} young adults, barefoot on a treadmill at {speed} m/s. Fukuchi 2018.").format(
-            n=curves.n, speed=f"{curves.speed_m_s:.2f}"
+            n=curves.n, speed=figure_text(curves.speed_m_s, ".2f")
         )
         self._mark = IconMark(look, Icon.INFO)
         self._words = Text(look, size=14, wraps=True)

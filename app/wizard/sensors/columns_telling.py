@@ -8,7 +8,7 @@ from PySide6.QtCore import QObject, Signal
 
 from app.known_columns import keep_columns
 from app.wizard.sensors.columns_form import AXES, ColumnsTold, Meaning
-from app.wording import tr
+from app.wording import figure_text, tr
 from core.samples import FloatArray
 from devices.csv_serial import FORCE_UNITS, RATE_UNITS, Columns
 from devices.lines import STILL, G, LinePreview, guessed, table_of
@@ -139,14 +139,15 @@ def _said_of(columns: Columns, table: FloatArray) -> tuple[str, str, bool]:
     rates = table[:, columns.rate] * RATE_UNITS[columns.rate_unit]
     force = float(np.median(np.linalg.norm(table[:, columns.force] * FORCE_UNITS[columns.force_unit], axis=1)))
     if not SLOWEST_HZ <= rate_hz <= FASTEST_HZ:
-        what = tr("By this time, {rate} samples come in a second.").format(rate=f"{rate_hz:.3g}")
+        what = tr("By this time, {rate} samples come in a second.").format(rate=figure_text(rate_hz, ".3g"))
         return what, tr("Choose another column or unit of the time."), False
     if not STILL[0] * G < force < STILL[1] * G:
-        what = tr("The acceleration reads {force} m/s²; at rest it must be 9.8.").format(force=f"{force:.3g}")
+        what = tr("The acceleration reads {force} m/s²; at rest it must be 9.8.")
+        what = what.format(force=figure_text(force, ".3g"))
         return what, tr("Hold the sensor still, or choose other columns or another unit."), False
     if float(np.abs(rates).max()) > FASTEST_RAD_S:
         return tr("The angular rate is faster than a leg turns."), tr("Choose other columns or another unit."), False
     what = tr("{rate} samples a second, {force} m/s²: this can be so.").format(
-        rate=f"{rate_hz:.3g}", force=f"{force:.2g}"
+        rate=figure_text(rate_hz, ".3g"), force=figure_text(force, ".2g")
     )
     return what, tr("Turn the sensor by hand: the three angular rates must follow, and rest near 0."), True

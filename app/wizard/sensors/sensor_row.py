@@ -31,7 +31,7 @@ from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD
 from app.wizard.sensors.sensor_drag import DraggedButton
 from app.wizard.sensors.sensor_places import number_of
 from app.wizard.sensors.sensor_trace import Trace
-from app.wording import capitalised, name_of, tr
+from app.wording import capitalised, figure_text, name_of, tr
 from core.body import LEG_SITES, Site
 from devices.live import Quiet
 
@@ -81,7 +81,7 @@ class SensorRow:
         if self.is_low:
             return tr("charge soon")
         if self.is_lossy:
-            return tr("{share} % lost").format(share=f"{100 * self.lost_share:.1f}")
+            return tr("{share} % lost").format(share=figure_text(100 * self.lost_share, ".1f"))
         if self.quiet is not None:
             return quiet_words(self.quiet)
         return self.model if self.is_loss_seen else tr("losses not seen")

@@ -4,7 +4,7 @@ from collections.abc import Collection, Mapping, Sequence
 
 from app.icons import Icon
 from app.wizard.sensors.sensor_row import SensorRow
-from app.wording import capitalised, name_of, tr
+from app.wording import capitalised, figure_text, name_of, tr
 from core.body import LEG_SITES, Segment, Side, Site
 
 NEARLY_EMPTY = 0.05  # of a battery: minutes
@@ -64,7 +64,7 @@ def said_of_sensors(
         return Icon.WARNING, what, soon if ends_soon else later, True
     if lossy := [sensor for sensor in sensors if sensor.is_lossy]:
         what = tr("{name}: {share} % of the samples were lost.").format(
-            name=_called(lossy[0]), share=f"{100 * lossy[0].lost_share:.1f}"
+            name=_called(lossy[0]), share=figure_text(100 * lossy[0].lost_share, ".1f")
         )
         nearer = tr("Bring the receiver nearer to the patient.")
         if lossy[0].has_memory:

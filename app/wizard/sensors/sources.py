@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from devices.walker import WalkerSettings
 
 DEMONSTRATION = "demonstration"
-WITH_PELVIS = "demonstration with pelvis"
+WITH_PELVIS = "demonstration_with_pelvis"
 SEARCH = "search"
 COLUMNS = "columns"
 STREAMS = "streams "  # and the address that is asked

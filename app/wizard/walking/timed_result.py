@@ -30,7 +30,7 @@ from app.widgets.table import CellTable, TableColumn, TableRow
 from app.widgets.table_cells import RIGHT, TextCell
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed
-from app.wording import tr
+from app.wording import figure_text, tr
 from core.timed.found import TimedPart, TimedTest
 from core.timed.protocols import TimedProtocol
 
@@ -151,7 +151,7 @@ class TimedResultView(Themed):
 
 def number(value: float, digits: int) -> str:
     """A figure, or a dash where it was not measured."""
-    return f"{value:.{digits}f}" if math.isfinite(value) else NO_FIGURE
+    return figure_text(value, f".{digits}f") if math.isfinite(value) else NO_FIGURE
 
 
 def _attempts(state: TimedResult) -> tuple[list[TableColumn], list[TableRow]]:

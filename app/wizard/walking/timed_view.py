@@ -17,7 +17,7 @@ from app.widgets.icons import IconMark
 from app.widgets.painted_text import CENTRE, LEFT, RIGHT, PaintedText
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.themed import Themed
-from app.wording import capitalised, joined, name_of, tr
+from app.wording import capitalised, figure_text, joined, name_of, tr
 from core.body import Side
 from core.timed.live import LiveReadout
 from core.timed.protocols import DEFINITIONS, TimedProtocol
@@ -54,7 +54,7 @@ class TimedViewState:
 def time_text(elapsed_s: float) -> str:
     """Seconds with a tenth up to two minutes, from then on minutes and seconds."""
     if elapsed_s < 100.0:
-        return f"{math.floor(10.0 * elapsed_s + 1e-6) / 10.0:.1f}"
+        return figure_text(math.floor(10.0 * elapsed_s + 1e-6) / 10.0, ".1f")
     return f"{int(elapsed_s) // 60}:{int(elapsed_s) % 60:02d}"
 
 
@@ -80,7 +80,7 @@ def distance_words(state: TimedViewState) -> tuple[str, str]:
         reasons = [reason_words(one) for one in found.reasons]
         return NO_FIGURE, capitalised(joined(reasons)) if reasons else ""
     metres = found.distance_m
-    return (f"{metres:.1f}" if metres < 99.95 else f"{metres:.0f}"), ""
+    return (figure_text(metres, ".1f") if metres < 99.95 else f"{metres:.0f}"), ""
 
 
 class TimedView(Themed):
