@@ -201,7 +201,8 @@ class MemoriesControl(QObject):
             if found.lacking:
                 names = ", ".join(sorted(found.lacking & held.files.keys()))
                 return tr("Kept. Samples of {sensors} could not be fetched.").format(sensors=names)
-            return tr("Kept: {recording}.").format(recording=self._called(own[0])) if own else tr("Kept.")
+            counted = [row for row in own if row.details.is_kept] or own  # one that was left was fetched into another
+            return tr("Kept: {recording}.").format(recording=self._called(counted[0])) if own else tr("Kept.")
         if own:
             return tr("Not fetched: {recording}.").format(recording=self._called(own[0]))
         if found.rows:

@@ -124,6 +124,9 @@ def test_what_a_closed_visit_left_in_the_sensors_is_fetched_where_the_session_go
     recordings.fetch_later()
     recordings.close()
     assert recordings.in_sensors == ()
+    visit.read_anew()  # as a session that is gone on with is read
+    qtbot.waitUntil(lambda: len(recordings.walks) == 1, timeout=WAIT_MS)
+    assert [walk.details.is_kept for walk in recordings.walks] == [False]
     last.unreachable_until_ns = 0
     look(qtbot, opened)
     assert told_lines(opened) == [["2 sensors", "Not fetched: Shoes."]]
@@ -132,7 +135,8 @@ def test_what_a_closed_visit_left_in_the_sensors_is_fetched_where_the_session_go
     assert bar.primary.text == "Fetch it"
     opened.on_primary()
     wait(qtbot, opened)
-    (fetched,) = recordings.walks
+    qtbot.waitUntil(lambda: len(recordings.walks) == 2, timeout=WAIT_MS)
+    fetched = recordings.walks[1]
     assert fetched.details.condition == "Shoes"
     assert fetched.read_back is not None
     assert [len(block) for block in fetched.read_back.imu.values()] == [len(dot.files[0].ticks) for dot in radio.dots]
