@@ -61,5 +61,5 @@ def test_a_part_that_another_size_reaches_later_looks_as_one_made_at_it(qtbot: Q
     for part in (told, made):  # only one of two windows is in front, and has a ring
         if (focused := part.focusWidget()) is not None:
             focused.clearFocus()
-    assert told.grab().toImage() == made.grab().toImage()
+    qtbot.waitUntil(lambda: told.grab().toImage() == made.grab().toImage(), timeout=2_000)  # layouts come later
     assert told.grab().toImage() != before

@@ -22,6 +22,7 @@ SOFT_AT_TOE_OFF = 6.0  # the knee bends by 35 deg there, and tissue lags behind
 LATE = {Site.LEFT_SHANK: 0.04, Site.LEFT_FOOT: -0.03}  # of the thigh's clock, on which everything is told
 
 
+@pytest.mark.endurance
 @pytest.mark.parametrize(
     ("tissue", "most", "late_s"), [(Tissue.RIGID, RIGID, {}), (Tissue.RIGID, RIGID, LATE), (Tissue.SOFT, SOFT, {})]
 )

@@ -42,6 +42,7 @@ def test_all_events_of_a_walk_are_found_and_strides_are_as_long(test_data: TestD
     assert found["stride_length"]["strides"] >= 50
 
 
+@pytest.mark.endurance
 def test_the_papers_experiment_has_the_pattern_of_table_1(tmp_path: Path) -> None:
     session, optics = experiment(1, tmp_path, walks=2)
     write_session(session, tmp_path / "session")

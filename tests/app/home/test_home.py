@@ -222,6 +222,7 @@ def test_a_stopped_import_says_what_came_of_it_once_that_is_known(
     assert len(library.sessions.list(patient.id)) == int(is_done)
 
 
+@pytest.mark.endurance
 @pytest.mark.skipif(os.name == "nt", reason="signals of this kind are not for Windows")
 def test_stop_ends_a_reading_that_would_never_end(qtbot: QtBot, home: Home, tmp_path: Path) -> None:
     time_s = np.arange(300) / 100

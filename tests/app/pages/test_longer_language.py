@@ -335,6 +335,7 @@ BELOW_STRIP = {
 }
 
 
+@pytest.mark.endurance
 @pytest.mark.usefixtures("pseudo_language")
 @pytest.mark.parametrize("window", WINDOWS)
 @pytest.mark.parametrize("name", PAGES)

@@ -108,6 +108,7 @@ def test_what_is_no_reference_is_refused_in_its_place(
     assert words(page).startswith("What did the optical system measure?")
 
 
+@pytest.mark.endurance
 def test_of_another_analysis_nothing_stays_in_sight(
     qtbot: QtBot,
     page: AgreementPage,

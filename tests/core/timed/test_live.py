@@ -91,6 +91,7 @@ def test_a_key_before_the_motion_starts_and_one_after_ends(ten_metres: Simulated
     assert heard.test.press(last_s + 1.0) is None  # nothing is left to say
 
 
+@pytest.mark.endurance
 def test_a_key_just_after_the_motion_has_started_means_the_start_and_one_in_the_run_out_the_tape(
     ten_metres: SimulatedCourse,
 ) -> None:
@@ -139,6 +140,7 @@ def test_tests_from_a_chair_are_told_live(kind: CourseKind) -> None:
     assert heard.test.state.elapsed_s(0.0) == pytest.approx(end_s - made.truth.left_seat_s[0], abs=0.15)
 
 
+@pytest.mark.endurance
 def test_blocks_of_any_size_and_another_estimator_amid_the_walk_lose_no_step(ten_metres: SimulatedCourse) -> None:
     whole, twice = (CourseHeard(ten_metres, TimedProtocol.TEN_METRES) for _ in range(2))
     whole.hear_until(math.inf)

@@ -304,6 +304,7 @@ def test_one_that_streams_already_is_joined_where_its_rate_is_right(radio: Virtu
     assert wearing.dots[0].is_streaming
 
 
+@pytest.mark.endurance
 @pytest.mark.parametrize("after", range(1, 16))
 def test_a_link_that_is_lost_at_any_step_of_opening_is_a_refusal_and_no_dead_end(
     radio: VirtualRadio, after: int

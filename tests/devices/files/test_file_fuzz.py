@@ -18,6 +18,7 @@ def reader() -> Iterator[LimitedReader]:
     reader.close()
 
 
+@pytest.mark.endurance
 @pytest.mark.parametrize("files", COUNTS)
 @pytest.mark.parametrize("name", importers())
 def test_a_spoilt_file_is_read_or_refused(name: str, files: int, reader: LimitedReader) -> None:

@@ -255,6 +255,7 @@ def test_small_files_that_hold_too_much_together_are_refused(
     read_session(folder)
 
 
+@pytest.mark.endurance
 def test_a_file_that_takes_too_long_is_refused_and_the_next_one_is_read(
     make_session: MakeSession, reader: LimitedReader, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -281,6 +282,7 @@ def test_a_file_that_ends_its_reader_is_refused_and_the_next_one_is_read(
     read(folder, reader)
 
 
+@pytest.mark.endurance
 @on_linux
 def test_a_reading_that_is_given_up_ends_its_process(make_session: MakeSession, reader: LimitedReader) -> None:
     folder = make_session()
@@ -297,6 +299,7 @@ def test_a_reading_that_is_given_up_ends_its_process(make_session: MakeSession, 
     read(folder, reader)
 
 
+@pytest.mark.endurance
 def test_the_process_is_renewed_after_many_files(
     make_session: MakeSession, reader: LimitedReader, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -310,6 +313,7 @@ def test_the_process_is_renewed_after_many_files(
     assert process_of(reader) != first
 
 
+@pytest.mark.endurance
 def test_closing_ends_the_process_and_collecting_it_too(make_session: MakeSession) -> None:
     folder = make_session()
     reader = LimitedReader()

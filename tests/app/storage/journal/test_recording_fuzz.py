@@ -7,6 +7,7 @@ from tests.safety.recording_fuzz import fuzz, streams
 SAMPLES = (3_000, pytest.param(60_000, marks=pytest.mark.endurance))
 
 
+@pytest.mark.endurance
 @pytest.mark.parametrize("samples", SAMPLES)
 @pytest.mark.parametrize("name", streams())
 def test_a_hurt_stream_is_decoded_from_its_journal_all_the_same(name: str, samples: int) -> None:

@@ -388,6 +388,7 @@ def recorded_in_two(opened: OpenedLibrary, session_id: UUID, *, has_row: bool = 
     return lines
 
 
+@pytest.mark.endurance
 @pytest.mark.parametrize("step", STEPS)
 def test_killed_while_bringing_home_it_comes_home_once(opened: OpenedLibrary, session_id: UUID, step: str) -> None:
     lines, shelter = recorded_in_two(opened, session_id), opened.shelter

@@ -98,6 +98,7 @@ def test_ten_metres_by_the_motion_alone(qtbot: QtBot, step: WalkingStep, visit: 
     assert found.missing == ()
 
 
+@pytest.mark.endurance
 def test_a_key_at_the_tape_wins_and_is_kept(qtbot: QtBot, step: WalkingStep, visit: Visit) -> None:
     step.on_intent(NEXT_TEST)
     with qtbot.waitSignal(visit.recordings.ended, timeout=30_000):
