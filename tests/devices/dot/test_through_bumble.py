@@ -58,6 +58,7 @@ def test_they_are_synchronised_and_each_float_comes_through(radio: VirtualRadio,
     assert not any(dot.is_up or dot.is_synchronised for dot in wearing.dots)
 
 
+@pytest.mark.endurance
 def test_a_link_that_is_lost_is_found_again_and_streams_on(radio: VirtualRadio) -> None:
     wearing = WornDots(radio, [DotFaults(), DotFaults()], through=through())
     wearing.open()

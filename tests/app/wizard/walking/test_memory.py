@@ -138,6 +138,7 @@ def test_a_walk_may_be_fetched_later_and_a_lost_sensor_is_named_and_tried_again(
     assert [len(block) for block in fetched.read_back.imu.values()] == [len(dot.files[0].ticks) for dot in radio.dots]
 
 
+@pytest.mark.endurance
 def test_at_the_live_rate_they_are_ready_at_once_and_live_again_for_a_timed_test(
     qtbot: QtBot, visit: Visit, radio: FastRadio, walking: Callable[[int], WalkingStep]
 ) -> None:
