@@ -26,6 +26,9 @@ CONNECT_S = 10.0
 OPERATION_S = 5.0
 LEAVES_S = 5.0
 
+TICK_S = 0.2
+
+Tick = Callable[[], None]
 Notified = Callable[[int, bytes], None]
 """Takes a characteristic and what it notified, in the thread of the links."""
 Result = TypeVar("Result")
@@ -37,12 +40,26 @@ class BluetoothMissingError(SourceRefusedError):
 
 @dataclass(frozen=True, slots=True)
 class Announced:
-    """Something that announces itself: `device` as the library wants it for a link."""
+    """Something that announces itself.
+
+    Attributes
+    ----------
+    companies
+        Who made it, by what it announces besides its name.
+    services
+        The UUIDs that it announces, in small letters.
+    device
+        As the library wants it for a link.
+    rssi_dbm
+        How strongly it was heard; None: that was not told.
+    """
 
     name: str
     address: str
     companies: tuple[int, ...] = ()
     device: "BLEDevice | str" = ""
+    services: tuple[str, ...] = ()
+    rssi_dbm: int | None = None
 
 
 class Radio:
@@ -62,7 +79,7 @@ class Radio:
         heard: Callable[[], Sequence[Announced]] | None = None,
     ) -> None:
         self.backend = backend
-        self._heard = heard
+        self.heard = heard
         self.connecting = asyncio.Lock()
         self._loop: asyncio.AbstractEventLoop | None = None
         self._starting = threading.Lock()
@@ -71,9 +88,24 @@ class Radio:
         """The clock that arrivals are noted by."""
         return host_time_ns()
 
-    def run(self, work: Coroutine[Any, Any, Result]) -> Result:
-        """Do this in the thread of the links, and wait for it."""
-        return asyncio.run_coroutine_threadsafe(work, self._running()).result()
+    def run(self, work: Coroutine[Any, Any, Result], tick: Tick | None = None) -> Result:
+        """Do this in the thread of the links, and wait for it.
+
+        `tick` is called by who waits, some times a second. What it raises ends the work, is waited for, and is raised.
+        """
+        loop = self._running()
+        if tick is None:
+            return asyncio.run_coroutine_threadsafe(work, loop).result()
+        ended = threading.Event()
+        doing = asyncio.run_coroutine_threadsafe(_begun(work, ended), loop).result()
+        while not ended.wait(TICK_S):
+            try:
+                tick()
+            except BaseException:
+                loop.call_soon_threadsafe(doing.cancel)
+                ended.wait()
+                raise
+        return doing.result()
 
     def wait(self, event: threading.Event, seconds: float) -> None:
         """Wait for something that is set in the thread of the links."""
@@ -87,8 +119,8 @@ class Radio:
         SourceRefusedError
             There is no Bluetooth here, or it is switched off.
         """
-        if self._heard is not None:
-            return list(self._heard())
+        if self.heard is not None:
+            return list(self.heard())
         if find_spec("bleak") is None:
             raise BluetoothMissingError(
                 "Sensors with Bluetooth LE are not heard: a library is missing",
@@ -106,7 +138,14 @@ class Radio:
                     "Switch it on, or plug in an adapter, then search again",
                 ) from problem
         return [
-            Announced(told.local_name or device.name or "", device.address, tuple(told.manufacturer_data), device)
+            Announced(
+                told.local_name or device.name or "",
+                device.address,
+                tuple(told.manufacturer_data),
+                device,
+                tuple(map(str.lower, told.service_uuids)),
+                told.rssi,
+            )
             for device, told in found.values()
         ]
 
@@ -163,9 +202,10 @@ class BluetoothLink:
         async with self._turn, self._lost_within(OPERATION_S):
             return bytes(await self._up().read_gatt_char(uuid))
 
-    async def write(self, uuid: str, data: bytes) -> None:
+    async def write(self, uuid: str, data: bytes, *, is_answered: bool = True) -> None:
+        """Write, and wait until that is answered; else as the characteristic is made for."""
         async with self._turn, self._lost_within(OPERATION_S):
-            await self._up().write_gatt_char(uuid, data, response=True)
+            await self._up().write_gatt_char(uuid, data, response=True if is_answered else None)
 
     async def subscribe(self, characteristic: int, uuid: str) -> None:
         """Let what this notifies be heard."""
@@ -190,6 +230,12 @@ class BluetoothLink:
                 yield
         except (BleakError, OSError, EOFError) as problem:  # TimeoutError is an OSError
             raise SourceLostError(f"{self._to.name} was lost") from problem
+
+
+async def _begun(work: Coroutine[Any, Any, Result], ended: threading.Event) -> "asyncio.Task[Result]":
+    task = asyncio.get_running_loop().create_task(work)
+    task.add_done_callback(lambda _task: ended.set())
+    return task
 
 
 async def _left(client: "BleakClient") -> None:

@@ -15,6 +15,8 @@ from devices.source import StreamDecoder
 from devices.stream import Decoder, SensorProtocol
 from devices.witmotion import DRIVER as WITMOTION
 from devices.witmotion import WitMotion
+from devices.witmotion_ble import DRIVER as WITMOTION_BLE
+from devices.witmotion_ble import WitBle
 from devices.ximu3 import DRIVER as XIMU3
 from devices.ximu3 import Ximu3
 from devices.xsens_mti import DRIVER as XSENS_MTI
@@ -114,9 +116,16 @@ DRIVERS = (
     Driver(
         MOVELLA_DOT,
         "Movella DOT, Bluetooth LE",
-        "Not tried on hardware. By the published bytes, and emulated ones behind the Bluetooth library's interface: "
-        "six were synchronised, streamed at 60 Hz, recorded at 120 Hz in their memory and fetched with lost links. No "
-        "sensor and no radio link was at hand.",
+        "Not tried on hardware. By the published bytes, and emulated ones behind the Bluetooth library's interface, "
+        "also through a whole virtual radio: six were synchronised, streamed at 60 Hz, recorded at 120 Hz in their "
+        "memory and fetched with lost links. No sensor and no radio link was at hand.",
         DotDecoder,
+    ),
+    Driver(
+        WITMOTION_BLE,
+        "WitMotion, Bluetooth LE",
+        "Not tried on hardware. By the published frames, and emulated ones behind the Bluetooth library's interface, "
+        "also through a whole virtual radio. Samples that are lost singly are not seen: they have no time or number.",
+        lambda: Decoder(WitBle()),
     ),
 )

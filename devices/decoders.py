@@ -18,6 +18,7 @@ BYTE_DRIVERS = (
     "xsens-mti",
     "shimmer3",
     "movella-dot",
+    "witmotion-ble",
 )  # those of `devices.catalogue.DRIVERS` with bytes
 
 

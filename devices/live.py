@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from enum import StrEnum
 from typing import Protocol
 
 from core.samples import ImuBlock, RateKind, RecordingKind
@@ -27,9 +28,24 @@ class SourceLostError(Exception):
     """A source that was open and answers no more: unplugged, out of reach, switched off."""
 
 
+class SourceRestartedError(SourceLostError):
+    """A source that sends anew, after it was to send nothing: what lies between was not lost."""
+
+
+class Quiet(StrEnum):
+    """Why a sensor is to send nothing now."""
+
+    IN_MEMORY = "in memory"
+    SYNCHRONISING = "synchronising"
+
+
 @dataclass(frozen=True, slots=True)
 class SensorDetails:
-    """What a sensor says of itself. `rate_hz`, `rate_kind` and `battery` (0 to 1) None: it does not tell."""
+    """What a sensor says of itself. `rate_hz`, `rate_kind` and `battery` (0 to 1) None: it does not tell.
+
+    `clock` is the same of those that share one; empty: its own. Not `is_loss_seen`: it tells neither time nor number,
+    so that nobody sees where single samples are missing.
+    """
 
     model: str = ""
     serial: str = ""
@@ -37,6 +53,9 @@ class SensorDetails:
     rate_hz: float | None = None
     rate_kind: RateKind | None = None
     battery: float | None = None
+    clock: str = ""
+    quiet: Quiet | None = None
+    is_loss_seen: bool = True
 
 
 class LiveSource(Protocol):

@@ -25,6 +25,8 @@ from devices.lsl import LslSource, OtherStreamError, announced_sensors, find_str
 from devices.ports import PortInfo, SerialPort, list_ports
 from devices.source import SourceInfo
 from devices.stream import ByteSource
+from devices.witmotion_ble import DRIVER as WITMOTION_BLE
+from devices.witmotion_ble import WitBleSource, is_wit, wit_name
 from devices.ximu3 import DRIVER as XIMU3
 from devices.ximu3 import Ximu3
 
@@ -34,6 +36,7 @@ ANSWER_S, MOST_ANSWER = 0.5, 4096  # what says more is something else
 ANNOUNCED_AT = 10000  # the port where x-IMU3s tell once a second that they are there
 ANNOUNCED_S = 1.3
 MOST_DATAGRAM = 2048
+BLUETOOTH = "Bluetooth"  # the place of what is heard through it
 NO_COLUMNS: Mapping[str, Columns] = MappingProxyType({})
 
 
@@ -41,7 +44,7 @@ NO_COLUMNS: Mapping[str, Columns] = MappingProxyType({})
 class FoundSensor:
     """A sensor that was heard, or `count` of them in one stream.
 
-    `make` gives a source of it; nothing is open until that is opened.
+    `make` gives a source of it; nothing is open until that is opened. `rssi_dbm`: how strongly it was heard by air.
     """
 
     driver: str
@@ -50,6 +53,7 @@ class FoundSensor:
     make: Callable[[], LiveSource]
     is_simulated: bool = False
     count: int = 1
+    rssi_dbm: int | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,14 +128,21 @@ def search(
 
 
 def _by_radio(radio: Radio) -> Sequence[FoundSensor | SourceRefusedError]:
-    """The sensors that announce themselves by Bluetooth LE, all of one group; or why nobody could be heard."""
+    """The sensors that announce themselves by Bluetooth LE, DOTs all of one group; or why nobody could be heard."""
     try:
-        announced = [one for one in radio.run(radio.announced()) if is_dot(one)]
+        announced = sorted(radio.run(radio.announced()), key=lambda one: one.address)
     except SourceRefusedError as refusal:
         return [refusal]
-    sensors = [DotSensor(radio, one) for one in sorted(announced, key=lambda one: one.address)]
-    group = DotGroup(radio, sensors)
-    return [FoundSensor(MOVELLA_DOT, one.name, "Bluetooth", partial(DotSource, one, group)) for one in sensors]
+    dots = [one for one in announced if is_dot(one)]
+    group = DotGroup(radio, [DotSensor(radio, one) for one in dots])
+    found = []
+    for one, sensor in zip(dots, group.sensors, strict=True):
+        make = partial(DotSource, sensor, group)
+        found.append(FoundSensor(MOVELLA_DOT, sensor.name, BLUETOOTH, make, rssi_dbm=one.rssi_dbm))
+    for one in (one for one in announced if is_wit(one)):
+        make_wit = partial(WitBleSource, radio, one)
+        found.append(FoundSensor(WITMOTION_BLE, wit_name(one), BLUETOOTH, make_wit, rssi_dbm=one.rssi_dbm))
+    return found
 
 
 def _at_port(port: PortInfo, columns: Mapping[str, Columns]) -> FoundSensor | Passed | LinesAt:

@@ -72,15 +72,19 @@ class SharedClock:
     device_s : (n,)
         When each sample of the block was taken, by that clock.
     arrived_s : (n,)
-        When it arrived, in seconds since the journal was opened.
+        When it arrived, in seconds since the journal was opened; of what was fetched from a memory (0,).
     turn_s
         After how long the clock begins anew; 0: never.
+    ahead_s
+        Of what was fetched from a memory: between what bounds the journal's seconds are ahead of this clock's, by when
+        its beginning and its end were ordered.
     """
 
     name: str
     device_s: FloatArray
     arrived_s: FloatArray
     turn_s: float = 0.0
+    ahead_s: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,6 +6,7 @@ sensor is opened, until it is switched off. One changed frame of 256 has the rig
 """
 
 import math
+from collections.abc import Sequence
 from datetime import date
 from struct import Struct
 
@@ -107,12 +108,12 @@ class WitFramer:
             case 0x51:
                 if self._force is not None or self._is_sent:
                     self._time_s = None  # the frame of time between the two was lost
-                self._force = _scaled(payload, FORCE_UNIT)
+                self._force = scaled(AXES.unpack(payload)[:3], FORCE_UNIT)
                 self._pair()
             case 0x52:
                 if self._rate is not None or self._is_sent:
                     self._time_s = None
-                self._rate = _scaled(payload, RATE_UNIT)
+                self._rate = scaled(AXES.unpack(payload)[:3], RATE_UNIT)
                 self._pair()
             case 0x59:
                 w, x, y, z = (number * ORIENTATION_UNIT for number in AXES.unpack(payload))
@@ -160,9 +161,20 @@ def _is_head(rest: bytes, at: int) -> bool:
     return len(rest) - at >= 2 and rest[at] == HEAD and rest[at + 1] in FRAMES
 
 
-def _scaled(payload: bytes, unit: float) -> tuple[float, float, float]:
-    x, y, z, _ = AXES.unpack(payload)
-    return x * unit, y * unit, z * unit
+def scaled(numbers: Sequence[int], unit: float) -> tuple[float, ...]:
+    """Three axes as they are sent, in SI units; by cable and by air alike.
+
+    Parameters
+    ----------
+    unit
+        `FORCE_UNIT` or `RATE_UNIT`: m/s2 or rad/s for each.
+
+    Returns
+    -------
+    tuple
+        (3,).
+    """
+    return tuple(number * unit for number in numbers)
 
 
 class WitMotion:

@@ -25,6 +25,7 @@ REFUSALS = {
     "SourceRefusedError": 0,
     "DotRefusedError": 0,
     "MemoryFullError": 0,
+    "OwnClockError": 0,
     "BluetoothMissingError": 0,
     "OtherStreamError": 0,
     "FileRefusedError": 1,

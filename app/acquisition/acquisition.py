@@ -9,6 +9,7 @@ Times are seconds since `start`, of the sensors' own stamps.
 import threading
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -23,6 +24,10 @@ from devices.host_clock import host_time_ns
 from devices.live import LiveSource, SourceRefusedError
 from devices.prosthesis_user import ProsthesisUser
 
+if TYPE_CHECKING:
+    from app.acquisition.sensor_memory import MemoryRecording
+    from devices.dot.source import DotGroup
+
 __all__ = ["Acquisition", "LiveEstimator", "SensorStatus"]
 
 
@@ -33,14 +38,23 @@ class Acquisition:
     ----------
     now_ns
         The clock of the sources' stamps and of the journals.
+    dots
+        Whom the sources belong to, if they are DOTs: these record in their memories, too.
     """
 
-    def __init__(self, sources: Sequence[LiveSource], now_ns: Callable[[], int] = host_time_ns) -> None:
+    def __init__(
+        self,
+        sources: Sequence[LiveSource],
+        now_ns: Callable[[], int] = host_time_ns,
+        dots: "DotGroup | None" = None,
+    ) -> None:
         self.now_ns, self._begin_ns = now_ns, now_ns()
+        self.dots = dots
         self._readers = [Reader(source, now_ns) for source in sources]
         self._preview = Preview(self._readers)
         self._heartbeat = Heartbeat(lambda: self.now_s, self.lost)
         self._writer: JournalWriter | None = None
+        self._in_memory: MemoryRecording | None = None
         self._stopping = threading.Lock()
 
     def start(self) -> None:
@@ -70,6 +84,8 @@ class Acquisition:
         """Stop reading, and a recording that is being made; close all sources."""
         with suppress(RuntimeError):
             self.stop_recording()
+        if self._in_memory is not None:
+            self._in_memory.end()
         self._heartbeat.close()
         self._preview.close()
         for reader in self._readers:
@@ -121,6 +137,27 @@ class Acquisition:
             if sensor in reader.sensors:
                 return reader.since(sensor, self.now_s - seconds)
         return ImuBlock(sensor, np.empty(0), np.empty((0, 3)), np.empty((0, 3)))
+
+    @property
+    def is_in_memory(self) -> bool:
+        """Whether the sensors are ready to record in their memories, and send nothing."""
+        return self.dots is not None and self.dots.is_recording_use
+
+    def record_in_memory(self, started_s: int) -> "MemoryRecording":
+        """Let the sensors record in their memories, from now on until it is ended; `started_s` (UTC) names it.
+
+        Raises
+        ------
+        SourceRefusedError
+            One of them does not begin, so that none does.
+        """
+        from app.acquisition.sensor_memory import MemoryRecording  # with bleak's part of the sensors
+
+        assert self.dots is not None  # `is_in_memory` has told
+        recording = MemoryRecording(self.dots)
+        recording.begin(started_s)
+        self._in_memory = recording
+        return recording
 
     def record(self, writer: JournalWriter) -> None:
         """Keep what all sensors measured since the journal was opened, up to `stop_recording`.

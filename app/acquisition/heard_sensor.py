@@ -28,7 +28,7 @@ class SensorStatus:
     heard_hz
         Samples per second over the last two.
     silent_s
-        Since something came last.
+        Since something came last; 0 of one that is to send nothing.
     movement_rad_s
         Spread of the angular rate over the last second, all axes together.
     counts
@@ -56,6 +56,7 @@ class HeardSensor:
         self.ring = RingBuffer(name, round(KEPT_S * self.usual_hz))
         self._heard_at_s = now_s
         self._received = self._lost = self._damaged = self._doubled = self._late = 0
+        self._begins_anew = False
         self._noted_s = now_s
         self._noted: deque[tuple[int, int]] = deque([(0, 0)], maxlen=LOST_S + 1)  # received and lost, second by second
 
@@ -67,6 +68,8 @@ class HeardSensor:
             self._noted.append((self._received, self._lost))
         last_s = self.ring.last_s
         step_s = _steps_s(time_s, last_s)
+        if self._begins_anew and (step_s > 0).all():
+            self._begins_anew, step_s[0] = False, 1.0 / self.usual_hz  # what lies between was not sent
         if not (step_s > 0).all():  # neither of NaN
             is_new = _is_later(time_s, last_s)
             self._count(_steps_s(time_s[is_new], last_s))
@@ -75,6 +78,10 @@ class HeardSensor:
             return
         self._count(step_s)
         self.ring.add(time_s, block.gyr_rad_s, block.acc_m_s2)
+
+    def begin_anew(self) -> None:
+        """What comes next does not follow what came before, and nothing between is missing."""
+        self._begins_anew = True
 
     @property
     def lost(self) -> int:
@@ -87,7 +94,7 @@ class HeardSensor:
             source=source,
             details=told,
             heard_hz=self._heard_hz(now_s),
-            silent_s=max(now_s - self._heard_at_s, 0.0),
+            silent_s=max(now_s - self._heard_at_s, 0.0) if told.quiet is None else 0.0,
             movement_rad_s=self._movement_rad_s(now_s),
             counts=SensorCounts(self._received, self._lost, self._damaged, self._doubled, self._late),
             lost_share=self._lost_share(),

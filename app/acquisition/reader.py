@@ -11,7 +11,7 @@ from app.acquisition.heard_sensor import HeardSensor, SensorStatus
 from app.acquisition.source_tape import SourceTape
 from app.storage.journal.writer import JournalWriter
 from core.samples import ImuBlock
-from devices.live import LiveSource, SensorDetails, SourceLostError, SourceRefusedError
+from devices.live import LiveSource, SensorDetails, SourceLostError, SourceRefusedError, SourceRestartedError
 
 REOPEN_S = 0.5
 RECALLED_S = 2.0  # a journal may be opened so long before it is handed over
@@ -35,7 +35,7 @@ class Reader:
         self._tape: SourceTape | None = None
         self._recent: deque[tuple[float, ImuBlock]] = deque()  # when it was read, and what
         self._sensors: Mapping[str, HeardSensor] = {}
-        self._is_open = False
+        self._is_open = self._begins_anew = False
         self._begun_reads = self._done_reads = 0
         self._is_closing = threading.Event()
         self._thread = threading.Thread(target=self._run, name=f"read {source.info.driver}", daemon=True)
@@ -140,11 +140,15 @@ class Reader:
             self._is_open = True
             for name, sensor in self._sensors.items():
                 sensor.rate_hz = self._rate_hz(name)
+                if self._begins_anew:
+                    sensor.begin_anew()
+            self._begins_anew = False
             if self._tape:
                 self._tape.come_back()
 
     def _note_lost(self, error: Exception) -> None:
         is_expected = isinstance(error, SourceLostError | SourceRefusedError)
+        self._begins_anew |= isinstance(error, SourceRestartedError)
         details = None if is_expected else error
         if self._is_open:
             _log.warning("%s was lost", self.source.info.driver, exc_info=details)

@@ -9,10 +9,13 @@ Where the library's folder itself is gone, the journal is in its shelter; on sto
 
 import logging
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import replace
+from datetime import datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Protocol
 from uuid import UUID
 
 from app.acquisition.acquisition import Acquisition
@@ -27,6 +30,12 @@ from app.storage.stored import LibraryError, LibraryFaultError, RecordingState, 
 from core.samples import Recording, RecordingKind
 from devices.decoders import DECODERS
 
+if TYPE_CHECKING:  # sensors with memories are few, and what they need is imported with them
+    from app.acquisition.memory_fetching import Lack, Progress
+    from app.storage.data_key import KeyMaterial
+    from devices.bluetooth import Tick
+    from devices.live import SourceLostError, SourceRefusedError
+
 ROW_WAIT_S = 1.0
 
 _log = logging.getLogger(__name__)
@@ -35,14 +44,18 @@ _log = logging.getLogger(__name__)
 class Recorder:
     """One recording, from its beginning to what its journal holds. Not for the screen's thread, `mark` aside.
 
+    What is in the sensors' own memory is `memory`: once stopped, it is still to be fetched, into the same journal.
+
     Attributes
     ----------
     summary
-        What was kept; None while it is recorded.
+        What was kept; None while it is recorded, or still to be fetched.
     """
 
-    def __init__(self, acquisition: Acquisition, writer: JournalWriter, entry: "_Entry") -> None:
-        self._acquisition, self._writer, self._entry = acquisition, writer, entry
+    def __init__(
+        self, acquisition: Acquisition, writer: JournalWriter, entry: "_Entry", memory: "InMemory | None" = None
+    ) -> None:
+        self._acquisition, self._writer, self._entry, self.memory = acquisition, writer, entry, memory
         self.id = writer.header.recording_id
         self.summary: JournalSummary | None = None
         self._stopping = threading.Lock()
@@ -68,8 +81,9 @@ class Recorder:
         turn: "Future[None] | None" = None,
         *,
         room: Room = ROOM,
+        fetched: "InMemory | None" = None,
     ) -> "Recorder":
-        """Record from now on, worn as the session's latest placement says.
+        """Record from now on, worn as the session's latest placement says; `fetched` was recorded before, in memories.
 
         `on_trouble` is called from any thread; `app.storage.journal.disk.TOLD` has the words. One that begins in the
         shelter already does not call it: `is_away` tells. The row waits for `turn`:
@@ -81,12 +95,19 @@ class Recorder:
             There is too little room.
         LibraryError
             There is no such session, it has a recording of this name, or one of the two is simulated.
+        SourceRefusedError
+            The sensors are to record in their memories, and one does not begin.
         OSError
             The folder of the recordings cannot be written, nor the shelter.
         """
         entry = _Entry(opened, session_id, told, acquisition.is_simulated)
         entry.start(turn)
+        memory: InMemory | None = None
         try:
+            if fetched is not None:
+                memory = fetched
+            elif acquisition.is_in_memory:
+                memory = acquisition.record_in_memory(round(datetime.fromisoformat(told.started).timestamp()))
             writer = JournalWriter.create(
                 opened.recordings,
                 entry.id,
@@ -98,12 +119,15 @@ class Recorder:
                 awake_s=acquisition.awake_s,
             )
         except BaseException:
+            if memory is not None:
+                memory.give_up()
             entry.withdraw()
             raise
         writer.mark(Belonging(session_id, told).text())
-        acquisition.record(writer)
+        if memory is None:
+            acquisition.record(writer)
         entry.add(writer)
-        return cls(acquisition, writer, entry)
+        return cls(acquisition, writer, entry, memory)
 
     @property
     def status(self) -> JournalStatus:
@@ -114,17 +138,45 @@ class Recorder:
     def kind(self) -> RecordingKind:
         return self._entry.kind
 
+    @property
+    def is_whole(self) -> bool:
+        """Whether its journal is to have nothing more: what was in the sensors' memories has been fetched."""
+        return self.memory is None or self.summary is not None
+
     def mark(self, text: str) -> None:
         """Note in the journal what happens now."""
         self._writer.mark(text)
 
     def halt(self) -> None:
-        """Stop, and no more: what was recorded is whole on the disk, and is read back by `stop`."""
+        """Stop, and no more: what was recorded is whole on the disk, and is read back by `stop`.
+
+        What is in the sensors' memories is to end now, and that is noted: `finish` sees to it.
+        """
+        if self.memory is not None:
+            self.memory.ask_to_end()
+            return
         with self._stopping:
             if self.summary is None:
                 with suppress(RuntimeError):  # the sources were closed, and the recording with them
                     self._acquisition.stop_recording()
                 self.summary = self._writer.stop()
+
+    def finish(self, progress: "Progress", tick: "Tick") -> "Mapping[str, SourceLostError | SourceRefusedError]":
+        """End it in the sensors' memories, and fetch it; those that it failed with, and why. May be tried again.
+
+        What `tick` (see `Radio.run`) raises ends it for a while.
+        """
+        assert self.memory is not None  # else there is nothing to fetch
+        failed = self.memory.finish(self._writer, progress, tick)
+        if not failed:
+            self._writer.mark(self.memory.told())
+            self.summary = self._writer.stop()
+        return failed
+
+    def leave_in_memory(self) -> None:
+        """Fetch no more: the journal ends with what is there; the sensors hold all of it still."""
+        with self._stopping:
+            self.summary = self.summary or self._writer.stop()
 
     def stop(self, opened: OpenedLibrary) -> tuple[StoredRecording, Recording]:
         """Stop, see that the library knows of it, and read what the journal holds. May be tried again.
@@ -138,14 +190,42 @@ class Recorder:
             The journal cannot be read.
         """
         self.halt()
+        if self.summary is None:
+            self.leave_in_memory()
         assert self.summary is not None  # halted
         if self.summary.is_away:
             bring_home(opened)
         stored = self._entry.close(opened, self.summary, self._writer.header.segment)
         recording, _ = recording_with_samples(opened, stored, DECODERS)
+        if self.memory is not None:
+            self.memory.look_into([opened.journal_path(one) for one in stored.journals], opened.data_key)
         if recording.test != stored.details.test:  # keys of a timed test, which its journal alone has known
             stored = opened.library.recordings.change(stored, replace(stored.details, test=recording.test))
         return stored, recording
+
+
+class InMemory(Protocol):
+    """What sensors hold of one recording, and how it gets out of them. Its methods wait, but for `ask_to_end`."""
+
+    def ask_to_end(self) -> None:
+        """It is to end now, if it goes on."""
+
+    def give_up(self) -> None:
+        """End it, if it goes on: nobody wants it."""
+
+    def finish(
+        self, writer: JournalWriter, progress: "Progress", tick: "Tick | None" = None
+    ) -> "Mapping[str, SourceLostError | SourceRefusedError]":
+        """End it, and fetch it; those sensors that it failed with, and why."""
+
+    def look_into(self, segments: Sequence[Path], data_key: "KeyMaterial | None") -> object:
+        """Find out whether its closed journal holds all that was fetched."""
+
+    def lacks(self) -> "tuple[Lack, ...]":
+        """What could not be had of it."""
+
+    def told(self) -> str:
+        """What was fetched of each sensor, for the journal."""
 
 
 class _Entry:

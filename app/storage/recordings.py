@@ -191,6 +191,20 @@ class Recordings:
             row = session.get(RecordingRow, recording_id)
             return None if row is None else stored_recording(row)
 
+    def begun_at(self, utc_s: int) -> tuple[StoredRecording, ...]:
+        """Those that were begun in this second since 1970, of no deleted patient or session; oldest first."""
+        wanted = (
+            select(RecordingRow.id, RecordingRow.started)
+            .join(SessionRow, RecordingRow.session_id == SessionRow.id)
+            .join(PatientRow, SessionRow.patient_id == PatientRow.id)
+            .where(SessionRow.deleted_at.is_(None), PatientRow.deleted_at.is_(None))
+            .where(RecordingRow.state != RecordingState.DISCARDED, RecordingRow.started != "")
+            .order_by(RecordingRow.id)
+        )
+        with self._unit.reading() as session:
+            ids = [one for one, started in session.execute(wanted) if _utc_s(started) == utc_s]
+            return tuple(stored_recording(session.get_one(RecordingRow, one)) for one in ids)
+
     def known(self) -> Mapping[UUID, frozenset[int]]:
         """All that have a row, and which segments it knows of: a journal of any other recording is an orphan."""
         with self._unit.reading() as session:
@@ -277,6 +291,13 @@ class Recordings:
                 .order_by(RecordingRow.id)
             )
             return tuple(stored_recording(row) for row in rows)
+
+
+def _utc_s(started: str) -> int | None:
+    try:
+        return int(datetime.datetime.fromisoformat(started).timestamp())
+    except ValueError:
+        return None
 
 
 def recording_changes(visit: SessionRow, row: RecordingRow, told: Recording) -> list[Change]:

@@ -8,6 +8,7 @@ from app.widgets.battery import LOW
 from app.widgets.body_figure import SensorMark
 from app.wording import capitalised, name_of, tr
 from core.body import Site
+from devices.live import Quiet
 
 LOST_SHARE = 0.01
 SILENT_FROM_S = 1.0  # shorter is the radio's hiccup, and counts as loss
@@ -18,6 +19,7 @@ class TileState(Enum):
     LOW_BATTERY = auto()
     LOSS = auto()
     SILENT = auto()
+    QUIET = auto()
     NOT_WORN = auto()
 
 
@@ -25,7 +27,8 @@ class TileState(Enum):
 class SensorTile:
     """What is known of the sensor at one site. `name` is the sensor's own; `battery` and `lost_share` 0 to 1.
 
-    `is_awaited`: none is known to be worn here, and the free motion is still to tell.
+    `is_awaited`: none is known to be worn here, and the free motion is still to tell. `quiet`: why it is to send
+    nothing; not `is_loss_seen`: nobody can see what is lost of it.
     """
 
     site: Site
@@ -37,6 +40,8 @@ class SensorTile:
     is_moving: bool
     is_worn: bool
     is_awaited: bool = False
+    quiet: Quiet | None = None
+    is_loss_seen: bool = True
 
     @property
     def state(self) -> TileState:
@@ -45,6 +50,8 @@ class SensorTile:
             return TileState.NOT_WORN
         if self.silent_s >= SILENT_FROM_S:
             return TileState.SILENT
+        if self.quiet is not None:
+            return TileState.QUIET
         if self.lost_share > LOST_SHARE:
             return TileState.LOSS
         if self.battery is not None and self.battery < LOW:
@@ -53,7 +60,7 @@ class SensorTile:
 
     @property
     def is_bad(self) -> bool:
-        return self.state not in (TileState.FINE, TileState.NOT_WORN)
+        return self.state not in (TileState.FINE, TileState.QUIET, TileState.NOT_WORN)
 
     @property
     def words(self) -> str:
@@ -63,10 +70,14 @@ class SensorTile:
                 return tr("found later") if self.is_awaited else tr("not used")
             case TileState.SILENT:
                 return tr("silent {seconds} s").format(seconds=int(self.silent_s))
+            case TileState.QUIET:
+                return quiet_words(self.quiet)
             case TileState.LOSS:
                 return _loss(self.lost_share)
             case TileState.LOW_BATTERY:
                 return tr("charge soon · {percent} %").format(percent=round((self.battery or 0.0) * 100))
+            case _ if not self.is_loss_seen:
+                return tr("{rate} Hz").format(rate=round(self.rate_hz))
             case _:
                 return rate_and_loss(self.rate_hz, self.lost_share)
 
@@ -81,6 +92,8 @@ def sentence(tiles: Mapping[Site, SensorTile]) -> str:
         return tr("{bad} of {count} sensors want a look").format(bad=len(bad), count=len(worn))
     if not worn:
         return tr("No sensors yet")
+    if all(tile.state is TileState.QUIET for tile in worn):
+        return tr("{count} sensors, {state}").format(count=len(worn), state=worn[0].words)
     return tr("{count} sensors, all heard").format(count=len(worn))
 
 
@@ -92,6 +105,11 @@ def marks(tiles: Mapping[Site, SensorTile]) -> dict[Site, SensorMark]:
             look = SensorMark.LOOK if tile.is_bad else SensorMark.WORN
             found[site] = SensorMark.SILENT if tile.state is TileState.SILENT else look
     return found
+
+
+def quiet_words(quiet: Quiet | None) -> str:
+    """Why a sensor is to send nothing now."""
+    return tr("in memory") if quiet is Quiet.IN_MEMORY else tr("syncing")
 
 
 def _loss(share: float) -> str:

@@ -150,7 +150,8 @@ class TileWidget(QWidget):
                 return
             middle = px(40)
         side = px(18)
-        paint_icon(painter, icon, QRectF(self.width() - px(9) - side, middle - side / 2, side, side), ink)
+        if state is not TileState.QUIET:
+            paint_icon(painter, icon, QRectF(self.width() - px(9) - side, middle - side / 2, side, side), ink)
         if not self._is_compact and state is not TileState.SILENT and self._tile.battery is not None:
             cell = QRectF(self._marks_left(), middle - px(7), px(BATTERY_WIDTH), px(14))
             paint_battery(painter, cell, self._tile.battery, self._look.theme, ink)
@@ -196,7 +197,7 @@ class TileWidget(QWidget):
     def _name(self) -> None:
         tile = self._tile
         moving = tr("moving") if tile.is_moving else tr("still")
-        is_heard = tile.state not in (TileState.NOT_WORN, TileState.SILENT)
+        is_heard = tile.state not in (TileState.NOT_WORN, TileState.SILENT, TileState.QUIET)
         site = capitalised(name_of(tile.site))
         self.setAccessibleName(", ".join(filter(None, [site, tile.words, moving if is_heard else ""])))
         battery = (

@@ -29,6 +29,7 @@ from app.wizard.journal_words import (
     unread_message,
 )
 from app.wizard.losses import NOTHING, Message
+from app.wizard.memory_fetches import MemoryFetches
 from app.wording import capitalised, tr
 from app.workers.library_controller import LibraryController
 from core.body import Side
@@ -36,6 +37,8 @@ from core.samples import Recording, RecordingKind
 
 if TYPE_CHECKING:
     from app.acquisition.acquisition import Acquisition
+    from app.acquisition.memory_fetching import Lack
+    from app.acquisition.recorder import InMemory
     from app.storage.opened import OpenedLibrary
     from core.alignment import AlignmentChange
     from core.timed.protocols import PlannedTest
@@ -58,13 +61,15 @@ class Ongoing:
 class SessionRecording:
     """A recording that has ended. `read_back` holds what its journal holds; None until it has been read.
 
-    `strides` are those counted live. `is_decided`: somebody has said whether it is kept; until then it is.
+    `strides` are those counted live. `is_decided`: somebody has said whether it is kept; until then it is. `lacks`:
+    what could not be fetched from the sensors' memories.
     """
 
     stored: StoredRecording
     read_back: Recording | None = None
     strides: Mapping[Side, int] | None = None
     is_decided: bool = True
+    lacks: "tuple[Lack, ...]" = ()
 
     @property
     def id(self) -> UUID:
@@ -90,7 +95,7 @@ class _Unread(NamedTuple):
     """What was stopped and is not read back yet; `strides` as in `SessionRecording`. Not kept: it was broken off."""
 
     recorder: Recorder
-    name: str
+    details: Recording
     strides: Mapping[Side, int] | None
     is_kept: bool
 
@@ -129,6 +134,9 @@ class SessionRecordings(QObject):
         self._strides: Mapping[Side, int] | None = None
         self._is_restrapped = False
         self._beginning: Future[Recorder]
+        self.fetches = MemoryFetches(self)
+        """What is in the sensors' memories still."""
+        self.fetches.fetched.connect(self._on_fetched)
         self._again = QTimer(self)
         self._again.setSingleShot(True)
         self._again.timeout.connect(self._read_back)
@@ -154,6 +162,17 @@ class SessionRecordings(QObject):
         return self._phase is RecordingPhase.STOPPING
 
     @property
+    def is_in_memory(self) -> bool:
+        """Whether the latest recording is made in the sensors' memories."""
+        return self._latest is not None and self._latest.memory is not None
+
+    @property
+    def in_sensors(self) -> tuple[Recording, ...]:
+        """Those that have ended and are in the sensors' memories still, oldest first."""
+        waiting = self.fetches.waiting
+        return tuple(unread.details for unread in self._unread if unread.recorder in waiting)
+
+    @property
     def is_idle(self) -> bool:
         """Whether nothing is being recorded, and all that was has been read back."""
         return self.ongoing is None and not self._unread
@@ -171,7 +190,8 @@ class SessionRecordings(QObject):
     @property
     def shown_names(self) -> dict[str, ShownName]:
         """What each is called on the screen, by its name."""
-        return shown_names(self.told)
+        told = {one.name: one for one in (*self.told[: len(self.every)], *self.in_sensors, *self.told)}
+        return shown_names(tuple(told.values()))
 
     @property
     def standing(self) -> SessionRecording | None:
@@ -235,10 +255,12 @@ class SessionRecordings(QObject):
         condition: str = "",
         alignment: "AlignmentChange | None" = None,
         test: "PlannedTest | None" = None,
+        fetched: "tuple[InMemory, str] | None" = None,
     ) -> None:
         """Record from now on; `begun` or `refused` follows.
 
-        `alignment`: what was changed at a prosthesis before; `test`: which timed test it is.
+        `alignment`: what was changed at a prosthesis before; `test`: which timed test it is; `fetched`: what was
+        recorded in the sensors' memories before, and when that was begun.
 
         Raises
         ------
@@ -254,7 +276,7 @@ class SessionRecordings(QObject):
             folder=name.replace(" ", "_"),
             imu={},
             condition=condition,
-            started=datetime.datetime.now().astimezone().isoformat(timespec="seconds"),
+            started=fetched[1] if fetched is not None else _now(),
             is_restrapped_before=self._is_restrapped,
             alignment=alignment,
             test=test,
@@ -270,7 +292,9 @@ class SessionRecordings(QObject):
 
         def start(opened: "OpenedLibrary", turn: "Future[None]") -> Recorder:
             try:
-                begun.set_result(Recorder.begin(opened, acquisition, session_id, told, self.meet, turn))
+                memory = fetched[0] if fetched is not None else None
+                recorder = Recorder.begin(opened, acquisition, session_id, told, self.meet, turn, fetched=memory)
+                begun.set_result(recorder)
             except BaseException as error:
                 begun.set_exception(error)
             return begun.result()
@@ -293,11 +317,20 @@ class SessionRecordings(QObject):
             recorder.halt()
 
         self._phase = RecordingPhase.STOPPING
-        self._unread.append(_Unread(recorder, self.ongoing.details.name, strides, is_kept))
+        self._unread.append(_Unread(recorder, self.ongoing.details, strides, is_kept))
         self._controller.record(halt, None, self._on_not_halted, self)
-        self._waited.start(WAITED_MS)
-        if not self._again.isActive():
-            self._read_back()
+        if recorder.memory is not None:
+            self.fetches.add(recorder)
+        else:
+            self._waited.start(WAITED_MS)
+            if not self._again.isActive():
+                self._read_back()
+        self.changed.emit()
+
+    def fetch_later(self) -> None:
+        """Leave what is in the sensors where it is for now: the next may be recorded."""
+        self.fetches.stop()
+        self._go_on()
         self.changed.emit()
 
     def close(self) -> None:
@@ -307,6 +340,7 @@ class SessionRecordings(QObject):
         """
         if self.ongoing is None or self._phase in (RecordingPhase.WRITING, RecordingPhase.STOPPING):
             self.stop()
+            self._leave_in_sensors()
             return
         begun, self._phase = self._beginning, RecordingPhase.CLOSED
 
@@ -314,6 +348,13 @@ class SessionRecordings(QObject):
             begun.result().stop(opened)
 
         self._controller.run(end, self._on_closed, self._on_not_started, self)
+
+    def _leave_in_sensors(self) -> None:
+        """Close the journals of what is still to be fetched: it does not count until it is fetched anew."""
+        left = self.fetches.give_up()
+        self._unread = [unread for unread in self._unread if unread.recorder not in left]
+        for recorder in left:
+            self._controller.run(partial(_without_samples, recorder), None, None, self._controller)
 
     def trouble_message(self) -> Message:
         """What befell the latest recording's journal, as its counters have it by now; nothing where nothing did."""
@@ -438,7 +479,7 @@ class SessionRecordings(QObject):
     def _new_name(self, kind: RecordingKind) -> str:
         """`walk 2`, `free motion`, `standing 3`: the kind's name in files, numbered."""
         word = OWN_NAMES[kind]
-        taken = {recording.details.name for recording in self.every} | {unread.name for unread in self._unread}
+        taken = {one.details.name for one in self.every} | {unread.details.name for unread in self._unread}
         first = f"{word} 1" if kind is RecordingKind.WALKING else word
         return next(name for name in [first, *(f"{word} {k}" for k in range(2, 10_000))] if name not in taken)
 
@@ -447,8 +488,11 @@ class SessionRecordings(QObject):
         self.every = tuple((known | {recording.id: recording}).values())
         self.changed.emit()
 
+    def _on_fetched(self, _recorder: Recorder) -> None:
+        self._read_back()
+
     def _read_back(self) -> None:
-        if self._unread and not self._is_reading:
+        if self._unread and not self._is_reading and self._unread[0].recorder.is_whole:
             self._is_reading = True
             self._readings += 1
             self._controller.run(self._unread[0].recorder.stop, self._on_read_back, self._on_not_read_back, self)
@@ -499,7 +543,9 @@ class SessionRecordings(QObject):
         stored, read_back = result
         unread = self._unread.pop(0)
         self._is_reading, self._readings = False, 0
-        recording = SessionRecording(stored, read_back, unread.strides, stored.is_decided)
+        memory = unread.recorder.memory
+        lacks = memory.lacks() if memory is not None else ()
+        recording = SessionRecording(stored, read_back, unread.strides, stored.is_decided, lacks)
         if not self._unread:
             self._go_on()
         self._put(recording)
@@ -562,6 +608,16 @@ class SessionRecordings(QObject):
     def _where(self, *, is_tried_again: bool) -> str:
         """Where the oldest is that has not been read back."""
         return unread_message(self._unread[0].recorder.status, is_tried_again=is_tried_again)
+
+
+def _without_samples(recorder: Recorder, opened: "OpenedLibrary") -> None:
+    recorder.leave_in_memory()
+    stored, _ = recorder.stop(opened)
+    opened.library.edits.decision(stored.id, is_kept=False)
+
+
+def _now() -> str:
+    return datetime.datetime.now().astimezone().isoformat(timespec="seconds")
 
 
 def counted(recordings: Sequence[SessionRecording]) -> tuple[Recording, ...]:

@@ -25,6 +25,7 @@ from app.storage.stored import Limits, PlacedSensor, StoredSession
 from app.storage.three_way import Contest, Edited, Value, Values, rebased
 from app.wizard.edit_question import EditQuestion, chosen_fields
 from app.wizard.evaluation import Evaluation
+from app.wizard.fetch_control import FetchControl
 from app.wizard.patient_record import PatientRecord
 from app.wizard.recordings import SessionRecording, SessionRecordings
 from app.wizard.resuming import (
@@ -136,7 +137,10 @@ class Visit(QObject):
         self.evaluation.computed.connect(self._on_computed)
         self.evaluation.done.connect(self._keep_course)
         self.reviewing.refused.connect(self.refused)
+        self.fetch = FetchControl(self.recordings, self.sensors, self)
+        """Gets recordings out of the sensors' memories."""
         self.recordings.ended.connect(self._on_recording_ended)
+        self.recordings.begun.connect(self._note_lost_clocks)
         self.recordings.changed.connect(self._on_recordings_changed)
 
     @property
@@ -210,6 +214,8 @@ class Visit(QObject):
             return tr("Choose the source of the sensors first.")
         if not self.sensors.site_of and not self.sensors.is_left_to_motion:
             return tr("Say first which sensor is worn where.")
+        if self.sensors.are_in_memory:
+            return tr("The sensors are ready for walks. Set them back to live on the sensors' step first.")
         return self.cannot_record
 
     @property
@@ -301,6 +307,13 @@ class Visit(QObject):
             return opened.library.sessions.get(session_id)
 
         self._controller.run(place, self._on_placed, self._on_refused, self)
+
+    def _note_lost_clocks(self) -> None:
+        """Where sensors were told to be on one clock and some are not any more, tell the library so."""
+        told = self.session.details.sensors if self.session is not None else {}
+        worn = self.sensors.placed()
+        if any(one.info.clock == "" and site in told and told[site].clock for site, one in worn.items()):
+            self.place_sensors()
 
     def correct_placement(self) -> None:
         """Tell the library that all since the sensors were strapped on was worn as it is said now; it is read anew."""
@@ -419,10 +432,12 @@ class Visit(QObject):
         """Whether nothing of it goes on any more: no recording, no thread, no window of Rerun's."""
         idle = self.sensors.is_idle and self.evaluation.is_idle and self.reviewing.is_idle and self.preview.is_idle
         idle = idle and self.looking.is_idle and self.comparing.is_idle and self.recordings.is_idle
+        idle = idle and self.recordings.fetches.is_idle
         return idle and not (self.is_asking or self._is_changing or self._is_placing or self.patient.is_busy)
 
     def finish(self) -> None:
         """Wait for all threads: for the end of the program."""
+        self.recordings.fetches.finish()
         self.sensors.finish()
         self.evaluation.finish()
         self.reviewing.finish()

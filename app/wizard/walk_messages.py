@@ -1,11 +1,15 @@
 """What is to be said of a walk, while it goes on and once it has stopped, apart from sensors that fall silent."""
 
 from collections.abc import Collection, Mapping, Sequence
+from typing import TYPE_CHECKING
 
 from app.wizard.losses import NOTHING, Message
 from app.wording import name_of, tr
 from core.body import Segment, Side, Site
 from core.strap import Slip
+
+if TYPE_CHECKING:
+    from app.acquisition.memory_fetching import Lack
 
 STRIDES_FOR_SPREAD = 10
 
@@ -58,6 +62,33 @@ def recovery_costs() -> str:
         "Ending the program costs 0.1 s at most in 99 of 100 cases, a power cut up to 0.5 s and what the disk still "
         "held back."
     )
+
+
+def lacks_message(walk: str, lacks: "Sequence[Lack]") -> Message:
+    """Say what could not be fetched of a walk from the sensors' memories; the gravest first."""
+    early = max(lacks, key=lambda one: one.early_s, default=None)
+    if early is not None and early.early_s > 0:
+        what = tr("{sensor} ended {seconds} s before {walk} was stopped.").format(
+            sensor=early.sensor, seconds=round(early.early_s), walk=walk
+        )
+        return what, tr("Its button was pressed, or its memory is full. Angles with it end there.")
+    lost = [one for one in lacks if one.lost]
+    if lost:
+        said = ", ".join(f"{one.sensor} {one.lost}" for one in lost)
+        what = tr("Samples of {walk} could not be fetched: {sensors}.").format(walk=walk, sensors=said)
+        return what, tr("They are left out. The sensors keep the recording until their memories are erased.")
+    if lacks:
+        what = tr("{sensor} did not say where {walk} ends.").format(sensor=lacks[0].sensor, walk=walk)
+        return what, tr("What it has sent is kept; its end may be missing.")
+    return NOTHING
+
+
+def loose_message(on_own_clocks: Sequence[str]) -> Message:
+    """Say that sensors that stream are to be synchronised again; `on_own_clocks`: those without the common one."""
+    what = tr("The sensors were synchronised half an hour ago: their clocks drift apart.")
+    if on_own_clocks:
+        what = tr("Not on the common clock: {sensors}.").format(sensors=", ".join(on_own_clocks))
+    return what, tr("Synchronise again before the next walk, or go on: what both legs share is measured less well.")
 
 
 def few_strides_message(counts: Mapping[Side, int]) -> Message:

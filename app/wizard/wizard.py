@@ -538,4 +538,6 @@ def _tile(site: Site, sensor: str | None, status: "Mapping[str, SensorStatus]", 
         heard.silent_s,
         is_moving=heard.movement_rad_s > MOVES_RAD_S,
         is_worn=True,
+        quiet=heard.details.quiet,
+        is_loss_seen=heard.details.is_loss_seen,
     )

@@ -11,7 +11,8 @@ from PySide6.QtCore import QObject, Signal
 
 from app.storage.stored import PlacedSensor
 from app.widgets.sensor_tile import SILENT_FROM_S
-from app.wording import filled, name_of, tr
+from app.wizard.sensor_sync import SensorSync
+from app.wording import filled, later, name_of, tr
 from app.workers.background import Background, Report, Work
 from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site, hip_of
 from core.samples import SensorInfo
@@ -19,9 +20,19 @@ from devices.live import SourceRefusedError
 
 if TYPE_CHECKING:
     from app.acquisition.acquisition import Acquisition, SensorStatus
+    from app.acquisition.dot_fleet import DotFleet
+    from devices.dot.source import DotGroup
     from devices.lines import LinesAt
 
 _log = logging.getLogger(__name__)
+
+
+class SetUpFirstError(SourceRefusedError):
+    """Sensors that were found, and have to be set up by the choice of this `key` before they are opened."""
+
+    def __init__(self, key: str) -> None:
+        super().__init__(later("These sensors are to be set up first"), later("Choose them as the source"))
+        self.key = key
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +43,8 @@ class SourceChoice:
     `worn` gives the site by the sensor's name where the source tells it, as a stored session does. Of `lines` it has to
     be told what they mean; they are heard through another choice then. `asks` says whom on the network `make` will ask
     what, where it asks anybody, and what to do to have it ask: that is said before. `make_prosthetic` is called instead
-    for a patient with a prosthesis on one side.
+    for a patient with a prosthesis on one side. What `make_fleet` gives has to be set up first: `make` is another one's
+    then.
     """
 
     key: str
@@ -43,6 +55,7 @@ class SourceChoice:
     lines: "tuple[LinesAt, ...]" = ()
     asks: tuple[str, str] = ("", "")
     make_prosthetic: "Callable[[Side], Acquisition] | None" = None
+    make_fleet: "Callable[[], DotFleet] | None" = None
 
     def for_sides(self, prosthetic: Collection[Side]) -> "SourceChoice":
         """For a patient with prostheses on these sides."""
@@ -60,9 +73,14 @@ class WornSensors(QObject):
     changed = Signal()
     opened = Signal()
     refused = Signal(str, str)
+    set_up_wanted = Signal(str)  # the key of the choice that what was found has to be set up by
 
     def __init__(self, parent: QObject) -> None:
         super().__init__(parent)
+        self.sync = SensorSync(self)
+        """Brings sensors onto one clock; here, for its threads outlive a step."""
+        self.asking = Background(self)
+        """Asks sensors who they are, before some of them are opened."""
         self.acquisition: Acquisition | None = None
         self.choice: SourceChoice | None = None
         self.site_of: dict[str, Site] = {}
@@ -79,7 +97,8 @@ class WornSensors(QObject):
     @property
     def is_idle(self) -> bool:
         """Whether no thread is left that opens or closes sensors."""
-        return self._background.is_idle and not any(thread.is_alive() for thread in self._closing)
+        is_quiet = self._background.is_idle and self.sync.is_idle and self.asking.is_idle
+        return is_quiet and not any(thread.is_alive() for thread in self._closing)
 
     @property
     def sensor_at(self) -> dict[Site, str]:
@@ -114,12 +133,60 @@ class WornSensors(QObject):
         has_pelvis = count > len(LEG_SITES) or Site.PELVIS in self.site_of.values()
         return tuple(Site) if has_pelvis else LEG_SITES
 
+    @property
+    def dots(self) -> "DotGroup | None":
+        """Whom the open sensors belong to, if they are DOTs."""
+        return self.acquisition.dots if self.acquisition is not None else None
+
+    @property
+    def are_ready_for_walks(self) -> bool:
+        """Whether a walk can be recorded as it is to be: in memories on a clock that holds, or else live."""
+        dots = self.dots
+        return dots is None or (dots.is_ready_to_record if dots.record_hz is not None else not dots.is_recording_use)
+
+    @property
+    def are_loose(self) -> bool:
+        """Whether DOTs that stream have no common clock, or have had it for so long that they drift apart."""
+        dots = self.dots
+        if dots is None or dots.is_recording_use or dots.is_synchronising or len(dots.sensors) < 2:
+            return False
+        return not dots.are_one_at(dots.rate_hz)
+
+    @property
+    def on_own_clocks(self) -> tuple[str, ...]:
+        """DOTs that were to have a common clock, and have not."""
+        dots = self.dots
+        if dots is None or len(dots.sensors) < 2 or dots.is_synchronising:
+            return ()
+        return tuple(sensor.name for sensor in dots.sensors if not dots.clock_of(sensor.name))
+
+    @property
+    def are_in_memory(self) -> bool:
+        """Whether the sensors record in their memories, or are ready to, so that nothing is measured live."""
+        return self.dots is not None and self.dots.is_recording_use
+
     def search(self, choice: SourceChoice) -> None:
         """Open a source beside the screen; `opened` or `refused` follows. What was open before is closed."""
         self._close()
         self.choice = choice
-        self._background.start(_opening(choice))
+        self._background.start(_opening(choice, self.closings()))
         self.changed.emit()
+
+    def closings(self) -> Callable[[], None]:
+        """What waits, beside the screen, until all that was closed so far lets go of its sensors."""
+        closing = tuple(self._closing)
+
+        def wait() -> None:
+            for thread in closing:
+                thread.join()
+
+        return wait
+
+    def close_beside(self, close: Callable[[], object]) -> None:
+        """Let go of something beside the screen."""
+        self._closing = [thread for thread in self._closing if thread.is_alive()]
+        self._closing.append(threading.Thread(target=close, name="closing sensors"))
+        self._closing[-1].start()
 
     def close(self) -> None:
         """Let go of the sensors; `finish` waits until that is done."""
@@ -128,6 +195,7 @@ class WornSensors(QObject):
     def detach(self) -> "Acquisition | None":
         """Forget what was open; whoever takes it closes it."""
         self._background.stop()
+        self.sync.stop()
         acquisition = self.acquisition
         self.acquisition, self.choice, self.site_of = None, None, {}
         return acquisition
@@ -135,6 +203,8 @@ class WornSensors(QObject):
     def finish(self) -> None:
         """Wait for the last thread, at the end of the program."""
         self._background.finish()
+        self.sync.finish()
+        self.asking.finish()
         for thread in self._closing:
             thread.join()
 
@@ -168,7 +238,7 @@ class WornSensors(QObject):
         placed = {}
         for sensor, site in self.site_of.items():
             told = status[sensor].details
-            info = SensorInfo(told.serial, told.model, told.firmware, told.rate_hz, told.rate_kind)
+            info = SensorInfo(told.serial, told.model, told.firmware, told.rate_hz, told.rate_kind, told.clock)
             placed[site] = PlacedSensor(sensor, info)
         return placed
 
@@ -189,9 +259,7 @@ class WornSensors(QObject):
     def _close(self) -> None:
         acquisition = self.detach()
         if acquisition is not None:  # closing waits for ports, so another thread does it
-            self._closing = [thread for thread in self._closing if thread.is_alive()]
-            self._closing.append(threading.Thread(target=acquisition.close, name="closing sensors"))
-            self._closing[-1].start()
+            self.close_beside(acquisition.close)
 
     def _on_opened(self, acquisition: "Acquisition") -> None:
         self.acquisition = acquisition
@@ -200,7 +268,9 @@ class WornSensors(QObject):
 
     def _on_failed(self, error: Exception) -> None:
         choice, self.choice = self.choice, None
-        if isinstance(error, SourceRefusedError):
+        if isinstance(error, SetUpFirstError):
+            self.set_up_wanted.emit(error.key)
+        elif isinstance(error, SourceRefusedError):
             what, remedy = filled(error.what, error.values), filled(error.remedy, error.values)
             self.refused.emit(f"{what}.", f"{remedy}.")
         else:
@@ -212,8 +282,9 @@ class WornSensors(QObject):
         self.changed.emit()
 
 
-def _opening(choice: SourceChoice) -> Work:
+def _opening(choice: SourceChoice, wait: Callable[[], None]) -> Work:
     def work(report: Report) -> object:
+        wait()
         report(0.0, choice.name)
         acquisition = choice.make()
         acquisition.start()

@@ -27,7 +27,10 @@ def refusal_of(error: Exception) -> Refusal:
     from app.storage.keys import KeyRefusedError
     from app.storage.stored import LibraryError
     from devices.files.refusal import FileRefusedError
+    from devices.live import SourceRefusedError
 
+    if isinstance(error, SourceRefusedError):
+        return Refusal(f"{filled(error.what, error.values)}.", f"{filled(error.remedy, error.values)}.")
     if isinstance(error, LibraryError | KeyRefusedError):
         return Refusal(f"{tr(error.what)}.", f"{tr(error.remedy)}.")
     if isinstance(error, JournalRefusedError | FileRefusedError):

@@ -1,36 +1,65 @@
-"""Samples of a Movella DOT out of a journal: what it streamed, or the file that was fetched from its memory."""
+"""Samples of a Movella DOT out of a journal: what it streamed, or the file that was fetched from its memory.
+
+How the host's clock follows from a file's is known by its orders alone, for nothing arrived as it was taken: its first
+sample came after it was told to begin, its last before it said that it had ended. Sensors on one clock bound it
+together, to some hundredths of a second (`devices.shared_clock`); to one another they are as exact as their clock.
+"""
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
-from devices.dot.memory import RECORD_HZ
 from devices.dot.messages import RecordedFile
-from devices.dot.samples import DRIVER, VERSION, DotFramer, FileFramer, Tie
+from devices.dot.samples import DRIVER, TURN_S, VERSION, DotFramer, FileFramer
 from devices.source import DecodedSensor, SourceInfo
 from devices.stream import Decoder, Heard, decoded
 
+BEGINS_WITHIN_S = 0.25  # of when it first says that it records, the first sample is taken
+BEGUN_TOGETHER_S = 6.0  # memories whose orders nobody knows were begun within this, one after the other
 
-def file_settings(file: RecordedFile, tie: Tie, begun_s: float) -> dict[str, object]:
+
+@dataclass(frozen=True, slots=True)
+class FileOrders:
+    """When a file was ordered, in seconds since the journal was opened.
+
+    Attributes
+    ----------
+    begun_s
+        When it was first told to begin, and when it said that it records.
+    ended_s
+        When it said that it had ended.
+    """
+
+    begun_s: tuple[float, float]
+    ended_s: float
+
+
+def file_settings(
+    file: RecordedFile, rate_hz: float | None, clock: str = "", orders: FileOrders | None = None
+) -> dict[str, object]:
     """What a `SourceInfo` holds of a fetched file.
 
     Parameters
     ----------
-    tie
-        To seconds since the journal was opened.
-    begun_s
-        When its recording was begun, in the same seconds, roughly.
+    rate_hz
+        None: not known.
+    clock
+        The name of the clock that it shares with other sensors' files; empty: its own.
+    orders
+        None: nobody knows when it was recorded, but for the second that names it.
 
     Returns
     -------
     dict
         What JSON can hold.
     """
-    return {
-        "file": [file.number, file.started_utc_s, file.length_s],
-        "tie": [tie.origin_s, tie.offset_s, tie.skew],
-        "begun_s": begun_s,
-        "recorded_hz": RECORD_HZ,
-    }
+    settings: dict[str, object] = {"file": [file.number, file.started_utc_s]}
+    if rate_hz is not None:
+        settings["rate_hz"] = rate_hz
+    if clock:
+        settings |= {"clock": clock, "turn_s": TURN_S}
+    if orders is not None:
+        settings["ordered_s"] = [*orders.begun_s, orders.ended_s]
+    return settings
 
 
 class _Streamed:
@@ -72,10 +101,22 @@ class DotDecoder:
 
 
 def _fetched(info: SourceInfo, file: FileFramer) -> DecodedSensor:
-    numbers, begun_s = info.settings["tie"], info.settings["begun_s"]
-    if not isinstance(numbers, list) or not isinstance(begun_s, int | float):
-        raise ValueError(f"a file of a {DRIVER} cannot be read without how its clock went")
-    tie = Tie(*map(float, numbers))
-    rows, orientations = file.rows(begun_s, tie)
-    one = decoded(info.sensors[0], Heard(rows, orientations), [tie.host_s(row[0]) for row in rows])
-    return replace(one, counts=replace(one.counts, lost=sum(map(len, file.missing()))))
+    rows, orientations = file.rows()
+    ahead_s = _ahead_s(info.settings, rows[0][0], rows[-1][0]) if rows else (0.0, 0.0)
+    host_s = [row[0] + sum(ahead_s) / 2 for row in rows]
+    name = info.settings.get("clock")
+    shared = (name, TURN_S) if isinstance(name, str) else None
+    one = decoded(info.sensors[0], Heard(rows, orientations, file.damaged), host_s, clock=shared)
+    lost = sum(map(len, file.missing()))
+    clock = None if one.clock is None else replace(one.clock, arrived_s=one.clock.arrived_s[:0], ahead_s=ahead_s)
+    return replace(one, counts=replace(one.counts, lost=lost), clock=clock)
+
+
+def _ahead_s(settings: Mapping[str, object], first_s: float, last_s: float) -> tuple[float, float]:
+    """Between what bounds the journal's seconds are ahead of the sensor's."""
+    ordered_s = settings.get("ordered_s")
+    if not isinstance(ordered_s, list) or len(ordered_s) != 3:
+        return -first_s, BEGUN_TOGETHER_S - first_s
+    told_s, recording_s, ended_s = map(float, ordered_s)
+    low_s, high_s = told_s - first_s, min(recording_s + BEGINS_WITHIN_S - first_s, ended_s - last_s)
+    return low_s, max(low_s, high_s)

@@ -37,6 +37,7 @@ RATES_HZ = (1, 4, 10, 12, 15, 20, 30, 60)  # while it streams
 RECORDED_HZ = (*RATES_HZ, 120)
 SETTINGS_SIZE, INFO_SIZE, MAC_SIZE = 32, 34, 6
 IDENTIFY, RATE, PROFILE = 0x01, 0x10, 0x20  # bits of the first byte of what is set
+HEADING_RESET = b"\x01\x00"
 EMULATED = "emulated DOT"
 MODELS = {"XS-T01": "DOT v1", "XS-T02": "DOT v2", "EMUDOT": EMULATED}  # the last one is our own emulator
 
@@ -200,7 +201,8 @@ class SyncResult(IntEnum):
 
     @classmethod
     def of(cls, answer: DotMessage) -> "SyncResult":
-        if answer.group != SYNC_GROUP or len(answer.data) != 2 or answer.data[0] != 0x03:
+        """Of an answer, which may repeat after its result what it answers to."""
+        if answer.group != SYNC_GROUP or len(answer.data) < 2 or answer.data[0] != 0x03:
             return cls.UNKNOWN
         return cls(answer.data[1]) if answer.data[1] in set(cls) else cls.UNKNOWN
 
@@ -212,6 +214,7 @@ class DotAnswer(IntEnum):
     """What an order was answered with; those of `GET_STATE` say what the sensor does."""
 
     DONE = 0x00
+    INVALID = 0x02  # not in the state that the sensor is in
     BUSY = 0x03
     IDLE = 0x06
     ERASING = 0x30
@@ -239,8 +242,9 @@ class Order(IntEnum):
 class DotNotice(IntEnum):
     """What a sensor tells of its memory; the first byte of a message's data."""
 
+    BUSY = 0x03
     ERASED = 0x33
-    FULL = 0x34
+    FULL, FOREIGN_FORMAT = 0x34, 0x35
     STOPPED = 0x41
     LIST, LIST_END = 0x51, 0x52
     FILE_INFO, FILE_INFO_END, NO_FILE = 0x61, 0x62, 0x63
@@ -250,7 +254,9 @@ class DotNotice(IntEnum):
 NO_TIMER = b"\xff\xff"
 FLASH_MAGIC = struct.pack("<I", 0x466C6173)
 FILE_MAGIC = struct.pack("<I", 0x5265636F)
-FILE_BEGINS = 0xEE  # one byte for each piece of the memory: a file begins, goes on (0xCC), or it is free (0xFF)
+FLASH_HEADER = struct.Struct("<4sI")  # and how many bytes it has in all, 128
+FILE_BEGINS, FILE_GOES_ON = 0xEE, 0xCC  # one byte for each piece of the memory; 0xFF: it is free
+PIECE_BYTES = 228_000  # of a piece that goes on
 FILE_INFO = struct.Struct("<4sIHIH")
 
 
@@ -283,15 +289,27 @@ def answered(order: Order, answer: DotMessage) -> DotAnswer:
 
 @dataclass(frozen=True, slots=True)
 class RecordedFile:
-    """A recording in a sensor's memory. `number` counts from 1; `started_utc_s` is what `start_recording` was told."""
+    """A recording in a sensor's memory.
+
+    Attributes
+    ----------
+    number
+        Counted from 1.
+    started_utc_s
+        What `start_recording` was told.
+    most_bytes
+        About: as many pieces of the memory as it takes.
+    """
 
     number: int
     started_utc_s: int
-    length_s: int
+    most_bytes: int = 0
 
     @classmethod
-    def parsed(cls, number: int, data: bytes) -> "RecordedFile":
-        """Of a notice FILE_INFO, without its first byte.
+    def parsed(cls, number: int, data: bytes, pieces: int = 0) -> "RecordedFile":
+        """Of a notice FILE_INFO, without its first byte, and how many pieces of the memory it takes.
+
+        What stands there as its length is the timer that it was begun with (revision C, 5.2.4.9): it has none here.
 
         Raises
         ------
@@ -300,20 +318,29 @@ class RecordedFile:
         """
         if len(data) < FILE_INFO.size:
             raise DotMessageError(f"a file's information has {len(data)} bytes, expected {FILE_INFO.size}")
-        magic, _, _, started, length = FILE_INFO.unpack_from(data)
+        magic, _, _, started, _ = FILE_INFO.unpack_from(data)
         if magic != FILE_MAGIC:
             raise DotMessageError(f"a file's information begins with {data[:4].hex()}")
-        return cls(number, started, length)
+        return cls(number, started, pieces * PIECE_BYTES)
 
 
-def files_listed(pieces: bytes) -> int:
-    """How many files the pieces of a list (its notices LIST without their first bytes, joined) tell of.
+def files_listed(notices: bytes) -> tuple[int, ...]:
+    """How many pieces of the memory each file takes, by the notices LIST without their first bytes, joined.
 
     Raises
     ------
     DotMessageError
         It is no list.
     """
-    if not pieces.startswith(FLASH_MAGIC):
-        raise DotMessageError(f"a list begins with {pieces[:4].hex()}")
-    return pieces[len(FLASH_MAGIC) :].count(FILE_BEGINS)
+    if len(notices) < FLASH_HEADER.size or not notices.startswith(FLASH_MAGIC):
+        raise DotMessageError(f"a list begins with {notices[:4].hex()}")
+    _, header_size = FLASH_HEADER.unpack_from(notices)
+    if not FLASH_HEADER.size <= header_size <= len(notices):
+        raise DotMessageError(f"a list of {len(notices)} bytes has a header of {header_size}")
+    files: list[int] = []
+    for piece in notices[header_size:]:
+        if piece == FILE_BEGINS:
+            files.append(0)
+        elif piece == FILE_GOES_ON and files:
+            files[-1] += 1
+    return tuple(files)

@@ -1,7 +1,7 @@
 """Samples of a Movella DOT: what its modes send, and how both its streams and its files lie in a journal.
 
-Everything that arrives is kept as it came, each notification as `u16 characteristic, u16 length, payload`. Stamps are
-the sensor's own microseconds, which begin anew every 71 minutes; there is no counter, so that loss shows in the stamps.
+Everything that arrives is kept as it came (`devices/notifications.py`). Stamps are the sensor's own microseconds, which
+begin anew every 71 minutes; there is no counter, so that loss shows in the stamps.
 """
 
 import math
@@ -11,15 +11,15 @@ from dataclasses import dataclass
 
 from devices.clock import Unwrapping
 from devices.dot.messages import Characteristic, DotMessage, DotMessageError, DotNotice
+from devices.notifications import NotificationFrames
 from devices.source import SourceInfo
 from devices.stream import Heard, Row
 
 DRIVER, VERSION = "movella-dot", "1"
-HEAD = struct.Struct("<HH")
-MOST_PAYLOAD = 512  # of an attribute, by the Bluetooth specification
 KNOWN = frozenset(Characteristic)
 TICK_HZ, TIME_BITS = 1e6, 32
 TURN_S = 2**TIME_BITS / TICK_HZ
+HALF_TURN = 1 << (TIME_BITS - 1)
 RAD = math.pi / 180.0
 PIECES = {0: "I", 1: "4f", 7: "3f", 8: "3f", 10: "H"}  # of a recorded sample, by the numbers that choose them
 CHOSEN = tuple(PIECES)
@@ -79,8 +79,8 @@ class RecordedSample:
 
     @classmethod
     def parsed(cls, data: bytes) -> "RecordedSample | None":
-        """Of a notice DATA, without its first byte; None where it is cut or says what cannot be."""
-        if len(data) < NUMBER.size + RECORDED.size:
+        """Of a notice DATA, without its first byte; None where it is not what was chosen or says what cannot be."""
+        if len(data) != NUMBER.size + RECORDED.size:
             return None
         (number,) = NUMBER.unpack_from(data)
         ticks, *values, status = RECORDED.unpack_from(data, NUMBER.size)
@@ -88,50 +88,12 @@ class RecordedSample:
         return None if sample is None else cls(number, sample, status)
 
 
-def framed(characteristic: int, payload: bytes) -> bytes:
-    """A notification as it is kept."""
-    return HEAD.pack(characteristic, len(payload)) + payload
-
-
-class Frames:
-    """Notifications in what was kept, in pieces of any size."""
-
-    def __init__(self) -> None:
-        self.damaged = 0
-        self._held = b""
-        self._is_lost = False
-
-    def feed(self, data: bytes) -> list[tuple[int, bytes]]:
-        """Characteristic and payload of those that are whole now."""
-        found, held, at = [], self._held + data, 0
-        while len(held) - at >= HEAD.size:
-            characteristic, length = HEAD.unpack_from(held, at)
-            if characteristic not in KNOWN or length > MOST_PAYLOAD:
-                self.damaged += not self._is_lost
-                self._is_lost = True
-                at += 1
-                continue
-            end = at + HEAD.size + length
-            if end > len(held):
-                break
-            found.append((characteristic, held[at + HEAD.size : end]))
-            self._is_lost = False
-            at = end
-        self._held = held[at:]
-        return found
-
-    def flush(self) -> None:
-        """Nothing follows: what was held back was cut."""
-        self.damaged += bool(self._held)
-        self._held = b""
-
-
 class DotFramer:
     """See `devices.stream.Framer`: what one sensor streams."""
 
     def __init__(self, info: SourceInfo) -> None:
         self.heard = Heard()
-        self._frames, self._damaged = Frames(), 0
+        self._frames, self._damaged = NotificationFrames(KNOWN), 0
         self._mode = _mode_of(info.settings)
         self._unwrapping, self._before_s = Unwrapping(TIME_BITS, TICK_HZ), 0.0
         self._is_first = True
@@ -185,7 +147,7 @@ class FileFramer:
         self.samples: dict[int, RecordedSample] = {}
         self.next = 0
         self.damaged = 0
-        self._frames = Frames()
+        self._frames = NotificationFrames(KNOWN)
 
     def feed(self, data: bytes) -> None:
         for characteristic, payload in self._frames.feed(data):
@@ -208,7 +170,7 @@ class FileFramer:
 
     def cut(self) -> None:
         """What follows does not join what came before."""
-        self._frames = Frames()
+        self._frames = NotificationFrames(KNOWN)
 
     def missing(self) -> tuple[range, ...]:
         """Numbers that were not heard, below the highest that was."""
@@ -224,34 +186,15 @@ class FileFramer:
         forces = sorted(math.hypot(*one.sample.force) for one in self.samples.values())
         return not forces or WORN_M_S2[0] < forces[len(forces) // 2] < WORN_M_S2[1]
 
-    def rows(self, near_s: float, tie_s: "Tie") -> tuple[list[Row], list[Row]]:
-        """Rows and orientations in order, as `Heard` has them, the clock unwrapped so that the first is near `near_s`.
-
-        `near_s` is of the host's clock, which `tie_s` leads to.
-        """
+    def rows(self) -> tuple[list[Row], list[Row]]:
+        """Rows and orientations in order, as `Heard` has them, the clock going on where it begins anew."""
         rows: list[Row] = []
         orientations: list[Row] = []
         ticks, last = 0, None
         for number in sorted(self.samples):
             sample = self.samples[number].sample
-            ticks += 0 if last is None else (sample.ticks - last + (1 << 31)) % (1 << 32) - (1 << 31)
-            if last is None:
-                device_s = sample.ticks / TICK_HZ
-                turns = round((near_s - tie_s.host_s(device_s)) / TURN_S)
-                ticks = sample.ticks + turns * (1 << TIME_BITS)
+            ticks += sample.ticks if last is None else (sample.ticks - last + HALF_TURN) % (2 * HALF_TURN) - HALF_TURN
             last = sample.ticks
             rows.append((ticks / TICK_HZ, *sample.rate, *sample.force))
             orientations.append((ticks / TICK_HZ, *sample.orientation))
         return rows, orientations
-
-
-@dataclass(frozen=True, slots=True)
-class Tie:
-    """How the host's seconds follow from a sensor's, as they were found before it recorded: see `ClockFit`."""
-
-    origin_s: float
-    offset_s: float
-    skew: float
-
-    def host_s(self, device_s: float) -> float:
-        return device_s + self.offset_s + self.skew * (device_s - self.origin_s)

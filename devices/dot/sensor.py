@@ -12,14 +12,18 @@ from collections.abc import Callable
 from devices.bluetooth import Announced, BluetoothLink, Radio
 from devices.dot.messages import (
     COMPANY,
+    HEADING_RESET,
     NAMES,
+    RECORDING_GROUP,
     Characteristic,
     DotAnswer,
     DotInfo,
     DotMessage,
     DotMessageError,
+    DotNotice,
     DotSettings,
     Order,
+    RecordedFile,
     StreamControl,
     answered,
     identifying,
@@ -28,11 +32,14 @@ from devices.dot.messages import (
     setting_rate,
     switching,
 )
-from devices.dot.samples import FULL, MODES, PLAIN, StreamMode, framed
+from devices.dot.samples import FULL, MODES, PLAIN, StreamMode
 from devices.live import SourceLostError, SourceRefusedError
+from devices.notifications import framed
 
 NOTICE_S = 2.0
 BUSY_S, BUSY_TRIES = 0.5, 6
+ANSWER_S, ANSWER_TRIES = 0.1, 12  # what is read may still be the answer to what was told before
+FULL_NOTICE = bytes([RECORDING_GROUP, DotNotice.FULL])
 MOST_WAITING = 20_000  # notifications that nobody fetched: five minutes
 
 
@@ -42,7 +49,8 @@ class DotRefusedError(SourceRefusedError):
 
 def is_dot(one: Announced) -> bool:
     """Whether what announces itself is a DOT."""
-    return one.name in NAMES and (not one.companies or COMPANY in one.companies)
+    is_named = one.name.casefold() in map(str.casefold, NAMES)  # printed both ways
+    return is_named and (not one.companies or COMPANY in one.companies)
 
 
 class DotSensor:
@@ -52,12 +60,23 @@ class DotSensor:
     ----------
     info, battery
         As it told last; None and nothing before it was connected.
+    has_heading_reset
+        Whether some program turned the headings of its orientations, which lasts until it is switched off.
+    cut_notices
+        How many notices arrived shorter than they say that they are: the link may carry too little.
+    is_full
+        Whether it has said since it was told to record last that its memory is full.
+    fetched_last
+        The file whose sending was ordered last.
     """
 
     def __init__(self, radio: Radio, announced: Announced) -> None:
         self.radio = radio
         self.info: DotInfo | None = None
         self.battery: float | None = None
+        self.has_heading_reset = self.is_full = False
+        self.cut_notices = 0
+        self.fetched_last: RecordedFile | None = None
         self.sent: list[bytes] = []
         self.arrived = threading.Event()
         self._announced = announced
@@ -82,6 +101,7 @@ class DotSensor:
         await self._link.connect()
         if self.info is None:
             self.info = DotInfo.parsed(await self._read(Characteristic.DEVICE_INFO))
+            self.has_heading_reset = await self._read(Characteristic.HEADING) == HEADING_RESET
         for characteristic in (
             Characteristic.NOTICE,
             Characteristic.BATTERY,
@@ -109,6 +129,7 @@ class DotSensor:
         if characteristic == Characteristic.BATTERY and payload:
             self.battery = min(payload[0], 100) / 100
         if characteristic == Characteristic.NOTICE:
+            self.is_full |= payload[:1] + payload[2:3] == FULL_NOTICE
             self._notices.put_nowait(payload)
         else:
             self._frames.append((self.radio.now_ns(), framed(characteristic, payload)))
@@ -197,11 +218,20 @@ class DotSensor:
             if attempt:
                 await asyncio.sleep(BUSY_S)
             await self.tell(recording_order(order, data))
-            answer = await self.answer()
-            told = DotAnswer.UNKNOWN if answer is None else answered(order, answer)
+            told = await self._answered(order)
             if told is not DotAnswer.BUSY:
                 break
         return told
+
+    async def _answered(self, order: Order) -> DotAnswer:
+        for attempt in range(ANSWER_TRIES):
+            if attempt:
+                await asyncio.sleep(ANSWER_S)
+            answer = await self.answer()
+            told = DotAnswer.UNKNOWN if answer is None else answered(order, answer)
+            if told is not DotAnswer.UNKNOWN:
+                return told
+        return DotAnswer.UNKNOWN
 
     async def state(self) -> DotAnswer:
         """What its memory does; harmless whatever that is."""
@@ -228,15 +258,21 @@ class DotSensor:
                 raise SourceLostError(f"{self.name} was lost") from None
             return b""
 
+    def understood(self, payload: bytes) -> DotMessage | None:
+        """What a notice says; None where it arrived damaged."""
+        try:
+            return DotMessage.parsed(payload)
+        except DotMessageError:
+            self.cut_notices += len(payload) < 3 or len(payload) < payload[1] + 3
+            return None
+
     async def expect(self, is_meant: Callable[[DotMessage], bool], within_s: float = NOTICE_S) -> DotMessage | None:
         """The first notice of a kind; None where none comes in time."""
         loop = asyncio.get_running_loop()
         until_s = loop.time() + within_s
         while (left_s := until_s - loop.time()) > 0:
-            try:
-                message = DotMessage.parsed(await self.notice(left_s))
-            except DotMessageError:
-                continue
-            if is_meant(message):
+            payload = await self.notice(left_s)
+            message = self.understood(payload) if payload else None
+            if message is not None and is_meant(message):
                 return message
         return None

@@ -3,15 +3,18 @@
 import threading
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from enum import StrEnum
 
 import numpy as np
 
 from core.samples import ImuBlock, RecordingKind
-from devices.bluetooth import Radio
+from devices.bluetooth import Radio, Tick
 from devices.channels import READ_S
+from devices.dot.fetching import reached
+from devices.dot.memory import RECORD_HZ
 from devices.dot.messages import EMULATED, DotMessageError
-from devices.dot.samples import DRIVER, TURN_S, VERSION, DotFramer, StreamMode, Tie
+from devices.dot.samples import DRIVER, TURN_S, VERSION, DotFramer, StreamMode
 from devices.dot.sensor import DotSensor
 from devices.dot.synchronising import (
     RENEWED_S,
@@ -20,10 +23,11 @@ from devices.dot.synchronising import (
     SyncStage,
     Tell,
     end_synchronising,
+    let_go,
     refuse_while_recording,
     synchronise,
 )
-from devices.live import Keep, SensorDetails, SourceLostError, SourceRefusedError
+from devices.live import Keep, Quiet, SensorDetails, SourceLostError, SourceRefusedError, SourceRestartedError
 from devices.live_clock import LiveClock, LiveLine
 from devices.source import SourceInfo
 
@@ -31,21 +35,36 @@ LIVE_HZ, SLOWER_HZ = 60, 30
 GENERAL = 0
 
 
-def _tell_nobody(_stage: SyncStage, _sensor: str) -> None:
+def _tell_nobody(_stage: SyncStage, _sensor: str, _left_s: float) -> None:
     """Who synchronises in passing shows no steps."""
+
+
+class DotUse(StrEnum):
+    """What a group does."""
+
+    STREAMING = "streaming"
+    RECORDING = "recording"  # in its memories, or ready to; it sends nothing
 
 
 @dataclass(slots=True)
 class _Common:
-    """The clock that sensors were brought onto, by whom it is kept, and what is known of it."""
+    """The clock that sensors were brought onto, at which rate, by whom it is kept, and what is known of it."""
 
     synchronised: Synchronised
+    rate_hz: int
     members: set[str]
-    line: LiveLine
+    line: LiveLine = field(default_factory=LiveLine)
 
 
 class DotGroup:
     """Sensors that are worn together: they are synchronised before the first of them is read. Methods from any thread.
+
+    Attributes
+    ----------
+    use
+        Whether they stream, or are ready to record in their memories.
+    turn
+        So often they were brought to something else, and streams that go on do not join what came before.
 
     Parameters
     ----------
@@ -53,25 +72,46 @@ class DotGroup:
         The first one is the root of synchronising, and should be worn nearest to all others.
     rate_hz
         60, or 30 where the air is too full for that.
+    record_hz
+        Of what is recorded in memories. Where it is another, going over from one to the other synchronises anew. None:
+        nothing is to be recorded there.
     """
 
     def __init__(
-        self, radio: Radio, sensors: Sequence[DotSensor], rate_hz: int = LIVE_HZ, profile: int = GENERAL
+        self,
+        radio: Radio,
+        sensors: Sequence[DotSensor],
+        rate_hz: int = LIVE_HZ,
+        profile: int = GENERAL,
+        record_hz: int | None = RECORD_HZ,
     ) -> None:
         self.radio, self.sensors = radio, tuple(sensors)
-        self.rate_hz, self.profile = rate_hz, profile
+        self.rate_hz, self.profile, self.record_hz = rate_hz, profile, record_hz
+        self.use, self.turn = DotUse.STREAMING, 0
         self._common: _Common | None = None
         self._synchronising = threading.Lock()
 
     def sources(self) -> "tuple[DotSource, ...]":
         return tuple(DotSource(sensor, self) for sensor in self.sensors)
 
+    def set_root(self, name: str) -> None:
+        """Let this sensor be the one that all others follow, from the next time on: it is worn nearest to all."""
+        first = [sensor for sensor in self.sensors if sensor.name == name]
+        self.sensors = (*first, *(sensor for sensor in self.sensors if sensor.name != name))
+
     @property
     def is_synchronising(self) -> bool:
         return self._synchronising.locked()
 
-    def synchronise(self, tell: Tell = _tell_nobody) -> None:
-        """Bring all onto one clock, also once more; takes half a minute to two. Never while one of them is recorded.
+    @property
+    def is_recording_use(self) -> bool:
+        """Whether they are ready to record in their memories, or do, and send nothing."""
+        return self.use is DotUse.RECORDING
+
+    def synchronise(self, tell: Tell = _tell_nobody, tick: Tick | None = None) -> None:
+        """Bring all onto one clock, also once more, and stream; takes half a minute to two.
+
+        Never while one of them is recorded. What `tell` or `tick` (see `Radio.run`) raises ends it.
 
         Raises
         ------
@@ -81,14 +121,76 @@ class DotGroup:
             One cannot be synchronised, and says why.
         """
         with self._synchronising:
-            self._common = None
-            found = self.radio.run(synchronise(self.sensors, self.rate_hz, self.profile, tell))
-            self._common = _Common(found, {sensor.name for sensor in self.sensors}, LiveLine())
+            self._bring_together(self.rate_hz, tell, tick, must_stream=True)
+            self.use = DotUse.STREAMING
+
+    def make_ready_to_record(self, tell: Tell = _tell_nobody, tick: Tick | None = None) -> None:
+        """Bring all onto one clock at the rate that their memories record with; as `synchronise`.
+
+        Where they are on one at this rate, and are to be for long enough still, they only stop streaming.
+        """
+        rate_hz = self.record_hz or self.rate_hz
+        with self._synchronising:
+            if self.are_one_at(rate_hz):
+                self.turn += 1
+                self.radio.run(_silenced(self.sensors), tick)
+            elif len(self.sensors) > 1:
+                self._bring_together(rate_hz, tell, tick, must_stream=False)
+            else:
+                self.turn += 1
+                self.radio.run(_set_up(self.sensors[0], rate_hz, self.profile), tick)
+            self.use = DotUse.RECORDING
+
+    def fall_silent(self, tick: Tick | None = None) -> None:
+        """Stop streaming, on whatever clock they are: their memories can be asked then.
+
+        Raises
+        ------
+        SourceLostError
+            One is out of reach; some may go on streaming, and are taken for what they were.
+        DotRefusedError
+            One records.
+        """
+        with self._synchronising:
+            self.turn += 1
+            self.radio.run(_silenced(self.sensors), tick)
+            self.use = DotUse.RECORDING
+
+    @property
+    def is_ready_to_record(self) -> bool:
+        """Whether memories can record now, on a clock that holds for long enough still."""
+        is_one = len(self.sensors) == 1 or self.are_one_at(self.record_hz or self.rate_hz)
+        return self.is_recording_use and not self.is_synchronising and is_one
+
+    def stream_again(self, tell: Tell = _tell_nobody, tick: Tick | None = None) -> None:
+        """Go back from memories to streams; as `synchronise`."""
+        if len(self.sensors) > 1 and not self.are_one_at(self.rate_hz):
+            self.synchronise(tell, tick)
+            return
+        with self._synchronising:
+            self.turn += 1
+            for sensor in self.sensors:
+                self.radio.run(_streaming(sensor, self.rate_hz, self.profile), tick)
+            self.use = DotUse.STREAMING
+
+    def are_one_at(self, rate_hz: int) -> bool:
+        """Whether all are on one clock at this rate, for long enough still."""
+        common, left_s = self._common, self.renewal_due_s()
+        is_whole = common is not None and common.rate_hz == rate_hz and len(common.members) == len(self.sensors)
+        return is_whole and left_s is not None and left_s > 0
+
+    def _bring_together(self, rate_hz: int, tell: Tell, tick: Tick | None, *, must_stream: bool) -> None:
+        self._common = None
+        self.turn += 1
+        work = synchronise(self.sensors, rate_hz, self.profile, tell, must_stream=must_stream)
+        found = self.radio.run(work, tick)
+        self._common = _Common(found, rate_hz, {sensor.name for sensor in self.sensors})
 
     def end(self) -> None:
         """Let each have its own clock again, which spares the batteries."""
         with self._synchronising:
             self._common = None
+            self.turn += 1
             self.radio.run(end_synchronising(self.sensors))
 
     def prepare(self) -> None:
@@ -113,9 +215,29 @@ class DotGroup:
         return common.line if common is not None and sensor in common.members else None
 
     def leave(self, sensor: str) -> None:
-        """A sensor that was switched off has lost the common clock."""
+        """A sensor that was switched off, or let go, has lost the common clock."""
         if self._common is not None:
             self._common.members.discard(sensor)
+            if not self._common.members:
+                self._common = None
+
+
+async def _silenced(sensors: Sequence[DotSensor]) -> None:
+    for sensor in sensors:
+        await reached(sensor)
+        await refuse_while_recording(sensor)
+        await sensor.stop_stream()
+
+
+async def _set_up(sensor: DotSensor, rate_hz: int, profile: int) -> None:
+    await _silenced([sensor])
+    await sensor.set_up(rate_hz, profile)
+
+
+async def _streaming(sensor: DotSensor, rate_hz: int, profile: int) -> None:
+    await _set_up(sensor, rate_hz, profile)
+    sensor.taken()
+    await sensor.start_stream()
 
 
 class DotSource:
@@ -132,12 +254,12 @@ class DotSource:
     def __init__(self, sensor: DotSensor, group: DotGroup) -> None:
         self.sensor, self.group = sensor, group
         self._info = SourceInfo(DRIVER, VERSION, sensors=(sensor.name,))
-        self._mode: StreamMode | None = None
         self._framer: DotFramer | None = None
         self._clock, self._clock_name = LiveClock(), ""
         self._was_open = False
         self._clock_begun = 0  # so often its own clock is known to have begun anew
         self._keeps_link = False
+        self._turn = -1
 
     @property
     def info(self) -> SourceInfo:
@@ -150,6 +272,8 @@ class DotSource:
     def open(self) -> None:
         if self.group.is_synchronising:
             raise SourceLostError(f"{self.sensor.name} is being synchronised")
+        if self.group.is_recording_use:
+            return  # it sends nothing; once it is to, `read` says that it begins anew
         self._keeps_link = False
         try:
             if not self._was_open:
@@ -164,6 +288,7 @@ class DotSource:
 
     async def _opened(self) -> None:
         sensor, group = self.sensor, self.group
+        self._turn = group.turn
         await sensor.connect()
         await refuse_while_recording(sensor)
         mode = await sensor.streaming()
@@ -189,6 +314,8 @@ class DotSource:
             settings |= {"clock": name, "turn_s": TURN_S}
         if self._clock_begun:
             settings["clock_begun"] = self._clock_begun  # its stamps alone may seem to follow those before
+        if sensor.has_heading_reset:
+            settings["has_heading_reset"] = True
         if name != self._clock_name or not name:
             self._clock = LiveClock(group.line_of(sensor.name))
         self._clock.begin()
@@ -200,14 +327,12 @@ class DotSource:
 
     def read(self, keep: Keep) -> Sequence[ImuBlock]:
         radio, framer = self.group.radio, self._framer
-        if self.group.is_synchronising:
+        if self.group.is_synchronising or self.group.is_recording_use:
             radio.wait(threading.Event(), READ_S)
             return ()
-        if framer is None:
-            raise SourceLostError(f"{self.sensor.name} is closed")
-        if self.group.clock_of(self.sensor.name) != self._clock_name:
+        if framer is None or self._turn != self.group.turn:
             self._keeps_link = True
-            raise SourceLostError(f"{self.sensor.name} has another clock now")
+            raise SourceRestartedError(f"{self.sensor.name} sends anew")
         radio.wait(self.sensor.arrived, READ_S)
         data = b"".join(frame for _, frame in self.sensor.taken())
         if not data:
@@ -224,11 +349,6 @@ class DotSource:
         stamps_s = self._clock.stamp(rows[:, 0], now_s)
         return (ImuBlock(self.sensor.name, stamps_s, rows[:, 1:4], rows[:, 4:7]),)
 
-    def tie(self) -> Tie | None:
-        """How the host's time follows from the sensor's clock, as the stream has told so far; None: nothing has."""
-        fit = self._clock.fit
-        return None if fit is None else Tie(fit.origin_s, fit.offset_s, fit.skew)
-
     def close(self) -> None:
         self._framer = None
         if self._keeps_link or self.group.is_synchronising:
@@ -239,20 +359,32 @@ class DotSource:
     async def _closed(self) -> None:
         """One that is in reach is not needed any more; one that is lost goes on, and is looked for."""
         if self.sensor.is_up:
-            with suppress(SourceLostError):
-                await self.sensor.stop_stream()
+            self._was_open = False
+            is_synchronised = bool(self.group.clock_of(self.sensor.name))
+            self.group.leave(self.sensor.name)
+            await let_go(self.sensor, is_synchronised=is_synchronised)
         await self.sensor.disconnect()
 
     def details(self) -> Mapping[str, SensorDetails]:
-        info = self.sensor.info
-        if info is None:
+        sensor, group = self.sensor, self.group
+        if (info := sensor.info) is None:
             return {}
-        firmware = ".".join(map(str, info.firmware))
-        told = SensorDetails(info.model, info.serial, firmware, self.group.rate_hz, battery=self.sensor.battery)
-        return {self.sensor.name: told}
+        is_recording = group.is_recording_use
+        quiet = Quiet.SYNCHRONISING if group.is_synchronising else Quiet.IN_MEMORY if is_recording else None
+        told = SensorDetails(
+            info.model,
+            info.serial,
+            ".".join(map(str, info.firmware)),
+            group.record_hz if is_recording and group.record_hz else group.rate_hz,
+            battery=sensor.battery,
+            clock=group.clock_of(sensor.name),
+            quiet=quiet,
+        )
+        return {sensor.name: told}
 
     def identify(self, sensor: str) -> bool:
-        if sensor != self.sensor.name or self._framer is None or self.group.is_synchronising:
+        is_busy = self.group.is_synchronising or self.group.is_recording_use
+        if sensor != self.sensor.name or self._framer is None or is_busy:
             return False
         with suppress(SourceLostError):  # what is lost is noticed by whoever reads
             self.group.radio.run(self.sensor.identify())

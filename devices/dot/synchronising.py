@@ -1,16 +1,17 @@
 """Movella DOTs on one clock: the steps that their maker tells, the waits between them, and who did not follow.
 
-    each: is it synchronised, then stop that; rate and profile
+    each: is it synchronised, then stop that; rate and profile, which cannot be changed until that is stopped
     all: start, by the root's address; disconnect
     12 s later: connect again, one by one; the first thing asked is how it went
-    all: stream a second; clocks that are said to be one must be heard as one
+    all that are to stream: a second of it; clocks that are said to be one must be heard as one
 
 A failure is tried once more. The clocks part by about 2 ms in half an hour (Xsens DOT user manual 2021, 1 ppm): it is
 renewed then.
 """
 
 import asyncio
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -37,6 +38,8 @@ SYNCHRONISING_S = 14.0  # 12 until it is done, 14 until sensors are reached agai
 RECONNECT_S = 48.0  # for all of them, and then each once more
 SETTLES_S = 1.5  # from the connection to the question
 HEARD_S = 1.0
+TOLD_S = 0.5  # so often while all are left alone
+PREPARES_S, CONNECTS_S = 1.5, 3.0  # each, about
 APART_S = 0.1  # links differ by less; clocks that are not one, by more
 RENEWED_S = 1800.0
 TRIES = 2
@@ -51,33 +54,179 @@ class SyncStage(StrEnum):
     LISTENING = "listening"
 
 
-Tell = Callable[[SyncStage, str], None]
-"""Takes what is being done, and to which sensor, if to one."""
+Tell = Callable[[SyncStage, str, float], None]
+"""Takes what is being done, to which sensor, if to one, and for how many seconds still, about, until all is done.
+
+What it raises ends the synchronising, and nobody is left synchronised.
+"""
+
+
+class SyncFailure(StrEnum):
+    """Why a sensor did not come onto the common clock."""
+
+    LOST = "it was lost"
+    STAYS = "it stays synchronised as it was"
+    FEW_SAMPLES = "few samples"
+    SKEW_TOO_LARGE = "skew too large"
+    START_FAILED = "start failed"
+    NOT_STARTED = "not started"
+    UNKNOWN = "it does not tell"
+    NOT_BACK = "it did not come back"
+    SILENT = "it does not begin to measure"
+    NOT_HEARD = "it is not heard"
+    CUT = "what it sends arrives cut"
+    OTHER_CLOCK = "its clock is another"
+
+
+RESULTS = {
+    SyncResult.FEW_SAMPLES: SyncFailure.FEW_SAMPLES,
+    SyncResult.SKEW_TOO_LARGE: SyncFailure.SKEW_TOO_LARGE,
+    SyncResult.START_FAILED: SyncFailure.START_FAILED,
+    SyncResult.NOT_STARTED: SyncFailure.NOT_STARTED,
+    SyncResult.UNKNOWN: SyncFailure.UNKNOWN,
+}
 
 
 class NotSynchronisedError(SourceRefusedError):
-    """Sensors that did not come onto one clock, by name, and what each said."""
+    """Sensors that did not come onto one clock, by name, and why."""
 
-    def __init__(self, failed: "dict[str, str]") -> None:
+    def __init__(self, failed: Mapping[str, SyncFailure]) -> None:
         super().__init__(
             "{sensors} could not be synchronised",
             "Lay all sensors side by side near this computer, switch these off and on, then try again",
             sensors=", ".join(failed),
         )
-        self.failed = failed
+        self.failed = dict(failed)
 
 
 @dataclass(frozen=True, slots=True)
 class Synchronised:
-    """Sensors on one clock, which stream now, each in its mode. `name` tells this clock from any other."""
+    """Sensors on one clock; those that stream now, each in its mode. `name` tells this clock from any other."""
 
     name: str
     at_ns: int
     modes: dict[str, StreamMode]
 
 
-async def synchronise(sensors: Sequence[DotSensor], rate_hz: int, profile: int, tell: Tell) -> Synchronised:
+class _Synchronising:
+    """One try after the other."""
+
+    def __init__(self, sensors: Sequence[DotSensor], rate_hz: int, profile: int, tell: Tell) -> None:
+        self._sensors, self._rate_hz, self._profile, self._tell_whom = sensors, rate_hz, profile, tell
+        self._failed: dict[str, SyncFailure] = {}
+        self._started: list[DotSensor] = []
+        self._free_s = 0.0  # from then on those that were started can be reached
+
+    @property
+    def failed(self) -> Mapping[str, SyncFailure]:
+        return self._failed
+
+    async def has_succeeded(self) -> bool:
+        """Whether all sensors follow; where one does not, none is left synchronised."""
+        self._failed, self._started = {}, []
+        try:
+            await self._prepare()
+            if not self._failed:
+                await self._start()
+                await self._bring_back()
+        except BaseException:
+            await self.give_up()
+            raise
+        if self._failed:
+            await self.give_up()
+        return not self._failed
+
+    async def give_up(self) -> None:
+        if self._started:
+            await asyncio.sleep(max(self._free_s - asyncio.get_running_loop().time(), 0.0))
+        for sensor in self._sensors:
+            if sensor.is_up or sensor in self._started:
+                await _given_up(sensor)
+
+    def fail(self, failed: Mapping[str, SyncFailure]) -> None:
+        self._failed |= failed
+
+    def tell(self, stage: SyncStage, sensor: str = "", left_s: float = 0.0) -> None:
+        self._tell_whom(stage, sensor, left_s + HEARD_S)
+
+    async def _prepare(self) -> None:
+        for number, sensor in enumerate(self._sensors):
+            left = len(self._sensors)
+            left_s = (left - number) * PREPARES_S + SYNCHRONISING_S + left * CONNECTS_S
+            self.tell(SyncStage.PREPARING, sensor.name, left_s)
+            try:
+                await sensor.connect()
+                await refuse_while_recording(sensor)
+                if sensor.info is None or not sensor.info.can_synchronise:
+                    raise DotRefusedError(
+                        "{sensor} is too old to be synchronised", "Update its firmware", sensor=sensor.name
+                    )
+                await sensor.stop_stream()
+                if not await _is_stopped(sensor):
+                    self._failed[sensor.name] = SyncFailure.STAYS
+                    continue
+                await sensor.set_up(self._rate_hz, self._profile)
+            except (SourceLostError, DotMessageError):
+                self._failed[sensor.name] = SyncFailure.LOST
+
+    async def _start(self) -> None:
+        """Let the clocks find each other."""
+        loop, root = asyncio.get_running_loop(), self._sensors[0].info
+        assert root is not None
+        for sensor in self._sensors:
+            try:
+                await sensor.tell(start_sync(root.mac))
+                self._free_s = loop.time() + SYNCHRONISING_S
+                self._started.append(sensor)
+            except SourceLostError:
+                self._failed[sensor.name] = SyncFailure.LOST
+        await asyncio.sleep(HELD_S)
+        for sensor in self._sensors:
+            await sensor.disconnect()
+        back_s = len(self._sensors) * CONNECTS_S
+        while (left_s := self._free_s - loop.time()) > 0:
+            self.tell(SyncStage.WAITING, "", left_s + back_s)
+            await asyncio.sleep(min(TOLD_S, left_s))
+
+    async def _bring_back(self) -> None:
+        """Connect again, one by one, and ask each how it went."""
+        until_s = asyncio.get_running_loop().time() + RECONNECT_S
+        for number, sensor in enumerate(self._sensors):
+            left_s = (len(self._sensors) - number) * CONNECTS_S
+            problem = await self._came_through(sensor, until_s, left_s)
+            if problem is not None:
+                self._failed.setdefault(sensor.name, problem)
+
+    async def _came_through(self, sensor: DotSensor, until_s: float, left_s: float) -> SyncFailure | None:
+        """Connect and ask for the result before anything else; what went wrong, if something did."""
+        loop = asyncio.get_running_loop()
+        while True:
+            self.tell(SyncStage.CONNECTING, sensor.name, left_s)
+            try:
+                await sensor.connect_barely()
+                await asyncio.sleep(SETTLES_S)
+                answer = await sensor.answer()
+                result = SyncResult.UNKNOWN if answer is None else SyncResult.of(answer)
+                if result is not SyncResult.GOOD:
+                    return RESULTS[result]
+                await sensor.connect()
+                return None
+            except (SourceLostError, DotMessageError):
+                await sensor.disconnect()
+                if loop.time() > until_s:
+                    return SyncFailure.NOT_BACK
+                await asyncio.sleep(0.5)
+
+
+async def synchronise(
+    sensors: Sequence[DotSensor], rate_hz: int, profile: int, tell: Tell, *, must_stream: bool = True
+) -> Synchronised:
     """Bring sensors onto one clock, the first of them being the root: the one nearest to all others.
+
+    Parameters
+    ----------
+    must_stream
+        Else they are left idle, for a rate that nobody streams with.
 
     Raises
     ------
@@ -86,108 +235,61 @@ async def synchronise(sensors: Sequence[DotSensor], rate_hz: int, profile: int, 
     SourceRefusedError
         One records in its memory, does not take its rate, or cannot synchronise.
     """
-    failed: dict[str, str] = {}
+    trying = _Synchronising(sensors, rate_hz, profile, tell)
     for _ in range(TRIES):
-        failed = await _prepared(sensors, rate_hz, profile, tell)
-        if not failed:
-            failed = await _started(sensors, tell)
-        if not failed:
-            tell(SyncStage.LISTENING, "")
+        if not await trying.has_succeeded():
+            continue
+        modes: dict[str, StreamMode] = {}
+        if must_stream:
+            trying.tell(SyncStage.LISTENING)
             modes, failed = await _heard_as_one(sensors)
-            if not failed:
-                root = sensors[0].info
-                assert root is not None
-                at_ns = sensors[0].radio.now_ns()
-                return Synchronised(f"{root.mac} {at_ns}", at_ns, modes)
-        for sensor in sensors:
-            await _given_up(sensor)
-    raise NotSynchronisedError(failed)
-
-
-async def _prepared(sensors: Sequence[DotSensor], rate_hz: int, profile: int, tell: Tell) -> dict[str, str]:
-    failed = {}
-    for sensor in sensors:
-        tell(SyncStage.PREPARING, sensor.name)
-        try:
-            await sensor.connect()
-            await refuse_while_recording(sensor)
-            if sensor.info is None or not sensor.info.can_synchronise:
-                raise DotRefusedError(
-                    "{sensor} is too old to be synchronised", "Update its firmware", sensor=sensor.name
-                )
-            await sensor.stop_stream()
-            if not await _is_stopped(sensor):
-                failed[sensor.name] = "it stays synchronised as it was"
-            await sensor.set_up(rate_hz, profile)
-        except (SourceLostError, DotMessageError):
-            failed[sensor.name] = "it was lost"
-    return failed
+            if failed:
+                trying.fail(failed)
+                await trying.give_up()
+                continue
+        root = sensors[0].info
+        assert root is not None
+        at_ns = sensors[0].radio.now_ns()
+        return Synchronised(f"{root.mac} {at_ns}", at_ns, modes)
+    raise NotSynchronisedError(trying.failed)
 
 
 async def refuse_while_recording(sensor: DotSensor) -> None:
-    """Raise unless its memory is idle: whatever is set while it records cuts the file."""
+    """Raise unless its memory is known to be idle: whatever is set while it records cuts the file.
+
+    Raises
+    ------
+    DotRefusedError
+        It records, or does not tell.
+    SourceLostError
+        It is out of reach.
+    """
     state = await sensor.state()
     if state is DotAnswer.RECORDING:
         raise DotRefusedError(
             "{sensor} is recording in its memory", "Stop that recording, and fetch it, first", sensor=sensor.name
         )
+    has_memory = sensor.info is not None and sensor.info.can_synchronise  # both came with the same firmware
+    if state is DotAnswer.UNKNOWN and has_memory:
+        raise DotRefusedError("{sensor} does not tell what it does", "Try again", sensor=sensor.name)
+
+
+async def has_own_clock(sensor: DotSensor) -> bool:
+    """Whether it says that it is not synchronised."""
+    await sensor.tell(SYNC_STATUS)
+    told = await sensor.expect(lambda notice: notice in (IS_SYNCHRONISED, IS_NOT_SYNCHRONISED))
+    return told == IS_NOT_SYNCHRONISED
 
 
 async def _is_stopped(sensor: DotSensor) -> bool:
     """Whether it is not synchronised, or not any more."""
-    await sensor.tell(SYNC_STATUS)
-    told = await sensor.expect(lambda notice: notice in (IS_SYNCHRONISED, IS_NOT_SYNCHRONISED))
-    if told == IS_NOT_SYNCHRONISED:
+    if await has_own_clock(sensor):
         return True
     await sensor.tell(STOP_SYNC)
     return await sensor.expect(lambda notice: notice == SYNC_STOPPED) is not None
 
 
-async def _started(sensors: Sequence[DotSensor], tell: Tell) -> dict[str, str]:
-    """Let the clocks find each other, and ask each sensor how it went."""
-    root = sensors[0].info
-    assert root is not None
-    failed = {}
-    for sensor in sensors:
-        try:
-            await sensor.tell(start_sync(root.mac))
-        except SourceLostError:
-            failed[sensor.name] = "it was lost"
-    await asyncio.sleep(HELD_S)
-    for sensor in sensors:
-        await sensor.disconnect()
-    tell(SyncStage.WAITING, "")
-    await asyncio.sleep(SYNCHRONISING_S - HELD_S)
-    until_s = asyncio.get_running_loop().time() + RECONNECT_S
-    for sensor in sensors:
-        tell(SyncStage.CONNECTING, sensor.name)
-        problem = await _came_through(sensor, until_s)
-        if problem:
-            failed.setdefault(sensor.name, problem)
-    return failed
-
-
-async def _came_through(sensor: DotSensor, until_s: float) -> str:
-    """Connect and ask for the result before anything else; what went wrong, or nothing."""
-    loop = asyncio.get_running_loop()
-    while True:
-        try:
-            await sensor.connect_barely()
-            await asyncio.sleep(SETTLES_S)
-            answer = await sensor.answer()
-            result = SyncResult.UNKNOWN if answer is None else SyncResult.of(answer)
-            if result is not SyncResult.GOOD:
-                return result.name.lower().replace("_", " ")
-            await sensor.connect()
-            return ""
-        except (SourceLostError, DotMessageError):
-            await sensor.disconnect()
-            if loop.time() > until_s:
-                return "it did not come back"
-            await asyncio.sleep(0.5)
-
-
-async def _heard_as_one(sensors: Sequence[DotSensor]) -> tuple[dict[str, StreamMode], dict[str, str]]:
+async def _heard_as_one(sensors: Sequence[DotSensor]) -> tuple[dict[str, StreamMode], dict[str, SyncFailure]]:
     """Let all stream, and hold their clocks against each other by what arrives: one that says so may not be on it."""
     modes, late_s, failed = {}, {}, {}
     for sensor in sensors:
@@ -195,24 +297,25 @@ async def _heard_as_one(sensors: Sequence[DotSensor]) -> tuple[dict[str, StreamM
             modes[sensor.name] = await sensor.start_stream()
             sensor.taken()
         except (SourceLostError, DotRefusedError):
-            failed[sensor.name] = "it does not begin to measure"
+            failed[sensor.name] = SyncFailure.SILENT
     await asyncio.sleep(HEARD_S)
     for sensor in sensors:
         if sensor.name in modes and sensor.name not in failed:
-            if (least_s := _least_late_s(sensor, modes[sensor.name])) is None:
-                failed[sensor.name] = "it is not heard"
+            least_s, is_cut = _least_late_s(sensor, modes[sensor.name])
+            if least_s is None:
+                failed[sensor.name] = SyncFailure.CUT if is_cut else SyncFailure.NOT_HEARD
             else:
                 late_s[sensor.name] = least_s
     if late_s:
         first_s = next(iter(late_s.values()))
         off_s = {name: (one_s - first_s + TURN_S / 2) % TURN_S - TURN_S / 2 for name, one_s in late_s.items()}
         middle_s = float(np.median(list(off_s.values())))
-        failed |= {name: "its clock is another" for name, one_s in off_s.items() if abs(one_s - middle_s) > APART_S}
+        failed |= {name: SyncFailure.OTHER_CLOCK for name, one_s in off_s.items() if abs(one_s - middle_s) > APART_S}
     return modes, failed
 
 
-def _least_late_s(sensor: DotSensor, mode: StreamMode) -> float | None:
-    """How much later than its own clock says its samples arrived, at the least; None where none did."""
+def _least_late_s(sensor: DotSensor, mode: StreamMode) -> tuple[float | None, bool]:
+    """How much later than its own clock says its samples arrived, at the least, and whether some arrived damaged."""
     framer = DotFramer(SourceInfo("", "", settings={"mode": mode.number}))
     least_s = None
     for came_ns, frame in sensor.taken():
@@ -221,18 +324,30 @@ def _least_late_s(sensor: DotSensor, mode: StreamMode) -> float | None:
             one_s = came_ns / 1e9 - row[0]
             least_s = one_s if least_s is None else min(least_s, one_s)
         framer.heard.rows.clear()
-    return least_s
+    return least_s, framer.heard.damaged > 0
 
 
 async def _given_up(sensor: DotSensor) -> None:
     """As if nothing had been begun, as far as it can be reached."""
     try:
         await sensor.connect()
-        await sensor.stop_stream()
-        await sensor.tell(STOP_SYNC)
-        await sensor.expect(lambda notice: notice == SYNC_STOPPED)
     except (SourceLostError, DotMessageError):
         await sensor.disconnect()
+        return
+    await let_go(sensor, is_synchronised=True)
+
+
+async def let_go(sensor: DotSensor, *, is_synchronised: bool) -> None:
+    """Let one that is connected send nothing, and have a clock of its own, which spares its battery.
+
+    One that records is let be. Never raises; its link stays.
+    """
+    with suppress(SourceLostError, SourceRefusedError, DotMessageError):
+        await refuse_while_recording(sensor)
+        await sensor.stop_stream()
+        if is_synchronised:
+            await sensor.tell(STOP_SYNC)
+            await sensor.expect(lambda notice: notice == SYNC_STOPPED)
 
 
 async def end_synchronising(sensors: Sequence[DotSensor]) -> None:

@@ -1,9 +1,14 @@
-"""Air that is not there: links to emulated sensors, behind the interface that bleak has for backends."""
+"""Air that is not there: links to emulated sensors, behind the interface that bleak has for backends.
+
+What a sensor is to its link stands here once; Bumble's virtual radio (tests) carries the same sensors.
+"""
 
 import asyncio
 from collections.abc import Callable, Sequence
-from typing import Any, ClassVar
+from dataclasses import dataclass
+from typing import Any, ClassVar, Protocol
 
+import numpy as np
 from bleak.args import SizedBuffer
 from bleak.assigned_numbers import CharacteristicPropertyName
 from bleak.backends.characteristic import BleakGATTCharacteristic
@@ -13,45 +18,86 @@ from bleak.backends.service import BleakGATTService, BleakGATTServiceCollection
 from bleak.exc import BleakError
 
 from devices.bluetooth import Announced
-from devices.emulators.dot import EmulatedDot
 
-BASE = "1517{:04x}-4947-11e9-8646-d663bd873d93"
-NOTIFYING = (0x1004, 0x2002, 0x2003, 0x2004, 0x3001, 0x7003)
-CHARACTERISTICS = (0x1001, 0x1002, 0x2001, 0x2006, 0x7001, 0x7002, *NOTIFYING)
 INTERVAL_S = 0.015  # of a connection
 CONNECTS_S = 0.3
 OPERATION_S = 0.03
 APART_S = 1e-6  # of two notifications at least: timers of one instant ring in any order
+MTU = 247  # what both sides of a link carry at once, and three bytes less of a value
+
+Notification = tuple[int, bytes]
+
+
+@dataclass(frozen=True, slots=True)
+class EmulatedCharacteristic:
+    """Part of a peripheral's table; its number is the sensor's own affair."""
+
+    number: int
+    uuid: str
+    service_uuid: str
+    properties: tuple[CharacteristicPropertyName, ...]
+
+
+class EmulatedPeripheral(Protocol):
+    """A sensor that is not there, as its link sees it. `notifications` is asked every few milliseconds."""
+
+    mac: bytes
+    local_name: str
+    companies: tuple[int, ...]
+    characteristics: Sequence[EmulatedCharacteristic]
+    subscribed: set[int]
+    is_up: bool
+    chance: np.random.Generator
+
+    def may_connect(self) -> bool: ...
+
+    def connected(self) -> None: ...
+
+    def disconnected(self) -> None: ...
+
+    def read(self, characteristic: int) -> bytes: ...
+
+    def write(self, characteristic: int, data: bytes) -> None: ...
+
+    def notifications(self) -> Sequence[Notification]: ...
+
+    def drops_at(self, operations: int) -> bool:
+        """Whether the link is to be lost at this operation."""
+
+    def drops_after(self, notification: Notification) -> bool:
+        """Whether the link is to be lost before this is sent."""
 
 
 class Air:
     """Sensors in reach. `backend` is what bleak is given; a notification is `latency_s` late at least, each its own."""
 
-    def __init__(self, sensors: Sequence[EmulatedDot], latency_s: Sequence[float] = ()) -> None:
-        self.sensors = {_address(sensor): sensor for sensor in sensors}
+    def __init__(self, sensors: Sequence[EmulatedPeripheral], latency_s: Sequence[float] = ()) -> None:
+        self.sensors = {address_of(sensor): sensor for sensor in sensors}
         self.latency_s = dict(zip(self.sensors, latency_s or [0.005] * len(sensors), strict=True))
-        for sensor in sensors:
-            sensor.meet(sensors)
         self.clients: dict[str, FakeClient] = {}
         air = self
 
-        class Backend(FakeClient):
+        class ThisAir(FakeClient):
             AIR = air
 
-        self.backend: type[BaseBleakClient] = Backend
+        self.backend: type[BaseBleakClient] = ThisAir
 
     def announced(self) -> list[Announced]:
         """Who announces itself."""
-        free = [address for address, one in self.sensors.items() if one.may_connect() and not one.is_up]
-        return [Announced("Movella DOT", address, (0x0886,), address) for address in free]
+        free = {address: one for address, one in self.sensors.items() if one.may_connect() and not one.is_up}
+        return [
+            Announced(one.local_name, address, one.companies, address, rssi_dbm=-50 - 4 * place)
+            for place, (address, one) in enumerate(free.items())
+        ]
 
-    def drop(self, sensor: EmulatedDot) -> None:
+    def drop(self, sensor: EmulatedPeripheral) -> None:
         """Let the link be lost, if there is one."""
-        if (client := self.clients.get(_address(sensor))) is not None:
+        if (client := self.clients.get(address_of(sensor))) is not None:
             client.lose()
 
 
-def _address(sensor: EmulatedDot) -> str:
+def address_of(sensor: EmulatedPeripheral) -> str:
+    """A sensor's address as it is written."""
     return ":".join(f"{byte:02X}" for byte in sensor.mac)
 
 
@@ -75,11 +121,11 @@ class FakeClient(BaseBleakClient):
 
     @property
     def name(self) -> str:
-        return "Movella DOT"
+        return self._sensor.local_name
 
     @property
     def mtu_size(self) -> int:
-        return 247
+        return MTU
 
     @property
     def is_connected(self) -> bool:
@@ -92,7 +138,7 @@ class FakeClient(BaseBleakClient):
         self._sensor.connected()
         self._is_connected = True
         self.AIR.clients[self.address] = self
-        self.services = _services()
+        self.services = _services(self._sensor)
         self._task = asyncio.get_running_loop().create_task(self._hear())
 
     async def disconnect(self) -> None:
@@ -111,15 +157,10 @@ class FakeClient(BaseBleakClient):
 
     async def _hear(self) -> None:
         loop = asyncio.get_running_loop()
-        sent_of_file = 0
         while True:
             await asyncio.sleep(INTERVAL_S)
-            drops = self._sensor.faults.drops_export_after
             for characteristic, data in self._sensor.notifications():
-                sent_of_file += characteristic == 0x7003 and data[2] == 0x71
-                if drops and sent_of_file >= drops[0]:
-                    drops.pop(0)
-                    self._sensor.stay_away(self._sensor.faults.unreachable_after_drop_s)
+                if self._sensor.drops_after((characteristic, data)):
                     self.lose()
                     return
                 late_s = self.AIR.latency_s[self.address] + self._sensor.chance.exponential(0.002)
@@ -132,10 +173,8 @@ class FakeClient(BaseBleakClient):
 
     async def _operate(self) -> None:
         await asyncio.sleep(OPERATION_S)
-        drops = self._sensor.faults.drops_after
         self._operations += 1
-        if drops and self._is_connected and self._operations >= drops[0]:
-            drops.pop(0)
+        if self._is_connected and self._sensor.drops_at(self._operations):
             self.lose()
         if not self._is_connected:
             raise BleakError("not connected")
@@ -177,14 +216,17 @@ class FakeClient(BaseBleakClient):
         raise NotImplementedError
 
 
-def _services() -> BleakGATTServiceCollection:
-    """As a DOT has them; a characteristic's handle is the part of its identifier that differs."""
+def _services(sensor: EmulatedPeripheral) -> BleakGATTServiceCollection:
+    """As a sensor has them; a characteristic's handle is the number that the sensor knows it by."""
     services = BleakGATTServiceCollection()
-    for number in sorted({one >> 8 << 8 for one in CHARACTERISTICS}):
-        service = BleakGATTService(None, number, BASE.format(number))
-        services.add_service(service)
-        for one in (each for each in CHARACTERISTICS if each >> 8 << 8 == number):
-            properties: list[CharacteristicPropertyName] = ["notify"] if one in NOTIFYING else ["read", "write"]
-            characteristic = BleakGATTCharacteristic(None, one, BASE.format(one), properties, lambda: 244, service)
-            services.add_characteristic(characteristic)
+    by_uuid: dict[str, BleakGATTService] = {}
+    for one in sensor.characteristics:
+        if one.service_uuid not in by_uuid:
+            by_uuid[one.service_uuid] = BleakGATTService(None, -len(by_uuid) - 1, one.service_uuid)
+            services.add_service(by_uuid[one.service_uuid])
+        properties = list(one.properties)
+        service = by_uuid[one.service_uuid]
+        services.add_characteristic(
+            BleakGATTCharacteristic(None, one.number, one.uuid, properties, lambda: MTU - 3, service)
+        )
     return services

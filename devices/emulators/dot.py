@@ -5,14 +5,35 @@ Its messages are laid out here once more, from the printed specification and not
 
 import struct
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
+from bleak.assigned_numbers import CharacteristicPropertyName
+
+from devices.emulators.bluetooth import EmulatedCharacteristic, Notification
 
 Motion = Callable[[float], Sequence[float]]
 """Orientation (4), force in m/s2 (3) and rate in deg/s (3) at an instant of the host's clock, ns."""
-Notification = tuple[int, bytes]
 
+BASE = "1517{:04x}-4947-11e9-8646-d663bd873d93"
+PROPERTIES: dict[int, tuple[CharacteristicPropertyName, ...]] = {
+    0x1001: ("read",),
+    0x1002: ("read", "write"),
+    0x1004: ("notify",),
+    0x2001: ("read", "write"),
+    0x2002: ("notify",),
+    0x2003: ("notify",),
+    0x2004: ("notify",),
+    0x2006: ("read", "write"),
+    0x3001: ("read", "notify"),
+    0x7001: ("write",),
+    0x7002: ("read",),
+    0x7003: ("notify",),
+}
+CHARACTERISTICS = [
+    EmulatedCharacteristic(number, BASE.format(number), BASE.format(number & 0xFF00), properties)
+    for number, properties in PROPERTIES.items()
+]
 MODE_SIZES = {26: (0x2002, 63), 21: (0x2003, 40)}
 STEPS_US = {60: 16667, 30: 33333, 120: 8333}
 TURN_US = 1 << 32
@@ -20,7 +41,8 @@ SYNC_TAKES_NS = 12_000_000_000
 TOGETHER_NS = 1_500_000_000
 IDLE, RECORDING, EXPORTING = 0x06, 0x40, 0x70
 SENT_AT_ONCE = 8  # notices of a file in one step
-MOST_SAMPLES = 16_000_000 // 62
+MEMORY = 16_000_000  # bytes
+MOST_SAMPLES = MEMORY // 62
 
 
 @dataclass
@@ -36,7 +58,7 @@ class DotFaults:
     has_26
         Whether its firmware knows that mode.
     again
-        Whether it sends a file from the middle on, once the link was lost.
+        Whether it sends a file from the middle on, also while it sends nothing; while it sends it does in any case.
     """
 
     loss: float = 0.0
@@ -48,9 +70,15 @@ class DotFaults:
     stale_s: float = 0.0
     has_26: bool = True
     again: bool = True
-    tells_end: bool = True
-    """Whether it takes an order to send what lies behind the last sample, and answers that nothing does."""
     busy: int = 0
+    stale_answers: int = 0
+    """So many readings of an answer give what was answered before."""
+    ends_after_s: float = 0.0
+    """So long it writes what it holds, once told to end a recording."""
+    full_by_notice: bool = False
+    """Whether only a notice says that its memory is full."""
+    echoes: bool = False
+    """Whether the result of synchronising is told with what it answers: printed both ways."""
     drops_after: list[int] = field(default_factory=list)
     """After so many operations each the link is lost."""
     drops_export_after: list[int] = field(default_factory=list)
@@ -62,15 +90,32 @@ class DotFaults:
 
 @dataclass
 class EmulatedFile:
-    """A recording in its memory: ticks and values (10) of each sample."""
+    """A recording in its memory: ticks and values (10) of each sample, and when it was taken by the host's clock."""
 
     utc_s: int
+    timer_s: int
     ticks: list[int]
-    values: list[Sequence[float]]
+    values: Sequence[Sequence[float]]
+    taken_s: list[float]
+
+
+@dataclass(frozen=True, slots=True)
+class DotClock:
+    """Microseconds since power-on, by a quartz that is off by its skew."""
+
+    power_on_ns: float
+    skew: float
+    drift_us: float = 0.0
+
+    def us(self, at_ns: float) -> float:
+        return (at_ns - self.power_on_ns) * (1.0 + self.skew) / 1e3 + self.drift_us
+
+    def when_ns(self, clock_us: float) -> float:
+        return self.power_on_ns + (clock_us - self.drift_us) * 1e3 / (1.0 + self.skew)
 
 
 class EmulatedDot:
-    """Its clocks run by `now_ns`. `notifications` is called every few milliseconds, whether or not a link is up.
+    """An `EmulatedPeripheral` whose clocks run by `now_ns`; it measures whether or not a link is up.
 
     Attributes
     ----------
@@ -90,13 +135,15 @@ class EmulatedDot:
         says_so: bool = True,
     ) -> None:
         self.mac = bytes([0xD4, 0x22, 0xCD, 0x00, 0x00, number + 1])
+        self.local_name = "Movella DOT"
+        self.companies: tuple[int, ...] = (0x0886,)
+        self.characteristics: Sequence[EmulatedCharacteristic] = CHARACTERISTICS
         self.faults = faults or DotFaults()
         self.chance = np.random.default_rng(number)
         self._motion, self._now_ns = motion, now_ns
         self._code = b"EMUDOT" if says_so else b"XS-T02"
-        self._power_on_ns, self._skew = now_ns() - int(self.chance.integers(10**9, 4 * 10**12)), skew
-        self._root: EmulatedDot | None = None
-        self._drift_us = 0.0
+        self._own = DotClock(now_ns() - int(self.chance.integers(10**9, 4 * 10**12)), skew)
+        self._common: DotClock | None = None  # the root's as it was when they were synchronised
         self.settings = bytearray(struct.pack("<24xHB5x", 30, 0))
         self.is_streaming, self.mode = False, 26
         self._next = 0
@@ -105,7 +152,7 @@ class EmulatedDot:
         self.subscribed: set[int] = set()
         self.blinked = 0
         self.battery = 85
-        self._answer = b""
+        self._answer = self._answer_before = b""
         self._notices: list[bytes] = []
         self._sync_root: bytes | None = None
         self._sync_from_ns = 0
@@ -115,24 +162,27 @@ class EmulatedDot:
         self.files: list[EmulatedFile] = []
         self.erased: list[EmulatedFile] = []
         self.room = MOST_SAMPLES
-        self._record_utc_s = self._record_from = 0
+        self._record_utc_s = self._record_from = self._timer_s = 0
+        self._ends_ns: int | None = None
+        self._told_end_ns = 0
         self._export: list[bytes] = []
         self._exported: EmulatedFile | None = None
-        self._begun_in_link = False
         self.unreadable: set[int] = set()  # samples of a file that it never sends
         self.unheard: list[int] = []  # and some that are lost on their way, once each
-        self.exported = 0  # samples of files
+        self.exported = self._sent_of_file = 0  # samples of files, ever and since it was connected
         self.cut_recordings = 0  # by settings that were written meanwhile
 
-    def meet(self, peers: "Sequence[EmulatedDot]") -> None:
-        """These are the sensors that it may be synchronised with, itself among them."""
-        self._peers = peers
+    @staticmethod
+    def meet(dots: "Sequence[EmulatedDot]") -> None:
+        """Let these sensors be synchronised with one another."""
+        for dot in dots:
+            dot._peers = dots
 
     def restart(self) -> None:
         """It was switched off and on: it does nothing, and its clock begins anew. What it recorded is there."""
         self._end_recording()
-        self.is_streaming, self._root, self._sync_root = False, None, None
-        self._power_on_ns = self._now_ns()
+        self.is_streaming, self._common, self._sync_root = False, None, None
+        self._own = replace(self._own, power_on_ns=self._now_ns())
 
     def stay_away(self, seconds: float) -> None:
         """It is out of reach from now on."""
@@ -142,20 +192,15 @@ class EmulatedDot:
 
     def begin_clock_at(self, ticks: int) -> None:
         """Let its clock show this now."""
-        self._power_on_ns = self._now_ns() - ticks * 1000
+        self._own = replace(self._own, power_on_ns=self._now_ns() - ticks * 1000)
 
     def _clock_us(self, at_ns: float) -> float:
-        if self._root is not None:
-            return self._root.own_us(at_ns) + self._drift_us
-        return self.own_us(at_ns)
-
-    def own_us(self, at_ns: float) -> float:
-        return (at_ns - self._power_on_ns) * (1.0 + self._skew) / 1e3
+        clock = self._common or self._own
+        return clock.us(at_ns)
 
     def _taken_ns(self, clock_us: float) -> float:
-        clock = self._root or self
-        own_us = clock_us - (self._drift_us if self._root is not None else 0.0)
-        return clock._power_on_ns + own_us * 1e3 / (1.0 + clock._skew)
+        clock = self._common or self._own
+        return clock.when_ns(clock_us)
 
     @property
     def rate_hz(self) -> int:
@@ -167,11 +212,28 @@ class EmulatedDot:
         is_synchronising = self._sync_root is not None and self._now_ns() - self._sync_from_ns < SYNC_TAKES_NS
         return not is_synchronising and self._now_ns() >= self.faults.unreachable_until_ns
 
+    def drops_at(self, operations: int) -> bool:
+        drops = self.faults.drops_after
+        is_due = bool(drops) and operations >= drops[0]
+        if is_due:
+            drops.pop(0)
+        return is_due
+
+    def drops_after(self, notification: Notification) -> bool:
+        self._sent_of_file += notification[0] == 0x7003 and notification[1][2] == 0x71
+        drops = self.faults.drops_export_after
+        is_due = bool(drops) and self._sent_of_file >= drops[0]
+        if is_due:
+            drops.pop(0)
+            self.stay_away(self.faults.unreachable_after_drop_s)
+        return is_due
+
     def connected(self) -> None:
+        self._sent_of_file = 0
         self._end_synchronising()
         if self.is_streaming:
             self._streamed()  # what was sent meanwhile nobody heard
-        self.is_up, self._begun_in_link = True, False
+        self.is_up = True
 
     def disconnected(self) -> None:
         self.is_up = False
@@ -183,7 +245,7 @@ class EmulatedDot:
 
     def read(self, characteristic: int) -> bytes:
         if characteristic != 0x7002 and self._must_read_first:
-            self._root = None  # anything else first breaks it
+            self._common = None  # anything else first breaks it
         self._must_read_first = False
         match characteristic:
             case 0x1001:
@@ -193,15 +255,21 @@ class EmulatedDot:
                 return bytes(self.settings)
             case 0x2001:
                 return bytes([1, self.is_streaming, self.mode])
+            case 0x2006:
+                return b"\x08\x00"
             case 0x3001:
                 return bytes([self.battery, 0])
             case 0x7002:
-                return self._answer + bytes(160 - len(self._answer))
+                answer = self._answer
+                if self.faults.stale_answers and self._answer_before:
+                    self.faults.stale_answers -= 1
+                    answer = self._answer_before
+                return answer + bytes(160 - len(answer))
         raise KeyError(characteristic)
 
     def write(self, characteristic: int, data: bytes) -> None:
         if self._must_read_first:
-            self._root, self._must_read_first = None, False
+            self._common, self._must_read_first = None, False
         if characteristic == 0x1002:
             self._set(data)
         elif characteristic == 0x2001:
@@ -215,6 +283,7 @@ class EmulatedDot:
         """What is due now."""
         said = self._streamed() if self.is_streaming else []
         self._look_for_room()
+        self._look_for_end()
         export, self._export = self._export[:SENT_AT_ONCE], self._export[SENT_AT_ONCE:]
         if self.state == EXPORTING and not self._export:
             self.state = IDLE
@@ -231,6 +300,8 @@ class EmulatedDot:
             self.blinked += 1
         if data[0] & 0x30:
             self._cut_recording()
+        if self._common is not None or self.is_streaming:
+            return  # neither can be changed after that was started
         if data[0] & 0x10:
             self.settings[24:26] = data[24:26]
         if data[0] & 0x20:
@@ -285,9 +356,9 @@ class EmulatedDot:
     def _synchronise(self, data: bytes) -> None:
         match data[0]:
             case 0x08:
-                self._notices.append(_message(2, b"\x51\x04" if self._root else b"\x51\x09"))
+                self._notices.append(_message(2, b"\x51\x04" if self._common else b"\x51\x09"))
             case 0x02:
-                self._root, self._sync_root = None, None
+                self._common, self._sync_root = None, None
                 self._notices.append(_message(2, b"\x50\x00"))
             case 0x01:
                 self._sync_root, self._sync_from_ns = data[1:7][::-1], self._now_ns()
@@ -300,11 +371,11 @@ class EmulatedDot:
         result = self.faults.sync_results.pop(0) if self.faults.sync_results else 0
         if not was_together:
             result = 0x09
+        self._tell_answer(_message(2, bytes([3, result, 1, *self._sync_root] if self.faults.echoes else [3, result])))
         self._sync_root = None
-        self._answer = _message(2, bytes([3, result]))
-        if result == 0:
-            self._root = root
-            self._drift_us = float(self.chance.uniform(-100, 100)) + self.faults.stale_s * 1e6
+        if result == 0 and root is not None:
+            drift_us = float(self.chance.uniform(-100, 100)) + self.faults.stale_s * 1e6
+            self._common = replace(root._own, drift_us=drift_us)
             self._must_read_first = True
 
     @property
@@ -317,32 +388,41 @@ class EmulatedDot:
     def _remember(self, data: bytes) -> None:
         order = data[0]
         self._look_for_room()
+        self._look_for_end()
         if order == 0x02:
-            self._answer = _message(1, bytes([1, self.state, order]))
+            self._tell_answer(_message(1, bytes([1, self.state, order])))
             return
         if self.faults.busy:
             self.faults.busy -= 1
-            self._answer = _message(1, bytes([1, 0x03, order]))
+            self._tell_answer(_message(1, bytes([1, 0x03, order])))
             return
         result = self._done(order, data[1:])
-        self._answer = _message(1, bytes([1, result, order]) + data[1:])
+        self._tell_answer(_message(1, bytes([1, result, order]) + data[1:]))
+
+    def _tell_answer(self, answer: bytes) -> None:
+        self._answer_before, self._answer = self._answer, answer
 
     def _done(self, order: int, data: bytes) -> int:
         if self.state == RECORDING and order != 0x41:
             return 0x03
         match order:
             case 0x40:
-                if self._used() >= self.room or self.is_streaming:
-                    return 0x34 if not self.is_streaming else 0x03
-                (self._record_utc_s,) = struct.unpack_from("<I", data)
+                if self.is_streaming:
+                    return 0x03
+                if self._used() >= self.room:
+                    self._notices.append(_message(1, b"\x34"))
+                    return 0x00 if self.faults.full_by_notice else 0x34
+                self._record_utc_s, self._timer_s = struct.unpack("<IH", data)
                 self._record_from, self.state = self._grid(self._now_ns()) + 1, RECORDING
+            case 0x41 if self._ends_ns is None and self.state == RECORDING:
+                self._told_end_ns = self._now_ns()
+                self._ends_ns = self._told_end_ns + round(self.faults.ends_after_s * 1e9)
+                self._look_for_end()
             case 0x41:
-                self._end_recording()
-                self._notices.append(_message(1, b"\x41"))
+                pass
             case 0x50:
-                flash = b"".join(b"\xee" + b"\xcc" * (len(file.ticks) * 62 // 228_000) for file in self.files)
-                whole = bytes.fromhex("73616C46") + flash + b"\xff" * 8
-                self._notices += [_message(1, b"\x51" + whole[at : at + 150]) for at in range(0, len(whole), 150)]
+                whole = self._flash()
+                self._notices += [_message(1, b"\x51" + whole[at : at + 128]) for at in range(0, len(whole), 128)]
                 self._notices.append(_message(1, b"\x52"))
             case 0x60:
                 self._notices += self._told_of(data[0])
@@ -351,15 +431,12 @@ class EmulatedDot:
             case 0x70:
                 if not 0 < data[0] <= len(self.files):
                     return 0x03
-                self._exported, self._begun_in_link = self.files[data[0] - 1], True
+                self._exported = self.files[data[0] - 1]
                 self._send_from(0)
             case 0x75:
-                if self._exported is None or not (self.faults.again or self._begun_in_link):
-                    return 0x03
-                (first,) = struct.unpack("<I", data)
-                if first >= len(self._exported.ticks) and not self.faults.tells_end:
-                    return 0x03
-                self._send_from(first)
+                if self._exported is None or not (self.faults.again or self.state == EXPORTING):
+                    return 0x02
+                self._send_from(*struct.unpack("<I", data))
             case 0x73:
                 self._export.clear()
                 self.state = IDLE
@@ -376,9 +453,14 @@ class EmulatedDot:
         if not 0 < number <= len(self.files):
             return [_message(1, b"\x63")]
         file = self.files[number - 1]
-        length_s = len(file.ticks) * STEPS_US[120] // 1_000_000
-        told = struct.pack("<4sIHIH", bytes.fromhex("6F636552"), 128, 1, file.utc_s, length_s)
+        told = struct.pack("<4sIHIH112x", bytes.fromhex("6F636552"), 128, 0x0100, file.utc_s, file.timer_s)
         return [_message(1, b"\x61" + told), _message(1, b"\x62")]
+
+    def _flash(self) -> bytes:
+        """Its header, whose bytes may look like the beginnings of files, and a byte for each piece of its memory."""
+        pieces = b"".join(b"\xee" + b"\xcc" * -(-len(file.ticks) * 62 // 228_000) for file in self.files)
+        used = len(pieces)
+        return struct.pack("<4sIHIII106x", bytes.fromhex("73616C46"), 128, 0x0200, 0x5EEEEE00, MEMORY, used) + pieces
 
     def _send_from(self, first: int) -> None:
         assert self._exported is not None
@@ -389,7 +471,7 @@ class EmulatedDot:
                 self.unheard.remove(number)
                 continue
             if number in self.unreadable or self.chance.random() < self.faults.damaged:
-                self._export.append(_message(1, b"\x76" + struct.pack("<I", number)))
+                self._export.append(_message(1, b"\x76" + struct.pack("<I", number) + bytes(46)))
                 continue
             sample = struct.pack("<I10fH", file.ticks[number] % TURN_US, *file.values[number], 0)
             self._export.append(_message(1, b"\x71" + struct.pack("<I", number) + sample))
@@ -407,17 +489,28 @@ class EmulatedDot:
     def _recorded(self) -> int:
         return self._used() + self._grid(self._now_ns()) - self._record_from + 1
 
+    def _look_for_end(self) -> None:
+        if self._ends_ns is not None and self._now_ns() >= self._ends_ns:
+            self._end_recording()
+            self._notices.append(_message(1, b"\x41"))
+
     def _end_recording(self) -> None:
         if self.state != RECORDING:
             return
-        last = min(self._grid(self._now_ns()), self._record_from + self.room - self._used())
+        end_ns = self._now_ns() if self._ends_ns is None else self._told_end_ns
+        last = min(self._grid(end_ns), self._record_from + self.room - self._used())
         samples = [self._measured(number) for number in range(self._record_from, last + 1)]
-        self.files.append(EmulatedFile(self._record_utc_s, [one[0] for one in samples], [one[1] for one in samples]))
-        self.state = IDLE
+        ticks, values, taken_s = (
+            [one[0] for one in samples],
+            [one[1] for one in samples],
+            [one[2] / 1e9 for one in samples],
+        )
+        self.files.append(EmulatedFile(self._record_utc_s, self._timer_s, ticks, values, taken_s))
+        self.state, self._ends_ns = IDLE, None
 
     @property
     def is_synchronised(self) -> bool:
-        return self._root is not None
+        return self._common is not None
 
     def taken_ns(self, ticks: int) -> float:
         """When the sample of these ticks was taken, by the host's clock."""

@@ -65,4 +65,5 @@ def worn_air(
         EmulatedDot(number, WornDot(patient, site, 60.0), now_ns, skew=(-1) ** number * 2e-5 * number, says_so=says_so)
         for number, site in enumerate(list(Site)[:count])
     ]
+    EmulatedDot.meet(dots)
     return Air(dots, [0.004 + 0.003 * number for number in range(count)]), dots

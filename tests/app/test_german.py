@@ -50,6 +50,12 @@ ALIKE = {
         "Timed-up-and-go-Test",
         "Movella DOT",
         "Movella DOT, Bluetooth LE",
+        "WitMotion, Bluetooth LE",
+        "{words}, {dbm} dBm",
+        "Live",
+        "Filter",
+        "Signal",
+        "Firmware",
     ),
     "{count}\N{NO-BREAK SPACE}in\N{NO-BREAK SPACE}{part}",
 }

@@ -1,11 +1,12 @@
 """Emulated DOTs with everything going wrong at once: is a sample lost untold, is there a dead end, is anything erased?
 
-    python -m tests.safety.dot_faults --runs 500
+    python -m tests.safety.dot_faults --runs 500 [--bumble]
 
 Each run synchronises two to six sensors, streams from them for some seconds, lets them record in their memory, fetches
 and erases, while links are lost at any operation, notifications are lost, doubled, cut and damaged, sensors are busy,
 full, switched off, out of reach, or only say that they are synchronised. Seconds pass at once (`VirtualRadio`), and who
 waits for what never comes is an error. What a sensor took and recorded, and when, is told by itself, float for float.
+With `--bumble` the links go through Bumble's virtual radio, which has advertisements, ATT and subscriptions of its own.
 """
 
 import argparse
@@ -20,6 +21,7 @@ from pathlib import Path
 
 import numpy as np
 
+from app.acquisition.memory_fetching import MemoryFetching
 from app.acquisition.sensor_memory import MemoryRecording
 from app.storage.journal.decoding import decode
 from app.storage.journal.writer import JournalWriter
@@ -31,12 +33,14 @@ from devices.emulators.dot import DotFaults, EmulatedDot
 from devices.live import SourceLostError, SourceRefusedError
 from devices.source import DecodedSensor
 from tests.devices.dot.virtual_time import VirtualRadio
-from tests.devices.dot.worn_dots import RAD, WornDots, not_there
+from tests.devices.dot.worn_dots import RAD, Through, WornDots, behind_bleak, not_there
 from tests.safety.journal_material import ID, KEY, NO_ROOM_ASKED
 
 TRIES = 12  # of a user who does what is said
 LIVE_S, RECORDED_S = 6.0, 5.0
 STAMPED_MS = 50.0  # the least latency of a link, which nobody can see, and what its clock is off by
+SHARED_MS = 2.0
+ORDERED_S = 1.0  # how long an order may take, and what is known of when it was done
 UTC_S = 1_700_000_000
 
 
@@ -68,14 +72,17 @@ def some_faults(rng: random.Random) -> DotFaults:
         stale_s=rng.choice([-2.0, 0.5, 30.0]) if rng.random() < 0.03 else 0.0,
         has_26=rng.random() < 0.8,
         again=rng.random() < 0.6,
-        tells_end=rng.random() < 0.8,
         busy=rng.choice([0, 0, 1, 3]),
+        stale_answers=rng.choice([0, 0, 1, 4]),
+        ends_after_s=perhaps(rng.uniform(0.0, 8.0)),
+        full_by_notice=rng.random() < 0.5,
+        echoes=rng.random() < 0.5,
         drops_after=[rng.randrange(1, 60) for _ in range(rng.randrange(4))],
         drops_export_after=[rng.randrange(1, 700) for _ in range(rng.randrange(4))],
     )
 
 
-def run_often(runs: int, seed: int, folder: Path) -> DotRuns:
+def run_often(runs: int, seed: int, folder: Path, through: Through = behind_bleak) -> DotRuns:
     """So many runs, each told by its number."""
     every = DotRuns()
     for number in range(runs):
@@ -83,7 +90,7 @@ def run_often(runs: int, seed: int, folder: Path) -> DotRuns:
         try:
             place = folder / str(number)
             place.mkdir()
-            every.faults += [f"run {seed + number}: {fault}" for fault in _run(rng, radio, place, every.seen)]
+            every.faults += [f"run {seed + number}: {fault}" for fault in _run(rng, radio, place, every.seen, through)]
         except Exception:  # what nobody was told to expect is a fault of this run
             every.faults.append(f"run {seed + number}: {traceback.format_exc()}")
         finally:
@@ -91,8 +98,8 @@ def run_often(runs: int, seed: int, folder: Path) -> DotRuns:
     return every
 
 
-def _run(rng: random.Random, radio: VirtualRadio, folder: Path, seen: Counter[str]) -> list[str]:
-    wearing = WornDots(radio, [some_faults(rng) for _ in range(rng.randrange(2, 7))])
+def _run(rng: random.Random, radio: VirtualRadio, folder: Path, seen: Counter[str], through: Through) -> list[str]:
+    wearing = WornDots(radio, [some_faults(rng) for _ in range(rng.randrange(2, 7))], through=through)
     if not _opened(wearing, seen):
         return ["dead end: never opened"]
     faults = _live(rng, wearing, seen)
@@ -176,9 +183,15 @@ def _rates(values: tuple[float, ...]) -> list[float]:
 
 def _memory(rng: random.Random, wearing: WornDots, folder: Path, seen: Counter[str]) -> list[str]:
     """Record, fetch, look into the journal, erase; as often as it takes."""
-    memory, radio = MemoryRecording(wearing.sources), wearing.radio
+    memory, radio = MemoryRecording(wearing.group), wearing.radio
     for dot in wearing.dots:
         dot.room = rng.choice([10**6, 10**6, 10**6, 400, 0])
+    if not _made_ready(wearing, seen):
+        return ["dead end: never made ready to record"]
+    if rng.random() < 0.1:
+        off = rng.choice(wearing.dots)
+        wearing.air.drop(off)
+        off.restart()
     if not _begun(memory, wearing, seen):
         return ["dead end: never recorded"]
     radio.pass_s(RECORDED_S)
@@ -191,18 +204,90 @@ def _memory(rng: random.Random, wearing: WornDots, folder: Path, seen: Counter[s
     if not any(not memory.end() for _ in range(TRIES)):
         return ["dead end: a recording goes on"]
     writer = JournalWriter.create(folder, ID, KEY, room=NO_ROOM_ASKED, now_ns=radio.now_ns)
+    fetching = memory.fetching
+    assert fetching is not None  # all have ended
     failed: Mapping[str, Exception] = {}
     for _ in range(TRIES):
-        failed = memory.fetch(writer, lambda *_: None)
+        failed = _fetched(rng, fetching, writer, seen)
         seen["fetches refused"] += len(failed)
-        if not failed:
+        if not failed and fetching.is_done:
             break
-    path = writer.stop().path
-    kept = memory.look_into((path,), KEY)
+    opened_s, path = writer.header.opened_ns / 1e9, writer.stop().path
+    kept = fetching.look_into((path,), KEY)
     faults = [f"dead end: {name} was never fetched: {problem}" for name, problem in failed.items()]
-    blocks = {name: one.block for name, one in decode((path,), KEY, DECODERS).sensors.items()}
-    faults += [fault for dot in wearing.dots for fault in _held_against(dot, memory, blocks, seen)]
+    sensors = decode((path,), KEY, DECODERS).sensors
+    blocks = {name: one.block for name, one in sensors.items()}
+    faults += [fault for dot in wearing.dots for fault in _held_against(dot, fetching, blocks, seen)]
+    faults += _stamped(wearing, sensors, opened_s, seen)
     return faults + _erased(rng, wearing, memory, kept, blocks, seen)
+
+
+class LeftOffError(Exception):
+    """The user wants to go on with the fetching later."""
+
+
+def _fetched(
+    rng: random.Random, fetching: MemoryFetching, writer: JournalWriter, seen: Counter[str]
+) -> Mapping[str, Exception]:
+    left = rng.choice([0, 0, 0, rng.randrange(1, 3000)])
+
+    def progress(_sensor: str, _done: int, _of: int) -> None:
+        nonlocal left
+        left -= 1
+        if left == 0:
+            raise LeftOffError
+
+    try:
+        return fetching.fetch(writer, progress)
+    except LeftOffError:
+        seen["fetches left off, and gone on with"] += 1
+        return {}
+
+
+def _made_ready(wearing: WornDots, seen: Counter[str]) -> bool:
+    for attempt in range(TRIES):
+        try:
+            wearing.group.make_ready_to_record()
+        except (SourceRefusedError, SourceLostError):
+            seen["readiness refused"] += 1
+            if attempt == TRIES // 2:
+                for dot in wearing.dots:
+                    wearing.air.drop(dot)
+                    dot.restart()
+                    dot.faults.stale_s = 0.0
+            continue
+        return True
+    return False
+
+
+def _stamped(wearing: WornDots, sensors: Mapping[str, DecodedSensor], opened_s: float, seen: Counter[str]) -> list[str]:
+    """Hold the stamps of what was fetched against when it was taken: of one clock to 2 ms, of any to its orders."""
+    off_s: dict[str, float] = {}
+    for dot, sensor in zip(wearing.dots, wearing.group.sensors, strict=True):
+        one = sensors.get(sensor.name)
+        if one is None or not len(one.block):
+            continue
+        values = {row.tobytes(): at for at, row in enumerate(np.array(_values(dot)))}
+        first = values[np.hstack([one.block.gyr_rad_s[0], one.block.acc_m_s2[0]]).tobytes()]
+        taken_s = _taken_s(dot)[first] - opened_s
+        off_s[sensor.name] = float(one.block.time_s[0]) - taken_s
+    shared = [value for name, value in off_s.items() if sensors[name].clock is not None]
+    seen["files stamped by a common clock"] += len(shared)
+    apart_ms = 1e3 * (max(shared, default=0.0) - min(shared, default=0.0))
+    seen["ms apart are fetched stamps of one clock at most"] = max(
+        seen["ms apart are fetched stamps of one clock at most"], round(apart_ms)
+    )
+    faults = [f"fetched stamps of one clock are {apart_ms:.1f} ms apart"] if apart_ms > SHARED_MS else []
+    furthest_s = max(map(abs, off_s.values()), default=0.0)
+    return faults + ([f"a fetched stamp is {furthest_s:.2f} s off"] if furthest_s > ORDERED_S else [])
+
+
+def _taken_s(dot: EmulatedDot) -> list[float]:
+    return [one_s for file in dot.files for one_s in file.taken_s]
+
+
+def _values(dot: EmulatedDot) -> list[list[float]]:
+    return [[*_rates(tuple(one)), *one[4:7]] for file in dot.files for one in file.values]
 
 
 def _begun(memory: MemoryRecording, wearing: WornDots, seen: Counter[str]) -> bool:
@@ -214,16 +299,19 @@ def _begun(memory: MemoryRecording, wearing: WornDots, seen: Counter[str]) -> bo
             if isinstance(refused, MemoryFullError):
                 for dot in wearing.dots:
                     dot.room = 10**6  # fetched and erased, as the refusal says
+            elif "clock" in str(refused):
+                seen["synchronised again, for one was switched off"] += 1
+                _made_ready(wearing, seen)
         else:
             return True
     return False
 
 
 def _held_against(
-    dot: EmulatedDot, memory: MemoryRecording, blocks: Mapping[str, ImuBlock], seen: Counter[str]
+    dot: EmulatedDot, fetching: MemoryFetching, blocks: Mapping[str, ImuBlock], seen: Counter[str]
 ) -> list[str]:
     name = f"DOT {dot.mac[4]:02X}{dot.mac[5]:02X}"
-    result = memory.results.get(name)
+    result = fetching.results.get(name)
     if result is None:
         return []
     file = next(one for one in dot.files if one.utc_s == result.file.started_utc_s)
@@ -255,13 +343,14 @@ def _erased(
     blocks: Mapping[str, ImuBlock],
     seen: Counter[str],
 ) -> list[str]:
-    faults = []
+    faults, fetching = [], memory.fetching
+    assert fetching is not None  # as above
     for dot, sensor in zip(wearing.dots, wearing.group.sensors, strict=True):
         name, before = sensor.name, len(dot.files)
         is_confirmed = rng.random() < 0.8
         for _ in range(3):
             try:
-                memory.erase(name, UTC_S + 100, is_confirmed=is_confirmed)
+                fetching.erase(name, UTC_S + 100, is_confirmed=is_confirmed, others=sorted(memory.given_up))
                 break
             except DotRefusedError:
                 seen["erasures refused"] += 1
@@ -270,7 +359,7 @@ def _erased(
         if not dot.erased:
             continue
         seen["memories erased"] += 1
-        begun_s = memory.results[name].file.started_utc_s
+        begun_s = fetching.results[name].file.started_utc_s
         samples = sum(len(file.ticks) for file in dot.erased if file.utc_s >= begun_s)
         if not is_confirmed or not kept[name] or len(blocks[name]) != samples:
             faults.append(f"{name}: {samples} samples of {before} files erased, {len(blocks[name])} kept")
@@ -281,9 +370,15 @@ def main() -> None:
     parser = argparse.ArgumentParser(description="Emulated DOTs with faults.")
     parser.add_argument("--runs", type=int, default=500)
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--bumble", action="store_true", help="through Bumble's virtual radio")
     wanted = parser.parse_args()
+    through: Through = behind_bleak
+    if wanted.bumble:
+        from tests.devices.dot.by_bumble import by_bumble
+
+        through = by_bumble
     with tempfile.TemporaryDirectory() as folder:
-        every = run_often(wanted.runs, wanted.seed, Path(folder))
+        every = run_often(wanted.runs, wanted.seed, Path(folder), through)
     for fault in every.faults:
         print(fault)
     print(f"{wanted.runs} runs: {every}")

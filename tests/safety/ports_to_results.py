@@ -218,6 +218,12 @@ class WindowSession:
         look(self, self.shots, "csv-columns")
         self.wizard.press_primary()
 
+    def before_walks(self) -> None:
+        """Do what these sensors need before they record walks."""
+
+    def after_walk(self, number: int) -> None:
+        """Do what these sensors need once a walk was stopped; the first one has number 1."""
+
     def place(self) -> None:
         """Wear each sensor at the site that its port is named for."""
         acquisition = self.visit.sensors.acquisition
@@ -264,6 +270,7 @@ def lead(session: WindowSession, kind: str, ask: Callable[[RecordingKind], float
         ends_s = time.monotonic() + ask(RecordingKind.FREE_MOTION)
         session.wait(lambda: wizard.step_number != 3 or time.monotonic() > ends_s - 0.5, "walking step")  # noqa: B023  # it waits at once
     session.wait(lambda: time.monotonic() > ends_s, "standing still")
+    session.before_walks()
     for number in range(walks):
         session.press(Qt.Key.Key_1)
         session.press(Qt.Key.Key_Space)
@@ -272,6 +279,7 @@ def lead(session: WindowSession, kind: str, ask: Callable[[RecordingKind], float
         session.linger(left_s + 0.3)
         look(session, shots, f"{kind}-walk-{number + 1}")
         session.press(Qt.Key.Key_Space)
+        session.after_walk(number + 1)
         session.wait(lambda number=number: len(visit.recordings.walks) == number + 1, "walk's end")  # type: ignore[misc]  # the default binds the loop's value
         session.press(Qt.Key.Key_K)
         session.linger(0.5)
@@ -305,7 +313,9 @@ def outcome_of(kind: str, visit: Visit, analysis: Analysis, told: Mapping[str, F
             outcome.rate_hz = round(1 / float(np.median(np.diff(block.time_s))), 1)
         found = next((one for one in analysis.recordings if one.name == recording.details.name), None)
         if recording.details.kind is RecordingKind.WALKING and found is not None:
-            compare_angles(outcome, found, told, zero, opened_s(recording, library))
+            about_s = float(np.mean(outcome.late_ms[found.name])) / 1000
+            begin_s = opened_s(recording, library) - (about_s if about_s > DELAYS_S[-1] else 0.0)
+            compare_angles(outcome, found, told, zero, begin_s)
     return outcome
 
 
@@ -387,6 +397,7 @@ def look(session: WindowSession, shots: Path | None, name: str) -> None:
     """Take a picture of the window."""
     if shots is not None:
         session.linger(0.3)
+        shots.mkdir(parents=True, exist_ok=True)
         session.wizard.grab().save(str(shots / f"{name}.png"))
 
 

@@ -21,9 +21,12 @@ from app.widgets.body_figure import SensorMark
 from app.widgets.choice import Choice
 from app.widgets.notice import Notice
 from app.widgets.segmented import Segmented
+from app.widgets.sensors_progress import SensorsProgress
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed
 from app.wizard.sensors.columns_form import ColumnsForm
+from app.wizard.sensors.dot_form import DotForm
+from app.wizard.sensors.memories_form import MemoriesForm
 from app.wizard.sensors.sensor_list import SensorList
 from app.wizard.sensors.sensor_places import PlaceShown, SensorPlaces
 from app.wizard.sensors.sensor_row import SensorRow
@@ -107,6 +110,7 @@ class SensorsPage(Themed):
         self.searching = Searching(look)
         self.stored = SessionChooser(look)
         self.columns = ColumnsForm(look)
+        self.dots, self.memories, self.progress = DotForm(look), MemoriesForm(look), SensorsProgress(look)
         self._build()
         self._connect()
         self.show_no_source()
@@ -133,6 +137,7 @@ class SensorsPage(Themed):
     def tab_order(self) -> list[QWidget]:
         rows = [one for row in self.list.rows.values() for one in (row, row.worn, row.identify)]
         before = [*self.nothing.buttons, self.searching.stop, *self.stored.tab_order, *self.columns.tab_order]
+        before += [*self.dots.tab_order, *self.memories.tab_order, self.progress.stop]
         return [self.sources, *before, *self._tiles, *self.ways.segments, *rows]
 
     def focus(self) -> None:
@@ -145,6 +150,12 @@ class SensorsPage(Themed):
             self.stored.focus()
         elif self._in_sight is self.columns:
             self.columns.focus()
+        elif self._in_sight is self.dots:
+            self.dots.focus()
+        elif self._in_sight is self.memories:
+            self.memories.focus()
+        elif self._in_sight is self.progress:
+            self.progress.focus()
         elif row := self.list.rows.get(self.list.selection):
             row.setFocus()
 
@@ -198,6 +209,14 @@ class SensorsPage(Themed):
     def show_columns(self) -> None:
         """Ask what the columns of lines of numbers mean."""
         self._show(self.columns)
+
+    def show_dots(self, is_synchronising: bool) -> None:
+        """Ask which Movella DOTs are worn, or show how far they are synchronised."""
+        self._show(self.progress if is_synchronising else self.dots)
+
+    def show_memories(self, is_busy: bool) -> None:
+        """Show what the sensors' memories hold, or how far that is found out, fetched or erased."""
+        self._show(self.progress if is_busy else self.memories)
 
     def show_reading(self, session: str) -> None:
         """Say that a session is read, to be replayed."""
@@ -308,7 +327,16 @@ class SensorsPage(Themed):
         self._column = QVBoxLayout(content)
         self._column.addLayout(self._head)
         # not stacked: each would ask room for all
-        for page in (self.nothing, self.searching, self.stored, self.columns, self._lists):
+        for page in (
+            self.nothing,
+            self.searching,
+            self.stored,
+            self.columns,
+            self.dots,
+            self.memories,
+            self.progress,
+            self._lists,
+        ):
             self._column.addWidget(page, 1)
             page.hide()
         self._in_sight: QWidget = self.nothing
@@ -418,6 +446,7 @@ class SensorsPage(Themed):
         self._column.setContentsMargins(side, above, side, above)
         room = self.width() - 2 * side
         self.columns.set_room(room)
+        self.dots.set_narrow(self._is_compact)
         self.places.set_narrow(self._is_compact)
         figure, rows = self.places.minimumSizeHint().width(), self.list.minimumSizeHint().width()
         rows = max(rows + px(SCROLL_BAR), self.ways.minimumSizeHint().width())
@@ -437,6 +466,8 @@ class SensorsPage(Themed):
             grown = px(usual) + max(0, room - px(USUAL_WIDTH)) // 2
             self.places.setFixedWidth(max(figure, min(grown, px(widest), room - gap - rows)))
         self._rows.setMinimumHeight(self.list.minimumSizeHint().height() if is_stacked else 0)
+        self._body.invalidate()  # of a width that is changed while Qt lays out it does not always hear
+        self._body.activate()
 
     def _on_source_activated(self, index: int) -> None:
         self.source_chosen.emit(self.sources.itemData(index))

@@ -26,12 +26,14 @@ from app.widgets.battery import WIDTH as CELL_WIDTH
 from app.widgets.chip import paint_chip
 from app.widgets.painted_button import PaintedButton
 from app.widgets.painted_text import PaintedText
+from app.widgets.sensor_tile import quiet_words
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD
 from app.wizard.sensors.sensor_drag import DraggedButton
 from app.wizard.sensors.sensor_places import number_of
 from app.wizard.sensors.sensor_trace import Trace
 from app.wording import capitalised, figure_text, name_of, tr
 from core.body import LEG_SITES, Site
+from devices.live import Quiet
 
 ROW, ROW_AT_LEAST = 58, 46  # six of the latter fit into a window 720 high
 CHIP = 20
@@ -41,7 +43,11 @@ LOST = 0.01  # of the samples; above it the radio wants a look
 
 @dataclass(frozen=True, slots=True)
 class SensorRow:
-    """One sensor as it is now. `battery` 0 to 1, None: it does not tell; `silent_s` 0 while it is heard."""
+    """One sensor as it is now. `battery` 0 to 1, None: it does not tell; `silent_s` 0 while it is heard.
+
+    `quiet`: why it is to send nothing; not `is_loss_seen`: nobody can see what is lost of it. `has_memory`: walks can
+    be recorded in it.
+    """
 
     name: str
     model: str = ""
@@ -51,6 +57,9 @@ class SensorRow:
     silent_s: float = 0.0
     lost_share: float = 0.0
     can_identify: bool = False
+    quiet: Quiet | None = None
+    is_loss_seen: bool = True
+    has_memory: bool = False
 
     @property
     def is_low(self) -> bool:
@@ -58,7 +67,7 @@ class SensorRow:
 
     @property
     def is_lossy(self) -> bool:
-        return self.lost_share > LOST
+        return self.lost_share > LOST and self.quiet is None
 
     @property
     def wants_look(self) -> bool:
@@ -73,7 +82,9 @@ class SensorRow:
             return tr("charge soon")
         if self.is_lossy:
             return tr("{share} % lost").format(share=figure_text(100 * self.lost_share, ".1f"))
-        return self.model
+        if self.quiet is not None:
+            return quiet_words(self.quiet)
+        return self.model if self.is_loss_seen else tr("losses not seen")
 
     @property
     def rate(self) -> str:

@@ -66,7 +66,10 @@ def said_of_sensors(
         what = tr("{name}: {share} % of the samples were lost.").format(
             name=_called(lossy[0]), share=figure_text(100 * lossy[0].lost_share, ".1f")
         )
-        return Icon.WARNING, what, tr("Bring the receiver nearer to the patient."), True
+        nearer = tr("Bring the receiver nearer to the patient.")
+        if lossy[0].has_memory:
+            nearer = tr("Bring this computer nearer, or choose the source again: walks in the sensors, or 30 Hz.")
+        return Icon.WARNING, what, nearer, True
     if is_left_to_motion and not worn:
         what = tr("The free motion tells which sensor is where.")
         legs = tr("Strap one on each thigh, shank and foot, in any order.")

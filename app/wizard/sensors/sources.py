@@ -13,11 +13,13 @@ from typing import TYPE_CHECKING, overload
 
 from app.acquisition.acquisition import Acquisition
 from app.known_columns import known_columns
-from app.wizard.worn_sensors import SourceChoice
+from app.wizard.worn_sensors import SetUpFirstError, SourceChoice
 from app.wording import later, tr, tr_n
 from core.body import Side
 from devices.bluetooth import BluetoothMissingError, own_radio
 from devices.catalogue import DRIVERS
+from devices.dot.samples import DRIVER as MOVELLA_DOT
+from devices.dot.source import DotSource
 from devices.live import SourceRefusedError
 from devices.lsl import GROUP, PORT
 from devices.networks import THIS_COMPUTER, own_addresses
@@ -26,6 +28,7 @@ from devices.replay import DEMONSTRATION_SESSION, DEMONSTRATION_WITH_PELVIS, dem
 from devices.search import search, search_streams
 
 if TYPE_CHECKING:
+    from app.acquisition.dot_fleet import DotFleet
     from devices.search import FoundSensor, SearchResult
     from devices.walker import WalkerSettings
 
@@ -131,13 +134,17 @@ class Sources(Sequence[SourceChoice]):
             return _opening(sensors)
 
         is_simulated = all(sensor.is_simulated for sensor in sensors)
-        return SourceChoice(key, words.format(name=name, count=count), make, is_simulated)
+        make_fleet = partial(fleet_of, sensors) if key == MOVELLA_DOT else None
+        return SourceChoice(key, words.format(name=name, count=count), make, is_simulated, make_fleet=make_fleet)
 
     def _open_all(self) -> Acquisition:
         """Search anew, and take all sensors that are heard."""
         self._found = found = self._looked()
-        if found.sensors:
-            return _opening(found.sensors)
+        others = [sensor for sensor in found.sensors if sensor.driver != MOVELLA_DOT]
+        if found.sensors and not others:
+            raise SetUpFirstError(MOVELLA_DOT)
+        if others:  # beside which DOTs are a source of their own
+            return _opening(others)
         if found.lines:
             raise SourceRefusedError(
                 later("Lines of numbers are heard, and nobody said what they mean"), later("Choose them as the source")
@@ -198,6 +205,18 @@ def _open_streams(address: str) -> Acquisition:
     raise SourceRefusedError(
         later("No stream of motion was found"), later("Start it in the program that sends it, then ask again")
     )
+
+
+def fleet_of(sensors: "Sequence[FoundSensor]") -> "DotFleet":
+    """The DOTs among what was found, to be set up."""
+    from app.acquisition.dot_fleet import DotFleet, HeardDot
+
+    heard = []
+    for one in sensors:
+        source = one.make()
+        if isinstance(source, DotSource):
+            heard.append((source.group.radio, HeardDot(source.sensor, one.rssi_dbm)))
+    return DotFleet(heard[0][0], [dot for _, dot in heard])
 
 
 def _opening(sensors: "Sequence[FoundSensor]") -> Acquisition:

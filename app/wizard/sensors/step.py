@@ -1,6 +1,7 @@
 """Six sensors on, or seven, and each known: heard through a source, and told where they are worn."""
 
 import datetime
+from dataclasses import replace
 from enum import Enum, auto
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -20,7 +21,9 @@ from app.widgets.rail_row import StepState
 from app.widgets.sensor_tile import SILENT_FROM_S
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.sensors.columns_telling import ColumnsTelling
+from app.wizard.sensors.dot_setup import DotSetup
 from app.wizard.sensors.estimator import PlacingEstimator
+from app.wizard.sensors.memories_control import MemoriesControl
 from app.wizard.sensors.page import SensorsPage, Way
 from app.wizard.sensors.replays import Replays
 from app.wizard.sensors.sensor_row import SensorRow
@@ -69,12 +72,20 @@ class SensorsStep(Step):
         self.dialog: QFileDialog | None = None
         self.telling = ColumnsTelling(self)
         self.telling.changed.connect(self.changed)
+        self.setup = DotSetup(visit.sensors, self)
+        self.setup.changed.connect(self._on_setup_changed)
+        self.setup.ready.connect(visit.sensors.search)
+        self.setup.left.connect(self._on_setup_left)
+        self.memories = MemoriesControl(visit, self)
+        self.memories.changed.connect(self._on_setup_changed)
+        self.memories.left.connect(self._on_memories_left)
         self._replays = Replays(visit.controller, self)
         self._replays.listed.connect(self._on_listed)
         self._replays.read.connect(self._on_replay_read)
         self._replays.refused.connect(self._on_replay_refused)
         visit.sensors.changed.connect(self._on_sensors_changed)
         visit.sensors.opened.connect(self._on_opened)
+        visit.sensors.set_up_wanted.connect(self._on_source_chosen)
 
     @property
     def page(self) -> SensorsPage:
@@ -91,6 +102,8 @@ class SensorsStep(Step):
             page.stored.folder_pressed.connect(self._choose_folder)
             page.stored.back_pressed.connect(self._on_stored_left)
             page.columns.back_pressed.connect(self._on_columns_left)
+            self.setup.show_on(page.dots, page.progress)
+            self.memories.show_on(page.memories, page.progress)
         return self._page
 
     @property
@@ -129,8 +142,12 @@ class SensorsStep(Step):
         )
 
     @property
+    def cannot_leave(self) -> str:
+        return self.setup.cannot_leave or self.memories.cannot_leave
+
+    @property
     def topic(self) -> str:
-        return "sensors"
+        return "sensors-movella-dot" if self.setup.is_on else "sensors"
 
     def enter(self) -> None:
         self._asks = SensorsShown.SOURCE
@@ -144,7 +161,10 @@ class SensorsStep(Step):
         self._told_of = ""
         self._replays.stop()
         self.telling.end()
+        self.setup.end()
+        self.memories.end()
         sensors = self._visit.sensors
+        sensors.sync.forget()
         if sensors.acquisition is not None:
             sensors.acquisition.set_estimator(None)
         self._estimator = None
@@ -160,7 +180,7 @@ class SensorsStep(Step):
         if self._ticks % ROW_TICKS == 0:
             self._show_sources()  # a search beside the screen may have found some
             self.telling.tick()
-        if self._visit.sensors.acquisition is None or self._is_choosing or self._replays.reading or self.telling.is_on:
+        if self._visit.sensors.acquisition is None or self._is_choosing or self._replays.reading or self._is_asking:
             return
         if self._estimator is not None:
             state = self._estimator.state
@@ -175,16 +195,37 @@ class SensorsStep(Step):
             self._show_rows()
 
     def bar(self) -> BarState:
+        bar = self._bar()
+        return replace(bar, quiet=(BarAction(tr("Sensors' memories")),)) if self._may_ask_memories else bar
+
+    @property
+    def _is_asking(self) -> bool:
+        """Whether something stands in the place of the sensors that are open, or that are to be."""
+        return self.telling.is_on or self.setup.is_on or self.setup.is_synchronising or self.memories.is_on
+
+    @property
+    def _may_ask_memories(self) -> bool:
+        is_free = self._visit.recordings.ongoing is None and self._visit.session is not None
+        return self._visit.sensors.dots is not None and is_free and not self._is_asking and not self._is_choosing
+
+    def _bar(self) -> BarState:
         sensors = self._visit.sensors
         if self._replays.reading:
             return BarState()
         if self.telling.is_on:
             is_whole = self.telling.columns is not None
             return BarState(primary=BarAction(tr("Use these columns"), tr("Enter"), is_enabled=is_whole))
+        if self.setup.is_on or self.setup.is_synchronising:
+            return self.setup.bar()
+        if self.memories.is_on:
+            return self.memories.bar()
         if self._is_choosing:
             is_any = self.page.stored.session is not None
             return BarState(primary=BarAction(tr("Replay it"), tr("Enter"), Icon.PLAY, is_enabled=is_any))
         go_on = tr("Stand still")
+        if sensors.are_in_memory:
+            back = BarAction(tr("Set back to live"), tr("Enter"), is_wished=False)
+            return BarState(primary=back, note=tr("The sensors are ready for walks, and send nothing."))
         if sensors.acquisition is None:
             return BarState(note="" if sensors.is_searching else tr("Choose where sensors are looked for."))
         if reason := self._visit.cannot_record:
@@ -208,6 +249,12 @@ class SensorsStep(Step):
     def on_primary(self) -> None:
         if self.telling.is_on:
             self._use_columns()
+        elif self.setup.is_on:
+            self.setup.on_primary()
+        elif self.memories.is_on:
+            self.memories.on_primary()
+        elif self._visit.sensors.are_in_memory:
+            self.setup.set_back()
         elif self._is_choosing:
             if (session := self.page.stored.session) is not None:
                 self._replay(session)
@@ -220,14 +267,26 @@ class SensorsStep(Step):
             self.done.emit()
 
     def on_other(self, number: int) -> None:
-        if self._visit.cannot_record:
+        if self.setup.is_on:
+            self.setup.leave_out_failed()
+        elif self.memories.is_on:
+            self.memories.on_other()
+        elif self._visit.cannot_record:
             self.demonstration_wanted.emit()
         else:
             self.done.emit()
 
+    def on_quiet(self, number: int) -> None:
+        if self.memories.is_on:
+            self.memories.leave()
+        elif self._may_ask_memories:
+            self.memories.begin()
+
     def on_intent(self, intent: Intent) -> bool:
         if intent.action is KeyAction.LABEL:
             return self.page.place_selected(intent.number)
+        if intent.action is KeyAction.IDENTIFY and self.setup.is_on:
+            return self.setup.identify_selected()
         if intent.action is KeyAction.IDENTIFY:
             return self.page.identify_selected()
         return False
@@ -267,6 +326,10 @@ class SensorsStep(Step):
             page.show_searching(sensors.choice.name)
         elif self.telling.is_on:
             page.show_columns()
+        elif self.setup.is_on or self.setup.is_synchronising:
+            page.show_dots(self.setup.is_synchronising)
+        elif self.memories.is_on:
+            page.show_memories(self.memories.is_busy)
         elif self._is_choosing:
             page.show_stored()
         elif sensors.acquisition is None:
@@ -282,7 +345,7 @@ class SensorsStep(Step):
         options = [SourceOption(one.key, one.name, is_last=one.key == WITH_PELVIS) for one in visit.choices]
         if visit.may_simulate:
             options.append(SourceOption(REPLAY, tr("Replay of a stored session")))
-        chosen = sensors.choice
+        chosen = sensors.choice or self.setup.choice
         if chosen is not None:
             found = len(sensors.acquisition.sensors) if sensors.acquisition is not None else 0
             note = tr("{count} found").format(count=found) if found else ""
@@ -293,6 +356,8 @@ class SensorsStep(Step):
         page = self.page
         page.show_sources(options, chosen.key if chosen is not None else "")
         asks = next((choice.asks for choice in visit.choices if choice.key == self._told_of), ("", ""))
+        if not self.setup.is_on and sensors.sync.failure[0]:
+            asks = sensors.sync.failure
         page.tell(*asks if options else (tr("No source of sensors is at hand for this patient."), ""))
         apart = tr(
             "Simulated and replayed sensors are offered only for codes that begin with DEMO, "
@@ -324,6 +389,9 @@ class SensorsStep(Step):
             silent_s=float(round(status.silent_s)) if is_silent else 0.0,
             lost_share=round(status.lost_share, 3),
             can_identify=status.sensor not in self._without_light,
+            quiet=status.details.quiet,
+            is_loss_seen=status.details.is_loss_seen,
+            has_memory=self._visit.sensors.dots is not None,
         )
 
     def _show_traces(self) -> None:
@@ -355,8 +423,12 @@ class SensorsStep(Step):
     def _reconnect(self) -> None:
         """Open the source anew; its sensors come back to their places."""
         sensors = self._visit.sensors
-        if sensors.choice is not None:
-            self._wanted = dict(sensors.site_of)
+        if sensors.choice is None:
+            return
+        self._wanted = dict(sensors.site_of)
+        if sensors.choice.make_fleet is not None:
+            self._set_up(sensors.choice)
+        else:
             sensors.search(sensors.choice)
 
     def _on_opened(self) -> None:
@@ -395,6 +467,8 @@ class SensorsStep(Step):
             return
         self._end_choosing()
         self.telling.end()
+        self.setup.end()
+        self.memories.end()
         is_told, self._told_of = key == self._told_of, ""
         if any(choice.asks) and not is_told:
             self._told_of = key
@@ -407,8 +481,37 @@ class SensorsStep(Step):
             self._show()
             self.page.focus()
             self.changed.emit()
+        elif choice.make_fleet is not None:
+            self._set_up(choice)
         else:
             sensors.search(choice)
+
+    def _set_up(self, choice: SourceChoice) -> None:
+        """Ask of Movella DOTs which are worn, and synchronise them."""
+        self._visit.sensors.close()
+        known = self._wanted or self._known_places or self._visit.placement_before
+        self.setup.begin(choice, known.keys())
+        self._show()
+        self.page.focus()
+        self.changed.emit()
+
+    def _on_setup_changed(self) -> None:
+        if self._is_in_sight:
+            self._show()
+        self.changed.emit()
+
+    def _on_setup_left(self) -> None:
+        self.setup.end()
+        self._show()
+        self.page.focus()
+        self.changed.emit()
+
+    def _on_memories_left(self, was_live: bool) -> None:
+        if was_live:
+            self.setup.set_back()
+        self._show()
+        self.page.focus()
+        self.changed.emit()
 
     def _use_columns(self) -> None:
         """Remember what is told, and search again: all that is known is heard then."""

@@ -22,6 +22,7 @@ from app.theme import ThemeNotifier
 from app.widgets.focus_ring import NO_RING
 from app.widgets.notice import Notice
 from app.widgets.segmented import Segmented
+from app.widgets.sensors_progress import ProgressShown, SensorsProgress
 from app.widgets.themed import Themed
 from app.wizard.walking.bench import ChangeEntry
 from app.wizard.walking.bench_view import BenchState, BenchView
@@ -75,7 +76,8 @@ class WalkingPage(Themed):
     def __init__(self, look: ThemeNotifier, entry: ChangeEntry | None = None) -> None:
         super().__init__()
         self._look = look
-        self._is_compact = self._has_bench = self._has_test = self._has_result = self._has_hips = False
+        self._is_compact = self._has_bench = self._has_test = self._has_result = False
+        self._has_memory = self._has_hips = False
         self.bench = BenchView(look, entry or ChangeEntry())
         self.rows: tuple[WalkRow, ...] = ()
         self._asked: WalkRow | None = None
@@ -89,6 +91,7 @@ class WalkingPage(Themed):
         self.stopped = StoppedCard(look)
         self.empty = EmptyCard(look)
         self.charts = WalkingCharts(look)
+        self.memory = SensorsProgress(look)
         self.figures = WalkFigures(look)
         self.walks = WalkList(look)
         self.next = NextCard(look)
@@ -109,7 +112,7 @@ class WalkingPage(Themed):
     def tab_order(self) -> list[QWidget]:
         """The controls in the order of reading, those of this moment only."""
         controls: list[QWidget] = [*self.patient_controls.controls, *self.bench.tab_order, *self.tabs.segments]
-        controls += [self.stopped.discard, self.stopped.keep]
+        controls += [self.memory.stop, self.stopped.discard, self.stopped.keep]
         controls += [*self.walks.buttons, self.walks.restrapped]
         controls += [*self.next.chooser.stops, self.next.chooser.own.line_edit, self.next.test.box]
         return [one for one in controls if one.isVisibleTo(self)]
@@ -193,6 +196,14 @@ class WalkingPage(Themed):
             self.timed_result.show_state(state)
         self._arrange()
 
+    def show_memory(self, shown: ProgressShown | None) -> None:
+        """Show what is done with the sensors' memories in the place of the curves; None: they stand there."""
+        if shown is not None:
+            self.memory.show_state(shown)
+        if (shown is not None) != self._has_memory:
+            self._has_memory = shown is not None
+            self._arrange()
+
     def choose_digit(self, digit: int) -> bool:
         """Choose the label whose cap shows `digit`; False where it means nothing now."""
         return not self.is_recording and self.next.chooser.choose_digit(digit)
@@ -242,7 +253,7 @@ class WalkingPage(Themed):
     @property
     def _regions(self) -> tuple[QWidget, ...]:
         """What may have the focus and is no button; in a small window the walks stand in the place of the charts."""
-        return self.bench, self.timed, self.empty, self.charts, self.timed_result, self.walks
+        return self.bench, self.timed, self.empty, self.charts, self.timed_result, self.memory, self.walks
 
     def _build(self) -> None:
         for region in self._regions:
@@ -253,6 +264,7 @@ class WalkingPage(Themed):
         self._left.addWidget(self.empty, 1)
         self._left.addWidget(self.charts, 1)
         self._left.addWidget(self.timed_result, 1)
+        self._left.addWidget(self.memory, 1)
         self._right.addWidget(self.figures)
         self._right.addWidget(self.walks, 1)
         self._middle = QBoxLayout(ACROSS)
@@ -299,15 +311,19 @@ class WalkingPage(Themed):
         shows_curves, shows_walks = shows_curves and not is_test and not shows_result, shows_walks and not is_test
         self.bench.setVisible(is_bench)
         self.notice.setVisible(
-            (self._has_message and not is_bench) or (is_recording and not self._is_compact and not is_test)
+            (self._has_message and not is_bench)
+            or (is_recording and not self._is_compact and not is_test and not self._has_memory)
         )
         self.tabs.setVisible(is_tabbed and not is_bench)
         self.stopped.setVisible(self._asked is not None and not is_recording and shows_walks)
-        self.empty.setVisible(not has_walks)
+        is_memory = self._has_memory and not is_bench
+        shows_curves, shows_result = shows_curves and not is_memory, shows_result and not is_memory
+        self.memory.setVisible(is_memory)
+        self.empty.setVisible(not has_walks and not is_memory)
         self.charts.setVisible(shows_curves)
         self.timed.setVisible(is_test)
         self.timed_result.setVisible(shows_result)
-        self.figures.setVisible(is_recording and not is_test)
+        self.figures.setVisible(is_recording and not is_test and not is_memory)
         self.next.setVisible(not is_recording and shows_walks)
         self.walks.setVisible(has_walks and shows_walks)
         self.walks.set_restrap_offered(not is_recording)

@@ -20,6 +20,7 @@ from app.wizard.walk_messages import no_foot_message
 from app.wizard.walking.bench_bar import bench_bar
 from app.wizard.walking.bench_control import Bench
 from app.wizard.walking.estimator import WalkingEstimator
+from app.wizard.walking.memory_control import MemoryControl
 from app.wizard.walking.patient_feedback import PatientFeedback
 from app.wizard.walking.timed_bar import timed_bar
 from app.wizard.walking.timed_control import TimedControl
@@ -65,6 +66,10 @@ class WalkingStep(Step):
         self._bench.changed.connect(self._show)
         self._timed = TimedControl(visit, self)
         self._timed.changed.connect(self._show)
+        self._memory = MemoryControl(visit, self)
+        self._memory.changed.connect(self._show)
+        self._memory.lives.connect(self._on_lives)
+        self._must_restrap = False
         visit.recordings.begun.connect(self._on_begun)
         visit.recordings.ended.connect(self._on_ended)
         visit.recordings.changed.connect(self._show)
@@ -88,6 +93,7 @@ class WalkingStep(Step):
             page.undo_pressed.connect(self._on_undo_pressed)
             page.renamed.connect(self._on_renamed)
             page.restrapped_pressed.connect(self._on_restrapped_pressed)
+            page.memory.stop_pressed.connect(self._memory.stop)
             self._feedback = PatientFeedback(self._look, self._visit, page.patient_controls, self)
             self._feedback.run_wished.connect(self._run)
         return self._page
@@ -98,6 +104,8 @@ class WalkingStep(Step):
 
     @property
     def note(self) -> str:
+        if self._memory.fetch.is_fetching:
+            return tr("being fetched")
         if self._visit.recordings.is_recording and self._visit.recordings.ongoing is not None:
             if self._visit.recordings.ongoing.details.kind is RecordingKind.WALKING:
                 return tr("Recording {walk}").format(walk=self._called(self._visit.recordings.ongoing.details.name))
@@ -142,8 +150,18 @@ class WalkingStep(Step):
         return ""
 
     @property
+    def _cannot_start_now(self) -> str:
+        """As `_cannot_start`, and what the sensors' memories are missing still."""
+        missing = self._cannot_start or self._memory.cannot_start
+        if not missing and self._visit.sensors.are_in_memory and self._timed.planned is not None:
+            return tr("Timed tests need what the sensors send live: choose no test, or send walks live.")
+        return missing
+
+    @property
     def cannot_leave(self) -> str:
         recordings = self._visit.recordings
+        if reason := self._memory.cannot_leave:
+            return reason
         if recordings.is_recording or recordings.is_stopping:
             return tr("A walk is being recorded. Stop it first.")
         return ""
@@ -168,6 +186,8 @@ class WalkingStep(Step):
         self.page.set_hips(bool(self._visit.sensors.hips))
         if not self._label:
             self._label = label_after(self._visit.patient.details, self._used)
+        if not self._cannot_start:
+            self._memory.prepare()
         self._show()
         self.page.focus()
 
@@ -187,7 +207,7 @@ class WalkingStep(Step):
         self.page.show_test(self._timed.view())
         if self._timed.tick():
             self._stop()
-        is_recording = self._visit.recordings.is_recording
+        is_recording = self._visit.recordings.is_recording and not self._visit.sensors.are_in_memory
         is_fed_back = self._feedback is not None and self._feedback.is_open
         if self._estimator is None or not (is_recording or is_fed_back):
             return
@@ -229,11 +249,15 @@ class WalkingStep(Step):
                 ),
                 has_back=False,
             )
+        if self._has_memory_bar:
+            return self._memory.bar() or BarState()
         if recordings.is_stopping:
             return BarState(primary=self._start_action, note=tr("The walk is being read back."))
         if self._is_bench:
             return self._bench_bar()
         quiet = (BarAction(tr("Bench")),) if self._bench.is_offered else ()
+        if (memory := self._memory_quiet) is not None:
+            quiet = (*quiet, memory)
         return replace(self._bar_of_walks(), quiet=quiet)
 
     def _bar_of_walks(self) -> BarState:
@@ -243,14 +267,16 @@ class WalkingStep(Step):
             both = BarAction(
                 tr("Keep, start next"), tr("Space"), Icon.PLAY, is_wished=False, is_enabled=self._can_start
             )
-            return BarState(primary=both, note=self._cannot_start or self._timed.next_words(self._label))
+            return BarState(primary=both, note=self._cannot_start_now or self._timed.next_words(self._label))
         if any(recording.details.is_kept for recording in recordings.walks):
             again = BarAction(start.text, start.key, start.icon, is_wished=False, is_enabled=start.is_enabled)
-            return BarState(primary=BarAction(tr("Results"), "", Icon.NEXT), others=(again,), note=self._cannot_start)
+            return BarState(
+                primary=BarAction(tr("Results"), "", Icon.NEXT), others=(again,), note=self._cannot_start_now
+            )
         note = self._timed.next_words(self._label)
         if not recordings.has_moved:
             note = tr("Without a free motion, angles are poor or missing.")
-        return BarState(primary=start, note=self._cannot_start or note)
+        return BarState(primary=start, note=self._cannot_start_now or note)
 
     @property
     def _start_action(self) -> BarAction:
@@ -262,17 +288,22 @@ class WalkingStep(Step):
 
     def _bench_bar(self) -> BarState:
         asked = None if self._asked is None else self._asked.details.condition
-        return bench_bar(self._bench, asked, self._cannot_start, self._can_start)
+        return bench_bar(self._bench, asked, self._cannot_start_now, self._can_start)
 
     def _saved(self) -> str:
         """Say that what comes in is saved, only while the journal has it so."""
         recordings = self._visit.recordings
         if not recordings.has_begun:
             return tr("It begins in a moment.")
+        if recordings.is_in_memory:
+            return tr("Kept in the sensors.")
         return tr("Saved as it comes in.") if recordings.is_written else ""
 
     def on_primary(self) -> None:
         recordings = self._visit.recordings
+        if self._has_memory_bar:
+            self._memory.on_primary()
+            return
         if self._is_bench and self._asked is not None and not recordings.is_recording and not recordings.is_stopping:
             self._keep_at_bench(self._asked)
             return
@@ -283,7 +314,10 @@ class WalkingStep(Step):
             self._run()
 
     def on_other(self, number: int) -> None:
-        if self._timed.is_running:
+        if self._has_memory_bar:
+            if self._memory.on_other(number):
+                self.done.emit()
+        elif self._timed.is_running:
             self._stop()
         elif self._is_bench and number < len(self._bench_bar().others) - 1:
             if said := self._bench.return_to_first():
@@ -296,11 +330,24 @@ class WalkingStep(Step):
         own = len(self._bar().quiet)
         if number >= own:
             self._toggle_patient_screen()
+        elif self._memory_quiet is not None and number == own - 1:
+            self._memory.on_quiet()
         elif number == 0:
             self._bench.is_wished = not self._bench.is_wished
             self._show()
         elif self._asked is not None:
             self._keep(self._asked, is_kept=False)
+
+    @property
+    def _memory_quiet(self) -> BarAction | None:
+        return self._memory.quiet(wants_live=self._timed.planned is not None)
+
+    @property
+    def _has_memory_bar(self) -> bool:
+        visit, recordings = self._visit, self._visit.recordings
+        is_between = recordings.ongoing is None or recordings.is_stopping
+        is_held_up = bool(visit.cannot_record) or recordings.must_move or not visit.sensors.site_of
+        return is_between and not is_held_up and self._memory.bar() is not None
 
     def _toggle_patient_screen(self) -> None:
         if self._feedback is not None:
@@ -359,7 +406,7 @@ class WalkingStep(Step):
     def _can_start(self) -> bool:
         recordings = self._visit.recordings
         is_free = self._visit.session is not None and not recordings.is_recording and not recordings.is_stopping
-        return is_free and not self._cannot_start
+        return is_free and not self._cannot_start_now
 
     def _run(self) -> None:
         """Start, or stop; between walks, keep the last one and start the next."""
@@ -384,6 +431,7 @@ class WalkingStep(Step):
             label, alignment = self._bench.next_walk()
             acquisition.set_up(self._bench.chain.set_so(label, alignment))
         acquisition.ask(RecordingKind.WALKING)
+        self._memory.fetch.begun()
         recordings.begin(acquisition, RecordingKind.WALKING, label, alignment, self._timed.planned)
         self._bench.begun()
         if self._estimator is not None and recordings.ongoing is not None:
@@ -549,6 +597,7 @@ class WalkingStep(Step):
         self._page.show_bench(self._bench.state() if self._is_bench and ongoing is None else None)
         self._page.show_labels(labels_for(self._visit.patient.details, conditions), self._label)
         self._page.show_tests(self._timed.protocol, self._timed.result(), self._timed.before(self._label))
+        self._page.show_memory(self._memory.shown)
         self.changed.emit()
 
     # what the page and the visit tell
@@ -611,4 +660,14 @@ class WalkingStep(Step):
     @Slot()
     def _on_restrapped_pressed(self) -> None:
         self._visit.recordings.say_restrapped()
-        self.jumped.emit(STAND_STILL)
+        self._must_restrap = self._visit.sensors.are_in_memory
+        if self._must_restrap:
+            self._memory.go_live()  # standing and free motion are measured live
+        else:
+            self.jumped.emit(STAND_STILL)
+
+    @Slot()
+    def _on_lives(self) -> None:
+        if self._must_restrap:
+            self._must_restrap = False
+            self.jumped.emit(STAND_STILL)

@@ -38,6 +38,7 @@ class WalkState(StrEnum):
     ASKING = "asking"  # stopped, neither kept nor discarded
     KEPT = "kept"
     DISCARDED = "discarded"
+    IN_SENSORS = "in sensors"  # to be fetched from their memories
     RECOVERED = "recovered"  # the program was closed while it was recorded
 
 
@@ -66,6 +67,7 @@ class WalkRow:
             WalkState.ASKING: tr("keep or discard?"),
             WalkState.KEPT: strides,
             WalkState.DISCARDED: tr("discarded"),
+            WalkState.IN_SENSORS: tr("in the sensors"),
             WalkState.RECOVERED: tr("recovered, look at it"),
         }[self.state]
 

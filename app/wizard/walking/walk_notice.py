@@ -4,7 +4,14 @@ from typing import TYPE_CHECKING
 
 from app.storage.stored import RecordingState
 from app.wizard.losses import NOTHING, Losses, Message
-from app.wizard.walk_messages import few_strides_message, no_angles_message, recovered_message, slip_message
+from app.wizard.walk_messages import (
+    few_strides_message,
+    lacks_message,
+    loose_message,
+    no_angles_message,
+    recovered_message,
+    slip_message,
+)
 from core.body import Side
 
 if TYPE_CHECKING:
@@ -44,6 +51,10 @@ class WalkNotice:
         asked = asked_walk(recordings)
         if asked is not None and asked.stored.state is RecordingState.RECOVERED:
             return recovered_message(str(recordings.shown_names[asked.details.name]), length_s(asked))
+        if asked is not None and asked.lacks:
+            return lacks_message(str(recordings.shown_names[asked.details.name]), asked.lacks)
+        if sensors.are_loose:
+            return loose_message(sensors.on_own_clocks)
         return self._few_strides()
 
     def _of_ongoing(self, view: "WalkingReadout | None") -> Message:

@@ -25,7 +25,7 @@ def ongoing_walk(recordings: "SessionRecordings") -> "Ongoing | None":
 
 
 def rows_of(visit: "Visit") -> tuple[WalkRow, ...]:
-    """All walks of the session in the order of recording, the one that goes on last."""
+    """All walks of the session in the order of recording, those in the sensors and the one that goes on last."""
     recordings = visit.recordings
     names = recordings.shown_names
     strapped_last = {recording.id for recording in recordings.since_strapped}
@@ -39,7 +39,11 @@ def rows_of(visit: "Visit") -> tuple[WalkRow, ...]:
         name, is_old = names[recording.details.name], recording.id not in strapped_last
         rows.append(WalkRow(str(recording.id), name.letter, name.words, state, strides, is_old))
     ongoing = ongoing_walk(recordings)
-    if ongoing is not None:
+    fetched_later = [told for told in recordings.in_sensors if told.kind is RecordingKind.WALKING]
+    for told in fetched_later:
+        name = names[told.name]
+        rows.append(WalkRow("", name.letter, name.words, WalkState.IN_SENSORS))
+    if ongoing is not None and ongoing.details not in fetched_later:
         name = names[ongoing.details.name]
         rows.append(WalkRow("", name.letter, name.words, WalkState.RECORDING))
     return tuple(rows)

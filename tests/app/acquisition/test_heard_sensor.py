@@ -5,7 +5,7 @@ import pytest
 
 from app.acquisition.heard_sensor import HeardSensor, SensorStatus
 from core.samples import FloatArray, ImuBlock
-from devices.live import SensorDetails
+from devices.live import Quiet, SensorDetails
 from devices.source import SensorCounts
 
 
@@ -75,3 +75,21 @@ def test_the_share_of_what_is_lost() -> None:
     assert status(sensor, 0.0).lost_share == 0.0
     hear(sensor, 0, 1, 2, 4)
     assert status(sensor, 0.1).lost_share == pytest.approx(0.2)
+
+
+@pytest.mark.parametrize(("is_anew", "lost"), [(True, 0), (False, 997)])
+def test_what_a_sensor_was_not_to_send_is_not_missing(is_anew: bool, lost: int) -> None:
+    sensor = HeardSensor("one", 100.0, 0.0)
+    hear(sensor, 0, 1, 2)
+    if is_anew:
+        sensor.begin_anew()
+    hear(sensor, 1000, 1001)
+    hear(sensor, 1003)
+    assert sensor.lost == lost + 1
+
+
+@pytest.mark.parametrize(("quiet", "silent_s"), [(Quiet.IN_MEMORY, 0.0), (None, 7.0)])
+def test_one_that_is_to_send_nothing_is_not_silent(quiet: Quiet | None, silent_s: float) -> None:
+    sensor = HeardSensor("one", 100.0, 0.0)
+    hear(sensor, 0, 1, 2)
+    assert sensor.status(0, SensorDetails(quiet=quiet), 7.02).silent_s == pytest.approx(silent_s)

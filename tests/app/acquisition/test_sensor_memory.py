@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from app.acquisition.memory_fetching import MemoryFetching
 from app.acquisition.sensor_memory import MemoryRecording
 from app.storage.journal.decoding import DecodedJournal, decode
 from app.storage.journal.writer import JournalWriter
@@ -24,41 +25,37 @@ UTC_S = 1_600_000_000
 
 
 class MemorySession:
-    """Sensors that were heard for a while and record in their memory, and the journal that they are fetched into."""
+    """Sensors that were synchronised to record in their memory, and the journal that they are fetched into."""
 
-    def __init__(self, radio: VirtualRadio, folder: Path, faults: Sequence[DotFaults], heard_s: float = 15.0) -> None:
+    def __init__(self, radio: VirtualRadio, folder: Path, faults: Sequence[DotFaults]) -> None:
         self.radio = radio
         self.air, self.dots = worn(radio, faults)
         self.group = DotGroup(radio, [DotSensor(radio, one) for one in self.air.announced()])
-        self.sources = self.group.sources()
-        for source in self.sources:
-            source.open()
-        self.listen(heard_s)
-        for source in self.sources:
-            source.close()
-        self.memory = MemoryRecording(self.sources)
+        self.group.make_ready_to_record()
+        self.memory = MemoryRecording(self.group)
         self.writer = JournalWriter.create(folder, ID, KEY, room=NO_ROOM_ASKED, now_ns=radio.now_ns)
         self.told: list[tuple[str, int, int]] = []
         self.segments: tuple[Path, ...] = ()
-
-    def listen(self, seconds: float) -> None:
-        until_s = self.radio.loop.time() + seconds
-        while self.radio.loop.time() < until_s:
-            self.radio.pass_s(0.05)
-            for source in self.sources:
-                source.read(lambda _data: None)
 
     def record(self, seconds: float) -> None:
         self.memory.begin(UTC_S)
         self.radio.pass_s(seconds)
         assert self.memory.end() == {}
 
+    @property
+    def files(self) -> MemoryFetching:
+        assert self.memory.fetching is not None
+        return self.memory.fetching
+
     def fetch(self) -> None:
-        assert self.memory.fetch(self.writer, lambda *one: self.told.append(one)) == {}
+        assert self.files.fetch(self.writer, lambda *one: self.told.append(one)) == {}
+
+    def erase(self, *, is_confirmed: bool = True, may_lack: bool = False) -> None:
+        self.files.erase("DOT 0001", UTC_S, is_confirmed=is_confirmed, may_lack=may_lack)
 
     def close(self) -> dict[str, bool]:
         self.segments = (self.writer.stop().path,)
-        return dict(self.memory.look_into(self.segments, KEY))
+        return dict(self.files.look_into(self.segments, KEY))
 
     @cached_property
     def decoded(self) -> DecodedJournal:
@@ -117,7 +114,7 @@ def test_six_record_at_120_hz_and_are_fetched_through_lost_links_and_damage(
     offs = [session.stamps_off_s(number) for number in range(6)]
     for number in range(6):
         one, file = session.block(number), session.file(number)
-        result = session.memory.results[one.sensor]
+        result = session.files.results[one.sensor]
         assert result.is_complete
         assert result.samples == len(file.ticks) == len(one) > 2390
         assert np.array_equal(one.gyr_rad_s, file.gyr_rad_s)
@@ -138,17 +135,17 @@ def test_what_cannot_be_had_is_a_gap_that_is_said_by_number(radio: VirtualRadio,
     session.dots[0].unreadable = {300, 301, 302, 900}
     session.fetch()
     assert session.close() == {"DOT 0001": True, "DOT 0002": True}
-    result = session.memory.results["DOT 0001"]
+    result = session.files.results["DOT 0001"]
     assert result.missing == (range(300, 303), range(900, 901))
     assert not result.is_complete
     assert session.lost(0) == 4
-    assert session.memory.results["DOT 0002"].is_complete
+    assert session.files.results["DOT 0002"].is_complete
     steps = np.diff(session.block(0).time_s)
     assert np.round(steps[[299, 896]] / np.median(steps)).tolist() == [4, 2]
     with pytest.raises(DotRefusedError, match="samples that were not fetched"):
-        session.memory.erase("DOT 0001", UTC_S, is_confirmed=True)
+        session.erase()
     assert session.dots[0].files
-    session.memory.erase("DOT 0001", UTC_S, is_confirmed=True, may_lack=True)
+    session.erase(may_lack=True)
     assert not session.dots[0].files
 
 
@@ -160,21 +157,19 @@ def test_the_last_samples_are_asked_for_until_the_sensor_says_that_there_are_no_
     last = len(session.file(0).ticks) - 1
     session.dots[0].unheard = [last, last - 1]  # once each
     session.fetch()
-    assert session.memory.results["DOT 0001"].samples == last + 1
-    assert session.memory.results["DOT 0001"].is_complete
+    assert session.files.results["DOT 0001"].samples == last + 1
+    assert session.files.results["DOT 0001"].is_complete
 
 
-def test_one_that_tells_nothing_of_what_lies_behind_the_end_sends_all_of_it_once_more(
-    radio: VirtualRadio, tmp_path: Path
-) -> None:
-    session = MemorySession(radio, tmp_path, [DotFaults(tells_end=False)])
+def test_one_that_goes_on_only_while_it_sends_is_asked_then(radio: VirtualRadio, tmp_path: Path) -> None:
+    session = MemorySession(radio, tmp_path, [DotFaults(again=False)])
     session.record(5.0)
     last = len(session.file(0).ticks) - 1
     session.dots[0].unheard = [last - 1, last]
     session.fetch()
     assert session.close() == {"DOT 0001": True}
-    assert session.memory.results["DOT 0001"].is_complete
-    assert session.memory.results["DOT 0001"].samples == last + 1
+    assert session.files.results["DOT 0001"].is_complete
+    assert session.files.results["DOT 0001"].samples == last + 1
 
 
 def test_a_sensor_that_goes_away_while_it_is_fetched_is_named_and_goes_on_later(
@@ -184,17 +179,17 @@ def test_a_sensor_that_goes_away_while_it_is_fetched_is_named_and_goes_on_later(
     session.record(10.0)
     session.dots[0].faults.drops_export_after = [400]
     session.dots[0].faults.unreachable_after_drop_s = 300.0
-    failed = session.memory.fetch(session.writer, lambda *_: None)
+    failed = session.files.fetch(session.writer, lambda *_: None)
     assert list(failed) == ["DOT 0001"]
     assert isinstance(failed["DOT 0001"], SourceLostError)
-    assert list(session.memory.results) == ["DOT 0002"]
+    assert list(session.files.results) == ["DOT 0002"]
     with pytest.raises(DotRefusedError, match="not known to be kept"):
-        session.memory.erase("DOT 0001", UTC_S, is_confirmed=True)
+        session.erase()
     radio.pass_s(300.0)
     sent = session.dots[0].exported
     session.fetch()
     assert session.close() == {"DOT 0001": True, "DOT 0002": True}
-    assert session.memory.results["DOT 0001"].is_complete
+    assert session.files.results["DOT 0001"].is_complete
     assert session.dots[0].exported - sent < len(session.file(0).ticks) - 350, "what came is not sent again"
 
 
@@ -204,18 +199,22 @@ def test_nothing_is_written_to_a_sensor_that_records_but_what_asks_for_its_state
     """The emulated one ends its recording where a rate or a mode is written to it."""
     session = MemorySession(radio, tmp_path, [DotFaults(), DotFaults()])
     session.memory.begin(UTC_S)
+    begun_s = radio.loop.time()
     radio.pass_s(3.0)
     session.air.drop(session.dots[0])
     radio.pass_s(3.0)
-    for source in session.sources:
-        with pytest.raises(SourceRefusedError, match="recording in its memory"):
-            source.open()
+    for source in session.group.sources():
+        source.open()
+        assert source.read(lambda _data: None) == ()
         assert not source.identify(source.sensor.name)
+        source.close()
     with pytest.raises(SourceRefusedError, match="recording in its memory"):
         session.group.synchronise()
+    session.group.end()
     radio.pass_s(4.0)
     assert session.memory.end() == {}
-    assert [len(session.file(number).ticks) for number in (0, 1)] == pytest.approx([1250, 1250], rel=0.1)
+    about = 120 * (radio.loop.time() - begun_s)
+    assert [len(session.file(number).ticks) for number in (0, 1)] == pytest.approx([about, about], rel=0.05)
     session.fetch()
     assert all(session.close().values())
 
@@ -237,7 +236,7 @@ def test_a_recording_that_ended_because_the_memory_was_full_is_fetched_to_there(
     session.record(10.0)
     session.fetch()
     assert all(session.close().values())
-    results = session.memory.results
+    results = session.files.results
     assert 600 <= results["DOT 0001"].samples <= 602
     assert results["DOT 0002"].samples > 1190
     early_s = session.memory.ended_early_s()
@@ -246,12 +245,86 @@ def test_a_recording_that_ended_because_the_memory_was_full_is_fetched_to_there(
     assert results["DOT 0001"].is_complete
 
 
-def test_without_a_clock_that_is_known_nothing_is_recorded(radio: VirtualRadio, tmp_path: Path) -> None:
-    session = MemorySession(radio, tmp_path, [DotFaults(), DotFaults()], heard_s=0.0)
-    with pytest.raises(DotRefusedError, match="was not heard yet"):
+@pytest.mark.parametrize("by_notice", [False, True], ids=["answered", "noticed"])
+def test_a_full_memory_is_understood_however_it_is_told(radio: VirtualRadio, tmp_path: Path, by_notice: bool) -> None:
+    session = MemorySession(radio, tmp_path, [DotFaults(full_by_notice=by_notice)])
+    session.dots[0].room = 0
+    with pytest.raises(MemoryFullError):
         session.memory.begin(UTC_S)
-    assert [dot.state for dot in session.dots] == [0x06, 0x06]
     session.writer.stop()
+
+
+def test_an_answer_to_something_else_and_a_sensor_that_ends_slowly_are_waited_for(
+    radio: VirtualRadio, tmp_path: Path
+) -> None:
+    session = MemorySession(radio, tmp_path, [DotFaults(stale_answers=3, ends_after_s=6.0)])
+    session.memory.begin(UTC_S)
+    radio.pass_s(3.0)
+    begun_s = radio.loop.time()
+    session.dots[0].faults.stale_answers = 3
+    assert session.memory.end() == {}
+    assert radio.loop.time() - begun_s > 5.9
+    session.fetch()
+    assert session.close() == {"DOT 0001": True}
+    assert session.files.results["DOT 0001"].samples == pytest.approx(400, abs=40), "what was taken until it was told"
+
+
+def test_fetching_that_is_left_off_goes_on_where_it_was(radio: VirtualRadio, tmp_path: Path) -> None:
+    session = MemorySession(radio, tmp_path, [DotFaults(), DotFaults()])
+    session.record(8.0)
+    came = 0
+
+    def progress(sensor: str, done: int, _of: int) -> None:
+        nonlocal came
+        came = done
+        if (sensor, done) == ("DOT 0002", 500):
+            raise InterruptedError
+
+    with pytest.raises(InterruptedError):
+        session.files.fetch(session.writer, progress)
+    assert (list(session.files.results), came) == (["DOT 0001"], 500)
+    assert session.dots[1].state == 0x06, "it does not go on sending"
+    sent = session.dots[1].exported
+    session.fetch()
+    assert session.close() == {"DOT 0001": True, "DOT 0002": True}
+    assert session.dots[1].exported - sent < len(session.file(1).ticks) - 450
+
+
+def test_another_file_that_was_fetched_meanwhile_is_not_gone_on_with(radio: VirtualRadio, tmp_path: Path) -> None:
+    session = MemorySession(radio, tmp_path, [DotFaults()])
+    later = MemoryRecording(session.group)
+    session.record(6.0)
+    later.begin(UTC_S + 60)
+    radio.pass_s(6.0)
+    assert later.end() == {}
+
+    def left_off(_sensor: str, done: int, _of: int) -> None:
+        if done == 300:
+            raise InterruptedError
+
+    with pytest.raises(InterruptedError):
+        session.files.fetch(session.writer, left_off)
+    assert later.fetching is not None
+    other = JournalWriter.create(tmp_path / "other", ID, KEY, room=NO_ROOM_ASKED, now_ns=radio.now_ns)
+    assert later.fetching.fetch(other, lambda *_: None) == {}
+    other.stop()
+    session.fetch()
+    assert session.close() == {"DOT 0001": True}
+    assert np.array_equal(session.block(0).gyr_rad_s, session.file(0).gyr_rad_s)
+
+
+def test_files_lie_in_time_where_they_were_ordered_and_one_clock_holds_them_together(
+    radio: VirtualRadio, tmp_path: Path
+) -> None:
+    session = MemorySession(radio, tmp_path, [DotFaults() for _ in range(4)])
+    session.dots[2].faults.drops_after = [1]  # over its order to begin
+    session.record(5.0)
+    session.fetch()
+    session.close()
+    offs = np.array([session.stamps_off_s(number) for number in range(4)])
+    assert np.ptp(offs) < 0.002
+    assert np.abs(offs).max() < 0.1
+    assert all(one.clock is not None for one in session.decoded.sensors.values())
 
 
 # erasing
@@ -262,12 +335,12 @@ def test_it_is_erased_only_once_it_is_in_the_journal_and_that_is_confirmed(radio
     session.record(5.0)
     session.fetch()
     with pytest.raises(DotRefusedError, match="not known to be kept"):  # nobody has looked
-        session.memory.erase("DOT 0001", UTC_S, is_confirmed=True)
+        session.erase()
     assert session.close() == {"DOT 0001": True}
     with pytest.raises(DotRefusedError, match="not known to be kept"):
-        session.memory.erase("DOT 0001", UTC_S, is_confirmed=False)
+        session.erase(is_confirmed=False)
     assert session.dots[0].files
-    session.memory.erase("DOT 0001", UTC_S, is_confirmed=True)
+    session.erase()
     assert not session.dots[0].files
 
 
@@ -278,15 +351,15 @@ def test_a_journal_that_lacks_what_came_keeps_the_memory(radio: VirtualRadio, tm
     path = session.writer.stop().path
     whole = path.read_bytes()
     path.write_bytes(whole[: len(whole) // 2])  # a disk that lies
-    assert session.memory.look_into((path,), KEY) == {"DOT 0001": False}
+    assert session.files.look_into((path,), KEY) == {"DOT 0001": False}
     with pytest.raises(DotRefusedError, match="not known to be kept"):
-        session.memory.erase("DOT 0001", UTC_S, is_confirmed=True)
+        session.erase()
     assert session.dots[0].files
 
 
 def test_a_memory_that_holds_more_than_was_fetched_is_not_erased(radio: VirtualRadio, tmp_path: Path) -> None:
     session = MemorySession(radio, tmp_path, [DotFaults()])
-    earlier = MemoryRecording(session.sources)
+    earlier = MemoryRecording(session.group)
     earlier.begin(UTC_S - 1000)
     radio.pass_s(2.0)
     assert earlier.end() == {}
@@ -295,7 +368,7 @@ def test_a_memory_that_holds_more_than_was_fetched_is_not_erased(radio: VirtualR
     assert session.close() == {"DOT 0001": True}
     assert len(session.block(0)) == len(session.dots[0].files[1].ticks)
     with pytest.raises(DotRefusedError, match="holds 1 more recordings"):
-        session.memory.erase("DOT 0001", UTC_S, is_confirmed=True)
+        session.erase()
     assert len(session.dots[0].files) == 2
 
 

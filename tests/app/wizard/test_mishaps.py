@@ -207,11 +207,11 @@ def test_a_free_motion_that_is_refused_waits_for_a_word(
     beginnings: list[object] = []
     begin_for_real = Recorder.begin
 
-    def refused_once(*arguments: object) -> object:
+    def refused_once(*arguments: object, **more: object) -> object:
         beginnings.append(arguments)
         if len(beginnings) == 1:
             raise LibraryError("A recording needs 620 MB of free disk", "Delete files")
-        return begin_for_real(*arguments)  # type: ignore[arg-type]  # whatever the caller gave
+        return begin_for_real(*arguments, **more)  # type: ignore[arg-type]  # whatever the caller gave
 
     monkeypatch.setattr(Recorder, "begin", refused_once)
     step = FreeMotionStep(ThemeNotifier(), looked_at)

@@ -3,10 +3,18 @@
 import pytest
 from pytestqt.qtbot import QtBot
 
+from app.acquisition.memory_fetching import Lack
 from app.theme import ThemeNotifier
 from app.wizard.losses import NOTHING
 from app.wizard.visit import Visit
-from app.wizard.walk_messages import clock, few_strides_message, no_angles_message, no_foot_message
+from app.wizard.walk_messages import (
+    clock,
+    few_strides_message,
+    lacks_message,
+    loose_message,
+    no_angles_message,
+    no_foot_message,
+)
 from app.wizard.walking.step import WalkingStep
 from core.body import LEG_SITES, Side, Site
 from core.samples import RecordingKind
@@ -33,6 +41,24 @@ def test_strides_that_are_not_counted_live_are_told(worn: frozenset[Site], said:
 def test_angles_are_promised_for_when_they_come() -> None:
     assert "five strides" in no_angles_message(ALL)[1]
     assert "once the walk is stopped" in no_angles_message(ALL - FEET)[1]
+
+
+@pytest.mark.parametrize(
+    ("lacks", "said"),
+    [
+        ((), ""),
+        ((Lack("DOT 0003", lost=12),), "Samples of A Shoes could not be fetched: DOT 0003 12."),
+        ((Lack("DOT 0003", 12), Lack("DOT 0004", 0, 20.4)), "DOT 0004 ended 20 s before A Shoes was stopped."),
+        ((Lack("DOT 0003", is_end_known=False),), "DOT 0003 did not say where A Shoes ends."),
+    ],
+)
+def test_what_could_not_be_fetched_is_told_the_gravest_first(lacks: tuple[Lack, ...], said: str) -> None:
+    assert lacks_message("A Shoes", lacks)[0] == said
+
+
+def test_sensors_without_one_clock_are_named_or_said_to_drift() -> None:
+    assert loose_message(["DOT 0003"])[0] == "Not on the common clock: DOT 0003."
+    assert "half an hour ago" in loose_message([])[0]
 
 
 def test_only_what_is_short_of_a_spread_is_told() -> None:

@@ -26,13 +26,14 @@ def radio() -> Iterator[VirtualRadio]:
 
 
 def stamps_off_s(wearing: WornDots, every: Sequence[DecodedSensor]) -> list[FloatArray]:
-    """How far each stamp is from when it was taken; what is common to all is nobody's to see."""
-    off = []
+    """How far each stamp is from when it was taken; the line that is common to all is nobody's to see."""
+    taken, off = [], []
     for number, one in enumerate(every):
         _, truth_s = wearing.truth(number)
-        off.append(one.block.time_s - truth_s[wearing.rows(number, one)])
-    common_s = float(np.median(np.concatenate(off)))
-    return [each - common_s for each in off]
+        taken.append(truth_s[wearing.rows(number, one)])
+        off.append(one.block.time_s - taken[-1])
+    common = np.polynomial.Polynomial.fit(np.concatenate(taken), np.concatenate(off), 1)
+    return [each - common(at_s) for at_s, each in zip(taken, off, strict=True)]
 
 
 # synchronised, and measured
@@ -127,7 +128,7 @@ def test_at_30_hz_loss_is_counted_by_that_rate(radio: VirtualRadio) -> None:
 def test_the_steps_are_told_with_their_waits(radio: VirtualRadio) -> None:
     wearing = WornDots(radio, [DotFaults() for _ in range(3)])
     told: list[tuple[float, SyncStage]] = []
-    wearing.group.synchronise(lambda stage, _sensor: told.append((radio.loop.time(), stage)))
+    wearing.group.synchronise(lambda stage, _sensor, _left_s: told.append((radio.loop.time(), stage)))
     stages = list(dict.fromkeys(stage for _, stage in told))
     assert stages == [SyncStage.PREPARING, SyncStage.WAITING, SyncStage.CONNECTING, SyncStage.LISTENING]
     waits_s = next(at for at, stage in told if stage == SyncStage.CONNECTING) - next(

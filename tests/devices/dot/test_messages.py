@@ -76,6 +76,7 @@ def test_answers_mean_what_is_printed_however_they_are_padded(padding: int) -> N
     assert heard("02025104A7", padding) == messages.IS_SYNCHRONISED
     assert heard("02025000AC", padding) == messages.SYNC_STOPPED
     assert SyncResult.of(heard("02020300F9", padding)) is SyncResult.GOOD
+    assert SyncResult.of(heard("0209030001CCBBAACD22D4FD", padding)) is SyncResult.GOOD, "as it is drawn elsewhere"
     assert answered(Order.GET_STATE, heard("0103010602F3", padding)) is DotAnswer.IDLE
     assert answered(Order.START, heard("0109010040DF503B5BFFFFF2", padding)) is DotAnswer.DONE
     assert answered(Order.STOP, heard("0103010041BA", padding)) is DotAnswer.DONE
@@ -133,18 +134,24 @@ def test_settings_and_the_stream_are_read_where_they_stand() -> None:
 # the memory
 
 
-def test_a_list_tells_how_many_files_there_are() -> None:
-    pieces = bytes.fromhex("73616C46EECCCCEEEECCFFFFFF")
-    assert files_listed(pieces) == 3
-    assert files_listed(pieces[:4] + b"\xff" * 8) == 0
-    with pytest.raises(DotMessageError):
-        files_listed(b"\0" + pieces)
+HEADER = bytes.fromhex("73616C46 80000000 0200 00EEEE5E 0000F400 09000000") + bytes(106)  # its bytes look like files
 
 
-def test_a_file_tells_when_it_was_begun_and_how_long_it_is() -> None:
-    data = bytes.fromhex("6F636552800000000100DF503B5B4000")
-    assert RecordedFile.parsed(2, data) == RecordedFile(2, RECORD_UTC_S, 64)
+def test_a_list_tells_how_many_files_there_are_and_how_large_whatever_its_header_holds() -> None:
+    assert len(HEADER) == 128
+    assert files_listed(HEADER + bytes.fromhex("EECCCCEEEECCFFFFFF")) == (2, 0, 1)
+    assert files_listed(HEADER + b"\xff" * 8) == ()
+    assert files_listed(HEADER) == ()
+    for cut in (b"", HEADER[:7], HEADER[:127], b"\0" + HEADER):
+        with pytest.raises(DotMessageError):
+            files_listed(cut)
+
+
+def test_a_file_tells_when_it_was_begun_and_not_how_long_it_is() -> None:
+    """Without a timer FFFF stands where its length might be looked for."""
+    data = bytes.fromhex("6F636552800000000001DF503B5BFFFF") + bytes(112)
+    assert RecordedFile.parsed(2, data, 3) == RecordedFile(2, RECORD_UTC_S, 684_000)
     with pytest.raises(DotMessageError):
         RecordedFile.parsed(1, b"\1" + data[1:])
     with pytest.raises(DotMessageError):
-        RecordedFile.parsed(1, data[:-1])
+        RecordedFile.parsed(1, data[:15])

@@ -6,7 +6,9 @@ import struct
 import numpy as np
 import pytest
 
-from devices.dot.samples import DotFramer, FileFramer, Tie, framed
+from devices.dot.messages import DotMessage
+from devices.dot.samples import DotFramer, FileFramer
+from devices.notifications import framed
 from devices.source import SourceInfo
 from devices.stream import Row
 
@@ -101,25 +103,24 @@ def data(number: int, ticks: int, *, kind: int = 0x71) -> bytes:
     return framed(0x7003, message + bytes(160 - len(message)))
 
 
-def test_a_file_is_put_together_from_what_came_in_any_order_and_twice() -> None:
+def test_a_file_is_put_together_from_what_came_in_any_order_and_twice_also_where_its_clock_begins_anew() -> None:
     one = FileFramer()
     for number in (0, 1, 2, 6, 7, 2, 3):
         one.feed(data(number, TURN - 2 * 8333 + number * 8333))
     assert one.missing() == (range(4, 6),)
-    tie = Tie(origin_s=0.0, offset_s=-4290.0, skew=0.0)
-    rows, orientations = one.rows(5.0, tie)
+    rows, orientations = one.rows()
     begin_s = (TURN - 2 * 8333) / 1e6
     assert [row[0] for row in rows] == pytest.approx([begin_s + k * 0.008333 for k in (0, 1, 2, 3, 6, 7)])
     assert rows[0][1:] == pytest.approx((math.pi / 2, -math.pi, 2 * math.pi, 1.0, -2.0, 9.75))
     assert orientations[0][1:] == (0.5, -0.5, 0.5, 0.5)
 
 
-def test_a_file_that_was_begun_after_the_clock_had_is_put_where_it_was_recorded() -> None:
+@pytest.mark.parametrize("more", [b"", b"\0\0\0\0"], ids=["as it was chosen", "with more than was chosen"])
+def test_what_is_laid_out_otherwise_than_was_chosen_is_damaged_and_not_misread(more: bytes) -> None:
     one = FileFramer()
-    one.feed(data(0, 1_000_000))
-    tie = Tie(origin_s=4000.0, offset_s=-4000.0, skew=0.0)  # found before the clock began anew
-    rows, _ = one.rows(296.0, tie)
-    assert tie.host_s(rows[0][0]) == pytest.approx(TURN / 1e6 + 1.0 - 4000.0)
+    said = b"\x71" + struct.pack("<II", 0, 8333) + more + struct.pack("<10fH", *VALUES, 0)
+    one.feed(framed(0x7003, DotMessage(1, said).packed()))
+    assert (len(one.samples), one.damaged) == ((0, 1) if more else (1, 0))
 
 
 def test_damaged_data_of_a_file_is_missing_and_said_to_be() -> None:

@@ -6,7 +6,7 @@ import threading
 from collections.abc import Coroutine, Sequence
 from typing import Any, TypeVar
 
-from devices.bluetooth import Radio
+from devices.bluetooth import Radio, Tick
 from devices.emulators.bluetooth import Air
 from devices.emulators.dot import DotFaults, EmulatedDot, Motion
 
@@ -52,7 +52,7 @@ class VirtualRadio(Radio):
     def now_ns(self) -> int:
         return round(self.loop.time() * 1e9)
 
-    def run(self, work: Coroutine[Any, Any, Result]) -> Result:
+    def run(self, work: Coroutine[Any, Any, Result], tick: Tick | None = None) -> Result:
         return self.loop.run_until_complete(work)
 
     def wait(self, event: threading.Event, seconds: float) -> None:
@@ -89,6 +89,7 @@ def worn(
         EmulatedDot(number, motion, radio.now_ns, fault, skew=(-1) ** number * 20e-6 * number)
         for number, fault in enumerate(faults)
     ]
+    EmulatedDot.meet(dots)
     air = Air(dots, latency_s or [0.004 + 0.003 * number for number in range(len(dots))])
     radio.reach(air)
     return air, dots

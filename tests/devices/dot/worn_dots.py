@@ -1,10 +1,12 @@
 """Emulated DOTs that are worn, read and kept as the application does it."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from typing import Protocol
 
 import numpy as np
 
 from core.samples import FloatArray
+from devices.bluetooth import Announced
 from devices.dot.decoder import DotDecoder
 from devices.dot.sensor import DotSensor
 from devices.dot.source import DotGroup, DotSource
@@ -18,15 +20,40 @@ from tests.devices.dot.virtual_time import VirtualRadio, worn
 RAD = np.pi / 180
 
 
+class DotsInReach(Protocol):
+    """Who announces itself, and how a link is lost."""
+
+    def announced(self) -> Sequence[Announced]: ...
+
+    def drop(self, sensor: EmulatedDot) -> None: ...
+
+
+Through = Callable[[VirtualRadio, Sequence[DotFaults]], tuple[DotsInReach, list[EmulatedDot]]]
+"""What links go through: sensors with these faults, in the radio's reach."""
+
+
+def behind_bleak(radio: VirtualRadio, faults: Sequence[DotFaults]) -> tuple[Air, list[EmulatedDot]]:
+    """Links that are nothing but the interface of the Bluetooth library."""
+    return worn(radio, faults)
+
+
 class WornDots:
     """Sensors, their sources, and a journal of each kept as an application would."""
 
-    def __init__(self, radio: VirtualRadio, faults: Sequence[DotFaults], rate_hz: int = 60) -> None:
+    def __init__(
+        self,
+        radio: VirtualRadio,
+        faults: Sequence[DotFaults],
+        rate_hz: int = 60,
+        record_hz: int = 120,
+        through: Through = behind_bleak,
+    ) -> None:
         self.radio = radio
-        self.air: Air
+        self.air: DotsInReach
         self.dots: list[EmulatedDot]
-        self.air, self.dots = worn(radio, faults)
-        self.group = DotGroup(radio, [DotSensor(radio, one) for one in self.air.announced()], rate_hz)
+        self.air, self.dots = through(radio, faults)
+        sensors = [DotSensor(radio, one) for one in self.air.announced()]
+        self.group = DotGroup(radio, sensors, rate_hz, record_hz=record_hz)
         self.sources = self.group.sources()
         self.begin_s = 0.0
         self.decoders = [DotDecoder() for _ in self.sources]

@@ -228,7 +228,11 @@ def test_a_foot_that_no_sensor_is_left_for_costs_the_ankle(page: SensorsPage) ->
         ({"silent_s": 3.2}, "R foot has been silent for 3 s. Switch it off and on, or go on without right ankle"),
         ({"battery": 0.11}, "R foot has 11 % battery. Charge it after this patient."),
         ({"battery": 0.03}, "R foot has 3 % battery. It may fall silent during a walk: charge it first."),
-        ({"lost_share": 0.024}, "R foot: 2.4 % of the samples were lost."),
+        ({"lost_share": 0.024}, "R foot: 2.4 % of the samples were lost. Bring the receiver nearer"),
+        (
+            {"lost_share": 0.06, "has_memory": True},
+            "R foot: 6.0 % of the samples were lost. Bring this computer nearer, or",
+        ),
     ],
 )
 def test_what_wants_a_look_is_said(page: SensorsPage, changes: dict[str, object], words: str) -> None:

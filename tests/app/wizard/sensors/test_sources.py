@@ -7,11 +7,14 @@ import time
 import pytest
 from pytestqt.qtbot import QtBot
 
+from app.acquisition.acquisition import Acquisition
 from app.wizard.sensors import sources as sources_module
 from app.wizard.sensors.sources import DEMONSTRATION, SEARCH, WITH_PELVIS, Sources, choices
+from app.wizard.worn_sensors import SetUpFirstError, SourceChoice, WornSensors
 from core.alignment import NetChange, ProsthesisPart
 from core.body import Side
 from devices.bluetooth import BluetoothMissingError
+from devices.dot.samples import DRIVER as MOVELLA_DOT
 from devices.live import LiveSource, SourceRefusedError
 from devices.ports import PortInfo
 from devices.replay import ReplaySource
@@ -173,6 +176,33 @@ def test_where_nothing_is_found_it_says_what_bluetooth_lacks(deaf: SourceRefused
     with pytest.raises(SourceRefusedError, match="No sensor was found") as refused:
         sources[-2].make()
     assert re.search(said, refused.value.remedy)
+
+
+def test_dots_are_set_up_before_they_are_opened_and_others_are_opened_without_them(qtbot: QtBot) -> None:
+    alone = found_by(SearchResult((sensor("A", MOVELLA_DOT), sensor("B", MOVELLA_DOT))))
+    by_key = {one.key: one for one in alone}
+    assert by_key[MOVELLA_DOT].make_fleet is not None
+    with pytest.raises(SetUpFirstError) as refused:
+        by_key[SEARCH].make()
+    assert refused.value.key == MOVELLA_DOT
+    mixed = {one.key: one for one in found_by(SearchResult((sensor("A", MOVELLA_DOT), sensor("B"))))}
+    assert mixed["ximu3"].make_fleet is None
+    acquisition = mixed[SEARCH].make()
+    acquisition.start()
+    assert {one.partition("-")[0] for one in acquisition.sensors} == {"B"}
+    acquisition.close()
+
+
+def test_sensors_that_have_to_be_set_up_are_told_by_their_key(qtbot: QtBot) -> None:
+    sensors = WornSensors(None)  # type: ignore[arg-type]  # it belongs to nobody
+
+    def make() -> Acquisition:
+        raise SetUpFirstError(MOVELLA_DOT)
+
+    with qtbot.waitSignal(sensors.set_up_wanted, timeout=5000) as wanted, qtbot.assertNotEmitted(sensors.refused):
+        sensors.search(SourceChoice(SEARCH, "Search", make))
+    assert wanted.args == [MOVELLA_DOT]
+    sensors.finish()
 
 
 def test_a_patient_is_simulated_with_a_seventh_sensor_where_that_is_chosen() -> None:

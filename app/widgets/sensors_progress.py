@@ -1,0 +1,205 @@
+"""Something that is done to several sensors: what, how far it is, which of them are done, and the way out."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import Enum, auto
+
+from PySide6.QtCore import QRectF, QSize, Qt, Signal
+from PySide6.QtGui import QFontMetrics, QPainter, QPaintEvent, QResizeEvent
+from PySide6.QtWidgets import QHBoxLayout, QProgressBar, QSizePolicy, QVBoxLayout, QWidget
+
+from app.icons import Icon, paint_icon
+from app.theme import ThemeNotifier
+from app.widgets.button import Button, ButtonKind
+from app.widgets.notice import Notice
+from app.widgets.painted_text import LEFT, PaintedText
+from app.widgets.text import MEDIUM, SEMIBOLD, Text
+from app.widgets.themed import Themed
+from app.wording import tr
+
+LINE, MARK, GAP = 28, 18, 10
+WIDEST = 560  # longer lines are not read at a glance
+PER_MILLE = 1000
+
+
+class LineState(Enum):
+    DONE = auto()
+    NOW = auto()
+    TO_DO = auto()
+    WRONG = auto()
+
+
+@dataclass(frozen=True, slots=True)
+class SensorLine:
+    """One sensor, how it is with it, and in words what is particular."""
+
+    name: str
+    state: LineState
+    words: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class ProgressShown:
+    """`share` 0 to 1, None: nobody knows. `stop` is what the way out is called; empty: there is none now."""
+
+    title: str
+    sentence: str = ""
+    share: float | None = None
+    lines: tuple[SensorLine, ...] = ()
+    what: str = ""
+    then: str = ""
+    stop: str = ""
+    is_running: bool = True
+
+
+class SensorsProgress(Themed):
+    """
+    Signals
+    -------
+    stop_pressed
+        It is to be left.
+    """
+
+    stop_pressed = Signal()
+
+    def __init__(self, look: ThemeNotifier) -> None:
+        super().__init__()
+        self._look = look
+        self._shown = ProgressShown("")
+        self._title = Text(look, size=20, weight=SEMIBOLD, wraps=True)
+        self._sentence = Text(look, size=15, tone="ink2", wraps=True)
+        self._bar = QProgressBar()
+        self._bar.setTextVisible(False)
+        self._lines = _SensorLines(look)
+        self.notice = Notice(look, size=16)
+        self.stop = Button(look, tr("Cancel"), ButtonKind.SECONDARY, Icon.STOP)
+        self._inside = QWidget()
+        self._column = QVBoxLayout(self._inside)
+        self._column.setContentsMargins(0, 0, 0, 0)
+        for part in (self._title, self._sentence):
+            part.setAlignment(Qt.AlignmentFlag.AlignHCenter)
+        for widget in (self._title, self._sentence, self._bar, self._lines, self.notice):
+            self._column.addWidget(widget)
+        self._column.addWidget(self.stop, 0, Qt.AlignmentFlag.AlignHCenter)
+        outer = QVBoxLayout(self)
+        outer.setContentsMargins(0, 0, 0, 0)
+        middle = QHBoxLayout()
+        middle.addStretch(1)
+        middle.addWidget(self._inside)
+        middle.addStretch(1)
+        outer.addStretch(1)
+        outer.addLayout(middle)
+        outer.addStretch(2)
+        self.stop.clicked.connect(self.stop_pressed)
+        self._on_look_changed()
+
+    @property
+    def shown(self) -> ProgressShown:
+        return self._shown
+
+    def show_state(self, shown: ProgressShown) -> None:
+        """Show it; some times a second is enough."""
+        if shown == self._shown:
+            return
+        self._shown = shown
+        self._title.setText(shown.title)
+        self._sentence.setText(shown.sentence)
+        self._sentence.setVisible(bool(shown.sentence))
+        self._bar.setVisible(shown.is_running)
+        self._bar.setRange(0, PER_MILLE if shown.share is not None else 0)
+        if shown.share is not None:
+            self._bar.setValue(round(shown.share * PER_MILLE))
+        self._bar.setAccessibleName(shown.title)
+        self._lines.show_lines(shown.lines)
+        self.notice.tell(Icon.WARNING if shown.what else None, shown.what, shown.then, is_caution=bool(shown.what))
+        self.notice.setVisible(bool(shown.what))
+        self.stop.setVisible(bool(shown.stop))
+        if shown.stop and self.stop.text() != shown.stop:
+            self.stop.setText(shown.stop)
+            self.stop.setAccessibleName(shown.stop)
+
+    def focus(self) -> None:
+        if not self.stop.isHidden():
+            self.stop.setFocus()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._fit()
+
+    def _fit(self) -> None:
+        """Give it a width of its own: sentences that wrap ask for their height by that."""
+        self._inside.setFixedWidth(min(self._look.theme.px(WIDEST), self.width()))
+
+    def _on_look_changed(self) -> None:
+        px = self._look.theme.px
+        self._column.setSpacing(px(14))
+        self._bar.setFixedHeight(px(8))
+        self._fit()
+
+
+class _SensorLines(Themed):
+    """The sensors one below the other; readers of screens are told all of them."""
+
+    def __init__(self, look: ThemeNotifier) -> None:
+        super().__init__()
+        self._look = look
+        self._shown: tuple[SensorLine, ...] = ()
+        self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
+
+    def show_lines(self, lines: Sequence[SensorLine]) -> None:
+        if tuple(lines) == self._shown:
+            return
+        is_other_size = len(lines) != len(self._shown)
+        self._shown = tuple(lines)
+        self.setVisible(bool(lines))
+        self.setAccessibleName(", ".join(f"{line.name} {line.words or _STATES[line.state]()}" for line in lines))
+        if is_other_size:
+            self.updateGeometry()
+        self.update()
+
+    def sizeHint(self) -> QSize:
+        px = self._look.theme.px
+        widths = [QFontMetrics(text.font).horizontalAdvance(text.text) for text in self.painted_texts()]
+        return QSize(max(widths, default=0) + px(MARK + GAP), len(self._shown) * px(LINE))
+
+    def minimumSizeHint(self) -> QSize:
+        return QSize(0, self.sizeHint().height())
+
+    def painted_texts(self) -> list[PaintedText]:
+        """Give what is painted now, each in its box."""
+        px, theme = self._look.theme.px, self._look.theme
+        texts = []
+        for number, line in enumerate(self._shown):
+            box = QRectF(px(MARK + GAP), number * px(LINE), self.width() - px(MARK + GAP), px(LINE))
+            said = f"{line.name} · {line.words}" if line.words else line.name
+            tone = "ink2" if line.state is LineState.TO_DO else "ink"
+            texts.append(PaintedText(said, box, theme.font(14, MEDIUM), tone, LEFT))
+        return texts
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        px, c = self._look.theme.px, self._look.theme.colours
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        for number, line in enumerate(self._shown):
+            mark = QRectF(0, number * px(LINE) + px((LINE - MARK) / 2), px(MARK), px(MARK))
+            paint_icon(painter, _ICONS[line.state], mark, c.ink2 if line.state is LineState.TO_DO else c.ink)
+        for text in self.painted_texts():
+            text.paint(painter, c)
+
+    def _on_look_changed(self) -> None:
+        self.updateGeometry()
+        self.update()
+
+
+_ICONS = {
+    LineState.DONE: Icon.CHECK,
+    LineState.NOW: Icon.NEXT,
+    LineState.TO_DO: Icon.UNCHECKED,
+    LineState.WRONG: Icon.WARNING,
+}
+_STATES = {
+    LineState.DONE: lambda: tr("done"),
+    LineState.NOW: lambda: tr("now"),
+    LineState.TO_DO: lambda: tr("to do"),
+    LineState.WRONG: lambda: tr("wants a look"),
+}

@@ -1,0 +1,232 @@
+"""Sensors being brought onto one clock, beside the screen: what is done now, to which of them, for how long still."""
+
+import math
+import threading
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject, Signal
+
+from app.widgets.sensors_progress import LineState, ProgressShown, SensorLine
+from app.wording import filled, later, tr
+from app.workers.background import Background, Report
+from devices.dot.synchronising import NotSynchronisedError, SyncFailure, SyncStage
+from devices.live import SourceLostError, SourceRefusedError
+
+if TYPE_CHECKING:
+    from devices.dot.source import DotGroup
+
+SOON_S = 5.0  # so finely, and no later, it is told how long it takes still
+REASONS = {
+    SyncFailure.LOST: later("out of reach"),
+    SyncFailure.STAYS: later("stays on its old clock"),
+    SyncFailure.FEW_SAMPLES: later("heard too little of the others"),
+    SyncFailure.SKEW_TOO_LARGE: later("its clock runs too differently"),
+    SyncFailure.START_FAILED: later("began too late"),
+    SyncFailure.NOT_STARTED: later("did not begin"),
+    SyncFailure.UNKNOWN: later("does not tell how it went"),
+    SyncFailure.NOT_BACK: later("did not come back"),
+    SyncFailure.SILENT: later("does not begin to measure"),
+    SyncFailure.NOT_HEARD: later("is not heard"),
+    SyncFailure.CUT: later("what it sends arrives cut: use another Bluetooth adapter"),
+    SyncFailure.OTHER_CLOCK: later("its clock is another"),
+}
+
+
+class SyncPurpose(StrEnum):
+    """What the sensors are made ready for."""
+
+    STREAMS = "streams"
+    MEMORIES = "memories"
+
+
+@dataclass(frozen=True, slots=True)
+class SyncView:
+    """How far it is; `share` of the time that it takes, about. Where some did not follow, all are tried once more."""
+
+    stage: SyncStage = SyncStage.PREPARING
+    sensor: str = ""
+    left_s: float | None = None
+    share: float = 0.0
+    attempt: int = 1
+
+
+class SensorSync(QObject):
+    """
+    Signals
+    -------
+    changed
+        Something else is shown.
+    done
+        The sensors are ready.
+    """
+
+    changed = Signal()
+    done = Signal()
+
+    def __init__(self, parent: QObject) -> None:
+        super().__init__(parent)
+        self.purpose = SyncPurpose.STREAMS
+        self.view = SyncView()
+        self._told: tuple[SyncStage, str, float] | None = None  # by the links' thread
+        self._total_s = 0.0
+        self._error: Exception | None = None
+        self._is_over = threading.Event()
+        self._is_over.set()
+        self._background = Background(self)
+        self._background.progressed.connect(self._on_progressed)
+        self._background.done.connect(self._on_done)
+        self._background.failed.connect(self._on_failed)
+        self._background.idle.connect(self.changed)
+
+    @property
+    def is_running(self) -> bool:
+        return self._background.is_busy
+
+    @property
+    def is_ending(self) -> bool:
+        """Whether what was stopped still lets the sensors have clocks of their own again."""
+        return not self._background.is_busy and not self._background.is_idle
+
+    @property
+    def is_idle(self) -> bool:
+        return self._background.is_idle
+
+    @property
+    def failed(self) -> Mapping[str, SyncFailure]:
+        """The sensors that did not follow, and why."""
+        return self._error.failed if isinstance(self._error, NotSynchronisedError) else {}
+
+    @property
+    def failure(self) -> tuple[str, str]:
+        """Why it ended early, and what to do; empty where it did not."""
+        error = self._error
+        if error is None:
+            return "", ""
+        if isinstance(error, NotSynchronisedError):
+            said = [f"{name} ({tr(REASONS[why])})" for name, why in error.failed.items()]
+            what = tr("Not synchronised: {sensors}.").format(sensors=", ".join(said))
+            return what, tr("Lay all sensors side by side near this computer, switch these off and on, then try again.")
+        if isinstance(error, SourceRefusedError):
+            return f"{filled(error.what, error.values)}.", f"{filled(error.remedy, error.values)}."
+        if isinstance(error, SourceLostError):
+            return tr("A sensor is out of reach."), tr("Bring all sensors nearer to this computer, then try again.")
+        return tr("Synchronising ended early."), tr("Try again; the log has more.")
+
+    def start(self, group: "DotGroup", purpose: SyncPurpose, before: Callable[[], None] = lambda: None) -> None:
+        """Make them ready; `before` is waited for, beside the screen."""
+        self.purpose, self.view, self._told, self._error, self._total_s = purpose, SyncView(), None, None, 0.0
+        wait_for_last, self._is_over = self.over(), threading.Event()
+        is_over = self._is_over
+
+        def work(report: Report) -> object:
+            wait_for_last()
+            try:
+                bring_together(report)
+            finally:
+                is_over.set()
+            return None
+
+        def bring_together(report: Report) -> None:
+            def tick() -> None:
+                report(0.0, "")
+
+            def wait() -> None:
+                before()
+                tick()
+
+            wait()
+            make = group.make_ready_to_record if purpose is SyncPurpose.MEMORIES else group.stream_again
+            make(self._tell, tick)
+
+        self._background.start(work)
+        self.changed.emit()
+
+    def over(self) -> Callable[[], object]:
+        """What waits, beside the screen, until all that was begun so far has let the sensors be."""
+        return self._is_over.wait
+
+    def stop(self) -> None:
+        """Leave it; the sensors are let go beside the screen."""
+        self._background.stop()
+        self.changed.emit()
+
+    def forget(self) -> None:
+        """Nobody is told of the last failure any more."""
+        if self._error is not None:
+            self._error = None
+            self.changed.emit()
+
+    def finish(self) -> None:
+        """Wait for the thread, at the end of the program."""
+        self._background.finish()
+
+    def _tell(self, stage: SyncStage, sensor: str, left_s: float) -> None:
+        self._told = stage, sensor, left_s
+
+    def _on_progressed(self, _share: float, _what: str) -> None:
+        if self._told is None:
+            return
+        stage, sensor, left_s = self._told
+        before = self.view
+        is_again = stage is SyncStage.PREPARING and before.stage is not SyncStage.PREPARING
+        attempt = before.attempt + is_again
+        self._total_s = left_s if is_again else max(self._total_s, left_s)
+        share = max(0.0 if is_again else before.share, 1.0 - left_s / self._total_s) if self._total_s > 0 else 0.0
+        self.view = SyncView(stage, sensor, left_s, share, attempt)
+        self.changed.emit()
+
+    def _on_done(self, _nothing: object) -> None:
+        self.done.emit()
+        self.changed.emit()
+
+    def _on_failed(self, error: Exception) -> None:
+        self._error = error
+        self.changed.emit()
+
+
+def sentence_of(view: SyncView) -> str:
+    """What is being done, and what to do meanwhile."""
+    match view.stage:
+        case SyncStage.PREPARING if view.sensor:
+            return tr("{sensor} is being set up.").format(sensor=view.sensor)
+        case SyncStage.PREPARING:
+            return tr("The sensors are being reached.")
+        case SyncStage.WAITING:
+            return tr("The sensors compare their clocks by themselves. Leave them where they are.")
+        case SyncStage.CONNECTING:
+            return tr("{sensor} is asked how it went.").format(sensor=view.sensor)
+        case SyncStage.LISTENING:
+            return tr("Their clocks are held against one another.")
+
+
+def progress_of(sync: SensorSync, names: Collection[str]) -> ProgressShown:
+    """What is shown while sensors of these names are brought onto one clock."""
+    if sync.is_ending:
+        return ProgressShown(tr("The sensors are being let go"), tr("This takes some seconds."))
+    view = sync.view
+    title = tr("The sensors are being synchronised")
+    if view.attempt > 1:
+        title = tr("Some did not follow: the sensors are being synchronised once more")
+    sentence = sentence_of(view)
+    if view.left_s is not None and view.left_s > SOON_S:
+        seconds = math.ceil(view.left_s / SOON_S) * round(SOON_S)
+        sentence += " " + tr("About {seconds} s are left.").format(seconds=seconds)
+    return ProgressShown(title, sentence, view.share, lines_of(view, names), stop=tr("Cancel"))
+
+
+def lines_of(view: SyncView, names: Collection[str]) -> tuple[SensorLine, ...]:
+    """Done are those before the one that it is about."""
+    if view.stage is SyncStage.WAITING:
+        return tuple(SensorLine(name, LineState.NOW, tr("compares its clock")) for name in names)
+    order = list(names)
+    if view.sensor not in order:
+        state = LineState.DONE if view.stage is SyncStage.LISTENING else LineState.TO_DO
+        return tuple(SensorLine(name, state) for name in order)
+    at = order.index(view.sensor)
+    done = tr("set up") if view.stage is SyncStage.PREPARING else tr("asked")
+    before = (SensorLine(name, LineState.DONE, done) for name in order[:at])
+    after = (SensorLine(name, LineState.TO_DO) for name in order[at + 1 :])
+    return (*before, SensorLine(view.sensor, LineState.NOW), *after)

@@ -1,0 +1,312 @@
+"""Which DOTs are worn, and how are they to measure? A list with a tick before each, and three choices beside it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from PySide6.QtCore import QModelIndex, QRectF, QSignalBlocker, Qt, Signal
+from PySide6.QtGui import QColor, QFontMetrics, QKeyEvent, QPainter
+from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QVBoxLayout, QWidget
+
+from app.icons import Icon, paint_icon
+from app.theme import ThemeNotifier
+from app.tokens import Theme
+from app.widgets.button import Button, ButtonKind
+from app.widgets.card import Card
+from app.widgets.choice import Choice
+from app.widgets.notice import Notice
+from app.widgets.table import CellTable, TableColumn, TableRow
+from app.widgets.table_cells import TableCell, TextCell
+from app.widgets.text import SEMIBOLD, Text
+from app.widgets.themed import Themed
+from app.wording import tr, tr_n
+
+ROW, HEAD, PADDING, MARK = 44, 32, 10, 20
+STRONG_DBM, FAIR_DBM = -60, -75
+LOW = 0.15  # of a battery
+AT_LEAST_ROWS = 3
+
+
+@dataclass(frozen=True, slots=True)
+class DotLine:
+    """One sensor that was heard. `note`: what is the matter with it; `firmware` empty until it was asked."""
+
+    name: str
+    is_worn: bool = True
+    rssi_dbm: int | None = None
+    battery: float | None = None
+    firmware: str = ""
+    note: str = ""
+
+    @property
+    def signal(self) -> str:
+        if self.rssi_dbm is None:
+            return tr("unknown")
+        words = tr("weak")
+        if self.rssi_dbm >= FAIR_DBM:
+            words = tr("strong") if self.rssi_dbm >= STRONG_DBM else tr("fair")
+        return tr("{words}, {dbm} dBm").format(words=words, dbm=f"\N{MINUS SIGN}{-self.rssi_dbm}")
+
+    @property
+    def charge(self) -> str:
+        return tr("unknown") if self.battery is None else tr("{percent} %").format(percent=round(100 * self.battery))
+
+
+@dataclass(frozen=True, slots=True)
+class DotChoice:
+    """How they are to measure: what is live, and walks in memories (0 Hz: those are live too)."""
+
+    rate_hz: int = 60
+    record_hz: int = 120
+    profile: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class _TickCell(TableCell):
+    """A box, ticked or not, and a sensor's name."""
+
+    name: str
+    is_on: bool
+
+    @property
+    def words(self) -> str:
+        return self.name
+
+    @property
+    def is_checked(self) -> bool | None:
+        return self.is_on
+
+    def width(self, theme: Theme) -> int:
+        return theme.px(MARK + PADDING) + QFontMetrics(theme.font(15, SEMIBOLD, is_code=True)).horizontalAdvance(
+            self.words
+        )
+
+    def paint(self, painter: QPainter, room: QRectF, theme: Theme) -> None:
+        c, px = theme.colours, theme.px
+        box = QRectF(room.left(), room.center().y() - px(MARK) / 2, px(MARK), px(MARK))
+        painter.setPen(theme.pen(c.control, 1.25))
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        painter.drawRoundedRect(box.adjusted(1, 1, -1, -1), px(4), px(4))
+        if self.is_on:
+            paint_icon(painter, Icon.CHECK, box, c.ink)
+        painter.setFont(theme.font(15, SEMIBOLD, is_code=True))
+        painter.setPen(QColor(c.ink))
+        words = room.adjusted(px(MARK + PADDING), 0, 0, 0)
+        painter.drawText(words, Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter, self.words)
+
+
+class DotList(CellTable):
+    """Space or a click turns the tick of a line; Enter goes past it, to the primary button."""
+
+    def is_opening(self, event: QKeyEvent) -> bool:
+        return event.key() == Qt.Key.Key_Space
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        if event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
+            event.ignore()
+        else:
+            super().keyPressEvent(event)
+
+
+class DotForm(Themed):
+    """
+    Signals
+    -------
+    turned
+        The number of a sensor whose tick was turned.
+    identify_pressed
+        The number of the sensor whose light is to blink.
+    changed
+        They are to measure otherwise.
+    back_pressed
+        Other sources are wanted.
+    """
+
+    turned = Signal(int)
+    identify_pressed = Signal(int)
+    changed = Signal()
+    back_pressed = Signal()
+
+    def __init__(self, look: ThemeNotifier) -> None:
+        super().__init__()
+        self._look, self._is_narrow = look, False
+        self._lines: tuple[DotLine, ...] = ()
+        self._title = Text(look, size=20, weight=SEMIBOLD, wraps=True)
+        self._lead = Text(look, size=14, tone="ink2", wraps=True)
+        self.list = DotList(look, tr("Sensors that were heard"), row=ROW, head=HEAD, padding=PADDING, is_list=True)
+        self.list.setAccessibleDescription(tr("Space turns the tick of a sensor, I lets its light blink."))
+        self.identify = Button(look, tr("Identify"), ButtonKind.SECONDARY, Icon.LIGHT, key="I", height=44)
+        self.walks = self._choice(
+            tr("Walks"),
+            {
+                120: tr("in the sensors, 120 Hz"),
+                60: tr("in the sensors, 60 Hz"),
+                0: tr("sent live"),
+            },
+        )
+        self.rate = self._choice(tr("Live"), {60: tr("60 Hz"), 30: tr("30 Hz")})
+        self.profile = self._choice(tr("Filter"), {0: tr("General"), 1: tr("Dynamic, for fast and jerky motion")})
+        self._consequence = Text(look, size=14, tone="ink2", wraps=True)
+        self.notice = Notice(look, size=16)
+        self.back = Button(look, tr("Other sources"), ButtonKind.QUIET)
+        self._build()
+        self._connect()
+        self._show_consequence()
+        self._on_look_changed()
+
+    @property
+    def tab_order(self) -> list[QWidget]:
+        return [self.list, self.identify, self.walks, self.rate, self.profile, self.back]
+
+    @property
+    def choice(self) -> DotChoice:
+        return DotChoice(int(self.rate.currentData()), int(self.walks.currentData()), int(self.profile.currentData()))
+
+    @property
+    def consequence(self) -> str:
+        """What is said of how walks are recorded."""
+        return self._consequence.text()
+
+    def focus(self) -> None:
+        self.list.setFocus()
+
+    def show_choice(self, choice: DotChoice) -> None:
+        for box, key in ((self.rate, choice.rate_hz), (self.walks, choice.record_hz), (self.profile, choice.profile)):
+            with QSignalBlocker(box):
+                box.setCurrentIndex(max(box.findData(key), 0))
+            box.update()
+        self._show_consequence()
+
+    def show_dots(self, lines: Sequence[DotLine]) -> None:
+        """Show what was heard, and what is known of each."""
+        if tuple(lines) == self._lines:
+            return
+        self._lines = tuple(lines)
+        row = self.list.currentIndex().row()
+        heads = [tr("Worn"), tr("Signal"), tr("Battery"), tr("Firmware")]
+        columns = [TableColumn(TextCell(head, size=12, tone="ink2")) for head in heads]
+        columns.append(TableColumn(TextCell("", size=12, tone="ink2", wraps=True), share=1))
+        self.list.show_rows(columns, [self._row(number, line) for number, line in enumerate(lines)])
+        self.list.choose(min(max(row, 0), len(lines) - 1))
+        count = len(lines)
+        title = tr_n("{count} Movella DOT is heard", "{count} Movella DOTs are heard", count)
+        self._title.setText(title.format(count=count))
+        self._lead.setText(
+            tr("Tick those that are worn. Lay them side by side near this computer until they are synchronised.")
+        )
+
+    def tell(self, what: str, then: str = "") -> None:
+        """Say why they were not synchronised, and what to do; "" takes it back."""
+        self.notice.tell(Icon.WARNING if what else None, what, then, is_caution=bool(what))
+        self.notice.setVisible(bool(what))
+        self._lead.setVisible(not what)  # `then` says it, and the list needs the room
+
+    def identify_selected(self) -> bool:
+        """Let the chosen sensor blink; whether one is chosen."""
+        row = self.list.currentIndex().row()
+        if row < 0:
+            return False
+        self.identify_pressed.emit(row)
+        return True
+
+    def set_narrow(self, is_narrow: bool) -> None:
+        """Lay list and choices one below the other."""
+        if is_narrow != self._is_narrow:
+            self._is_narrow = is_narrow
+            way = QBoxLayout.Direction.TopToBottom if is_narrow else QBoxLayout.Direction.LeftToRight
+            self._body.setDirection(way)
+
+    def _choice(self, label: str, options: dict[int, str]) -> Choice:
+        choice = Choice(self._look, label)
+        for key, words in options.items():
+            choice.addItem(words, key)
+        return choice
+
+    def _row(self, number: int, line: DotLine) -> TableRow:
+        is_low = line.battery is not None and line.battery < LOW
+        is_weak = line.rssi_dbm is not None and line.rssi_dbm < FAIR_DBM
+        cells: tuple[TableCell, ...] = (
+            _TickCell(line.name, line.is_worn),
+            TextCell(line.signal, mark=Icon.WARNING if is_weak else None),
+            TextCell(line.charge, mark=Icon.WARNING if is_low else None),
+            TextCell(line.firmware or "\N{EN DASH}"),
+            TextCell(line.note, wraps=True, mark=Icon.WARNING if line.note else None),
+        )
+        return TableRow(cells, key=number)
+
+    def _build(self) -> None:
+        self._card = Card(self._look)
+        self._heading = QVBoxLayout()
+        self._heading.addWidget(self._title)
+        self._heading.addWidget(self._lead)
+        left, self._choices = QVBoxLayout(), QVBoxLayout()
+        left.addWidget(self.list, 1)
+        below = QHBoxLayout()
+        below.addWidget(self.identify)
+        below.addStretch(1)
+        left.addLayout(below)
+        for choice in (self.walks, self.rate, self.profile):
+            self._choices.addWidget(Text(self._look, choice.accessibleName(), 14, tone="ink2"))
+            self._choices.addWidget(choice)
+        self._choices.addWidget(self._consequence)
+        self._choices.addStretch(1)
+        self._body = QBoxLayout(QBoxLayout.Direction.LeftToRight)
+        self._body.addLayout(left, 3)
+        self._body.addLayout(self._choices, 2)
+        self._card.column.addLayout(self._heading)
+        self._card.column.addWidget(self.notice)
+        self._card.column.addLayout(self._body, 1)
+        verbs = QHBoxLayout()
+        verbs.addWidget(self.back)
+        verbs.addStretch(1)
+        self._column = QVBoxLayout(self)
+        self._column.setContentsMargins(0, 0, 0, 0)
+        self._column.addWidget(self._card, 1)
+        self._column.addLayout(verbs)
+        self.tell("")
+
+    def _connect(self) -> None:
+        self.list.opened.connect(self._on_opened)
+        self.list.clicked.connect(self._on_clicked)
+        self.identify.clicked.connect(self._on_identify_clicked)
+        for choice in (self.walks, self.rate, self.profile):
+            choice.activated.connect(self._on_chosen)
+        self.back.clicked.connect(self.back_pressed)
+
+    def _show_consequence(self) -> None:
+        record_hz = self.choice.record_hz
+        if record_hz == 120:
+            said = tr(
+                "Nothing of a walk is lost over the air, however far the patient goes. Its curves come once it is "
+                "fetched. Before the first walk the sensors are synchronised once more."
+            )
+        elif record_hz:
+            said = tr(
+                "Nothing of a walk is lost over the air, however far the patient goes. Its curves come once it is "
+                "fetched."
+            )
+        else:
+            said = tr("Curves are shown while the patient walks. What is lost over the air is missing.")
+        self._consequence.setText(said)
+
+    def _on_clicked(self, index: QModelIndex) -> None:
+        if index.column() == 0:
+            self.turned.emit(index.row())
+
+    def _on_opened(self, number: object) -> None:
+        assert isinstance(number, int)
+        self.turned.emit(number)
+
+    def _on_identify_clicked(self) -> None:
+        self.identify_selected()
+
+    def _on_chosen(self) -> None:
+        self._show_consequence()
+        self.changed.emit()
+
+    def _on_look_changed(self) -> None:
+        px = self._look.theme.px
+        self._column.setSpacing(px(12))
+        self._heading.setSpacing(px(4))
+        self._body.setSpacing(px(32))
+        self._choices.setSpacing(px(6))
+        self.list.setMinimumHeight(px(HEAD + AT_LEAST_ROWS * ROW))

@@ -1,0 +1,127 @@
+"""What do the sensors' memories hold, is it kept, and what becomes of it?"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from PySide6.QtCore import Signal
+from PySide6.QtWidgets import QVBoxLayout, QWidget
+
+from app.icons import Icon
+from app.theme import ThemeNotifier
+from app.widgets.card import Card
+from app.widgets.notice import Notice
+from app.widgets.table import CellTable, TableColumn, TableRow
+from app.widgets.table_cells import TextCell
+from app.widgets.text import SEMIBOLD, Text
+from app.widgets.themed import Themed
+from app.wording import tr, tr_n
+
+ROW, HEAD, PADDING = 48, 32, 10
+AT_LEAST_ROWS = 2
+
+
+@dataclass(frozen=True, slots=True)
+class HeldLine:
+    """One recording in the memories: when it was begun, how many sensors hold a part of it, and what is known of it."""
+
+    begun: str
+    sensors: int
+    note: str
+    is_kept: bool
+    can_fetch: bool = False
+
+
+class MemoriesForm(Themed):
+    """
+    Signals
+    -------
+    chosen
+        Another line is.
+    """
+
+    chosen = Signal()
+
+    def __init__(self, look: ThemeNotifier) -> None:
+        super().__init__()
+        self._look = look
+        self._lines: tuple[HeldLine, ...] = ()
+        self._title = Text(look, size=20, weight=SEMIBOLD, wraps=True)
+        self._lead = Text(look, size=14, tone="ink2", wraps=True)
+        self.list = CellTable(look, tr("Recordings in the sensors"), row=ROW, head=HEAD, padding=PADDING, is_list=True)
+        self.notice = Notice(look, size=16)
+        card = Card(look)
+        card.column.addWidget(self._title)
+        card.column.addWidget(self._lead)
+        card.column.addWidget(self.notice)
+        card.column.addWidget(self.list, 1)
+        card.column.addStretch()  # where there is no list
+        self._column = QVBoxLayout(self)
+        self._column.setContentsMargins(0, 0, 0, 0)
+        self._column.addWidget(card, 1)
+        self.list.chosen.connect(self._on_chosen)
+        self.tell("")
+        self.show_lines(())
+        self._on_look_changed()
+
+    @property
+    def tab_order(self) -> list[QWidget]:
+        return [self.list]
+
+    @property
+    def title(self) -> str:
+        return self._title.text()
+
+    @property
+    def chosen_number(self) -> int:
+        """Of the line that is chosen, from 0; -1: none."""
+        return self.list.currentIndex().row()
+
+    def focus(self) -> None:
+        (self.list if self._lines else self).setFocus()  # else Enter would press the button that is next
+
+    def show_lines(self, lines: Sequence[HeldLine]) -> None:
+        """Show these, oldest first; the first that can be fetched is chosen."""
+        self._lines = tuple(lines)
+        heads = [tr("Begun"), tr("Sensors")]
+        columns = [TableColumn(TextCell(head, size=12, tone="ink2")) for head in heads]
+        columns.append(TableColumn(TextCell(tr("What is known of it"), size=12, tone="ink2", wraps=True), share=1))
+        self.list.show_rows(columns, [_row(number, line) for number, line in enumerate(lines)])
+        self.list.setVisible(bool(lines))
+        wanted = [number for number, line in enumerate(lines) if line.can_fetch]
+        if lines:
+            self.list.choose(wanted[0] if wanted else 0)
+        count = len(lines)
+        title = tr("The sensors' memories are empty")
+        if count:
+            title = tr_n(
+                "{count} recording is in the sensors' memories",
+                "{count} recordings are in the sensors' memories",
+                count,
+            ).format(count=count)
+        self._title.setText(title)
+        self._lead.setText(tr("Memories are erased as a whole, once what they hold is kept.") if count else "")
+        self._lead.setVisible(bool(count))
+
+    def show_unknown(self, what: str, then: str) -> None:
+        """Say why it is not known what they hold, and what to do."""
+        self.show_lines(())
+        self._title.setText(tr("It is not known what the sensors hold"))
+        self.tell(what, then)
+
+    def tell(self, what: str, then: str = "") -> None:
+        """Say what is the matter, and what to do; "" takes it back."""
+        self.notice.tell(Icon.WARNING if what else None, what, then, is_caution=bool(what))
+        self.notice.setVisible(bool(what))
+
+    def _on_chosen(self, _number: object) -> None:
+        self.chosen.emit()
+
+    def _on_look_changed(self) -> None:
+        px = self._look.theme.px
+        self.list.setMinimumHeight(px(HEAD + AT_LEAST_ROWS * ROW))
+
+
+def _row(number: int, line: HeldLine) -> TableRow:
+    count = tr_n("{count} sensor", "{count} sensors", line.sensors).format(count=line.sensors)
+    note = TextCell(line.note, wraps=True, mark=Icon.CHECK if line.is_kept else Icon.WARNING)
+    return TableRow((TextCell(line.begun), TextCell(count), note), key=number)

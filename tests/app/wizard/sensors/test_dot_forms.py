@@ -1,0 +1,123 @@
+"""The forms of sensors with Bluetooth LE: what their lines say, what each choice costs, whether all has its room."""
+
+import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtTest import QTest
+from pytestqt.qtbot import QtBot
+
+from app.theme import ThemeNotifier
+from app.widgets.sensors_progress import LineState, ProgressShown, SensorLine, SensorsProgress
+from app.wizard.sensors.dot_form import DotChoice, DotForm, DotLine
+from app.wizard.sensors.memories_form import HeldLine, MemoriesForm
+from tests.app.room import words_cut
+from tests.app.wizard.emulated_dots import rows_of
+
+LINES = [
+    DotLine("DOT 0A22", True, -50, 0.85, "2.4.0"),
+    DotLine("DOT 0A23", True, -70, 0.14, "2.4.0"),
+    DotLine("DOT 0A24", False, -80, None, "", "does not answer: press its button"),
+    DotLine("DOT 0A25", False, None, 0.5, "1.8.0", "firmware too old to be synchronised"),
+]
+SIZES = [(1016, 540), (744, 420)]
+HELD = [
+    HeldLine("today 10:32", 6, "Kept: A Shoes.", is_kept=True),
+    HeldLine("today 10:40", 5, "Not fetched: A2 Shoes.", is_kept=False, can_fetch=True),
+]
+SYNCHRONISING = ProgressShown(
+    "The sensors are being synchronised",
+    "The sensors compare their clocks by themselves. Leave them where they are. About 20 s are left.",
+    0.4,
+    tuple(SensorLine(f"DOT 0A2{number}", LineState.NOW, "compares its clock") for number in range(7)),
+    stop="Cancel",
+)
+
+
+@pytest.fixture
+def form(look: ThemeNotifier, qtbot: QtBot) -> DotForm:
+    form = DotForm(look)
+    qtbot.addWidget(form)
+    form.resize(1016, 540)
+    form.show_dots(LINES)
+    form.show()
+    return form
+
+
+def words_of(form: DotForm, row: int) -> list[str]:
+    return [cell.words for cell in rows_of(form.list)[row].cells]
+
+
+def test_a_line_tells_signal_battery_firmware_and_what_is_the_matter(form: DotForm) -> None:
+    assert words_of(form, 0) == ["DOT 0A22", "strong, \N{MINUS SIGN}50 dBm", "85 %", "2.4.0", ""]
+    assert words_of(form, 1)[1:3] == ["fair, \N{MINUS SIGN}70 dBm", "14 %"]
+    assert words_of(form, 2)[1:] == [
+        "weak, \N{MINUS SIGN}80 dBm", "unknown", "\N{EN DASH}", "does not answer: press its button",
+    ]  # fmt: skip
+    assert words_of(form, 3)[1] == "unknown"
+    ticks = [row.cells[0].is_checked for row in rows_of(form.list)]
+    assert ticks == [True, True, False, False]
+
+
+def test_space_turns_a_tick_and_enter_goes_on(form: DotForm, qtbot: QtBot) -> None:
+    turned: list[int] = []
+    form.turned.connect(turned.append)
+    form.focus()
+    QTest.keyClick(form.list, Qt.Key.Key_Down)
+    QTest.keyClick(form.list, Qt.Key.Key_Space)
+    QTest.keyClick(form.list, Qt.Key.Key_Return)
+    assert turned == [1]
+    with qtbot.waitSignal(form.identify_pressed) as pressed:
+        form.identify.click()
+    assert pressed.args == [1]
+
+
+@pytest.mark.parametrize(
+    ("record_hz", "said", "unsaid"),
+    [
+        (120, "synchronised once more", "What is lost over the air is missing"),
+        (60, "Its curves come once it is fetched.", "synchronised once more"),
+        (0, "What is lost over the air is missing", "fetched"),
+    ],
+)
+def test_each_way_to_record_walks_says_its_price(form: DotForm, record_hz: int, said: str, unsaid: str) -> None:
+    form.show_choice(DotChoice(30, record_hz, 1))
+    assert form.choice == DotChoice(30, record_hz, 1)
+    assert said in form.consequence
+    assert unsaid not in form.consequence
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_everything_on_the_list_of_sensors_has_its_room(form: DotForm, size: tuple[int, int]) -> None:
+    form.set_narrow(size[0] < 1000)
+    form.resize(*size)
+    form.tell(
+        "Not synchronised: DOT 0A22 (heard too little of the others).", "Lay all sensors side by side, try again."
+    )
+    assert [cut for cut in words_cut(form) if "DOT 0A2" not in cut] == []
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_everything_of_the_memories_has_its_room(look: ThemeNotifier, qtbot: QtBot, size: tuple[int, int]) -> None:
+    form = MemoriesForm(look)
+    qtbot.addWidget(form)
+    form.resize(*size)
+    form.show_lines(HELD)
+    form.tell("1 recording is not kept in this library, and would be lost.", "Press once more to erase.")
+    form.show()
+    assert words_cut(form) == []
+    assert form.title == "2 recordings are in the sensors' memories"
+    assert form.chosen_number == 1, "the first that can be fetched"
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_everything_of_the_progress_has_its_room(look: ThemeNotifier, qtbot: QtBot, size: tuple[int, int]) -> None:
+    progress = SensorsProgress(look)
+    qtbot.addWidget(progress)
+    progress.resize(*size)
+    progress.show_state(SYNCHRONISING)
+    progress.show()
+    assert words_cut(progress) == []
+    assert progress.stop.isVisible()
+    progress.show_state(ProgressShown("The sensors are not ready", what="So.", then="Do so.", is_running=False))
+    assert words_cut(progress) == []
+    assert progress.stop.isHidden()
+    assert progress.notice.isVisible()

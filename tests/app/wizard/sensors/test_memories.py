@@ -1,0 +1,207 @@
+"""What the sensors' memories hold: told, fetched where it was left, erased once it was said what is lost by that."""
+
+from collections.abc import Iterator
+from datetime import datetime
+
+import pytest
+from pytestqt.qtbot import QtBot
+
+from app.acquisition.dot_memories import KnownRecording, known
+from app.storage.opened import OpenedLibrary
+from app.wizard.sensors.step import SensorsStep
+from app.wizard.visit import Visit
+from app.workers.library_controller import LibraryController
+from core.samples import RecordingKind
+from devices.dot.messages import start_recording
+from devices.emulators.dot import DotFaults, EmulatedDot
+from tests.app.wizard.emulated_dots import WAIT_MS, dot_choice, open_dots, rows_of
+from tests.devices.dot.fast_radio import FastRadio
+
+SEPARATE_UTC_S = 1_700_000_000
+
+
+@pytest.fixture
+def radio() -> FastRadio:
+    return FastRadio([DotFaults(), DotFaults()])
+
+
+@pytest.fixture
+def visit(controller: LibraryController, radio: FastRadio) -> Iterator[Visit]:
+    visit = Visit(controller, [dot_choice(radio)])
+    yield visit
+    visit.close()
+    visit.finish()
+
+
+@pytest.fixture
+def opened(qtbot: QtBot, visit: Visit, step: SensorsStep) -> SensorsStep:
+    """The step, its sensors open, worn and known to the library."""
+    open_dots(qtbot, visit, step, 60)
+    with qtbot.waitSignal(visit.changed, timeout=WAIT_MS):
+        visit.place_sensors()
+    return step
+
+
+def left_by_itself(dot: EmulatedDot, utc_s: int = SEPARATE_UTC_S) -> None:
+    """Let it record for a moment, as if by its maker's own program."""
+    dot.is_streaming = False
+    dot.write(0x7001, start_recording(utc_s).packed())
+
+
+def told_lines(step: SensorsStep) -> list[list[str]]:
+    """What the list says, but for when."""
+    return [[cell.words for cell in row.cells][1:] for row in rows_of(step.page.memories.list)]
+
+
+def look(qtbot: QtBot, step: SensorsStep) -> None:
+    step.on_quiet(0)
+    wait(qtbot, step)
+
+
+def wait(qtbot: QtBot, step: SensorsStep) -> None:
+    assert step.memories.is_busy
+    assert "Wait until" in step.cannot_leave
+    qtbot.waitUntil(lambda: not step.memories.is_busy, timeout=WAIT_MS)
+    assert step.cannot_leave == ""
+
+
+def walk_in_memory(qtbot: QtBot, visit: Visit, *, is_fetched: bool) -> None:
+    sensors, recordings = visit.sensors, visit.recordings
+    assert sensors.dots is not None
+    assert sensors.acquisition is not None
+    sensors.dots.make_ready_to_record()
+    recordings.begin(sensors.acquisition, RecordingKind.WALKING, "Shoes")
+    qtbot.waitUntil(lambda: recordings.has_begun, timeout=WAIT_MS)
+    qtbot.wait(60)
+    recordings.stop()
+    if is_fetched:
+        qtbot.waitUntil(lambda: len(recordings.walks) == 1, timeout=WAIT_MS)
+
+
+@pytest.mark.endurance
+def test_empty_memories_are_told_and_live_comes_back(qtbot: QtBot, opened: SensorsStep, visit: Visit) -> None:
+    assert [one.text for one in opened.bar().quiet] == ["Sensors' memories"]
+    look(qtbot, opened)
+    assert opened.page.memories.isVisible()
+    assert opened.page.memories.title == "The sensors' memories are empty"
+    assert visit.sensors.are_in_memory
+    opened.on_primary()
+    qtbot.waitUntil(lambda: not visit.sensors.are_in_memory and visit.sensors.sync.is_idle, timeout=WAIT_MS)
+    assert opened.page.memories.isHidden()
+    assert visit.sensors.dots is not None
+    assert visit.sensors.dots.are_one_at(60), "they were not synchronised anew"
+
+
+def test_what_is_kept_is_erased_after_a_second_press(
+    qtbot: QtBot, opened: SensorsStep, visit: Visit, radio: FastRadio
+) -> None:
+    walk_in_memory(qtbot, visit, is_fetched=True)
+    look(qtbot, opened)
+    assert told_lines(opened) == [["2 sensors", "Kept: A Shoes."]]
+    bar = opened.bar()
+    assert bar.primary is not None
+    assert bar.primary.text == "Back to the sensors"
+    assert [other.text for other in bar.others] == ["Erase the memories"]
+    opened.on_other(0)
+    assert [len(dot.files) for dot in radio.dots] == [1, 1]
+    assert "kept in this library, every sample of it" in opened.page.memories.notice.text
+    assert [other.text for other in opened.bar().others] == ["Erase now"]
+    opened.on_other(0)
+    wait(qtbot, opened)
+    assert [len(dot.files) for dot in radio.dots] == [0, 0]
+    assert opened.page.memories.title == "The sensors' memories are empty"
+    assert opened.page.focusWidget() is opened.page.memories, "Enter would press another button"
+
+
+@pytest.mark.endurance
+def test_what_a_closed_visit_left_in_the_sensors_is_fetched_where_the_session_goes_on(
+    qtbot: QtBot, opened: SensorsStep, visit: Visit, radio: FastRadio
+) -> None:
+    recordings, last = visit.recordings, radio.dots[1].faults
+    last.drops_export_after, last.unreachable_after_drop_s = [20], 1e6
+    walk_in_memory(qtbot, visit, is_fetched=False)
+    qtbot.waitUntil(lambda: recordings.fetches.failure[0] != "", timeout=WAIT_MS)
+    recordings.fetch_later()
+    recordings.close()
+    assert recordings.in_sensors == ()
+    visit.read_anew()  # as a session that is gone on with is read
+    qtbot.waitUntil(lambda: len(recordings.walks) == 1, timeout=WAIT_MS)
+    assert [walk.details.is_kept for walk in recordings.walks] == [False]
+    last.unreachable_until_ns = 0
+    look(qtbot, opened)
+    assert told_lines(opened) == [["2 sensors", "Not fetched: Shoes."]]
+    bar = opened.bar()
+    assert bar.primary is not None
+    assert bar.primary.text == "Fetch it"
+    opened.on_primary()
+    wait(qtbot, opened)
+    qtbot.waitUntil(lambda: len(recordings.walks) == 2, timeout=WAIT_MS)
+    fetched = recordings.walks[1]
+    assert fetched.details.condition == "Shoes"
+    assert fetched.read_back is not None
+    assert [len(block) for block in fetched.read_back.imu.values()] == [len(dot.files[0].ticks) for dot in radio.dots]
+    assert told_lines(opened) == [["2 sensors", "Kept: A Shoes."]]
+
+
+def test_what_is_not_of_this_library_is_not_fetched_and_is_named_before_it_is_lost(
+    qtbot: QtBot, opened: SensorsStep, visit: Visit, radio: FastRadio
+) -> None:
+    assert visit.sensors.dots is not None
+    visit.sensors.dots.fall_silent()
+    for dot in radio.dots:
+        left_by_itself(dot)
+    qtbot.wait(40)
+    for dot in radio.dots:
+        dot.write(0x7001, bytes.fromhex("010141bd"))
+    look(qtbot, opened)
+    assert told_lines(opened) == [["2 sensors", "Not recorded with this library."]]
+    bar = opened.bar()
+    assert bar.primary is not None
+    assert bar.primary.text == "Back to the sensors"
+    opened.on_other(0)
+    assert "1 recording is not kept in this library, and would be lost." in opened.page.memories.notice.text
+    assert [other.text for other in opened.bar().others] == ["Erase now, and lose what is not kept"]
+    assert [len(dot.files) for dot in radio.dots] == [1, 1]
+    opened.on_other(0)
+    wait(qtbot, opened)
+    assert [len(dot.files) for dot in radio.dots] == [0, 0]
+
+
+@pytest.mark.endurance
+def test_a_sensor_that_is_out_of_reach_is_told_and_asked_again(
+    qtbot: QtBot, opened: SensorsStep, visit: Visit, radio: FastRadio
+) -> None:
+    radio.dots[1].faults.unreachable_until_ns = radio.now_ns() + 10**15
+    radio.air.drop(radio.dots[1])
+    look(qtbot, opened)
+    assert "A sensor is out of reach." in opened.page.memories.notice.text
+    assert opened.page.memories.title == "It is not known what the sensors hold"
+    bar = opened.bar()
+    assert bar.primary is not None
+    assert bar.primary.text == "Try again"
+    assert [quiet.text for quiet in bar.quiet] == ["Back to the sensors"]
+    radio.dots[1].faults.unreachable_until_ns = 0
+    opened.on_primary()
+    wait(qtbot, opened)
+    assert opened.page.memories.notice.isHidden()
+    assert opened.page.memories.title == "The sensors' memories are empty"
+
+
+def test_a_recording_is_found_by_the_second_in_which_it_was_begun(
+    qtbot: QtBot, opened: SensorsStep, visit: Visit, controller: LibraryController
+) -> None:
+    walk_in_memory(qtbot, visit, is_fetched=True)
+    (walk,) = visit.recordings.walks
+    utc_s = int(datetime.fromisoformat(walk.details.started).timestamp())
+    found: list[KnownRecording] = []
+
+    def ask(library: OpenedLibrary) -> None:
+        found.extend(known(library, one) for one in (utc_s, utc_s + 1))
+
+    controller.run(ask, None, None, visit)
+    qtbot.waitUntil(lambda: len(found) == 2, timeout=WAIT_MS)
+    assert [row.id for row in found[0].rows] == [walk.id]
+    assert found[0].kept == frozenset({"DOT 0001", "DOT 0002"})
+    assert found[0].lacking == frozenset()
+    assert found[1].rows == ()
+    assert found[1].kept == frozenset()

@@ -1,0 +1,185 @@
+"""Walks in the sensors' memories: made ready, recorded, fetched now or later, and what a lost link leaves to do."""
+
+from collections.abc import Callable, Iterator
+
+import pytest
+from pytestqt.qtbot import QtBot
+
+from app.theme import ThemeNotifier
+from app.widgets.action_bar import BarState
+from app.wizard.keys import Intent, KeyAction
+from app.wizard.sensors.step import SensorsStep
+from app.wizard.visit import Visit
+from app.wizard.walking.step import WalkingStep
+from app.wizard.walking.walk_list import WalkState
+from app.workers.library_controller import LibraryController
+from core.timed.protocols import TimedProtocol
+from devices.emulators.dot import DotFaults
+from tests.app.wizard.emulated_dots import WAIT_MS, dot_choice, open_dots
+from tests.devices.dot.fast_radio import FastRadio
+
+RUN = Intent(KeyAction.RUN)
+FOR_EVER_NS = 10**15
+
+
+@pytest.fixture
+def radio() -> FastRadio:
+    return FastRadio([DotFaults(), DotFaults()])
+
+
+@pytest.fixture
+def visit(controller: LibraryController, radio: FastRadio) -> Iterator[Visit]:
+    visit = Visit(controller, [dot_choice(radio)])
+    yield visit
+    visit.close()
+    visit.finish()
+
+
+@pytest.fixture
+def walking(qtbot: QtBot, visit: Visit, step: SensorsStep) -> Iterator[Callable[[int], WalkingStep]]:
+    """Open the sensors, their walks recorded at so many Hz, and enter the step."""
+    entered: list[WalkingStep] = []
+
+    def enter(record_hz: int) -> WalkingStep:
+        open_dots(qtbot, visit, step, record_hz)
+        with qtbot.waitSignal(visit.changed, timeout=WAIT_MS):
+            step.leave()
+        one = WalkingStep(ThemeNotifier(), visit)
+        qtbot.addWidget(one.page)
+        one.page.resize(1064, 672)
+        one.page.show()
+        one.enter()
+        entered.append(one)
+        return one
+
+    yield enter
+    for one in entered:
+        one.leave()
+        one.deleteLater()
+
+
+def texts(bar: BarState) -> tuple[str, list[str]]:
+    return bar.primary.text if bar.primary is not None else "", [one.text for one in (*bar.others, *bar.quiet)]
+
+
+def make_ready(qtbot: QtBot, visit: Visit, step: WalkingStep) -> None:
+    step.on_primary()
+    assert visit.sensors.sync.is_running
+    qtbot.waitUntil(lambda: visit.sensors.are_ready_for_walks and visit.sensors.sync.is_idle, timeout=WAIT_MS)
+
+
+def walk(qtbot: QtBot, visit: Visit, step: WalkingStep) -> None:
+    """Start a walk and stop it."""
+    assert step.on_intent(RUN)
+    qtbot.waitUntil(lambda: visit.recordings.has_begun, timeout=WAIT_MS)
+    qtbot.wait(60)
+    step.on_intent(RUN)
+
+
+def test_a_walk_in_memories_is_made_ready_recorded_and_fetched(
+    qtbot: QtBot, visit: Visit, radio: FastRadio, walking: Callable[[int], WalkingStep]
+) -> None:
+    step = walking(120)
+    assert texts(step.bar()) == ("Make the sensors ready", ["Send walks live", "Patient's screen"])
+    assert step.page.memory.shown.title == "Walks are recorded in the sensors"
+    assert step.page.memory.isVisible()
+    step.on_intent(RUN)
+    assert not visit.recordings.is_recording, "they are not ready"
+    make_ready(qtbot, visit, step)
+    assert texts(step.bar())[0] == "Start walk"
+    assert step.page.memory.isHidden()
+    assert step.cannot_leave == ""
+    assert "Set them back to live" in visit.cannot_calibrate
+    step.on_intent(RUN)
+    qtbot.waitUntil(lambda: visit.recordings.has_begun, timeout=WAIT_MS)
+    assert step.page.memory.shown.title == "The sensors record in their memories"
+    assert step.page.figures.isHidden()
+    recording = step.bar().recording
+    assert recording is not None
+    assert "Kept in the sensors." in recording.note
+    qtbot.wait(60)
+    step.on_intent(RUN)
+    assert step.bar().note == "The walk is being fetched."
+    assert "Wait until it is, or fetch it later." in step.cannot_leave
+    assert step.note == "being fetched"
+    assert [row.state for row in step.page.rows] == [WalkState.IN_SENSORS]
+    qtbot.waitUntil(lambda: len(visit.recordings.walks) == 1, timeout=WAIT_MS)
+    (fetched,) = visit.recordings.walks
+    assert fetched.read_back is not None
+    assert [len(block) for block in fetched.read_back.imu.values()] == [len(dot.files[0].ticks) for dot in radio.dots]
+    assert fetched.lacks == ()
+    assert not any(dot.cut_recordings for dot in radio.dots)
+    assert step.page.memory.isHidden()
+    assert step.cannot_leave == ""
+
+
+@pytest.mark.endurance
+def test_a_walk_may_be_fetched_later_and_a_lost_sensor_is_named_and_tried_again(
+    qtbot: QtBot, visit: Visit, radio: FastRadio, walking: Callable[[int], WalkingStep]
+) -> None:
+    step = walking(120)
+    make_ready(qtbot, visit, step)
+    radio.dots[1].faults.unreachable_after_drop_s = 1e6
+    radio.dots[1].faults.drops_export_after = [20]
+    walk(qtbot, visit, step)
+    qtbot.waitUntil(lambda: visit.recordings.fetches.failure[0] != "", timeout=WAIT_MS)
+    assert step.page.memory.shown.what == "DOT 0002 is out of reach."
+    assert texts(step.bar())[:1] == ("Fetch again",)
+    step.on_other(0)
+    assert texts(step.bar()) == ("Start walk", ["Fetch 1 walk", "Patient's screen"])
+    assert step.page.memory.isHidden()
+    assert [one.name for one in visit.recordings.in_sensors] == ["walk 1"]
+    radio.dots[1].faults.unreachable_until_ns = 0
+    step.on_quiet(0)
+    qtbot.waitUntil(lambda: len(visit.recordings.walks) == 1, timeout=WAIT_MS)
+    assert "Fetch 1 walk" not in texts(step.bar())[1]
+    (fetched,) = visit.recordings.walks
+    assert fetched.read_back is not None
+    assert [len(block) for block in fetched.read_back.imu.values()] == [len(dot.files[0].ticks) for dot in radio.dots]
+
+
+@pytest.mark.endurance
+def test_at_the_live_rate_they_are_ready_at_once_and_live_again_for_a_timed_test(
+    qtbot: QtBot, visit: Visit, radio: FastRadio, walking: Callable[[int], WalkingStep]
+) -> None:
+    step = walking(60)
+    qtbot.waitUntil(lambda: visit.sensors.are_ready_for_walks and visit.sensors.sync.is_idle, timeout=WAIT_MS)
+    assert texts(step.bar()) == ("Start walk", ["Patient's screen"])
+    step.page.next.test.chosen.emit(TimedProtocol.UP_AND_GO.value)
+    assert "Timed tests need what the sensors send live" in step.bar().note
+    assert texts(step.bar()) == ("Start walk", ["Send walks live", "Patient's screen"])
+    step.on_intent(RUN)
+    assert not visit.recordings.is_recording
+    step.on_quiet(0)
+    qtbot.waitUntil(lambda: not visit.sensors.are_in_memory and visit.sensors.sync.is_idle, timeout=WAIT_MS)
+    assert all(dot.is_streaming and dot.is_synchronised for dot in radio.dots)
+    assert texts(step.bar()) == ("Start walk", ["Patient's screen"])
+    assert "Timed tests need" not in step.bar().note
+
+
+@pytest.mark.endurance
+def test_a_failure_before_walks_is_named_and_walks_may_be_sent_live_instead(
+    qtbot: QtBot, visit: Visit, radio: FastRadio, walking: Callable[[int], WalkingStep]
+) -> None:
+    step = walking(120)
+    radio.dots[1].faults.sync_results = [0x07] * 2
+    step.on_primary()
+    qtbot.waitUntil(lambda: visit.sensors.sync.failure[0] != "" and visit.sensors.sync.is_idle, timeout=WAIT_MS)
+    assert step.page.memory.shown.what == "Not synchronised: DOT 0002 (its clock runs too differently)."
+    assert texts(step.bar()) == ("Try again", ["Send walks live", "Patient's screen"])
+    step.on_other(0)
+    qtbot.waitUntil(lambda: not visit.sensors.are_loose and visit.sensors.sync.is_idle, timeout=WAIT_MS)
+    assert texts(step.bar())[0] == "Start walk"
+    assert step.page.memory.isHidden()
+
+
+@pytest.mark.endurance
+def test_sensors_strapped_anew_are_live_before_they_stand_still(
+    qtbot: QtBot, visit: Visit, walking: Callable[[int], WalkingStep]
+) -> None:
+    step = walking(60)
+    qtbot.waitUntil(lambda: visit.sensors.are_ready_for_walks and visit.sensors.sync.is_idle, timeout=WAIT_MS)
+    with qtbot.waitSignal(step.jumped, timeout=WAIT_MS):
+        step.page.restrapped_pressed.emit()
+        assert visit.cannot_calibrate != ""
+    assert visit.cannot_calibrate == ""
