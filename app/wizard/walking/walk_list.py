@@ -38,7 +38,7 @@ class WalkState(StrEnum):
     ASKING = "asking"  # stopped, neither kept nor discarded
     KEPT = "kept"
     DISCARDED = "discarded"
-    IN_SENSORS = "in sensors"  # to be fetched from their memories
+    IN_SENSORS = "in_sensors"  # to be fetched from their memories
     RECOVERED = "recovered"  # the program was closed while it was recorded
 
 
