@@ -2,10 +2,10 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from enum import StrEnum
 from typing import Protocol
 
 from core.samples import ImuBlock, RateKind, RecordingKind
+from devices.quiet import Quiet
 from devices.source import SourceInfo
 
 Keep = Callable[[bytes], None]
@@ -30,13 +30,6 @@ class SourceLostError(Exception):
 
 class SourceRestartedError(SourceLostError):
     """A source that sends anew, after it was to send nothing: what lies between was not lost."""
-
-
-class Quiet(StrEnum):
-    """Why a sensor is to send nothing now."""
-
-    IN_MEMORY = "in memory"
-    SYNCHRONISING = "synchronising"
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,7 @@ from app.widgets.battery import LOW
 from app.widgets.body_figure import SensorMark
 from app.wording import capitalised, name_of, tr
 from core.body import Site
-from devices.live import Quiet
+from devices.quiet import Quiet
 
 LOST_SHARE = 0.01
 SILENT_FROM_S = 1.0  # shorter is the radio's hiccup, and counts as loss

@@ -27,8 +27,9 @@ from devices.dot.synchronising import (
     refuse_while_recording,
     synchronise,
 )
-from devices.live import Keep, Quiet, SensorDetails, SourceLostError, SourceRefusedError, SourceRestartedError
+from devices.live import Keep, SensorDetails, SourceLostError, SourceRefusedError, SourceRestartedError
 from devices.live_clock import LiveClock, LiveLine
+from devices.quiet import Quiet
 from devices.source import SourceInfo
 
 LIVE_HZ, SLOWER_HZ = 60, 30

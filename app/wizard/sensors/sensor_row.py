@@ -33,7 +33,7 @@ from app.wizard.sensors.sensor_places import number_of
 from app.wizard.sensors.sensor_trace import Trace
 from app.wording import capitalised, figure_text, name_of, tr
 from core.body import LEG_SITES, Site
-from devices.live import Quiet
+from devices.quiet import Quiet
 
 ROW, ROW_AT_LEAST = 58, 46  # six of the latter fit into a window 720 high
 CHIP = 20

@@ -5,7 +5,8 @@ import pytest
 
 from app.acquisition.heard_sensor import HeardSensor, SensorStatus
 from core.samples import FloatArray, ImuBlock
-from devices.live import Quiet, SensorDetails
+from devices.live import SensorDetails
+from devices.quiet import Quiet
 from devices.source import SensorCounts
 
 

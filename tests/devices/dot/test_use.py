@@ -9,7 +9,8 @@ from devices.dot.sensor import DotRefusedError
 from devices.dot.source import DotUse
 from devices.dot.synchronising import SyncStage
 from devices.emulators.dot import DotFaults
-from devices.live import Quiet, SourceRestartedError
+from devices.live import SourceRestartedError
+from devices.quiet import Quiet
 from tests.devices.dot.virtual_time import VirtualRadio
 from tests.devices.dot.worn_dots import WornDots
 
