@@ -24,6 +24,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return root
 
 
+@pytest.mark.endurance
 def test_it_writes_tables_curves_figures_and_a_report(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = folder / "out"
     arguments = ["agree", "--reference", str(folder / "ref.csv"), str(folder / "session"), "--out", str(out)]

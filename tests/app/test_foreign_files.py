@@ -95,6 +95,7 @@ def test_an_8_gb_file_is_not_imported(tmp_path: Path, capsys: pytest.CaptureFixt
     assert not (tmp_path / "session").exists()
 
 
+@pytest.mark.endurance
 def test_a_file_that_takes_too_long_is_refused_with_two(
     folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -22,6 +22,7 @@ def test_the_longest_time_between_two_frames_is_told_with_what_each_thread_did()
     assert longest_gap([10.0], spent[:1]) == {}
 
 
+@pytest.mark.endurance
 @pytest.mark.skipif(not Path("/proc/self/schedstat").exists(), reason="only Linux tells what others kept us from")
 def test_work_and_being_kept_from_it_are_told_apart() -> None:
     one = min(os.sched_getaffinity(0))

@@ -19,6 +19,7 @@ def untold(settings: WalkerSettings) -> Session:
     return replace(session, sensors=dict.fromkeys(session.sensors, SensorInfo()))
 
 
+@pytest.mark.endurance
 @pytest.mark.parametrize("kind", list(RateKind))
 @pytest.mark.parametrize("tissue", [Tissue.RIGID, Tissue.SOFT])
 def test_all_joints_together_tell_instants_from_averages(tissue: Tissue, kind: RateKind) -> None:

@@ -37,6 +37,7 @@ def reversed_in_time(block: ImuBlock) -> ImuBlock:
     return replace(block, gyr_rad_s=-block.gyr_rad_s[::-1], acc_m_s2=block.acc_m_s2[::-1])
 
 
+@pytest.mark.endurance
 @pytest.mark.parametrize(
     "turned_sign", [{}, pytest.param({Joint.LEFT_KNEE: 1, Joint.RIGHT_KNEE: 1}, marks=pytest.mark.endurance)]
 )

@@ -69,6 +69,7 @@ def test_the_walk_after_a_change_is_walked_so(turns: float) -> None:
     user.close()
 
 
+@pytest.mark.endurance
 def test_who_was_told_to_stop_meanwhile_does_not_walk() -> None:
     user = patient()
     user.open()

@@ -416,6 +416,7 @@ def test_a_clock_that_is_set_by_a_day_changes_nothing(
     assert decoded.sensors["a-left_thigh"].block.time_s[-1] < 30.0
 
 
+@pytest.mark.endurance
 @pytest.mark.parametrize("slept_s", [20.0, 8 * 3600.0])
 @pytest.mark.parametrize("is_lost", [False, True])
 def test_a_machine_that_slept_leaves_one_gap(

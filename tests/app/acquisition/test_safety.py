@@ -204,6 +204,7 @@ def locked(file: Path, seconds: float) -> Iterator[None]:
         letting_go.join()
 
 
+@pytest.mark.endurance
 @pytest.mark.parametrize("seconds", [1.3, pytest.param(10.0, marks=pytest.mark.endurance)])
 def test_a_database_that_is_locked_loses_nothing(
     acquisition: Acquisition, opened: OpenedLibrary, seconds: float

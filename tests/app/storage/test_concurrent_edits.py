@@ -42,6 +42,7 @@ def judged(folder: Path, is_old: bool, said: str = "knee B") -> EditsJudged:
     return judge(str(folder), things, logs)
 
 
+@pytest.mark.endurance
 def test_a_word_that_was_written_over_unseen_or_is_in_no_history_is_a_fault(tmp_path: Path) -> None:
     for name in ("well", "unseen", "nowhere"):
         (tmp_path / name).mkdir()

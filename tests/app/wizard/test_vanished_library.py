@@ -64,6 +64,7 @@ def is_whole(recording: SessionRecording, seconds: float) -> bool:
     )
 
 
+@pytest.mark.endurance
 def test_renamed_amid_a_walk_it_goes_on_and_is_read_back_whole(
     qtbot: QtBot, controller: LibraryController, looked_at: Visit, tmp_path: Path
 ) -> None:

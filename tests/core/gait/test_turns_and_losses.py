@@ -64,6 +64,7 @@ def without_packets(block: ImuBlock, share: float, rng: np.random.Generator) -> 
     return replace(block, time_s=block.time_s[keep], gyr_rad_s=block.gyr_rad_s[keep], acc_m_s2=block.acc_m_s2[keep])
 
 
+@pytest.mark.endurance
 @pytest.mark.parametrize(
     ("loss", "speed_m_s", "tissue"),
     [

@@ -74,6 +74,7 @@ def test_the_files_of_one_trial_are_those_of_its_name(test_data: FindData) -> No
     assert len(next(one for one in found.trials if one.name.startswith("MT46")).files) == 2
 
 
+@pytest.mark.endurance
 def test_it_comes_back_the_same_from_the_limited_process(mixed: Path) -> None:
     reader = LimitedReader()
     try:

@@ -269,7 +269,12 @@ def test_a_file_that_takes_too_long_is_refused_and_the_next_one_is_read(
 
 @on_linux
 @pytest.mark.parametrize(
-    ("number", "cause"), [(signal.SIGSEGV, "crash"), (signal.SIGKILL, "crash"), (signal.SIGXCPU, "time")]
+    ("number", "cause"),
+    [
+        (signal.SIGSEGV, "crash"),
+        (signal.SIGXCPU, "time"),
+        pytest.param(signal.SIGKILL, "crash", marks=pytest.mark.endurance),
+    ],
 )
 def test_a_file_that_ends_its_reader_is_refused_and_the_next_one_is_read(
     make_session: MakeSession, reader: LimitedReader, number: signal.Signals, cause: str

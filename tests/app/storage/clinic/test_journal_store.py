@@ -81,6 +81,7 @@ def test_a_place_that_is_not_there_takes_nothing(place: str, journal: Path) -> N
         JournalStore(place.removesuffix("/journals") + "-of-another").put(journal)
 
 
+@pytest.mark.endurance
 def test_a_bucket_that_does_not_answer_is_said_not_to(monkeypatch: pytest.MonkeyPatch, journal: Path) -> None:
     pytest.importorskip("s3fs")
     monkeypatch.setenv("AWS_ENDPOINT_URL", "http://127.0.0.1:9")

@@ -253,6 +253,7 @@ def test_headers_that_a_kill_left_are_written_at_the_next_start(
         assert samples_of(again)
 
 
+@pytest.mark.endurance
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="the child is a fork")
 @pytest.mark.parametrize("at", [3, 12, 20, 24, 28, 32])
 def test_a_kill_at_any_point_leaves_the_old_key_or_the_new_one(

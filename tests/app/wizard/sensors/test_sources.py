@@ -205,6 +205,7 @@ def test_sensors_that_have_to_be_set_up_are_told_by_their_key(qtbot: QtBot) -> N
     sensors.finish()
 
 
+@pytest.mark.endurance
 def test_a_patient_is_simulated_with_a_seventh_sensor_where_that_is_chosen() -> None:
     acquisition = found_by(SearchResult())[-1].make()
     try:
