@@ -37,6 +37,7 @@ class Background(QObject):
         super().__init__(parent)
         self._threads: set[_WorkThread] = set()
         self._current: _WorkThread | None = None
+        self._is_finished = False
 
     @property
     def is_busy(self) -> bool:
@@ -49,8 +50,10 @@ class Background(QObject):
         return not self._threads
 
     def start(self, work: Work) -> None:
-        """Begin `work` in a thread of its own, and stop whatever ran before."""
+        """Begin `work` in a thread of its own, and stop whatever ran before; after `finish` nothing begins any more."""
         self.stop()
+        if self._is_finished:  # what the library answers late asks for more
+            return
         thread = _WorkThread(work, self)
         thread.progressed.connect(self._on_progressed)
         thread.done.connect(self._on_done)
@@ -69,6 +72,7 @@ class Background(QObject):
 
     def finish(self) -> None:
         """Stop, and wait until no thread is left: for the end of the program, when there is no screen to hold up."""
+        self._is_finished = True
         self.stop()
         for thread in self._threads:
             thread.wait()

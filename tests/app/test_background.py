@@ -148,3 +148,14 @@ def test_what_the_work_raises_arrives_as_it_is(qtbot: QtBot, background: Backgro
         background.start(work)
     assert got.args == [error]
     assert not background.is_busy
+
+
+def test_after_the_end_of_the_program_nothing_begins_any_more(background: Background) -> None:
+    begun: list[int] = []
+    background.start(lambda _report: begun.append(1))
+    background.finish()
+    assert begun == [1]
+    background.start(lambda _report: begun.append(2))
+    assert background.is_idle
+    assert not background.is_busy
+    assert begun == [1]

@@ -179,7 +179,7 @@ def test_sensors_strapped_anew_are_live_before_they_stand_still(
 ) -> None:
     step = walking(60)
     qtbot.waitUntil(lambda: visit.sensors.are_ready_for_walks and visit.sensors.sync.is_idle, timeout=WAIT_MS)
+    assert visit.cannot_calibrate != ""
     with qtbot.waitSignal(step.jumped, timeout=WAIT_MS):
         step.page.restrapped_pressed.emit()
-        assert visit.cannot_calibrate != ""
     assert visit.cannot_calibrate == ""
