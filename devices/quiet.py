@@ -1,4 +1,4 @@
-"""Why may a sensor be silent without being lost? Apart from the sources, whose numbers nobody needs to show it."""
+"""Why a sensor may be silent without being lost; apart from the sources, whose numbers nobody needs to show it."""
 
 from enum import StrEnum
 
