@@ -385,11 +385,11 @@ def test_sensors_that_were_never_heard_together_give_nothing(circling: Session) 
     assert find_chains(cut(tracks, 0.0, 1.2)) is None
 
 
-@pytest.mark.parametrize("count", [1, 7])
-def test_one_sensor_or_seven_are_refused(circling: Session, count: int) -> None:
+@pytest.mark.parametrize("count", [1, 8])
+def test_one_sensor_or_eight_are_refused(circling: Session, count: int) -> None:
     tracks, _ = unlabelled(tracks_of(circling))
     some = list(tracks.values())
-    with pytest.raises(ValueError, match=f"{count} sensors, expected 2 to 6"):
+    with pytest.raises(ValueError, match=f"{count} sensors, expected 2 to 7"):
         find_chains({str(k): some[k % 6] for k in range(count)})
 
 
