@@ -70,6 +70,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         return _run(wanted)
     except KeyboardInterrupt:
+        # where it fell into the `exec` of a text, as libraries have them, CPython would end this process by the signal
+        # whatever code we give; the next `exec` of a text takes that back
+        exec("")
         left = getattr(wanted, "stopped", f"{wanted.out} is as it was before.")
         return _say_last(f"Stopped. {left}", INTERRUPTED)
 

@@ -453,6 +453,26 @@ def test_a_signal_in_the_middle_ends_with_three(session: Path, tmp_path: Path) -
     assert sorted(path.name for path in tmp_path.iterdir()) == ["session"]
 
 
+INTERRUPTED_IN_A_LIBRARY = """
+import os, signal, sys
+from app import cli
+def run(wanted):
+    exec("os.kill(os.getpid(), signal.SIGINT)", {"os": os, "signal": signal})
+cli._run = run
+sys.exit(cli.main(["analyse", "session", "--out", "out"]))
+"""
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals of this kind are not for Windows")
+def test_a_signal_that_falls_into_the_exec_of_a_library_ends_with_three_too(tmp_path: Path) -> None:
+    (tmp_path / "interrupted.py").write_text(INTERRUPTED_IN_A_LIBRARY)
+    command = [sys.executable, "-m", "interrupted"]  # only so does the interpreter remember the signal
+    paths = {**os.environ, "PYTHONPATH": str(tmp_path)}
+    ended = subprocess.run(command, cwd=ROOT, env=paths, capture_output=True, text=True, check=False)
+    assert ended.stderr.splitlines() == ["Stopped. out is as it was before."]
+    assert ended.returncode == 3
+
+
 # Import
 
 
