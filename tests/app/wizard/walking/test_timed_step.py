@@ -17,7 +17,7 @@ from core.timed.protocols import PlannedTest, TimedProtocol
 from devices.replay import ReplaySource
 from devices.walker import DEMONSTRATION, Standing, Walk, simulate
 
-SPEED = 6.0
+SPEED = 3.0
 RUN, NEXT_TEST = Intent(KeyAction.RUN), Intent(KeyAction.NEXT_TEST)
 
 
