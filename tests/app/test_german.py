@@ -252,6 +252,7 @@ def test_a_fraction_that_goes_round_the_language_is_found() -> None:
     ]
 
 
+@pytest.mark.endurance
 def test_every_fraction_on_a_screen_or_page_has_the_mark_of_its_language() -> None:
     files = [file for file in sorted((ROOT / "app").rglob("*.py")) if "_csv" not in file.name]
     named = {file.relative_to(ROOT).as_posix(): file for file in files}

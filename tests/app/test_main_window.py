@@ -594,6 +594,7 @@ def test_the_window_waits_for_no_slow_import() -> None:
     assert said.stdout.strip() == "[]"
 
 
+@pytest.mark.endurance
 def test_a_library_that_was_here_and_is_missing_is_not_made_anew(
     qtbot: QtBot, open_window: Open, settings: Settings, folder: Path
 ) -> None:
@@ -633,6 +634,7 @@ def test_where_no_library_was_the_first_start_offers_one(open_window: Open, fold
     assert not window.entry.first_start.look_again.isVisible()
 
 
+@pytest.mark.endurance
 def test_a_library_that_goes_is_said_at_home_and_so_is_its_return(
     qtbot: QtBot, open_window: Open, settings: Settings, folder: Path
 ) -> None:

@@ -11,6 +11,7 @@ from tests.app.six_sensors import GOLDEN, SESSIONS, digests, machine, structure,
 TOLD = json.loads(GOLDEN.read_text(encoding="utf-8"))
 
 
+@pytest.mark.endurance
 @pytest.mark.parametrize("case", SESSIONS)
 def test_six_sensors_give_the_tables_that_they_gave_before(case: str) -> None:
     files = written(simulate(SESSIONS[case]).session)
@@ -19,6 +20,7 @@ def test_six_sensors_give_the_tables_that_they_gave_before(case: str) -> None:
         assert digests(files) == TOLD["digests"][case]
 
 
+@pytest.mark.endurance
 def test_another_walk_gives_other_bytes() -> None:
     settings = SESSIONS["rigid"]
     walk = replace(settings.recordings[-1], speed_m_s=1.2) if isinstance(settings.recordings[-1], Walk) else Walk()

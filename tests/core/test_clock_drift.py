@@ -31,6 +31,7 @@ def drifts(session: Session) -> dict[str, float]:
     return {f.where: float(f.numbers["drift_percent"]) for f in found}
 
 
+@pytest.mark.endurance
 @pytest.mark.parametrize("site", LEFT)
 @pytest.mark.parametrize("share", [0.02, -0.01])
 def test_a_clock_that_runs_away_is_named(site: Site, share: float) -> None:
@@ -43,6 +44,7 @@ def test_of_two_clocks_the_distal_one_is_named() -> None:
     assert drifts(session) == {"walk 1, left_shank": pytest.approx(2.0, abs=0.2)}
 
 
+@pytest.mark.endurance
 @pytest.mark.parametrize("tissue", list(Tissue))
 @pytest.mark.parametrize("strides", [3, 8, 20])
 def test_clocks_that_keep_time_are_left_alone(tissue: Tissue, strides: int) -> None:

@@ -355,6 +355,7 @@ def test_stamps_that_jitter_lack_no_samples(rate_hz: float) -> None:
         assert not look_at(simulate(settings).session).findings
 
 
+@pytest.mark.endurance
 @pytest.mark.parametrize("loss", [0.01, 0.1, 0.3])
 def test_lost_samples_are_counted_with_and_without_jitter(loss: float) -> None:
     still = (Standing(duration_s=30.0),)
@@ -437,6 +438,7 @@ def test_all_accelerometers_reversed_change_no_angle_and_need_no_word() -> None:
             assert np.nanmax(np.abs(difference)) < 0.3
 
 
+@pytest.mark.endurance
 @pytest.mark.parametrize("manner", [Manner.ORDINARY, Manner.FLAT, Manner.DRAGGING])
 def test_sensors_of_a_straight_walk_are_not_called_reversed(manner: Manner) -> None:
     walk = Walk(speed_m_s=0.6, manner=manner, strides=6)

@@ -108,6 +108,7 @@ def test_standing_through_a_walk_is_no_walk() -> None:
     assert "no_strides" in {finding.key for finding in analyse(walked).findings}
 
 
+@pytest.mark.endurance
 @pytest.mark.parametrize("typed", ["left", "right", "both", "none", ""])
 def test_the_late_toe_off_of_a_prosthetic_foot_that_walked_is_told(typed: str) -> None:
     made = simulate(WalkerSettings(recordings=(Standing(), Walk()), sites=tuple(FEET.values()))).session

@@ -35,6 +35,7 @@ def test_every_finding_of_the_core_has_a_case_and_every_case_a_finding() -> None
     assert set(keys_told()) == set(CASES)
 
 
+@pytest.mark.endurance
 @pytest.mark.parametrize("key", OF_SAMPLES)
 def test_a_finding_about_samples_comes_where_it_must(key: str) -> None:
     assert key in {found.key for found in CASES[key].findings()}

@@ -8,6 +8,7 @@ COUNTS = (2_000, pytest.param(100_000, marks=pytest.mark.endurance))
 LEAST_A_SECOND = 50_000
 
 
+@pytest.mark.endurance
 @pytest.mark.parametrize("frames", COUNTS)
 @pytest.mark.parametrize("name", drivers())
 def test_damage_stays_where_it_is(name: str, frames: int) -> None:
@@ -18,6 +19,7 @@ def test_damage_stays_where_it_is(name: str, frames: int) -> None:
     assert outcome.most_held <= MOST_HELD
 
 
+@pytest.mark.endurance
 @pytest.mark.parametrize("frames", COUNTS)
 @pytest.mark.parametrize("name", drivers())
 def test_after_a_burst_of_damage_it_is_in_step_again(name: str, frames: int) -> None:

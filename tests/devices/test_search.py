@@ -110,6 +110,7 @@ def test_a_port_in_use_says_so(emulated: list[PortInfo]) -> None:
     holding.close()
 
 
+@pytest.mark.endurance
 def test_what_is_announced_on_the_network_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("devices.search._has_network", lambda: True)
     at_port = free_port()
@@ -130,6 +131,7 @@ def test_what_is_announced_on_the_network_is_found(monkeypatch: pytest.MonkeyPat
     assert (one.driver, one.name, one.place) == ("ximu3", "655782F7", "TCP 127.0.0.1:7000")
 
 
+@pytest.mark.endurance
 def test_streams_of_motion_are_found_and_others_say_why_not(
     monkeypatch: pytest.MonkeyPatch, streams: list[LslStream]
 ) -> None:

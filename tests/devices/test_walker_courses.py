@@ -40,6 +40,7 @@ def is_still(values: FloatArray) -> bool:
     return bool(np.max(np.abs(values)) < 0.2)
 
 
+@pytest.mark.endurance
 @pytest.mark.parametrize("name", ["up_and_go", "two_minutes"])
 def test_nothing_jumps_where_bouts_and_sitting_meet(name: str, request: pytest.FixtureRequest) -> None:
     made: SimulatedCourse = request.getfixturevalue(name)
@@ -110,6 +111,7 @@ def test_a_silent_sensor_sends_nothing_and_the_others_go_on() -> None:
     assert np.max(np.diff(imu[Site.LEFT_FOOT].time_s)) < 0.02
 
 
+@pytest.mark.endurance
 def test_one_seed_gives_one_course_and_another_another() -> None:
     kind = CourseKind.SIT_TO_STAND
     one, same, other = (simulate_course(draw_course(kind, seed)) for seed in (1, 1, 2))

@@ -12,6 +12,7 @@ WALK = WalkerSettings(seed=1, errors=NO_ERRORS, recordings=(Walk(strides=3),))
 SITE = Site.LEFT_SHANK
 
 
+@pytest.mark.endurance
 @pytest.mark.parametrize("errors", [COARSE, VERY_COARSE])
 def test_a_coarse_sensor_tells_whole_steps_only(errors: SensorErrors) -> None:
     coarse = simulate(replace(WALK, errors=errors)).session.recordings[0].imu[SITE]
@@ -39,6 +40,7 @@ def test_a_very_coarse_sensor_at_rest_repeats_itself() -> None:
     assert np.mean(np.diff(still.gyr_rad_s, axis=0) == 0.0) > 0.3
 
 
+@pytest.mark.endurance
 def test_a_fast_clock_stretches_the_stamps_and_takes_more_samples() -> None:
     fast = simulate(replace(WALK, clock_rate={SITE: 1.02}))
     one, other = (s.session.recordings[0].imu[SITE] for s in (fast, simulate(WALK)))

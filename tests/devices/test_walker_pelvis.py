@@ -14,6 +14,7 @@ SEVEN = WalkerSettings(
 )
 
 
+@pytest.mark.endurance
 def test_both_legs_hang_from_one_pelvis() -> None:
     for moved in simulate(SEVEN).moved:
         assert moved.pelvis is not None
@@ -38,6 +39,7 @@ def test_the_pelvis_moves_as_a_walking_one() -> None:
     assert np.ptp(obliquity) == pytest.approx(8.0, abs=0.3)
 
 
+@pytest.mark.endurance
 @pytest.mark.parametrize("tissue", Tissue)
 def test_a_pelvis_adds_a_sensor_and_its_place_in_the_session(tissue: Tissue) -> None:
     session = simulate(replace(SEVEN, tissue=tissue)).session

@@ -78,6 +78,7 @@ def test_longer_and_slower_strides_are_so_by_the_share_told() -> None:
     assert stance_percent(changed, Side.LEFT).mean() == pytest.approx(stance_percent(plain, Side.LEFT).mean(), abs=0.3)
 
 
+@pytest.mark.endurance
 def test_a_gait_that_drifts_ends_where_it_was_told_to() -> None:
     recordings = (Walk("even", strides=20), Walk("drifting", strides=20, drift=GaitChange(knee_deg=8.0, time=0.1)))
     truth = simulate(replace(CLEAN, recordings=recordings)).truth.recordings
@@ -111,6 +112,7 @@ def test_strides_vary_and_remember_the_stride_before() -> None:
     assert not changes[Side.LEFT].ankle_deg.any()
 
 
+@pytest.mark.endurance
 def test_people_vary_as_people_do() -> None:
     truth = simulate(replace(CLEAN, recordings=(Walk(strides=60),), variation=PEOPLE)).truth.recordings["walk 1"]
     assert 1.1 < ranges_deg(truth, Joint.LEFT_KNEE).std() < 2.3
@@ -120,6 +122,7 @@ def test_people_vary_as_people_do() -> None:
     assert 0.015 < lengths_m(truth).std() / lengths_m(truth).mean() < 0.045
 
 
+@pytest.mark.endurance
 def test_walks_differ_by_the_spread_told() -> None:
     varied = Variation(walks=GaitChange(knee_deg=5.0, length=0.05))
     walks = tuple(Walk(f"{k}", strides=6) for k in range(10))

@@ -123,6 +123,7 @@ def test_who_sends_no_time_or_nothing_is_refused(monkeypatch: pytest.MonkeyPatch
         ByteSource(WitMotion(), ScriptedChannel([b"hello"])).open()
 
 
+@pytest.mark.endurance
 def test_it_is_heard_through_a_port(tmp_path: Path) -> None:
     voice = WitVoice("1", motion, rate_hz=200.0)
     emulation = Emulation(voice, lambda: PseudoTerminal(tmp_path / "port"))

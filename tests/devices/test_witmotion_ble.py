@@ -201,6 +201,7 @@ def test_one_that_sends_nothing_is_refused(radio: VirtualRadio) -> None:
     assert not wit.is_up
 
 
+@pytest.mark.endurance
 def test_the_search_finds_them_beside_dots(radio: VirtualRadio) -> None:
     radio.reach(Air([EmulatedWitBle(number, turning, radio.now_ns, says_so=False) for number in range(2)]))
     heard = [Announced("WT901BLE68", f"E2:10:00:00:01:{k:02X}") for k in (1, 2)]

@@ -245,6 +245,7 @@ def _free_port() -> int:
         return int(probe.getsockname()[1])
 
 
+@pytest.mark.endurance
 def test_it_is_heard_live_and_its_bytes_say_the_same_again(emulated: tuple[Ximu3Voice, Channel]) -> None:
     _, channel = emulated
     source = ByteSource(Ximu3(), channel)

@@ -12,6 +12,7 @@ from devices.walker import SimulatedSession
 ENTRY_POINTS = (devices.read_session, core.analyse, core.follow, core.identify, core.LiveWalk)
 
 
+@pytest.mark.endurance
 @pytest.mark.parametrize("entry", ENTRY_POINTS, ids=lambda entry: entry.__name__)
 def test_the_example_of_an_entry_point_runs(entry: object, simulated: SimulatedSession, folder: Path) -> None:
     names = {name: getattr(package, name) for package in (core, devices) for name in package.__all__}

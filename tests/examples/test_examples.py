@@ -176,6 +176,7 @@ def port(simulated: SimulatedSession) -> Iterator[tuple[str, FastClock]]:
     os.close(theirs)
 
 
+@pytest.mark.endurance
 def test_events_come_live_from_a_port(
     simulated: SimulatedSession, port: tuple[str, FastClock], capsys: pytest.CaptureFixture[str]
 ) -> None:

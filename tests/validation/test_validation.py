@@ -58,6 +58,7 @@ def test_the_papers_experiment_has_the_pattern_of_table_1(tmp_path: Path) -> Non
         assert row["offset_s"] == pytest.approx(LATER_S * number, abs=0.008)
 
 
+@pytest.mark.endurance
 def test_without_skin_the_optical_system_sees_the_bones(tmp_path: Path) -> None:
     _, path = experiment(2, tmp_path, Tissue.RIGID, walks=1)
     truth = simulate(settings(2, Tissue.RIGID, walks=1)).truth.recordings["walk 1"]

@@ -8,6 +8,7 @@ from tests.app.accessibility.accessible_tree import complaints
 from tests.app.pages.filled_pages import PAGES
 
 
+@pytest.mark.endurance
 @pytest.mark.parametrize("name", PAGES)
 def test_everything_on_a_page_has_a_name_and_a_role(qtbot: QtBot, look: ThemeNotifier, name: str) -> None:
     page = PAGES[name](look)

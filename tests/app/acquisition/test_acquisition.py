@@ -105,6 +105,7 @@ def test_sensors_are_heard_shown_and_told(start: Start) -> None:
     assert not acquisition.identify("nobody")
 
 
+@pytest.mark.endurance
 def test_a_recording_begins_with_the_press_and_ends_with_the_stop(start: Start, tmp_path: Path) -> None:
     acquisition = start(played("a", 2), played("b", 1))
     wait_for(lambda: acquisition.now_s > 0.3)
@@ -151,6 +152,7 @@ def test_closing_ends_the_recording_too(start: Start, tmp_path: Path) -> None:
     assert read_back([writer.path]).reports[0].is_whole
 
 
+@pytest.mark.endurance
 def test_a_source_that_vanishes_costs_the_others_nothing_and_comes_back(start: Start, tmp_path: Path) -> None:
     source = played("a", 2)
     acquisition = start(source, played("b", 2))
@@ -334,6 +336,7 @@ def test_bytes_are_kept_before_they_are_decoded_and_decoded_again(
     assert len(decoded.sources) == 1
 
 
+@pytest.mark.endurance
 def test_the_live_work_gets_every_sample_once(start: Start) -> None:
     acquisition = start(played("a", 2), played("b", 1))
     wait_for(lambda: acquisition.now_s > 0.2)

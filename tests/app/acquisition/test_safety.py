@@ -116,6 +116,7 @@ def fill_processor(acquisition: Acquisition, seconds: float) -> None:
 Hinder = Callable[[Acquisition, float], None]
 
 
+@pytest.mark.endurance
 @pytest.mark.parametrize("hinder", [block_screen, fill_processor])
 @pytest.mark.parametrize("seconds", [0.4, pytest.param(10.0, marks=pytest.mark.endurance)])
 def test_a_blocked_screen_and_a_full_processor_lose_nothing(
@@ -135,6 +136,7 @@ class Newest:
         self.newest_s = max(float(block.time_s[-1]) for block in blocks.values())
 
 
+@pytest.mark.endurance
 @pytest.mark.parametrize("seconds", [0.5, pytest.param(4.0, marks=pytest.mark.endurance)])
 def test_a_disk_that_stalls_loses_nothing_and_holds_up_no_view(
     acquisition: Acquisition, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, seconds: float
@@ -159,6 +161,7 @@ def test_a_disk_that_stalls_loses_nothing_and_holds_up_no_view(
     check(acquisition, acquisition.stop_recording(), seconds)
 
 
+@pytest.mark.endurance
 @pytest.mark.skipif(sys.platform == "win32", reason="the stand-in for the viewer is a script")
 @pytest.mark.parametrize("seconds", [0.3, pytest.param(5.0, marks=pytest.mark.endurance)])
 def test_a_viewer_that_is_killed_loses_nothing(

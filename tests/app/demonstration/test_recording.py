@@ -84,6 +84,7 @@ def test_a_visit_comes_out_of_its_journals_as_it_was_recorded_and_told(
     assert timed.started[:10] == "2026-11-21"
 
 
+@pytest.mark.endurance
 def test_a_report_is_said_to_be_written_of_those_visits_alone_of_which_it_is(
     opened: OpenedLibrary, recorded: Session
 ) -> None:
@@ -92,6 +93,7 @@ def test_a_report_is_said_to_be_written_of_those_visits_alone_of_which_it_is(
     assert opened.library.audit.reported([written, unwritten]) == {written}
 
 
+@pytest.mark.endurance
 def test_a_visit_is_refused_by_a_library_of_real_patients(tmp_path: Path, recorded: Session) -> None:
     """The demonstration's is a folder of its own; were a visit handed to another, it would stay out."""
     opened, _ = create_library(tmp_path / "own", Operator("hk", "H. Keller", Role.ADMINISTRATOR), "four short words")

@@ -164,6 +164,7 @@ def test_what_was_discarded_or_is_empty_does_not_leave(tmp_path: Path) -> None:
     assert len(tables(tmp_path / "bids", "_motion.tsv")) == 1
 
 
+@pytest.mark.endurance
 @pytest.mark.parametrize(("born", "age"), [(1950, "76"), (1937, "89"), (1920, "89"), (None, "n/a")])
 def test_the_participant_is_told_without_a_name(
     visit: tuple[Session, Analysis], tmp_path: Path, born: int | None, age: str

@@ -67,6 +67,7 @@ def opened(tmp_path: Path) -> OpenedLibrary:
     return OpenedLibrary(Library.create(folder, key, Operator("hk", "H. Keller", Role.ADMINISTRATOR)), folder, key)
 
 
+@pytest.mark.endurance
 @pytest.mark.parametrize("wanted", Format)
 def test_no_name_leaves_unless_identity_is_asked_for(
     visit: tuple[Session, Analysis], tmp_path: Path, wanted: Format
@@ -128,6 +129,7 @@ def planted(visit: tuple[Session, Analysis]) -> tuple[Session, Analysis]:
     return session, analysis
 
 
+@pytest.mark.endurance
 @pytest.mark.parametrize("kept", [(), *((one,) for one in Typed), tuple(Typed)])
 def test_what_is_typed_freely_leaves_only_where_it_is_ticked(
     planted: tuple[Session, Analysis], tmp_path: Path, kept: tuple[Typed, ...]

@@ -143,6 +143,7 @@ def test_fhir_has_the_hips_and_says_why_one_is_absent(gated: Analysis) -> None:
     assert not [name for name, _ in found if "hip_rotation" in name]
 
 
+@pytest.mark.endurance
 def test_the_workbook_names_what_is_withheld_of_a_hip(gated: Analysis, tmp_path: Path) -> None:
     write_spreadsheet(hip_session(), gated, tmp_path / "visit.xlsx")
     book = openpyxl.load_workbook(tmp_path / "visit.xlsx")
@@ -166,6 +167,7 @@ def moving(path: Path) -> set[str]:
     return {chunk.entity_path for chunk in RrdReader(path).stream() if "walking_1" in chunk.timeline_names}
 
 
+@pytest.mark.endurance
 def test_a_log_shows_hips_the_pelvis_and_its_angles_where_they_may_be_read(gated: Analysis, tmp_path: Path) -> None:
     write_log(hip_session(), gated, tmp_path / "visit.rrd")
     drawn = moving(tmp_path / "visit.rrd")

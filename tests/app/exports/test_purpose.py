@@ -26,6 +26,7 @@ def contents(files: list[Path]) -> bytes:
     return found
 
 
+@pytest.mark.endurance
 @pytest.mark.parametrize("wanted", Format)
 @pytest.mark.parametrize("is_simulated", [True, False])
 def test_every_export_says_what_it_is_for_and_whether_it_is_simulated(

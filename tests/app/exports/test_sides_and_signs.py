@@ -151,6 +151,7 @@ def test_the_events_of_the_c3d_are_those_of_the_foot_that_they_name(
     assert np.median(np.abs(np.array(found_s) - nearest_s)) < 0.04
 
 
+@pytest.mark.endurance
 def test_times_over_a_minute_are_minutes_and_seconds_in_a_c3d(tmp_path: Path) -> None:
     made = simulate(WalkerSettings(seed=3, recordings=(Standing(), Walk(strides=12, standing_before_s=52.0))))
     export_from_folder(made.session, analyse(made.session), [Format.C3D], tmp_path)

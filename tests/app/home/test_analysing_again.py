@@ -60,6 +60,7 @@ def ids_of(opened: OpenedLibrary) -> tuple[UUID, ...]:
     return tuple(one.id for one in opened.library.sessions.list())
 
 
+@pytest.mark.endurance
 def test_what_is_analysed_again_is_what_opening_the_session_would_compute(
     opened: OpenedLibrary, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -78,6 +79,7 @@ def test_what_is_analysed_again_is_what_opening_the_session_would_compute(
     assert analysis.recordings
 
 
+@pytest.mark.endurance
 def test_what_this_version_has_analysed_is_not_done_twice(opened: OpenedLibrary) -> None:
     ids = ids_of(opened)
     again(opened, ids[:1])
@@ -85,6 +87,7 @@ def test_what_this_version_has_analysed_is_not_done_twice(opened: OpenedLibrary)
     assert (done.analysed, done.as_before) == (1, 1)
 
 
+@pytest.mark.endurance
 def test_a_session_that_cannot_be_read_does_not_stop_the_others(opened: OpenedLibrary) -> None:
     ids = ids_of(opened)
     for recording in opened.library.sessions.get(ids[0]).recordings:
@@ -132,6 +135,7 @@ def test_why_a_session_could_not_be_analysed_stands_in_its_line(qtbot: QtBot, lo
     assert "not by this version" in text[2]
 
 
+@pytest.mark.endurance
 def test_home_leads_there_with_the_patients_sessions_ticked_and_tells_what_failed(
     qtbot: QtBot, qapp: QApplication, tmp_path: Path
 ) -> None:

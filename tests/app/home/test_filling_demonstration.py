@@ -121,6 +121,7 @@ def finish_one(qtbot: QtBot, home: Home, then: tuple[int, int]) -> None:
     qtbot.waitUntil(lambda: ready(home) == then or not home.filling.is_busy, timeout=WAIT_MS)
 
 
+@pytest.mark.endurance
 def test_patients_are_there_at_once_and_each_visit_once_it_is_ready(qtbot: QtBot, home: Home) -> None:
     (held,) = HELD
     assert [line.words[0] for line in home.page.patients.lines] == ["DEMO-A", "DEMO-B"]
@@ -142,6 +143,7 @@ def test_patients_are_there_at_once_and_each_visit_once_it_is_ready(qtbot: QtBot
     qtbot.waitUntil(lambda: len(home.page.panel.course.visits) == 2, timeout=WAIT_MS)
 
 
+@pytest.mark.endurance
 def test_what_fails_is_said_and_the_others_are_made(qtbot: QtBot, home: Home) -> None:
     (held,) = HELD
     held.go_on(RuntimeError("a process was ended"))
@@ -153,6 +155,7 @@ def test_what_fails_is_said_and_the_others_are_made(qtbot: QtBot, home: Home) ->
     qtbot.waitUntil(lambda: len(home.page.sessions.lines) == 1, timeout=WAIT_MS)
 
 
+@pytest.mark.endurance
 def test_a_visit_of_a_patient_who_was_deleted_meanwhile_stays_out(qtbot: QtBot, home: Home) -> None:
     (held,) = HELD
     home.page.patient_deleted.emit(home.page.patient_id)

@@ -172,6 +172,7 @@ def test_of_two_deletions_the_last_comes_back_by_its_keys_also_from_the_search(q
     assert home.page.search.text() == "0"
 
 
+@pytest.mark.endurance
 def test_a_session_folder_is_imported_for_a_patient(qtbot: QtBot, home: Home, tmp_path: Path) -> None:
     time_s = np.arange(300) / 100
     block = ImuBlock("LT-1", time_s, np.zeros((300, 3)), np.tile([0.0, 0.0, 9.81], (300, 1)))
@@ -506,6 +507,7 @@ def test_what_became_of_work_without_the_server_is_said_and_of_other_libraries_n
     assert not away.isVisible()
 
 
+@pytest.mark.endurance
 def test_an_operator_is_removed_with_a_change_of_the_key_and_comes_back_with_a_new_passphrase(
     qtbot: QtBot, home: Home, controller: LibraryController, folder: Path
 ) -> None:

@@ -169,6 +169,7 @@ def test_size_and_theme_change_what_is_shown_and_not_where(
     assert page.text.document().defaultFont().pixelSize() == 2 * 16
 
 
+@pytest.mark.endurance
 def test_searching_holds_up_nobody(page: HelpPage, watchdog: Watchdog, qtbot: QtBot) -> None:
     for topic in Topic:
         page.show_topic(topic)

@@ -104,6 +104,7 @@ def test_without_a_pelvis_nothing_of_hips_is_there(page: ResultPage) -> None:
     assert page.cycles.charts.hip.isVisibleTo(page.cycles)
 
 
+@pytest.mark.endurance
 @pytest.mark.parametrize("room", [WIDE, WIZARD, (1150.0, 640.0)])
 def test_no_view_is_higher_than_its_window(page: ResultPage, room: tuple[float, float]) -> None:
     page.set_room(*room)

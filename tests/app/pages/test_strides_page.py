@@ -109,6 +109,7 @@ def test_a_stride_that_cannot_be_used_cannot_be_turned(page: ResultPage, turned:
     assert not page.strides.turn.isEnabled()
 
 
+@pytest.mark.endurance
 def test_where_nothing_is_kept_nothing_can_be_left_out(
     page: ResultPage, turned: Turned, session: Session, analysis: Analysis
 ) -> None:

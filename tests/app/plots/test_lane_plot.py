@@ -114,6 +114,7 @@ def test_dates_that_would_touch_are_left_out_but_for_the_first_and_the_last(qtbo
         assert text.needed.width() <= text.box.width()
 
 
+@pytest.mark.endurance
 def test_visits_of_one_day_are_told_apart(qtbot: QtBot, look: ThemeNotifier) -> None:
     """By their place and by the time of the day; a visit of another day stays at its day, and none leaves the plot."""
     morning, noon = (replace(visit(0, shoes(50.0)), id=UUID(int=90 + k), clock=f"{9 + 3 * k:02d}:00") for k in (0, 1))

@@ -199,6 +199,7 @@ def test_a_knee_whose_sign_is_uncertain_has_a_range_and_a_spread_and_no_angle(
     assert all(row["left_knee_mean_deg"] for row in rows(tmp_path / "cycles.csv"))
 
 
+@pytest.mark.endurance
 def test_a_difference_between_the_sides_is_weighed_against_the_measurement_error(found: Analysis) -> None:
     few = summarise(found)["walks"]["walk 1"]["both"]["side_difference"]["knee_range_deg"]
     assert (few["verdict"], few["error_deg"]) == ("too_few_strides", None)  # under 10 of a side

@@ -127,6 +127,7 @@ def test_a_kept_analysis_is_read_back_with_its_hips() -> None:
     assert again.recordings[-1].leg_clock == analysed(late_s=0.04)[1].recordings[-1].leg_clock
 
 
+@pytest.mark.endurance
 def test_a_session_folder_keeps_the_pelvis(tmp_path: Path) -> None:
     made, _ = analysed()
     write_session(made.session, tmp_path / "session")

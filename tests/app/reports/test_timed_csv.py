@@ -109,6 +109,7 @@ def test_the_summary_tells_of_the_test_under_its_walk_and_of_no_other(visit: Ana
     assert told["errors"][0]["unverified"] is False
 
 
+@pytest.mark.endurance
 def test_the_report_has_a_page_of_tests_where_there_were_some(visit: AnalysedVisit) -> None:
     unknown = replace(TWO, distance_m=math.nan)
     whole = ReportRequest(AnalysedVisit(*with_test(visit, TWO)), ("walk 2",), MADE_AT, "1.2.3")

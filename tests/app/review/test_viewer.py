@@ -76,6 +76,7 @@ def test_closing_ends_the_viewer(tmp_path: Path) -> None:
     assert process.poll() is not None
 
 
+@pytest.mark.endurance
 def test_what_an_ended_run_left_is_removed_and_what_another_window_shows_is_not(tmp_path: Path) -> None:
     root = tmp_path / "review"
     (root / "run-killed").mkdir(parents=True)

@@ -2,6 +2,7 @@
 
 import datetime
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -29,6 +30,7 @@ DAY = datetime.date(2026, 9, 30)
 ASKED = ("aids", "height_m", "is_kept")
 
 
+@pytest.mark.endurance
 @given(FIELDS, FIELDS, FIELDS)
 def test_what_one_side_alone_changed_stands_and_what_both_changed_otherwise_is_contested(
     upon: Values, mine: Values, theirs: Values
@@ -44,6 +46,7 @@ def test_what_one_side_alone_changed_stands_and_what_both_changed_otherwise_is_c
             assert merge.merged[field] == theirs[field]
 
 
+@pytest.mark.endurance
 @given(FIELDS, FIELDS, FIELDS)
 def test_a_stride_that_either_side_left_out_or_took_in_is_left_out_or_taken_in(
     upon: Values, mine: Values, theirs: Values
@@ -57,6 +60,7 @@ def test_a_stride_that_either_side_left_out_or_took_in_is_left_out_or_taken_in(
     assert merged <= before | own | other
 
 
+@pytest.mark.endurance
 @given(FIELDS, FIELDS, FIELDS)
 def test_it_is_the_same_from_either_side(upon: Values, mine: Values, theirs: Values) -> None:
     here, there = three_way(upon, mine, theirs), three_way(upon, theirs, mine)
@@ -66,6 +70,7 @@ def test_it_is_the_same_from_either_side(upon: Values, mine: Values, theirs: Val
             assert here.merged[field] == there.merged[field]
 
 
+@pytest.mark.endurance
 @given(FIELDS, FIELDS)
 def test_equal_edits_are_no_conflict_and_no_news(upon: Values, both: Values) -> None:
     merge = three_way(upon, both, both)

@@ -97,6 +97,7 @@ def pandas_figures(path: Path, question: GroupQuestion) -> dict[str, dict[str, A
     return found
 
 
+@pytest.mark.endurance
 @pytest.mark.parametrize("grouping", Grouping)
 @pytest.mark.parametrize(("seed", "sessions", "is_more"), [(1, 40, False), (2, 3, True), (3, 90, True)])
 def test_the_figures_are_those_of_pandas(

@@ -327,6 +327,7 @@ SIZES = [
 ]
 
 
+@pytest.mark.endurance
 @pytest.mark.parametrize("language", ["en", "pseudo"])
 @pytest.mark.parametrize(("size", "scale"), SIZES)
 @pytest.mark.parametrize("mode", [StripMode.SHOWN, StripMode.FOLDED])

@@ -4,6 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pytest
 from pytestqt.qtbot import QtBot
 
 from app.storage.analysis_content import packed
@@ -204,6 +205,7 @@ def test_one_sensor_at_one_site(visit: Visit) -> None:
     assert sensors.site_of == {"c": Site.LEFT_SHANK, "b": Site.LEFT_THIGH}
 
 
+@pytest.mark.endurance
 def test_closing_in_mid_walk_loses_nothing(
     qtbot: QtBot, controller: LibraryController, visit: Visit, worn: dict[str, Site]
 ) -> None:

@@ -86,6 +86,7 @@ def record_away(opened: OpenedLibrary, session_id: UUID, name: str = "walk 1") -
     return recording_id
 
 
+@pytest.mark.endurance
 def test_it_is_missed_within_a_second_and_said_where_recordings_go(
     qtbot: QtBot, controller: LibraryController, folder: Path
 ) -> None:
@@ -109,6 +110,7 @@ def test_it_is_missed_within_a_second_and_said_where_recordings_go(
     assert not opened.shelter.folder.exists()
 
 
+@pytest.mark.endurance
 def test_what_was_recorded_meanwhile_is_home_once_it_is_back(
     qtbot: QtBot, controller: LibraryController, folder: Path
 ) -> None:
@@ -146,6 +148,7 @@ def test_what_was_recorded_meanwhile_is_home_at_the_next_start(
     assert controller.state.brought_home == frozenset()
 
 
+@pytest.mark.endurance
 def test_a_library_that_stays_is_not_missed(qtbot: QtBot, controller: LibraryController, folder: Path) -> None:
     with qtbot.assertNotEmitted(controller.gone, wait=1200):
         opened_of(controller).library.patients.create(Patient(code="P-002"))

@@ -64,6 +64,7 @@ def lengths_apart(data: Datasets, x: FloatArray) -> FloatArray:
     return np.array(rows)
 
 
+@pytest.mark.endurance
 @settings(max_examples=8)
 @given(seed=st.integers(0, 2**31))
 def test_the_first_step_uses_slopes_that_are_central_differences(data: Datasets, seed: int) -> None:
@@ -137,6 +138,7 @@ def test_what_no_motion_shows_of_a_centre_is_as_uncertain_as_before(person_3: "P
     assert np.linalg.eigvalsh(centre_by_lengths(data, np.zeros(12)).covariance[:3, :3])[0] < 0.01**2
 
 
+@pytest.mark.endurance
 def test_residuals_count_with_four_times_the_spread_they_show(person_3: "Person", data: Datasets) -> None:
     """The covariance of eq 8 across the axis: slopes by differences, residuals in blocks of a second."""
     rng = np.random.default_rng(8)

@@ -41,6 +41,7 @@ def lying(person: "Person", tilt_rad: float, heading_rad: float) -> Pair:
     return pair
 
 
+@pytest.mark.endurance
 @pytest.mark.parametrize("tilt_deg", [0.0, 80.0, -110.0])
 @pytest.mark.parametrize("heading", [-0.7, 2.9])
 def test_a_heading_is_found_from_the_axes_or_from_what_both_sensors_feel(

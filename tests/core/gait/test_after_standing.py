@@ -10,6 +10,7 @@ from core.sensors import SensorTracks
 from devices.walker import Standing, Walk, WalkerSettings, simulate
 
 
+@pytest.mark.endurance
 @pytest.mark.parametrize("standing_s", [0.8, 6.0, 15.0])
 @pytest.mark.parametrize("seed", [0, 1])
 def test_the_first_step_after_standing_is_as_long_as_it_was(standing_s: float, seed: int) -> None:

@@ -103,6 +103,7 @@ def test_the_pelvis_tells_its_obliquity_rotation_and_the_turn() -> None:
         assert np.nanmedian(figures["pelvis_drop_rad"]) == pytest.approx(4.0, abs=0.8)
 
 
+@pytest.mark.endurance
 def test_a_straight_walk_has_no_turn() -> None:
     wanted = replace(settings(), recordings=(Standing(), Walk(strides=8)))
     assert analyse(simulate(wanted).session).recordings[-1].turns == ()
@@ -121,6 +122,7 @@ def test_without_a_pelvis_nothing_is_told_of_it() -> None:
     assert "hip_range_rad" not in walk.gait[Side.LEFT].parameters
 
 
+@pytest.mark.endurance
 def test_without_standing_there_is_no_hip() -> None:
     made, _ = analysed()
     moving = tuple(one for one in made.session.recordings if one.kind is not RecordingKind.STANDING)
@@ -133,6 +135,7 @@ def swapped(recording: Recording, one: Site, other: Site) -> Recording:
     return replace(recording, imu={turned.get(site, site): block for site, block in recording.imu.items()})
 
 
+@pytest.mark.endurance
 def test_legs_that_are_swapped_are_told_by_their_hips() -> None:
     made, _ = analysed()
     recordings = made.session.recordings
@@ -145,6 +148,7 @@ def test_legs_that_are_swapped_are_told_by_their_hips() -> None:
         assert "hips_apart" in {reason.gate for reason in shape.reasons}
 
 
+@pytest.mark.endurance
 def test_a_sensor_that_is_not_on_the_pelvis_is_told() -> None:
     made, _ = analysed()
     recordings = tuple(swapped(one, Site.PELVIS, Site.LEFT_FOOT) for one in made.session.recordings)
@@ -155,6 +159,7 @@ def test_a_sensor_that_is_not_on_the_pelvis_is_told() -> None:
     assert walk.leg_clock is None or walk.leg_clock.status is not ClockStatus.FOUND
 
 
+@pytest.mark.endurance
 def test_turning_the_pelvis_sensor_changes_no_angle() -> None:
     made, analysis = analysed()
     turn = np.linalg.qr(np.random.default_rng(5).normal(size=(3, 3)))[0]

@@ -70,6 +70,7 @@ def test_samples_on_the_grid_are_told_at_once_and_as_they_are() -> None:
     assert even.is_measured.all()
 
 
+@pytest.mark.endurance
 @given(seed=st.integers(0, 5), edges=st.lists(st.integers(0, 1100), max_size=40))
 def test_what_comes_out_does_not_depend_on_the_blocks(seed: int, edges: list[int]) -> None:
     block = hard_recording(seed)

@@ -51,6 +51,7 @@ def ten_metres() -> SimulatedCourse:
     return simulate_course(TEN)
 
 
+@pytest.mark.endurance
 def test_ten_metres_are_told_live_within_a_second_of_their_end(ten_metres: SimulatedCourse) -> None:
     heard, truth = CourseHeard(ten_metres, TimedProtocol.TEN_METRES), ten_metres.truth
     heard.hear_until(truth.passes_s(7.0))
@@ -77,6 +78,7 @@ def test_nothing_begins_where_nobody_walks(ten_metres: SimulatedCourse) -> None:
     assert not now.is_still
 
 
+@pytest.mark.endurance
 def test_a_key_before_the_motion_starts_and_one_after_ends(ten_metres: SimulatedCourse) -> None:
     heard, truth = CourseHeard(ten_metres, TimedProtocol.TEN_METRES), ten_metres.truth
     heard.hear_until(truth.passes_s(1.5))
@@ -109,6 +111,7 @@ def test_a_key_just_after_the_motion_has_started_means_the_start_and_one_in_the_
     assert late.test.press(late.test.state.end_s + 3.0) is None
 
 
+@pytest.mark.endurance
 def test_a_silent_foot_takes_the_distance_and_the_time_goes_on() -> None:
     made = simulate_course(replace(TEN, silent_s={Site.LEFT_FOOT: (6.0, 60.0)}))
     heard = CourseHeard(made, TimedProtocol.TWO_MINUTES)
@@ -124,6 +127,7 @@ def test_a_silent_foot_takes_the_distance_and_the_time_goes_on() -> None:
     assert silent.elapsed_s(10.0) > silent.elapsed_s(9.0)
 
 
+@pytest.mark.endurance
 @pytest.mark.parametrize("kind", [CourseKind.UP_AND_GO, CourseKind.SIT_TO_STAND])
 def test_tests_from_a_chair_are_told_live(kind: CourseKind) -> None:
     made = simulate_course(draw_course(kind, 1))

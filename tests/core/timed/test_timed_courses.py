@@ -181,6 +181,7 @@ def test_every_test_is_defined_with_its_error_and_its_source_was_read() -> None:
     }
 
 
+@pytest.mark.endurance
 @pytest.mark.parametrize("seed", [0, 3])
 def test_strides_on_stairs_are_told_with_their_heights_and_are_in_no_mean(seed: int) -> None:
     made = simulate_course(draw_course(CourseKind.STAIRS, seed))

@@ -258,6 +258,7 @@ def test_one_that_was_switched_off_comes_back_on_its_own_clock(radio: VirtualRad
     assert (one.counts.lost, other.counts.lost) == (0, 0)
 
 
+@pytest.mark.endurance
 @pytest.mark.parametrize("drops_after", [[], [9], [11], [12]], ids=["never", "asked", "starting", "started"])
 @pytest.mark.parametrize("count", [1, 2], ids=["alone", "synchronised"])
 def test_one_that_was_switched_off_twice_is_stamped_when_it_measured(

@@ -28,6 +28,7 @@ def in_air(*names: str) -> Radio:
     return Radio(heard=lambda: announced)
 
 
+@pytest.mark.endurance
 def test_dots_are_found_by_what_they_announce_and_share_a_group() -> None:
     found = search((), free_port(), radio=in_air("Xsens DOT", "a watch", "Movella DOT"))
     assert [(one.driver, one.name, one.place) for one in found.sensors] == [
@@ -55,10 +56,12 @@ def test_a_dot_is_told_by_its_name_and_its_maker(name: str, companies: tuple[int
     assert is_dot(Announced(name, "", companies)) is is_one
 
 
+@pytest.mark.endurance
 def test_nothing_is_sent_by_bluetooth_where_nobody_asks_for_it() -> None:
     assert search((), free_port()).deaf is None
 
 
+@pytest.mark.endurance
 def test_without_the_library_the_other_sensors_are_found_and_it_says_what_to_install(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -77,6 +80,7 @@ def test_without_the_library_the_other_sensors_are_found_and_it_says_what_to_ins
     assert "extra bluetooth" in str(result.deaf)
 
 
+@pytest.mark.endurance
 def test_where_bluetooth_does_not_answer_it_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
     async def silent(**_settings: Any) -> Any:
         raise FileNotFoundError("no bus")

@@ -42,6 +42,7 @@ def test_what_they_advertise_tells_that_they_are_dots(radio: VirtualRadio) -> No
     assert all(one.rssi_dbm is not None and one.rssi_dbm < 0 for one in found)
 
 
+@pytest.mark.endurance
 @pytest.mark.parametrize("mtu", [MTU, LIVE_MTU])
 def test_they_are_synchronised_and_each_float_comes_through(radio: VirtualRadio, mtu: int) -> None:
     wearing = WornDots(radio, [DotFaults(), DotFaults(loss=0.05)], through=through(mtu))
@@ -73,6 +74,7 @@ def test_a_link_that_is_lost_is_found_again_and_streams_on(radio: VirtualRadio) 
     assert lost.clock is not None, "it is on the common clock still"
 
 
+@pytest.mark.endurance
 def test_a_link_that_carries_too_little_for_samples_says_so_and_gives_none(radio: VirtualRadio) -> None:
     """bleak, and its backends, do not say how little: it shows in what arrives."""
     wearing = WornDots(radio, [DotFaults(), DotFaults()], through=through(40))

@@ -168,6 +168,7 @@ def test_other_units_and_broken_frames_are_refused(tmp_path: Path) -> None:
     assert '"A" is no name for a sensor, or one of two' in refusal(mvnx(tmp_path / "f.mvnx", held, names=("A", "A")))
 
 
+@pytest.mark.endurance
 def test_damaged_xml_is_refused_and_entities_take_no_memory(tmp_path: Path) -> None:
     path = mvnx(tmp_path / "a.mvnx", elements(two(), "sensorFreeAcceleration", "sensorOrientation"))
     path.write_text(path.read_text()[:-100])

@@ -61,6 +61,7 @@ def with_clock(offset_s: float, sd_s: float, status: ClockStatus, tie: ClockTie 
     return rewalked(hip_analysis(), changed)
 
 
+@pytest.mark.endurance
 def test_six_joints_are_counted_and_the_late_clock_is_told() -> None:
     found = data_quality(hip_facts())
     assert found.first == "All six joints can be read."

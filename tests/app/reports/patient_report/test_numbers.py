@@ -151,6 +151,7 @@ def test_every_number_of_one_leg_alone_is_in_a_file(request_of_one_leg: ReportRe
     assert fixed(fmean(column(peaks, "knee_swing_peak_percent")), 1) in {n for _, n in numbers}
 
 
+@pytest.mark.endurance
 def test_every_curve_is_in_a_file(
     request_of_demonstration: ReportRequest, results: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

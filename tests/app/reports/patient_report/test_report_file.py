@@ -32,6 +32,7 @@ def test_the_subcommand_makes_a_report_with_the_clinicians_words(session: Path, 
     assert list(out.parent.iterdir()) == [out]
 
 
+@pytest.mark.endurance
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [

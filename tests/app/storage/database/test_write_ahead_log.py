@@ -39,6 +39,7 @@ def settings(folder: Path) -> tuple[int, Library]:
     return sum(library.settings.get(f"setting {k}") is not None for k in range(30)), library
 
 
+@pytest.mark.endurance
 @pytest.mark.parametrize("flips", [100, pytest.param(10_000, marks=pytest.mark.endurance)])
 def test_every_flipped_bit_in_the_log_is_noticed(tmp_path: Path, flips: int) -> None:
     log = crashed(tmp_path, 10) / LOG

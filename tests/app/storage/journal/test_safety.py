@@ -42,6 +42,7 @@ def check_tails(folder: Path, count: int) -> None:
     assert tails.untouched > 0
 
 
+@pytest.mark.endurance
 def test_a_torn_tail_costs_no_synced_record(tmp_path: Path) -> None:
     check_tails(tmp_path, 20 * len(DAMAGES))
 

@@ -99,6 +99,7 @@ def test_what_is_put_in_comes_out_in_order_and_whole(tmp_path: Path, key: bytes 
     assert summary.records == len(records) - 1  # the footer is no record of anything
 
 
+@pytest.mark.endurance
 def test_what_was_put_in_can_be_read_while_the_recording_goes_on(tmp_path: Path, disk: Disk) -> None:
     with JournalWriter.create(tmp_path, ID, KEY, room=NO_ROOM_ASKED) as journal:
         source = journal.source(LINES)
@@ -121,6 +122,7 @@ def test_resuming_opens_the_next_segment(tmp_path: Path) -> None:
     assert first.path.read_bytes() == before
 
 
+@pytest.mark.endurance
 def test_a_disk_that_stalls_holds_up_nobody_and_costs_nothing(tmp_path: Path, disk: Disk) -> None:
     said: list[Trouble] = []
     with JournalWriter.create(tmp_path, ID, KEY, room=NO_ROOM_ASKED, on_trouble=said.append) as journal:
@@ -307,6 +309,7 @@ def test_a_recording_does_not_begin_without_room(tmp_path: Path, monkeypatch: py
     assert list(find_segments(tmp_path)[ID]) == [1]
 
 
+@pytest.mark.endurance
 def test_five_minutes_before_the_end_it_is_said_and_before_the_disk_is_full_it_is_closed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

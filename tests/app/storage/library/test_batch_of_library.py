@@ -63,6 +63,7 @@ def test_each_session_of_the_library_is_analysed_as_analyse_does_it(
     assert results_in(tmp_path / "out" / str(visits[1])) == results_in(alone)
 
 
+@pytest.mark.endurance
 def test_the_table_tells_pseudonyms_and_shifted_days_and_nobodys_name(
     opened: OpenedLibrary, visits: list[UUID], run_batch: RunBatch, tmp_path: Path
 ) -> None:
@@ -79,6 +80,7 @@ def test_the_table_tells_pseudonyms_and_shifted_days_and_nobodys_name(
     assert not any("1980" in row.values() for row in rows)  # as a cell: digits of figures and ids may be the same
 
 
+@pytest.mark.endurance
 def test_what_leaves_is_noted_before_it_is_read_and_what_has_not_changed_does_not_leave_again(
     opened: OpenedLibrary, visits: list[UUID], run_batch: RunBatch, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
@@ -102,6 +104,7 @@ def test_what_leaves_is_noted_before_it_is_read_and_what_has_not_changed_does_no
     assert [visit for visit, _ in read[2:]] == [visits[0]]
 
 
+@pytest.mark.endurance
 def test_a_session_whose_recording_is_gone_is_a_failure_and_the_other_is_done(
     opened: OpenedLibrary, visits: list[UUID], run_batch: RunBatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

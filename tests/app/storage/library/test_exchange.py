@@ -278,6 +278,7 @@ def test_an_export_says_no_name_unless_it_is_asked_to(opened: OpenedLibrary, wal
     assert len(pseudonyms) == 8
 
 
+@pytest.mark.endurance
 def test_of_200_names_none_passes_the_pseudonyms(walked: Session) -> None:
     pseudonyms, patient_id = Pseudonyms(bytes(32)), UUID(int=1)
     for name in NAMES:
@@ -345,6 +346,7 @@ def test_a_known_patient_stays_as_the_library_knows_it(opened: OpenedLibrary, wa
     assert second.patient.details == first.patient.details
 
 
+@pytest.mark.endurance
 def test_goals_come_with_a_new_patient_and_go_out_again_and_others_are_told_of(
     opened: OpenedLibrary, walked: Session, tmp_path: Path
 ) -> None:

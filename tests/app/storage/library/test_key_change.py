@@ -200,6 +200,7 @@ def first_format(data_key: DataKey, code: str, secret: str) -> dict[str, object]
     return {"code": code, **text, "wrapped": wrapped, "passes": 1, "memory_kib": 64}
 
 
+@pytest.mark.endurance
 def test_slots_of_the_first_format_open_and_become_new_ones(opened: OpenedLibrary, slots: KeySlots) -> None:
     assert opened.data_key is not None
     path = opened.folder / KEYS

@@ -30,6 +30,7 @@ def png(ppi: float) -> bytes:
     return bytes(content.data())
 
 
+@pytest.mark.endurance
 def test_pictures_that_come_too_coarse_are_asked_for_once_more(qtbot: QtBot, page: ReportPage) -> None:
     """They were asked for before the page had its size."""
     with qtbot.waitSignal(page.sharper_wanted, timeout=10 * REBUILT_AFTER_MS):
@@ -38,6 +39,7 @@ def test_pictures_that_come_too_coarse_are_asked_for_once_more(qtbot: QtBot, pag
         page.show_pages([png(page.pages_ppi)])
 
 
+@pytest.mark.endurance
 def test_more_room_asks_for_finer_pictures_and_less_for_none(qtbot: QtBot, page: ReportPage) -> None:
     page.show_pages([png(page.pages_ppi)])
     with qtbot.waitSignal(page.sharper_wanted, timeout=10 * REBUILT_AFTER_MS):

@@ -104,6 +104,7 @@ def dialog_of(qtbot: QtBot, step: ReportStep) -> LeavingDialog:
     return dialog
 
 
+@pytest.mark.endurance
 def test_what_leaves_without_the_name_is_shown_first_and_nothing_typed_but_what_is_ticked(
     qtbot: QtBot, step: ReportStep, visit: Visit, simulated_session: Session, tmp_path: Path
 ) -> None:

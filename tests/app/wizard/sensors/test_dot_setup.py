@@ -99,6 +99,7 @@ def test_synchronising_is_told_step_by_step_and_gives_sensors_on_one_clock(
     assert visit.is_simulated
 
 
+@pytest.mark.endurance
 def test_a_sensor_that_does_not_follow_is_named_and_can_be_left_out(
     qtbot: QtBot, asked: SensorsStep, visit: Visit, radio: FastRadio
 ) -> None:

@@ -72,6 +72,7 @@ def test_a_folder_becomes_the_sensors_with_their_places(
     assert visit.sensors.acquisition is sending, "it goes on while another one is looked for"
 
 
+@pytest.mark.endurance
 def test_a_session_of_the_library_is_chosen_by_code_and_date(
     qtbot: QtBot, controller: LibraryController, visit: Visit, step: SensorsStep, short_session: Session
 ) -> None:

@@ -55,6 +55,7 @@ def test_movement_is_seen_before_the_count_begins(qtbot: QtBot, step: StandStill
     assert (verb.text, verb.key) == ("Start the count", "Space")
 
 
+@pytest.mark.endurance
 def test_three_seconds_are_recorded_and_the_wizard_goes_on_by_itself(
     qtbot: QtBot, step: StandStillStep, visit: Visit, worn: dict[str, Site]
 ) -> None:

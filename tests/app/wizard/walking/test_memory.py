@@ -76,6 +76,7 @@ def walk(qtbot: QtBot, visit: Visit, step: WalkingStep) -> None:
     step.on_intent(RUN)
 
 
+@pytest.mark.endurance
 def test_a_walk_in_memories_is_made_ready_recorded_and_fetched(
     qtbot: QtBot, visit: Visit, radio: FastRadio, walking: Callable[[int], WalkingStep]
 ) -> None:
