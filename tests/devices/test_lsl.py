@@ -235,9 +235,9 @@ def test_a_stream_by_the_common_clock_and_one_three_seconds_wrong_are_stamped_al
 
 
 @pytest.mark.endurance
-def test_a_clock_that_drifts_is_followed_for_a_minute(outlets: list[Outlet]) -> None:
+def test_a_clock_that_drifts_is_followed(outlets: list[Outlet]) -> None:
     outlets += [Outlet(), Outlet(offset_s=3.0, skew=200e-6), Outlet(offset_s=-3.0, skew=-200e-6, per_chunk=8)]
-    assert_stamped(outlets, 60.0)
+    assert_stamped(outlets, 25.0)
 
 
 def test_a_stream_is_found_by_the_search_and_its_sensors_are_counted(outlets: list[Outlet]) -> None:

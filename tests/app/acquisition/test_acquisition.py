@@ -152,7 +152,6 @@ def test_closing_ends_the_recording_too(start: Start, tmp_path: Path) -> None:
     assert read_back([writer.path]).reports[0].is_whole
 
 
-@pytest.mark.endurance
 def test_a_source_that_vanishes_costs_the_others_nothing_and_comes_back(start: Start, tmp_path: Path) -> None:
     source = played("a", 2)
     acquisition = start(source, played("b", 2))

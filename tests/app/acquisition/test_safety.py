@@ -82,8 +82,8 @@ def test_twenty_sources_that_vanish_come_back_within_three_seconds(tmp_path: Pat
 
 @needs_proc
 @pytest.mark.endurance
-def test_three_minutes_lose_nothing_and_nothing_grows(tmp_path: Path) -> None:
-    run = record_long(tmp_path, 3 / 60, tell=lambda _: None)
+def test_ninety_seconds_lose_nothing_and_nothing_grows(tmp_path: Path) -> None:
+    run = record_long(tmp_path, 1.5 / 60, tell=lambda _: None)
     assert run.faults == []
     assert run.dropped_from_preview == 0
 

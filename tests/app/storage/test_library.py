@@ -114,7 +114,7 @@ def test_what_is_no_library_is_refused(tmp_path: Path, content: bytes) -> None:
 
 
 @pytest.mark.endurance
-@pytest.mark.parametrize("kills", [1, 50])
+@pytest.mark.parametrize("kills", [1, 20])
 def test_what_was_said_to_be_kept_is_there_after_a_kill(tmp_path: Path, kills: int) -> None:
     Library.create(tmp_path, DATA_KEY, FIRST).close()
     rng = random.Random(1)

@@ -77,7 +77,6 @@ def test_what_was_turned_is_in_the_row_and_in_its_history(library: Library, visi
     assert found.details == TURNED
 
 
-@pytest.mark.endurance
 def test_what_was_turned_goes_with_the_rows_to_another_database(
     library: Library, visit: StoredSession, tables: Database, tmp_path: Path
 ) -> None:

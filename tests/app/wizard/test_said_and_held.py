@@ -126,8 +126,8 @@ def test_a_recording_that_nobody_ended_is_seen(held: HeldLibrary, alter: Alter) 
 
 
 @pytest.mark.endurance
-def test_a_minute_of_random_keys_finds_nothing(tmp_path: Path) -> None:
-    outcome = play(60.0, 5, tmp_path)
+def test_half_a_minute_of_random_keys_finds_nothing(tmp_path: Path) -> None:
+    outcome = play(30.0, 5, tmp_path)
     assert outcome.faults == []
-    assert outcome.did["steps"] > 100
-    assert outcome.did["comparisons"] > 10
+    assert outcome.did["steps"] > 50
+    assert outcome.did["comparisons"] > 5

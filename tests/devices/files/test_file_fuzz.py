@@ -7,7 +7,7 @@ import pytest
 from devices.files.limited_reader import LimitedReader
 from tests.safety.file_fuzz import fuzz, importers
 
-COUNTS = (15, pytest.param(500, marks=pytest.mark.endurance))
+COUNTS = (15, pytest.param(200, marks=pytest.mark.endurance))
 
 
 @pytest.fixture(scope="module")

@@ -213,7 +213,7 @@ def test_a_server_that_does_not_answer_is_said_not_to(tmp_path: Path) -> None:
     nowhere.close()
 
 
-@pytest.mark.parametrize("flips", [200, pytest.param(10_000, marks=pytest.mark.endurance)])
+@pytest.mark.parametrize("flips", [200, pytest.param(3_000, marks=pytest.mark.endurance)])
 def test_every_flipped_bit_in_the_file_is_noticed(encrypted: Database, file: Path, flips: int) -> None:
     for k in range(100):
         put(encrypted, f"setting {k}", "x" * 2000)

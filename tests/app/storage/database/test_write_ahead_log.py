@@ -40,7 +40,7 @@ def settings(folder: Path) -> tuple[int, Library]:
 
 
 @pytest.mark.endurance
-@pytest.mark.parametrize("flips", [100, pytest.param(10_000, marks=pytest.mark.endurance)])
+@pytest.mark.parametrize("flips", [100, pytest.param(3_000, marks=pytest.mark.endurance)])
 def test_every_flipped_bit_in_the_log_is_noticed(tmp_path: Path, flips: int) -> None:
     log = crashed(tmp_path, 10) / LOG
     whole = log.read_bytes()

@@ -122,7 +122,6 @@ def test_resuming_opens_the_next_segment(tmp_path: Path) -> None:
     assert first.path.read_bytes() == before
 
 
-@pytest.mark.endurance
 def test_a_disk_that_stalls_holds_up_nobody_and_costs_nothing(tmp_path: Path, disk: Disk) -> None:
     said: list[Trouble] = []
     with JournalWriter.create(tmp_path, ID, KEY, room=NO_ROOM_ASKED, on_trouble=said.append) as journal:

@@ -205,7 +205,7 @@ def test_whatever_a_session_holds_the_library_gives_back(opened: OpenedLibrary, 
 
 
 @pytest.mark.endurance
-@settings(max_examples=500, suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow])
+@settings(max_examples=200, suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow])
 @given(session=sessions())
 def test_whatever_hundreds_of_sessions_hold_the_library_gives_back(opened: OpenedLibrary, session: Session) -> None:
     assert_same(session, in_and_out(opened, session))

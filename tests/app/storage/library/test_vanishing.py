@@ -412,9 +412,9 @@ def test_killed_while_bringing_home_it_comes_home_once(opened: OpenedLibrary, se
 @pytest.mark.endurance
 @pytest.mark.skipif(sys.platform == "win32", reason="SIGKILL and fork are POSIX's")
 def test_killed_in_earnest_while_bringing_home(tmp_path: Path) -> None:
-    found = bring_home_killed(tmp_path, 50, seed=3)
+    found = bring_home_killed(tmp_path, 25, seed=3)
     assert found.faults == []
-    assert found.amid > 5
+    assert found.amid > 2
 
 
 def test_what_is_being_recorded_in_the_shelter_stays_there_until_it_is_stopped(
