@@ -1,6 +1,7 @@
 """Does the estimator still reach its targets on the project's own patient? A few sessions here, forty as endurance.
 
-The conditions, their targets and the scoring are those of `tests/benchmarks/accuracy.py`, which runs all of them, five hundred times each.
+The conditions, their targets and the scoring are those of `tests/benchmarks/accuracy.py`, which runs all of them, and
+five hundred sessions of each.
 """
 
 import importlib.util
