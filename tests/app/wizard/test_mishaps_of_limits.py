@@ -26,13 +26,13 @@ def test_a_foot_without_ankle_is_called_foot_against_shank(
     begin(qtbot, visit, worn)
     limits = Limits(without_ankle=frozenset({Side.RIGHT}))
     if not is_told_late:
-        visit.set_limits(limits)
+        visit.record.set_limits(limits)
     with qtbot.waitSignal(visit.evaluation.done, timeout=20_000):
         record(qtbot, visit, RecordingKind.WALKING, 4.0)
     if is_told_late:
         assert SAID not in said(visit)
         with qtbot.waitSignal(visit.evaluation.done, timeout=20_000):
-            visit.set_limits(limits)
+            visit.record.set_limits(limits)
     assert SAID in said(visit)
     assert visit.session is not None
     again = Visit(controller, [])

@@ -28,7 +28,7 @@ def begin(qtbot: QtBot, visit: Visit, worn: dict[str, Site]) -> None:
     with qtbot.waitSignal(visit.patient.changed):
         visit.patient.commit()
     with qtbot.waitSignal(visit.changed):
-        visit.begin_session()
+        visit.record.begin()
     with qtbot.waitSignal(visit.sensors.opened, timeout=10_000):
         visit.sensors.search(visit.choices[0])
     qtbot.waitUntil(lambda: set(visit.sensors.status) == set(worn))
@@ -121,9 +121,9 @@ def test_patient_is_saved_as_typed(qtbot: QtBot, visit: Visit) -> None:
 
 def test_zero_is_stored(qtbot: QtBot, visit: Visit, worn: dict[str, Site]) -> None:
     begin(qtbot, visit, worn)
-    visit.set_zero(Joint.LEFT_KNEE, 0.1)
-    visit.set_zero(Joint.LEFT_KNEE, 0.2)
-    visit.set_zero(Joint.RIGHT_KNEE, 0.3)
+    visit.record.set_zero(Joint.LEFT_KNEE, 0.1)
+    visit.record.set_zero(Joint.LEFT_KNEE, 0.2)
+    visit.record.set_zero(Joint.RIGHT_KNEE, 0.3)
     wanted = {Joint.LEFT_KNEE: 0.2, Joint.RIGHT_KNEE: 0.3}
     assert visit.details.zero_rad == wanted
     qtbot.waitUntil(lambda: visit.session is not None and visit.session.details.zero_rad == wanted)
@@ -133,15 +133,15 @@ def test_what_the_body_does_not_allow_is_stored_and_taken_up_again(
     qtbot: QtBot, controller: LibraryController, visit: Visit, worn: dict[str, Site]
 ) -> None:
     """Told before there is a session, and after; it is on the rows, and shown by whoever resumes."""
-    visit.set_limits(Limits(without_ankle=frozenset({Side.LEFT})))
+    visit.record.set_limits(Limits(without_ankle=frozenset({Side.LEFT})))
     begin(qtbot, visit, worn)
     session = visit.session
     assert session is not None
     assert session.limits == Limits(without_ankle=frozenset({Side.LEFT}))
     visit.patient.edit(replace(visit.patient.details, prosthetic_side="both"))
     wanted = Limits(frozenset({Side.LEFT, Side.RIGHT}), cannot_stand=True)
-    visit.set_limits(replace(wanted, cannot_stand=False))
-    visit.set_limits(wanted)
+    visit.record.set_limits(replace(wanted, cannot_stand=False))
+    visit.record.set_limits(wanted)
     qtbot.waitUntil(lambda: visit.session is not None and visit.session.limits == wanted)
     qtbot.waitUntil(lambda: visit.patient.is_saved)
     again = Visit(controller, [])

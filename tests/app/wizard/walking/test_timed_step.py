@@ -42,7 +42,7 @@ def step(qtbot: QtBot, look: ThemeNotifier, visit: Visit, worn: dict[str, Site])
     with qtbot.waitSignal(visit.patient.changed):
         visit.patient.commit()
     with qtbot.waitSignal(visit.changed):
-        visit.begin_session()
+        visit.record.begin()
     with qtbot.waitSignal(visit.sensors.opened, timeout=10_000):
         visit.sensors.search(visit.choices[0])
     qtbot.waitUntil(lambda: set(visit.sensors.status) == set(worn))
