@@ -28,7 +28,7 @@ from app.workers.background import Report
 from app.workers.library_controller import LibraryController
 from core.body import LEG_SITES, Site
 from core.samples import Patient, Recording, RecordingKind, Session
-from tests.app.wizard.test_visit import begin, record
+from tests.app.wizard.begun_visit import begin, record
 
 BUSY = LibraryBusyError("Another program keeps the library busy", "Wait a moment")
 WAIT_MS = 20_000

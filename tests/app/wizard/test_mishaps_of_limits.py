@@ -9,7 +9,7 @@ from app.wording import sentence
 from app.workers.library_controller import LibraryController
 from core.body import Side, Site
 from core.samples import RecordingKind
-from tests.app.wizard.test_visit import begin, record
+from tests.app.wizard.begun_visit import begin, record
 
 SAID = "Right ankle: the foot has no ankle joint. Its angle is that of the foot against the shank."
 

@@ -29,8 +29,8 @@ from devices.decoders import DECODERS
 from devices.files.session_folder import read_session
 from devices.replay import ReplaySource
 from devices.walker import DEMONSTRATION, FreeMotion, Motion, Standing, Walk, simulate
+from tests.app.wizard.begun_visit import begin, record
 from tests.app.wizard.conftest import SPEED
-from tests.app.wizard.test_visit import begin, record
 
 HIPS = {hip_of(side) for side in Side}
 LIVE_SPEED = 4.0

@@ -23,9 +23,9 @@ from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site
 from core.live.free_motion import FreeMotionState
 from core.samples import RecordingKind
 from devices.replay import ReplaySource
+from tests.app.wizard.begun_visit import begin, record
 from tests.app.wizard.free_motion.test_hints import motion, state
 from tests.app.wizard.free_motion.test_side_question import chains
-from tests.app.wizard.test_visit import begin, record
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 

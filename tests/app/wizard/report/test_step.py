@@ -24,7 +24,7 @@ from core.analysis import analyse
 from core.body import Site
 from core.results import Analysis
 from core.samples import RecordingKind, Session
-from tests.app.wizard.test_visit import begin
+from tests.app.wizard.begun_visit import begin
 
 WAIT_MS = 60_000  # on a busy machine
 
