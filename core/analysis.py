@@ -1,6 +1,6 @@
 """From a session to joint angles: look at the samples, identify every joint, measure every recording, turn and zero.
 
-Read `analyse` as a table of contents; each step is a module of its own.
+Read `analyse` and `_analyse_span` as a table of contents; each step is a module of its own.
 """
 
 from collections.abc import Callable
@@ -96,47 +96,13 @@ def analyse(
     calibrations: list[Calibration] = []
     recordings: list[RecordingAnalysis] = []
     spans = spans_of_validity(session)
-    stiff_sides = _stiff_sides(session.patient)
-    has_stood = any(r.is_kept and r.kind is RecordingKind.STANDING for r in session.recordings)
     for number, span in enumerate(spans):
         steps = _Steps(progress, number / len(spans), 1 / len(spans))
         tracks, noticed = tracks_of_kind(session, span, quality.unusable)
-        findings += noticed
-        of_labels = about_labels(tracks)
-        findings += of_labels
-        drifts = clock_drifts(tracks)
-        findings += about_clocks(drifts)
-        bases = _bases(tracks)
-        steps.expect(len(set(bases.values())) + len(bases))
-        identified = _identify(tracks, bases, method, tau_s, steps)
-        lags, noticed = _lags(tracks, bases, identified)
-        findings += noticed
-        hips = find_hips(tracks)
-        measured = _measure(tracks, bases, identified, lags, hips, steps)
-        calibrated = calibrate(tracks, bases, identified, measured, method)
-        for basis, calibration in calibrated.items():
-            joint = basis.joint
-            turned, is_zero_typed = session.turned_sign.get(joint), joint in session.zero_rad
-            findings += about_joint(calibration, identified[basis], turned, is_zero_typed, has_stood)
-        by_walk = _by_walk(span, bases, calibrated)
+        by_walk, analysed, of_span = _analyse_span(session, tracks, method, tau_s, steps)
         calibrations += by_walk
-        slipped, noticed = _slipped(tracks, by_walk, lags)
-        findings += noticed
-        for recording in _moving(span):
-            found = _angles(tracks, recording, bases, calibrated, measured, lags, hips)
-            found = _before_slips(found, slipped)
-            if recording.test is not None and recording.kind is RecordingKind.WALKING:
-                found = replace(found, timed=time_test(tracks, recording, recording.test))
-            found = replace(found, clocks=clocks_in(tracks, recording, found.gait, _lags_in(recording, lags)))
-            found = replace(found, drifting_percent={s: p for (name, s), p in drifts.items() if name == recording.name})
-            found = replace(found, doubted_sites=doubted_sites(of_labels))
-            here = {joint: calibrated[bases[recording.name, joint]] for joint in found.joints}
-            found = with_hips(found, tracks, recording, hips, here)
-            found = replace(found, verdicts=verdicts_of(found, here, stiff_sides))
-            recordings.append(found)
-            findings += about_angles(found)
-            findings += about_turns(found)
-            findings += about_walk(found, {side: site_of_events(tracks, recording, side) for side in found.gait})
+        recordings += analysed
+        findings += [*noticed, *of_span]
     findings += about_missing_joints(session, quality.unusable, recordings)
     findings += about_prosthesis(recordings)
     unique = {(f.key, f.where, tuple(sorted(f.numbers.items()))): f for f in findings}
@@ -147,9 +113,50 @@ def analyse(
         recordings=tuple(recordings),
         findings=tuple(unique.values()),
         affected_side=_affected_side(session.patient),
-        stiff_sides=stiff_sides,
+        stiff_sides=_stiff_sides(session.patient),
     )
     return leave_out(whole, session.recordings)
+
+
+def _analyse_span(
+    session: Session, tracks: SensorTracks, method: Method, tau_s: float, steps: "_Steps"
+) -> tuple[list[Calibration], list[RecordingAnalysis], list[Finding]]:
+    """Everything of one span: what every joint is, and the angles and gait of what moves."""
+    span, stiff_sides = tracks.span, _stiff_sides(session.patient)
+    has_stood = any(r.is_kept and r.kind is RecordingKind.STANDING for r in session.recordings)
+    of_labels, drifts = about_labels(tracks), clock_drifts(tracks)
+    findings = [*of_labels, *about_clocks(drifts)]
+    bases = _bases(tracks)
+    steps.expect(len(set(bases.values())) + len(bases))
+    identified = _identify(tracks, bases, method, tau_s, steps)
+    lags, noticed = _lags(tracks, bases, identified)
+    findings += noticed
+    hips = find_hips(tracks)
+    measured = _measure(tracks, bases, identified, lags, hips, steps)
+    calibrated = calibrate(tracks, bases, identified, measured, method)
+    for basis, calibration in calibrated.items():
+        joint = basis.joint
+        turned, is_zero_typed = session.turned_sign.get(joint), joint in session.zero_rad
+        findings += about_joint(calibration, identified[basis], turned, is_zero_typed, has_stood)
+    by_walk = _by_walk(span, bases, calibrated)
+    slipped, noticed = _slipped(tracks, by_walk, lags)
+    findings += noticed
+    recordings: list[RecordingAnalysis] = []
+    for recording in _moving(span):
+        found = _angles(tracks, recording, bases, calibrated, measured, lags, hips)
+        found = _before_slips(found, slipped)
+        if recording.test is not None and recording.kind is RecordingKind.WALKING:
+            found = replace(found, timed=time_test(tracks, recording, recording.test))
+        found = replace(found, clocks=clocks_in(tracks, recording, found.gait, _lags_in(recording, lags)))
+        found = replace(found, drifting_percent={s: p for (name, s), p in drifts.items() if name == recording.name})
+        found = replace(found, doubted_sites=doubted_sites(of_labels))
+        here = {joint: calibrated[bases[recording.name, joint]] for joint in found.joints}
+        found = with_hips(found, tracks, recording, hips, here)
+        found = replace(found, verdicts=verdicts_of(found, here, stiff_sides))
+        recordings.append(found)
+        findings += [*about_angles(found), *about_turns(found)]
+        findings += about_walk(found, {side: site_of_events(tracks, recording, side) for side in found.gait})
+    return by_walk, recordings, findings
 
 
 def _affected_side(patient: Patient) -> Side | None:

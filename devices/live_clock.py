@@ -89,11 +89,6 @@ class LiveClock:
         """As `LiveLine.fit`."""
         return self._line.fit
 
-    @property
-    def residual_s(self) -> float:
-        """As `ClockFit.residual_s`, 0 before anything was fitted."""
-        return self._line.fit.residual_s if self._line.fit is not None else 0.0
-
     def stamp(self, device_s: FloatArray, host_s: float) -> FloatArray:
         """Stamps (n,) of samples that arrived together, in seconds of the host; NaN for what cannot be."""
         run = self._runs.take(device_s, np.full(len(device_s), host_s))

@@ -263,11 +263,6 @@ class LslSource:
         """Known once it is open."""
         return self._sensors
 
-    @property
-    def clock_residual_s(self) -> float:
-        """How well the sender's clock and the host's go together; see `ClockFit`."""
-        return self._clock.residual_s
-
     def open(self) -> None:
         pylsl = _library()
         found = [one for one in pylsl.resolve_byprop(*self._key(), timeout=OPEN_S) if self._is_same(one)]

@@ -246,11 +246,6 @@ class ByteSource:
         return tuple(self._channel.sent)
 
     @property
-    def clock_residual_s(self) -> float:
-        """How well the sensor's clock and the host's go together; see `ClockFit`."""
-        return self._clock.residual_s
-
-    @property
     def damaged(self) -> int:
         """Messages that could not be understood since the source was made."""
         return self._damaged

@@ -30,10 +30,6 @@ class MeanLeg:
     toe_off_percent: float
 
     @property
-    def has_shank(self) -> bool:
-        return bool(np.isfinite(self.points_m[:, ANKLE]).any())
-
-    @property
     def has_foot(self) -> bool:
         return bool(np.isfinite(self.points_m[:, TOES]).any())
 

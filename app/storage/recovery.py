@@ -71,11 +71,6 @@ class Interrupted:
     def is_orphan(self) -> bool:
         return self.stored is None
 
-    @property
-    def ended_at(self) -> datetime.datetime | None:
-        """When its last record was written, where it was not resumed."""
-        return self.began_at + datetime.timedelta(seconds=self.recorded_s) if self.began_at else None
-
 
 @dataclass(frozen=True, slots=True)
 class Recovered:

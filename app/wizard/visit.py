@@ -4,28 +4,20 @@ It lives on the screen's thread. Steps read it and ask it; it knows no page. Wha
 controller or beside the screen, and comes back as a signal.
 """
 
-import datetime
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from functools import partial
 from typing import TYPE_CHECKING
 from uuid import UUID
 
 from PySide6.QtCore import QObject, Signal
 
 from app.acquisition.live_sensors import live_sensors
-from app.edit_words import others_message
-from app.logs import version_of
-from app.reports.course import course_of
-from app.storage.edited_fields import SESSION_CORRECTABLE, session_fields, with_session_fields
-from app.storage.kept_analyses import keep_analysis
-from app.storage.kept_courses import course_key, keep_course
-from app.storage.stored import Limits, PlacedSensor, StoredSession
-from app.storage.three_way import Contest, Edited, Value, Values, rebased
-from app.wizard.edit_question import EditQuestion, chosen_fields
+from app.storage.stored import StoredSession
+from app.wizard.edit_question import EditQuestion
 from app.wizard.evaluation import Evaluation
 from app.wizard.fetch_control import FetchControl
+from app.wizard.kept_results import KeptResults
 from app.wizard.patient_record import PatientRecord
 from app.wizard.recordings import SessionRecording, SessionRecordings
 from app.wizard.resuming import (
@@ -39,6 +31,8 @@ from app.wizard.resuming import (
     with_limits,
 )
 from app.wizard.reviewing import Reviewing
+from app.wizard.session_record import SessionRecord, current_time
+from app.wizard.worn_corrections import WornCorrections
 from app.wizard.worn_sensors import SourceChoice, WornSensors
 from app.wording import tr
 from app.workers.background import Background, Report
@@ -54,9 +48,6 @@ if TYPE_CHECKING:
     from core.live.sensors import LiveSensor
     from core.results import Analysis
 
-Worn = tuple[Sequence[UUID], Mapping[Site, PlacedSensor]]
-"""Recordings, and who wore what in them."""
-_Corrected = tuple[Edited[StoredSession], tuple[SessionRecording, ...], Sequence[Worn]]
 MOST_EARLIER = 4  # visits; more are too many lines on one axis
 DEMO = "DEMO"  # how the codes of patients begin that simulated recordings are kept for, as the library has it
 
@@ -98,11 +89,13 @@ class Visit(QObject):
         super().__init__(parent)
         self._controller, self._now_s = controller, now_s
         self.known_choices = choices  # which may become more
-        self.session: StoredSession | None = None
         self.patient = PatientRecord(controller, self, self._refuses_code)
+        self.record = SessionRecord(controller, self.patient, self)
         self.sensors = WornSensors(self)
         self.recordings = SessionRecordings(controller, self)
+        self.worn = WornCorrections(controller, self.sensors, self.recordings, self)
         self.evaluation = Evaluation(self)
+        self._kept_results = KeptResults(controller, self.evaluation, self.recordings, self)
         self.reviewing = Reviewing(self)
         self.preview = Background(self)
         """Sets the report's pages; of the visit, for its threads outlive a step."""
@@ -112,30 +105,24 @@ class Visit(QObject):
         """Compares the session with an optical system."""
         self.rests: dict[str, Rest] = {}
         """What each sensor, by name, reads while the patient stands; empty until then."""
-        self.limits = Limits()
-        """What the patient's body does not allow, the last word of it on the screen."""
         self.placement_before: dict[str, Site] = {}
         """Site by the sensor's name as at the last visit, where the same set-up was asked for."""
         self._began_s: float | None = None
         self._ended_s: float | None = None
-        self._is_changing = self._is_of_another_day = self._is_partial = self._must_look = False
-        self._wanted: Session | None = None
-        self.comment = ""
-        """The clinician's words, the last of them on the screen."""
-        self._sent: dict[str, Value] = {}
-        """What was said of the session when the library was asked last."""
+        self._is_of_another_day = self._must_look = False
         self._questions = 0
-        self._is_placing = self._must_swap = self._must_place = False
-        self.patient.refused.connect(self.refused)
-        for part in (self.patient, self.recordings):
+        for part in (self.patient, self.record, self.recordings):
             part.merged.connect(self.merged)
             part.asked.connect(self._ask)
+            part.refused.connect(self.refused)
+        self.record.held.connect(self._on_held)
+        self.record.changed.connect(self._on_record_changed)
+        self.worn.corrected.connect(self._on_corrected)
+        self.worn.asked.connect(self._ask)
+        self.worn.refused.connect(self._on_refused)
         self.sensors.refused.connect(self.refused)
         self.sensors.opened.connect(self._on_sensors_opened)
-        self.recordings.refused.connect(self.refused)
         self.evaluation.refused.connect(self.refused)
-        self.evaluation.computed.connect(self._on_computed)
-        self.evaluation.done.connect(self._keep_course)
         self.reviewing.refused.connect(self.refused)
         self.fetch = FetchControl(self.recordings, self.sensors, self)
         """Gets recordings out of the sensors' memories."""
@@ -166,10 +153,13 @@ class Visit(QObject):
     # the session
 
     @property
+    def session(self) -> StoredSession | None:
+        return self.record.stored
+
+    @property
     def details(self) -> Session:
         """What was said about the session, the last word of it on the screen; without recordings."""
-        told = self._wanted or (self.session.details if self.session is not None else Session(recordings=()))
-        return replace(told, recordings=(), patient=self.patient.details)
+        return self.record.told
 
     @property
     def prosthetic_sides(self) -> frozenset[Side]:
@@ -178,11 +168,11 @@ class Visit(QObject):
 
     @property
     def without_ankle(self) -> frozenset[Side]:
-        return self.limits.without_ankle
+        return self.record.limits.without_ankle
 
     @property
     def has_skipped_standing(self) -> bool:
-        return self.limits.cannot_stand
+        return self.record.limits.cannot_stand
 
     @property
     def is_simulated(self) -> bool:
@@ -224,77 +214,6 @@ class Visit(QObject):
         offered = [choice for choice in self.known_choices if self.may_simulate or not choice.is_simulated]
         return tuple(choice.for_sides(self.prosthetic_sides) for choice in offered)
 
-    def begin_session(self) -> None:
-        """Make the session's row, once the patient has one; `changed` follows."""
-        patient = self.patient.stored
-        if self.session is not None or patient is None or self._is_changing:
-            return
-        self._is_changing = True
-        self.patient.has_this_session_only = patient.sessions == 0
-        state = self._controller.state
-        told = Session(
-            recordings=(),
-            started=_now(),
-            operator=state.operator.name if state is not None else "",
-            software=f"gaitwright {version_of('gaitwright')}",
-        )
-        limits = self.limits
-        self._sent = _said_fields(told, "", limits)
-
-        def create(opened: "OpenedLibrary") -> StoredSession:
-            return opened.library.sessions.create(patient.id, told, limits)
-
-        self._controller.run(create, self._on_created, self._on_refused, self)
-
-    def set_zero(self, joint: Joint, zero_rad: float | None) -> None:
-        """Take the goniometer's value while standing, radians in the clinical sign; None: the standing itself is 0."""
-        zero = {**self.details.zero_rad}
-        if zero_rad is None:
-            zero.pop(joint, None)
-        else:
-            zero[joint] = zero_rad
-        self._change(replace(self.details, zero_rad=zero))
-
-    def set_limits(self, limits: Limits) -> None:
-        """Take what the patient's body does not allow; before there is a session, it waits for that."""
-        if limits != self.limits:
-            self.limits = limits
-            self._change(self.details)
-
-    def set_comment(self, comment: str, shown: str) -> None:
-        """Take the clinician's words, which were typed where `shown` stood."""
-        self.comment = comment
-        self._change(self.details, {"comment": shown})
-
-    def set_turned(self, joint: Joint, sign: int | None) -> None:
-        """Turn (-1) or confirm (1) the sign that was found of a joint; None: as found. `evaluation.done` follows."""
-        turned = {**self.details.turned_sign}
-        if sign is None:
-            turned.pop(joint, None)
-        else:
-            turned[joint] = sign
-        self._change(replace(self.details, turned_sign=turned))
-
-    def swap_sides(self) -> None:
-        """Say that left and right were worn the other way round in all recordings; they are read anew.
-
-        Done again, it is undone.
-        """
-        if self._is_placing:
-            self._must_swap = not self._must_swap
-            return
-        placed: dict[UUID, list[SessionRecording]] = {}
-        for recording in self.recordings.every:
-            if recording.stored.placement is not None:
-                placed.setdefault(recording.stored.placement.id, []).append(recording)
-        worn: list[Worn] = []
-        for recordings in placed.values():
-            placement = recordings[0].stored.placement
-            assert placement is not None  # only such were gathered
-            other = {opposite(site): sensor for site, sensor in placement.sensors.items()}
-            worn.append(([recording.id for recording in recordings], other))
-        self._correct(worn, self._seen())
-
     def place_sensors(self, only: Side | None = None) -> None:
         """Tell the library who wears what: what is recorded next takes it, all of it or that of one leg."""
         if self.session is None:
@@ -306,7 +225,7 @@ class Visit(QObject):
             opened.library.sessions.place(session_id, placed)
             return opened.library.sessions.get(session_id)
 
-        self._controller.run(place, self._on_placed, self._on_refused, self)
+        self._controller.run(place, self.record.take, self._on_refused, self)
 
     def _note_lost_clocks(self) -> None:
         """Where sensors were told to be on one clock and some are not any more, tell the library so."""
@@ -314,36 +233,6 @@ class Visit(QObject):
         worn = self.sensors.placed()
         if any(one.info.clock == "" and site in told and told[site].clock for site, one in worn.items()):
             self.place_sensors()
-
-    def correct_placement(self) -> None:
-        """Tell the library that all since the sensors were strapped on was worn as it is said now; it is read anew."""
-        if self._is_placing:
-            self._must_place = True
-            return
-        placed = self.sensors.placed()
-        strapped = [recording.id for recording in self.recordings.since_strapped]
-        self._correct([(strapped, placed)] if strapped else [], self._seen(), placed)
-
-    def _seen(self) -> dict[UUID, UUID | None]:
-        """By recording the placement as the screen has it."""
-        stored = [recording.stored for recording in self.recordings.every]
-        return {one.id: one.placement.id if one.placement is not None else None for one in stored}
-
-    def _correct(
-        self, worn: Sequence[Worn], seen: Mapping[UUID, UUID | None], placed: Mapping[Site, PlacedSensor] | None = None
-    ) -> None:
-        """Say who wore what in recordings, seen as they were; `placed`: also for what is recorded next."""
-        if self.session is None:
-            return
-        session_id, self._is_placing = self.session.id, True
-
-        def correct(opened: "OpenedLibrary") -> _Corrected:
-            if placed is not None:
-                opened.library.sessions.place(session_id, placed)
-            edited = opened.library.edits.placement(session_id, seen, worn)
-            return edited, read_recordings(opened, edited.stored), worn
-
-        self._controller.run(correct, self._on_corrected, self._on_not_corrected, self)
 
     def resume(self, session_id: UUID) -> None:
         """Take up a session of the library where it was left; `resumed` follows."""
@@ -365,7 +254,7 @@ class Visit(QObject):
         def read(opened: "OpenedLibrary") -> StoredSession:
             return opened.library.sessions.get(session_id)
 
-        self._controller.run(read, self._on_looked, self._on_not_kept, self)
+        self._controller.run(read, self._on_looked, self._on_not_looked, self)
 
     def read_anew(self) -> None:
         """Show the session as the library has it now; sensors stay."""
@@ -388,8 +277,10 @@ class Visit(QObject):
         recordings = self.recordings.counted() + ((with_walk,) if with_walk is not None else ())
         if any(recording.kind is not RecordingKind.STANDING for recording in recordings):
             sensors = self.session.details.sensors if self.session is not None else {}
-            told = with_limits(replace(self.details, sensors=sensors, is_simulated=self.is_simulated), self.limits)
-            self._is_partial = with_walk is not None
+            told = with_limits(
+                replace(self.details, sensors=sensors, is_simulated=self.is_simulated), self.record.limits
+            )
+            self._kept_results.is_partial = with_walk is not None
             self.evaluation.ask(replace(told, recordings=recordings))
 
     def evaluate_if_stale(self) -> None:
@@ -433,7 +324,7 @@ class Visit(QObject):
         idle = self.sensors.is_idle and self.evaluation.is_idle and self.reviewing.is_idle and self.preview.is_idle
         idle = idle and self.looking.is_idle and self.comparing.is_idle and self.recordings.is_idle
         idle = idle and self.recordings.fetches.is_idle
-        return idle and not (self.is_asking or self._is_changing or self._is_placing or self.patient.is_busy)
+        return idle and not (self.is_asking or self.record.is_busy or self.worn.is_busy or self.patient.is_busy)
 
     def finish(self) -> None:
         """Wait for all threads: for the end of the program."""
@@ -459,97 +350,27 @@ class Visit(QObject):
         self._questions += 1
         self.asked.emit(question)
 
-    def _change(self, told: Session, upon: Values | None = None) -> None:
-        """Save what is said of the session; `upon`: where it was said upon something else than the library has."""
-        self._wanted = told
-        if self.session is not None and not self._is_changing:
-            self._save({**_fields_of(self.session), **(upon or {})})
-
-    def _save(self, upon: Values) -> None:
-        assert self.session is not None  # whoever asks has seen to it
-        self._is_changing = True
-        session_id, held = self.session.id, _every_field_of(self.session)
-        self._sent = _said_fields(self.details, self.comment, self.limits)
-        shown, said = {**held, **upon}, {**held, **self._sent}
-
-        def save(opened: "OpenedLibrary") -> Edited[StoredSession]:
-            return opened.library.edits.session(session_id, shown, said)
-
-        self._controller.run(save, self._on_saved, self._on_refused, self)
-
-    def _on_created(self, session: StoredSession) -> None:
-        self._is_changing = False
-        self._take(session, self._sent)
-
-    def _on_placed(self, session: StoredSession) -> None:
-        self._take(session, _fields_of(self.session or session))
-
-    def _on_saved(self, edited: Edited[StoredSession]) -> None:
-        self._is_changing = False
-        self._take(edited.stored, self._sent)
-        self._tell(edited)
-
-    def _tell(self, edited: Edited[StoredSession]) -> None:
-        if edited.others:
-            self.merged.emit(*others_message(tr("The session"), edited.others, _moment()))
-        if edited.contests:
-            settle = partial(self._settle, edited.stored.id, edited.contests)
-            self._ask(EditQuestion(tr("The session"), edited.contests, settle))
-
-    def _settle(self, session_id: UUID, contests: Sequence[Contest], fields: frozenset[str]) -> None:
-        """Save what was chosen of both sides."""
-        upon, said = chosen_fields(contests, fields)
-        if not said:
-            self.changed.emit()
+    def _on_held(self) -> None:
+        """Find out anew what the recordings tell, where it was found out with other limits, zeros or signs."""
+        evaluated, session = self.evaluation.session, self.session
+        if evaluated is None or session is None:
             return
+        told = with_limits(session.details, session.limits)
+        if (*_by_hand(evaluated), evaluated.findings) != (*_by_hand(told), told.findings):
+            self.evaluate()
 
-        def save(opened: "OpenedLibrary") -> Edited[StoredSession]:
-            return opened.library.edits.session(session_id, upon, said)
-
-        self._controller.run(save, self._on_settled, self._on_refused, self)
-
-    def _on_settled(self, edited: Edited[StoredSession]) -> None:
-        self._take(edited.stored, _fields_of(self.session or edited.stored))
-        self._tell(edited)
-
-    def _take(self, session: StoredSession, upon: Values) -> None:
-        """Go on from what the library holds; what was said since `upon` stays said, and is saved."""
-        held = _fields_of(session)
-        shown, said = rebased(upon, _said_fields(self.details, self.comment, self.limits), held)
-        self.session = self.recordings.session = session
-        told, self.comment, self.limits = with_session_fields(session.details, session.comment, session.limits, said)
-        self._wanted = None
-        if said != held:
-            self._wanted = told
-            if not self._is_changing:
-                self._save(shown)
-        else:
-            evaluated = self.evaluation.session
-            told = with_limits(session.details, session.limits)
-            if evaluated is not None and (*_by_hand(evaluated), evaluated.findings) != (*_by_hand(told), told.findings):
-                self.evaluate()
+    def _on_record_changed(self) -> None:
+        self.recordings.session = self.session
         self.changed.emit()
 
-    def _on_corrected(self, corrected: _Corrected) -> None:
-        """Show what came of saying who wore what; swapped again meanwhile, it is swapped again."""
-        edited, recordings, worn = corrected
-        self._is_placing = False
-        self._take(edited.stored, _fields_of(self.session or edited.stored))
-        self._put_recordings(edited.stored, recordings)
-        if edited.contests:
-            seen = self._seen()
-            self._ask(EditQuestion(tr("The session"), edited.contests, partial(self._settle_placement, worn, seen)))
-        must_swap, must_place = self._must_swap, self._must_place
-        self._must_swap = self._must_place = False
-        if must_place:
-            self.correct_placement()
-        if must_swap:
-            self.swap_sides()
+    def _on_corrected(self, session: StoredSession, recordings: Sequence[SessionRecording]) -> None:
+        self.record.take(session)
+        self._put_recordings(session, recordings)
 
     def _on_read(self, read: tuple[StoredSession, tuple[SessionRecording, ...]]) -> None:
         """Go on from what the library holds now; nothing that is said here still waits to be saved."""
         session, recordings = read
-        self._take(session, _said_fields(self.details, self.comment, self.limits))
+        self.record.take_instead(session)
         self._put_recordings(session, recordings)
 
     def _put_recordings(self, session: StoredSession, recordings: Sequence[SessionRecording]) -> None:
@@ -562,17 +383,8 @@ class Visit(QObject):
         self.changed.emit()
         self.evaluate()
 
-    def _settle_placement(self, worn: Sequence[Worn], seen: Mapping[UUID, UUID | None], fields: frozenset[str]) -> None:
-        if fields:
-            self._correct(worn, seen)
-
-    def _on_not_corrected(self, what: str, remedy: str) -> None:
-        self._is_placing = self._must_swap = self._must_place = False
-        self.refused.emit(what, remedy)
-        self.changed.emit()
-
     def _on_looked(self, found: StoredSession) -> None:
-        is_settled = not self._is_changing and self._wanted is None and self.recordings.is_idle
+        is_settled = self.record.is_settled and self.recordings.is_idle
         if self.session is None or not is_settled:
             return
         here = [(one.id, one.stored.details, one.stored.placement) for one in self.recordings.every]
@@ -581,47 +393,23 @@ class Visit(QObject):
         if here != there or before != (*_by_hand(found.details), found.limits):
             self.changed_elsewhere.emit()
 
+    def _on_not_looked(self, _what: str, _remedy: str) -> None:
+        """No harm: it is looked at again."""
+
     def _on_earlier_read(self, found: "list[tuple[Session, Analysis]]") -> None:
         self.earlier_read.emit(found)
 
-    def _on_computed(self, session: Session, analysis: "Analysis") -> None:
-        """Keep what came of all that is in the library, for whoever opens the session next."""
-        if self.session is None or self._is_partial:
-            return
-        session_id = self.session.id
-
-        def keep(opened: "OpenedLibrary") -> None:
-            keep_analysis(opened.library.results, session_id, session, analysis)
-
-        self._controller.run(keep, None, self._on_not_kept, self)
-
-    def _keep_course(self) -> None:
-        """Keep what of this visit stands in the patient's course, so that home need not evaluate it."""
-        session, analysis = self.evaluation.session, self.evaluation.analysis
-        if self.session is None or session is None or analysis is None or self._is_partial:
-            return
-        session_id = self.session.id
-        stored = [recording.stored for recording in self.recordings.every]
-
-        def keep(opened: "OpenedLibrary") -> None:
-            course = course_of(analysis, session.recordings)
-            keep_course(opened.library.courses, session_id, course_key(session, stored), course)
-
-        self._controller.run(keep, None, self._on_not_kept, self)
-
-    def _on_not_kept(self, _what: str, _remedy: str) -> None:
-        """No harm: it is computed again."""
-
     def _on_resumed(self, read: Resumed) -> None:
-        patient, self.session, recordings, known = read
-        self.limits, self.comment = self.session.limits, self.session.comment
+        patient, session, recordings, known = read
+        self.record.resume(session)
         self.patient.choose(patient)
         self.patient.has_this_session_only = patient.sessions == 1
-        self._is_of_another_day = bool(recordings) and _day(recordings[-1].details.started) not in ("", _day(_now()))
-        self.recordings.take_over(self.session, recordings)
+        latest = _day(recordings[-1].details.started) if recordings else ""
+        self._is_of_another_day = latest not in ("", _day(current_time()))
+        self.recordings.take_over(session, recordings)
         self.rests = rests_of(recordings)
         if known is not None:
-            self.evaluation.take_over(evaluated(self.session, recordings), known)
+            self.evaluation.take_over(evaluated(session, recordings), known)
         else:
             self.evaluate()
         self.resumed.emit()
@@ -659,10 +447,6 @@ class Visit(QObject):
         self.changed.emit()
 
     def _on_refused(self, what: str, remedy: str) -> None:
-        self._is_changing = False
-        self._wanted = None
-        if self.session is not None:  # the words stay as they were typed, and are saved with the next
-            self.limits = self.session.limits
         self.refused.emit(what, remedy)
         self.changed.emit()
 
@@ -670,33 +454,6 @@ class Visit(QObject):
 def _by_hand(told: Session) -> tuple[dict[Joint, float], dict[Joint, int]]:
     """What was said of the joints, zeros and signs."""
     return dict(told.zero_rad), dict(told.turned_sign)
-
-
-def opposite(site: Site) -> Site:
-    """The same place on the other leg; the pelvis stays."""
-    return Site.PELVIS if site.side is None else Site(f"{site.side.other}_{site.segment}")
-
-
-def _every_field_of(session: StoredSession) -> dict[str, Value]:
-    return session_fields(session.details, session.comment, session.limits)
-
-
-def _fields_of(session: StoredSession) -> dict[str, Value]:
-    return _said_fields(session.details, session.comment, session.limits)
-
-
-def _said_fields(told: Session, comment: str, limits: Limits) -> dict[str, Value]:
-    """What is said of a session while it goes on; the rest is said once, by whatever made it."""
-    every = session_fields(told, comment, limits)
-    return {name: value for name, value in every.items() if name not in SESSION_CORRECTABLE}
-
-
-def _moment() -> datetime.datetime:
-    return datetime.datetime.now().astimezone()
-
-
-def _now() -> str:
-    return _moment().isoformat(timespec="seconds")
 
 
 def _day(moment: str) -> str:

@@ -23,7 +23,6 @@ MAX_3D_SD_RAD = np.deg2rad(6.0)
 MIN_MARGIN, MAX_DISAGREEMENT = 1.5, 0.2
 SD_RAD, SD_SHARE = np.deg2rad(2.0), 0.1  # of flexion: 2 deg and a tenth of the distance from the median
 DEEP_RAD, DEEP_SD_RAD = np.deg2rad(80.0), np.deg2rad(4.0)  # more flexion than this adds so much
-CENTRES_APART_M = (0.12, 0.28)
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,7 +15,6 @@ from core.pair import FAST_RAD_S, pair_of
 KEPT_LOOKS = 4
 SAMPLES = 150
 MIN_MOVING_S = 4.0
-WORTH_TELLING_S = 0.005
 
 
 class LagVerdict(StrEnum):
@@ -33,10 +32,6 @@ class LagState:
     verdict: LagVerdict
     lag_s: float
     sd_s: float | None
-
-    @property
-    def is_worth_telling(self) -> bool:
-        return abs(self.lag_s) > WORTH_TELLING_S or self.verdict is LagVerdict.NOT_ONE_JOINT
 
 
 class LiveLag:

@@ -7,8 +7,6 @@ are relative to standing, step length is none of them: how far the feet stand ap
 
 from dataclasses import dataclass
 
-from core.verdicts.quantities import FITTING, QUANTITIES, QuantityClass
-
 _OWEN = "Owen 2010, Prosthet Orthot Int 34(3):254-269, doi:10.3109/03093646.2010.485597"
 _PERRY = "Perry & Burnfield 2010, Gait Analysis"
 _ROLL = "after Hansen & Childress 2010, Disabil Rehabil 32(26):2201-2209, who measure the centre of pressure"
@@ -30,11 +28,6 @@ class FittingMeasure:
     cannot_say: str
     source: str = _OURS
     is_source_read: bool = True
-
-    @property
-    def quantity_class(self) -> QuantityClass:
-        """Which verdict it rests on."""
-        return FITTING[self.column] if self.column in FITTING else QUANTITIES[self.column]
 
 
 def _cited(column: str, definition: str, cannot_say: str, source: str) -> FittingMeasure:

@@ -32,7 +32,7 @@ from devices.live_clock import LiveClock, LiveLine
 from devices.quiet import Quiet
 from devices.source import SourceInfo
 
-LIVE_HZ, SLOWER_HZ = 60, 30
+LIVE_HZ = 60
 GENERAL = 0
 
 

@@ -101,7 +101,25 @@ def address_of(sensor: EmulatedPeripheral) -> str:
     return ":".join(f"{byte:02X}" for byte in sensor.mac)
 
 
-class FakeClient(BaseBleakClient):
+class UnpairedClient(BaseBleakClient):
+    """A link without what no sensor of ours asks for: descriptors and pairing."""
+
+    async def read_gatt_descriptor(
+        self, descriptor: BleakGATTDescriptor, *, use_cached: bool = False, **kwargs: Any
+    ) -> bytearray:
+        raise NotImplementedError
+
+    async def write_gatt_descriptor(self, descriptor: BleakGATTDescriptor, data: SizedBuffer) -> None:
+        raise NotImplementedError
+
+    async def pair(self, *args: Any, **kwargs: Any) -> None:
+        raise NotImplementedError
+
+    async def unpair(self) -> None:
+        raise NotImplementedError
+
+
+class FakeClient(UnpairedClient):
     """A link to one sensor of the air."""
 
     AIR: ClassVar[Air]
@@ -200,20 +218,6 @@ class FakeClient(BaseBleakClient):
         await self._operate()
         self._heard.pop(characteristic.handle, None)
         self._sensor.subscribed.discard(characteristic.handle)
-
-    async def read_gatt_descriptor(
-        self, descriptor: BleakGATTDescriptor, *, use_cached: bool = False, **kwargs: Any
-    ) -> bytearray:
-        raise NotImplementedError
-
-    async def write_gatt_descriptor(self, descriptor: BleakGATTDescriptor, data: SizedBuffer) -> None:
-        raise NotImplementedError
-
-    async def pair(self, *args: Any, **kwargs: Any) -> None:
-        raise NotImplementedError
-
-    async def unpair(self) -> None:
-        raise NotImplementedError
 
 
 def _services(sensor: EmulatedPeripheral) -> BleakGATTServiceCollection:

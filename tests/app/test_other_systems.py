@@ -178,6 +178,8 @@ def test_processors_are_counted_where_nobody_tells_which_may_be_used(monkeypatch
 
 @pytest.mark.usefixtures("windows")
 def test_the_reader_of_files_and_the_program_begin_without_limits_of_resources() -> None:
+    with pytest.raises(ModuleNotFoundError, match="resource"):  # as the two would, did they reach for it
+        __import__("resource")
     limits.limit_this_process(1000)
     limits.limit_processor_time(1.0)
 

@@ -90,7 +90,7 @@ def dressed(controller: LibraryController, source: ReplaySource) -> Visit:
     visit.patient.edit(Patient(code="DEMO-7", birth_year=1970, prosthetic_side="left"))
     visit.patient.commit()
     wait(lambda: visit.patient.stored is not None)
-    visit.begin_session()
+    visit.record.begin()
     wait(lambda: visit.session is not None)
     visit.sensors.search(visit.choices[0])
     worn = {f"DEMO-{site}": site for site in LEG_SITES}

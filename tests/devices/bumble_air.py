@@ -15,7 +15,6 @@ from bleak.args import SizedBuffer
 from bleak.assigned_numbers import CharacteristicPropertyName
 from bleak.backends.characteristic import BleakGATTCharacteristic
 from bleak.backends.client import BaseBleakClient
-from bleak.backends.descriptor import BleakGATTDescriptor
 from bleak.backends.service import BleakGATTService, BleakGATTServiceCollection
 from bleak.exc import BleakError
 from bumble.controller import Controller
@@ -28,7 +27,7 @@ from bumble.host import Host
 from bumble.link import LocalLink
 
 from devices.bluetooth import Announced, Radio
-from devices.emulators.bluetooth import INTERVAL_S, MTU, EmulatedPeripheral, address_of
+from devices.emulators.bluetooth import INTERVAL_S, MTU, EmulatedPeripheral, UnpairedClient, address_of
 
 CENTRAL = "F0:F1:F2:F3:F4:F5"
 CONNECTS_S = 8.0
@@ -219,7 +218,7 @@ class BumbleRadio(Radio):
             return await self._air.scanned(min(seconds, 3.0))
 
 
-class BumbleClient(BaseBleakClient):
+class BumbleClient(UnpairedClient):
     """bleak's interface for backends, over Bumble's central."""
 
     AIR: ClassVar[BumbleAir]
@@ -304,20 +303,6 @@ class BumbleClient(BaseBleakClient):
 
     async def stop_notify(self, characteristic: BleakGATTCharacteristic) -> None:
         await self._done(self._proxy(characteristic).unsubscribe())
-
-    async def read_gatt_descriptor(
-        self, descriptor: BleakGATTDescriptor, *, use_cached: bool = False, **kwargs: Any
-    ) -> bytearray:
-        raise NotImplementedError
-
-    async def write_gatt_descriptor(self, descriptor: BleakGATTDescriptor, data: SizedBuffer) -> None:
-        raise NotImplementedError
-
-    async def pair(self, *args: Any, **kwargs: Any) -> None:
-        raise NotImplementedError
-
-    async def unpair(self) -> None:
-        raise NotImplementedError
 
 
 async def _services(peer: Peer, mtu: int) -> BleakGATTServiceCollection:

@@ -33,7 +33,7 @@ from app.wizard.free_motion.side_question import SILENT, SideQuestion, Words
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.recordings import SessionRecording
 from app.wizard.step import Step
-from app.wizard.visit import opposite
+from app.wizard.worn_corrections import opposite
 from app.wording import name_of, tr
 from core.body import Joint, Side, Site
 from core.live.free_motion import FreeMotionState
@@ -517,7 +517,7 @@ class FreeMotionStep(Step):
             self._visit.place_sensors()
         if self._must_correct:
             self._must_correct = False
-            self._visit.correct_placement()
+            self._visit.worn.place_as_said_now()
         self.changed.emit()
         if self._then is AfterRecording.NEXT_STEP and self._is_in_sight:
             self._then = AfterRecording.ITSELF

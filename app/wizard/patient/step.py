@@ -103,7 +103,7 @@ class PatientStep(Step):
     def _go_on_if_saved(self) -> None:
         if self._is_going_on and self._visit.patient.is_saved and not self._visit.is_asking:
             self._is_going_on = False
-            self._visit.begin_session()
+            self._visit.record.begin()
             self.done.emit()
 
     def _fill(self) -> None:
@@ -143,7 +143,7 @@ class PatientStep(Step):
 
     def _on_edited(self, draft: PatientDraft) -> None:
         self._shown_without = draft.without_ankle
-        self._visit.set_limits(replace(self._visit.limits, without_ankle=draft.without_ankle))
+        self._visit.record.set_limits(replace(self._visit.record.limits, without_ankle=draft.without_ankle))
         self._visit.patient.edit(draft.patient)
         if self._visit.patient.details.code != self._taken_code:
             self._taken_code = ""
@@ -209,7 +209,7 @@ class PatientStep(Step):
         if self._last is None:
             return
         for joint, zero_rad in self._last.details.zero_rad.items():
-            self._visit.set_zero(joint, zero_rad)
+            self._visit.record.set_zero(joint, zero_rad)
         if self._last.placements:
             self._visit.placement_before = self._last.placements[-1].site_of
         self.on_primary()

@@ -104,7 +104,7 @@ class ReportStep(Step):
 
     @property
     def comment(self) -> str:
-        return self._visit.comment
+        return self._visit.record.comment
 
     def enter(self) -> None:
         self._show_comment()
@@ -273,7 +273,7 @@ class ReportStep(Step):
 
     def _on_comment_edited(self, comment: str) -> None:
         shown, self._shown_comment = self._shown_comment, comment
-        self._visit.set_comment(comment, shown)
+        self._visit.record.set_comment(comment, shown)
         self._draw()
 
     def _show_comment(self) -> None:

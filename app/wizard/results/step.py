@@ -318,14 +318,14 @@ class ResultsStep(Step):
     def _on_sign_turned(self, name: str, is_turned: bool) -> None:
         joint = Joint(name)
         before = self._visit.details.turned_sign.get(joint)
-        self._visit.set_turned(joint, -1 if is_turned else None)
+        self._visit.record.set_turned(joint, -1 if is_turned else None)
         said = tr("{joint}: the sign is turned.") if is_turned else tr("{joint}: the sign is as found.")
         words = said.format(joint=capitalised(name_of(joint)))
-        self._offer(words, lambda: self._visit.set_turned(joint, before))
+        self._offer(words, lambda: self._visit.record.set_turned(joint, before))
 
     def _on_sides_swapped(self) -> None:
-        self._visit.swap_sides()
-        self._offer(tr("Left and right are swapped."), self._visit.swap_sides)
+        self._visit.worn.swap_sides()
+        self._offer(tr("Left and right are swapped."), self._visit.worn.swap_sides)
 
     def _on_corrected(self) -> None:
         self._part = Shown.RESULTS

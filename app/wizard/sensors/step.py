@@ -151,7 +151,7 @@ class SensorsStep(Step):
 
     def enter(self) -> None:
         self._asks = SensorsShown.SOURCE
-        self._visit.begin_session()
+        self._visit.record.begin()
         self._begin_estimator()
         self._show()
         self.page.focus()
@@ -171,7 +171,7 @@ class SensorsStep(Step):
         if sensors.site_of and sensors.site_of != self._known_places and not self._visit.cannot_record:
             # other places of the same sensors: they were told wrongly; other sensors: strapped on since
             if self._visit.recordings.since_strapped and sensors.site_of.keys() == self._known_places.keys():
-                self._visit.correct_placement()
+                self._visit.worn.place_as_said_now()
             else:
                 self._visit.place_sensors()
 

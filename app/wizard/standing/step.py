@@ -266,7 +266,7 @@ class StandStillStep(Step):
             self.changed.emit()
 
     def _on_zero_edited(self, joint: Joint, degrees: float | None) -> None:
-        self._visit.set_zero(joint, math.radians(degrees) if degrees else None)
+        self._visit.record.set_zero(joint, math.radians(degrees) if degrees else None)
         self._shown_zero = dict(self._visit.details.zero_rad)
 
     def _on_visit_changed(self) -> None:
@@ -276,7 +276,7 @@ class StandStillStep(Step):
 
     def _on_cannot_stand(self) -> None:
         """No zero: a standing that was kept does not count either."""
-        self._visit.set_limits(replace(self._visit.limits, cannot_stand=True))
+        self._visit.record.set_limits(replace(self._visit.record.limits, cannot_stand=True))
         self._phase = StandPhase.SKIPPED
         if self._is_recording:
             self._visit.recordings.stop(is_kept=False)
@@ -287,7 +287,7 @@ class StandStillStep(Step):
         self.changed.emit()
 
     def _on_can_stand(self) -> None:
-        self._visit.set_limits(replace(self._visit.limits, cannot_stand=False))
+        self._visit.record.set_limits(replace(self._visit.record.limits, cannot_stand=False))
         self._phase = StandPhase.READY
         self._watch()
         self._show()

@@ -23,7 +23,6 @@ from core.timed.live import LiveReadout
 from core.timed.protocols import DEFINITIONS, TimedProtocol
 
 TIME, DISTANCE = 240, 160
-TIME_COMPACT, DISTANCE_COMPACT = 150, 110
 NO_FIGURE = "\N{EN DASH}"
 RUN_IN_M, RUN_OUT_M = 2.0, 2.0
 SHOWN_STEPS = 24

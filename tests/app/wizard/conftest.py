@@ -25,9 +25,11 @@ from app.wizard.worn_sensors import SourceChoice
 from app.workers.library_controller import LibraryController
 from core.body import LEG_SITES, Site
 from core.samples import Patient, Session
+from devices.emulators.dot import DotFaults
 from devices.replay import ReplaySource
 from devices.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
 from tests.app.wizard.dressed_patient import Worn, dressed_patient
+from tests.devices.dot.fast_radio import FastRadio
 
 PASSPHRASE = "four short words here"
 SPEED = 20.0
@@ -67,8 +69,19 @@ def source(simulated_session: Session) -> ReplaySource:
 
 
 @pytest.fixture
-def visit(controller: LibraryController, source: ReplaySource) -> Iterator[Visit]:
-    choice = SourceChoice("fast", "Fast patient", lambda: Acquisition([source], source.now_ns), is_simulated=True)
+def radio() -> FastRadio:
+    """Two DOTs in the air; who wears them takes `emulated_dots.dot_choice`."""
+    return FastRadio([DotFaults(), DotFaults()])
+
+
+@pytest.fixture
+def choice(source: ReplaySource) -> SourceChoice:
+    """Where the visit's sensors are heard; files about DOTs have their own."""
+    return SourceChoice("fast", "Fast patient", lambda: Acquisition([source], source.now_ns), is_simulated=True)
+
+
+@pytest.fixture
+def visit(controller: LibraryController, choice: SourceChoice) -> Iterator[Visit]:
     visit = Visit(controller, [choice])
     yield visit
     visit.close()

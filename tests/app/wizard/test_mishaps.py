@@ -28,7 +28,7 @@ from app.workers.background import Report
 from app.workers.library_controller import LibraryController
 from core.body import LEG_SITES, Site
 from core.samples import Patient, Recording, RecordingKind, Session
-from tests.app.wizard.test_visit import begin, record
+from tests.app.wizard.begun_visit import begin, record
 
 BUSY = LibraryBusyError("Another program keeps the library busy", "Wait a moment")
 WAIT_MS = 20_000
@@ -299,7 +299,7 @@ def test_sensors_of_another_day_were_strapped_anew(
     for kind in (RecordingKind.STANDING, RecordingKind.FREE_MOTION, RecordingKind.WALKING):
         record(qtbot, looked_at, kind, 0.5)
     assert looked_at.session is not None
-    monkeypatch.setattr("app.wizard.visit._now", lambda: "2031-02-03T09:00:00+01:00")
+    monkeypatch.setattr("app.wizard.visit.current_time", lambda: "2031-02-03T09:00:00+01:00")
     again = Visit(controller, looked_at.known_choices)
     with qtbot.waitSignal(again.resumed, timeout=WAIT_MS):
         again.resume(looked_at.session.id)
@@ -338,7 +338,7 @@ def test_the_session_of_somebody_with_others_is_given_to_nobody_else(
     assert demo is not None
     visit.patient.choose(demo)
     with qtbot.waitSignal(visit.changed, timeout=WAIT_MS):
-        visit.begin_session()
+        visit.record.begin()
     visit.patient.edit(Patient(code="DEMO-99", birth_year=1990))
     with qtbot.waitSignal(visit.patient.refused) as refused:
         visit.patient.commit()

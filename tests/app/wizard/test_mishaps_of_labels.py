@@ -10,7 +10,7 @@ from app.wizard.sensors.step import SensorsStep
 from app.wizard.visit import Visit
 from core.body import Site
 from core.samples import RecordingKind
-from tests.app.wizard.test_visit import begin, record
+from tests.app.wizard.begun_visit import begin, record
 
 
 @pytest.fixture

@@ -9,7 +9,7 @@ from app.wording import sentence
 from app.workers.library_controller import LibraryController
 from core.body import Side, Site
 from core.samples import RecordingKind
-from tests.app.wizard.test_visit import begin, record
+from tests.app.wizard.begun_visit import begin, record
 
 SAID = "Right ankle: the foot has no ankle joint. Its angle is that of the foot against the shank."
 
@@ -26,13 +26,13 @@ def test_a_foot_without_ankle_is_called_foot_against_shank(
     begin(qtbot, visit, worn)
     limits = Limits(without_ankle=frozenset({Side.RIGHT}))
     if not is_told_late:
-        visit.set_limits(limits)
+        visit.record.set_limits(limits)
     with qtbot.waitSignal(visit.evaluation.done, timeout=20_000):
         record(qtbot, visit, RecordingKind.WALKING, 4.0)
     if is_told_late:
         assert SAID not in said(visit)
         with qtbot.waitSignal(visit.evaluation.done, timeout=20_000):
-            visit.set_limits(limits)
+            visit.record.set_limits(limits)
     assert SAID in said(visit)
     assert visit.session is not None
     again = Visit(controller, [])

@@ -17,7 +17,7 @@ from app.wizard.visit import Visit
 from app.workers.library_controller import LibraryController
 from core.body import LEG_SITES, Side, Site
 from core.samples import RecordingKind
-from tests.app.wizard.test_visit import begin, record
+from tests.app.wizard.begun_visit import begin, record
 
 WAIT_MS = 20_000
 FAULT = LibraryFaultError("The library's file cannot be read or written", "Check the disk")

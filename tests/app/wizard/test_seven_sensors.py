@@ -18,8 +18,9 @@ from app.wizard.sensors.replays import replay_of
 from app.wizard.sensors.step import SensorsStep
 from app.wizard.standing.step import StandStillStep
 from app.wizard.step import Step
-from app.wizard.visit import Visit, opposite
+from app.wizard.visit import Visit
 from app.wizard.walking.step import WalkingStep
+from app.wizard.worn_corrections import opposite
 from app.wizard.worn_sensors import WornSensors
 from app.workers.library_controller import LibraryController
 from core.body import LEG_JOINTS, LEG_SITES, Side, Site, hip_of
@@ -28,8 +29,8 @@ from devices.decoders import DECODERS
 from devices.files.session_folder import read_session
 from devices.replay import ReplaySource
 from devices.walker import DEMONSTRATION, FreeMotion, Motion, Standing, Walk, simulate
+from tests.app.wizard.begun_visit import begin, record
 from tests.app.wizard.conftest import SPEED
-from tests.app.wizard.test_visit import begin, record
 
 HIPS = {hip_of(side) for side in Side}
 LIVE_SPEED = 4.0
@@ -113,7 +114,7 @@ def test_all_that_is_kept_of_a_session_holds_the_pelvis(
     assert other is not None
     assert packed(one) == packed(other)
     with qtbot.waitSignal(again.evaluation.done, timeout=30_000):
-        again.swap_sides()
+        again.worn.swap_sides()
     placement = again.recordings.walks[-1].stored.placement
     assert placement is not None
     assert placement.sensors[Site.PELVIS].name == "DEMO-pelvis"

@@ -177,9 +177,9 @@ def test_what_nobody_else_changed_is_saved_without_a_word(
     other.say_of_patient(height_m=1.80)
     ours.patient.edit(replace(ours.patient.details, height_m=1.80))  # the same at both
     ours.patient.commit()
-    ours.set_turned(Joint.LEFT_KNEE, -1)
-    ours.set_comment("Limps.", "")
-    ours.set_zero(Joint.LEFT_KNEE, 0.1)
+    ours.record.set_turned(Joint.LEFT_KNEE, -1)
+    ours.record.set_comment("Limps.", "")
+    ours.record.set_zero(Joint.LEFT_KNEE, 0.1)
     other_sessions, session_id = other.library.sessions, other.session_id
     settle(qtbot, ours, other, lambda: bool(other_sessions.get(session_id).details.zero_rad))
     qtbot.waitUntil(lambda: ours.patient.is_saved, timeout=WAIT_MS)
@@ -228,7 +228,7 @@ def test_a_sign_turned_here_and_confirmed_there_is_asked_about_and_other_joints_
     other.say_of_session(
         {"turned_sign.left_knee": 1, "turned_sign.right_knee": -1, "zero_rad.left_ankle": np.deg2rad(5)}
     )
-    ours.set_turned(Joint.LEFT_KNEE, -1)
+    ours.record.set_turned(Joint.LEFT_KNEE, -1)
     dialog = dialog_of(qtbot, wizard)
     assert [cell.value for cell in dialog.cells[0]] == ["turned by hand", "confirmed by hand"]
     answer(dialog, Qt.Key.Key_Left, Qt.Key.Key_Return)
@@ -241,11 +241,11 @@ def test_a_sign_turned_here_and_confirmed_there_is_asked_about_and_other_joints_
 
 def test_a_limit_said_here_does_not_take_back_one_said_there(qtbot: QtBot, ours: Visit, other: OtherStation) -> None:
     other.say_of_session({"without_ankle.left": True})
-    ours.set_limits(replace(ours.limits, cannot_stand=True))
+    ours.record.set_limits(replace(ours.record.limits, cannot_stand=True))
     wanted = Limits(frozenset({Side.LEFT}), cannot_stand=True)
     sessions, session_id = other.library.sessions, other.session_id
-    settle(qtbot, ours, other, lambda: sessions.get(session_id).limits == wanted == ours.limits)
-    assert (sessions.get(session_id).limits, ours.limits) == (wanted, wanted)
+    settle(qtbot, ours, other, lambda: sessions.get(session_id).limits == wanted == ours.record.limits)
+    assert (sessions.get(session_id).limits, ours.record.limits) == (wanted, wanted)
 
 
 def test_a_condition_typed_at_both_stations_is_asked_about_and_a_further_change_asks_again(
@@ -306,7 +306,7 @@ def test_sides_swapped_at_both_stations_are_swapped_once_and_taken_back_once(
         return stored.placement.sensors if stored is not None and stored.placement is not None else None
 
     with qtbot.waitSignal(ours.recordings.changed, timeout=WAIT_MS):
-        ours.swap_sides()
+        ours.worn.swap_sides()
     assert worn() == swapped
 
 

@@ -26,8 +26,8 @@ from app.workers.library_controller import LibraryController
 from core.body import LEG_SITES, Site
 from core.samples import RecordingKind
 from devices.replay import ReplaySource
+from tests.app.wizard.begun_visit import begin, record
 from tests.app.wizard.conftest import PASSPHRASE, SPEED
-from tests.app.wizard.test_visit import begin, record
 
 WAIT_MS = 30_000
 

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from pathlib import Path
+from uuid import uuid4
 
 import numpy as np
 import pytest
@@ -14,43 +15,14 @@ from app.storage.stored import Limits, RecordingState
 from app.theme import ThemeNotifier
 from app.widgets.rail_row import StepState
 from app.wizard.patient.step import PatientStep
-from app.wizard.recordings import SessionRecording
 from app.wizard.standing.step import StandStillStep
 from app.wizard.visit import Visit
 from app.workers.library_controller import LibraryController
 from core.analysis import analyse
 from core.body import LEG_JOINTS, Joint, Side, Site
 from core.samples import Patient, RecordingKind
+from tests.app.wizard.begun_visit import begin, record
 from tests.app.wizard.conftest import PASSPHRASE, SPEED
-
-
-def begin(qtbot: QtBot, visit: Visit, worn: dict[str, Site]) -> None:
-    visit.patient.edit(Patient(code="DEMO-7", birth_year=1970))
-    with qtbot.waitSignal(visit.patient.changed):
-        visit.patient.commit()
-    with qtbot.waitSignal(visit.changed):
-        visit.begin_session()
-    with qtbot.waitSignal(visit.sensors.opened, timeout=10_000):
-        visit.sensors.search(visit.choices[0])
-    qtbot.waitUntil(lambda: set(visit.sensors.status) == set(worn))
-    visit.sensors.assign_all(worn)
-    with qtbot.waitSignal(visit.changed):
-        visit.place_sensors()
-
-
-def record(qtbot: QtBot, visit: Visit, kind: RecordingKind, seconds: float, condition: str = "") -> SessionRecording:
-    acquisition = visit.sensors.acquisition
-    assert acquisition is not None
-    acquisition.ask(kind)
-    with qtbot.waitSignal(visit.recordings.begun, timeout=10_000):
-        visit.recordings.begin(acquisition, kind, condition)
-    until_s = acquisition.now_s + seconds
-    qtbot.waitUntil(lambda: acquisition.now_s > until_s, timeout=10_000)
-    with qtbot.waitSignal(visit.recordings.ended, timeout=10_000) as ended:
-        visit.recordings.stop()
-    recording = ended.args[0]
-    assert isinstance(recording, SessionRecording)
-    return recording
 
 
 def test_whole_session_is_evaluated_and_stored(
@@ -122,27 +94,40 @@ def test_patient_is_saved_as_typed(qtbot: QtBot, visit: Visit) -> None:
 
 def test_zero_is_stored(qtbot: QtBot, visit: Visit, worn: dict[str, Site]) -> None:
     begin(qtbot, visit, worn)
-    visit.set_zero(Joint.LEFT_KNEE, 0.1)
-    visit.set_zero(Joint.LEFT_KNEE, 0.2)
-    visit.set_zero(Joint.RIGHT_KNEE, 0.3)
+    visit.record.set_zero(Joint.LEFT_KNEE, 0.1)
+    visit.record.set_zero(Joint.LEFT_KNEE, 0.2)
+    visit.record.set_zero(Joint.RIGHT_KNEE, 0.3)
     wanted = {Joint.LEFT_KNEE: 0.2, Joint.RIGHT_KNEE: 0.3}
     assert visit.details.zero_rad == wanted
     qtbot.waitUntil(lambda: visit.session is not None and visit.session.details.zero_rad == wanted)
+
+
+def test_a_refused_reading_takes_back_nothing_that_is_being_saved(
+    qtbot: QtBot, controller: LibraryController, visit: Visit, worn: dict[str, Site]
+) -> None:
+    begin(qtbot, visit, worn)
+    wanted = Limits(without_ankle=frozenset({Side.LEFT}))
+    with qtbot.waitSignal(visit.refused):
+        visit.resume(uuid4())  # no session of the library
+        visit.record.set_limits(replace(wanted, cannot_stand=True))  # is being saved when the refusal comes
+        visit.record.set_limits(wanted)  # waits for it
+    assert visit.record.limits == wanted
+    qtbot.waitUntil(lambda: visit.session is not None and visit.session.limits == wanted)
 
 
 def test_what_the_body_does_not_allow_is_stored_and_taken_up_again(
     qtbot: QtBot, controller: LibraryController, visit: Visit, worn: dict[str, Site]
 ) -> None:
     """Told before there is a session, and after; it is on the rows, and shown by whoever resumes."""
-    visit.set_limits(Limits(without_ankle=frozenset({Side.LEFT})))
+    visit.record.set_limits(Limits(without_ankle=frozenset({Side.LEFT})))
     begin(qtbot, visit, worn)
     session = visit.session
     assert session is not None
     assert session.limits == Limits(without_ankle=frozenset({Side.LEFT}))
     visit.patient.edit(replace(visit.patient.details, prosthetic_side="both"))
     wanted = Limits(frozenset({Side.LEFT, Side.RIGHT}), cannot_stand=True)
-    visit.set_limits(replace(wanted, cannot_stand=False))
-    visit.set_limits(wanted)
+    visit.record.set_limits(replace(wanted, cannot_stand=False))
+    visit.record.set_limits(wanted)
     qtbot.waitUntil(lambda: visit.session is not None and visit.session.limits == wanted)
     qtbot.waitUntil(lambda: visit.patient.is_saved)
     again = Visit(controller, [])

@@ -18,7 +18,7 @@ from app.wizard.walk_messages import (
 from app.wizard.walking.step import WalkingStep
 from core.body import LEG_SITES, Side, Site
 from core.samples import RecordingKind
-from tests.app.wizard.test_visit import begin, record
+from tests.app.wizard.begun_visit import begin, record
 
 FEET = frozenset((Site.LEFT_FOOT, Site.RIGHT_FOOT))
 ALL = frozenset(LEG_SITES)

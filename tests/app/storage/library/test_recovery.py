@@ -41,7 +41,6 @@ def test_an_interrupted_recording_is_listed_then_closed_with_all_that_there_is(
     assert found.stored.details.name == "walk 2"
     assert not found.is_orphan
     assert found.began_at is not None
-    assert found.ended_at is not None
     recovered = recover(opened, found, silent)
     assert recovered.stored.state is RecordingState.RECOVERED
     assert recovered.recorded_s == pytest.approx(found.recorded_s)

@@ -17,14 +17,15 @@ from app.wizard.free_motion.estimator import FreeMotionView
 from app.wizard.free_motion.page import FreeMotionPage
 from app.wizard.free_motion.step import FreeMotionStep
 from app.wizard.keys import Intent, KeyAction
-from app.wizard.visit import Visit, opposite
+from app.wizard.visit import Visit
+from app.wizard.worn_corrections import opposite
 from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site
 from core.live.free_motion import FreeMotionState
 from core.samples import RecordingKind
 from devices.replay import ReplaySource
+from tests.app.wizard.begun_visit import begin, record
 from tests.app.wizard.free_motion.test_hints import motion, state
 from tests.app.wizard.free_motion.test_side_question import chains
-from tests.app.wizard.test_visit import begin, record
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
@@ -260,7 +261,7 @@ def test_a_missing_foot_sensor_and_a_foot_without_joint_have_no_gauge(
     qtbot: QtBot, step: FreeMotionStep, visit: Visit, worn: dict[str, Site]
 ) -> None:
     visit.sensors.assign_all({name: site for name, site in worn.items() if site is not Site.RIGHT_FOOT})
-    visit.set_limits(Limits(without_ankle=frozenset({Side.LEFT})))
+    visit.record.set_limits(Limits(without_ankle=frozenset({Side.LEFT})))
     step.enter()
     assert step.page.gauges[Joint.RIGHT_ANKLE].face.note == "R foot without sensor: no right ankle angle."
     assert step.page.gauges[Joint.LEFT_ANKLE].face.note.startswith("Foot without ankle joint")

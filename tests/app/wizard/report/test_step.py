@@ -24,7 +24,7 @@ from core.analysis import analyse
 from core.body import Site
 from core.results import Analysis
 from core.samples import RecordingKind, Session
-from tests.app.wizard.test_visit import begin
+from tests.app.wizard.begun_visit import begin
 
 WAIT_MS = 60_000  # on a busy machine
 
@@ -115,7 +115,7 @@ def test_what_leaves_without_the_name_is_shown_first_and_nothing_typed_but_what_
     patients, patient = library.patients, library.patients.get(session.patient_id)
     told = replace(simulated_session, started="2026-11-20T10:00:00+00:00")
     imported = import_session(state.library, told, lambda _share, _what: None, patient.details.code)
-    visit.session = library.sessions.get(imported.session_id)
+    visit.record.resume(library.sessions.get(imported.session_id))
     patients.change(patient, replace(patient.details, birth_year=1950, device="Qx1 knee", aids="Qx2 stick"))
     step.page.report.formats.choose(["xlsx", "fhir"])
     step.on_primary()

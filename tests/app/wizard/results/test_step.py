@@ -1,6 +1,5 @@
 """The step of results on a session of the library: shown quickly, put right after the fact, undone, and audited."""
 
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from time import process_time
@@ -8,7 +7,7 @@ from uuid import UUID
 
 import numpy as np
 import pytest
-from PySide6.QtCore import QObject, Qt
+from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QFileDialog
 from pytestqt.qtbot import QtBot
@@ -32,30 +31,12 @@ from core.results import RecordingAnalysis
 from core.samples import FloatArray, RecordingKind, Session
 from core.verdicts.measurement_error import ErrorSource
 from devices.walker import DEMONSTRATION, simulate
+from tests.app.library_answers import asked
 from tests.app.room import words_cut
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
 QUICK_S = 1.0  # of the processor, whatever else the machine does
-
-
-class Asker(QObject):
-    """Listens to one answer of the library."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.answers: list[object] = []
-
-    def on_done(self, answer: object) -> None:
-        self.answers.append(answer)
-
-
-def asked(qtbot: QtBot, controller: LibraryController, call: Callable[[OpenedLibrary], object]) -> object:
-    """What the library answers on its own thread."""
-    asker = Asker()
-    controller.run(call, asker.on_done, None, asker)
-    qtbot.waitUntil(lambda: bool(asker.answers), timeout=10_000)
-    return asker.answers[0]
 
 
 @pytest.fixture(scope="module")

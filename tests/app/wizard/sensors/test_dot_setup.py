@@ -1,7 +1,5 @@
 """Movella DOTs before they are opened: asked, ticked, synchronised step by step, and what a failure leaves to do."""
 
-from collections.abc import Iterator
-
 import pytest
 from pytestqt.qtbot import QtBot
 
@@ -10,25 +8,17 @@ from app.widgets.sensors_progress import LineState
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.sensors.step import SensorsStep
 from app.wizard.visit import Visit
-from app.workers.library_controller import LibraryController
+from app.wizard.worn_sensors import SourceChoice
 from devices.dot.messages import SyncResult, start_recording
 from devices.dot.samples import DRIVER
-from devices.emulators.dot import RECORDING, DotFaults
+from devices.emulators.dot import RECORDING
 from tests.app.wizard.emulated_dots import WAIT_MS, dot_choice, has_asked_all, rows_of
 from tests.devices.dot.fast_radio import FastRadio
 
 
 @pytest.fixture
-def radio() -> FastRadio:
-    return FastRadio([DotFaults(), DotFaults()])
-
-
-@pytest.fixture
-def visit(controller: LibraryController, radio: FastRadio) -> Iterator[Visit]:
-    visit = Visit(controller, [dot_choice(radio)])
-    yield visit
-    visit.close()
-    visit.finish()
+def choice(radio: FastRadio) -> SourceChoice:
+    return dot_choice(radio)
 
 
 @pytest.fixture

@@ -1,6 +1,5 @@
 """What the sensors' memories hold: told, fetched where it was left, erased once it was said what is lost by that."""
 
-from collections.abc import Iterator
 from datetime import datetime
 
 import pytest
@@ -10,10 +9,11 @@ from app.acquisition.dot_memories import KnownRecording, known
 from app.storage.opened import OpenedLibrary
 from app.wizard.sensors.step import SensorsStep
 from app.wizard.visit import Visit
+from app.wizard.worn_sensors import SourceChoice
 from app.workers.library_controller import LibraryController
 from core.samples import RecordingKind
 from devices.dot.messages import start_recording
-from devices.emulators.dot import DotFaults, EmulatedDot
+from devices.emulators.dot import EmulatedDot
 from tests.app.wizard.emulated_dots import WAIT_MS, dot_choice, open_dots, rows_of
 from tests.devices.dot.fast_radio import FastRadio
 
@@ -21,16 +21,8 @@ SEPARATE_UTC_S = 1_700_000_000
 
 
 @pytest.fixture
-def radio() -> FastRadio:
-    return FastRadio([DotFaults(), DotFaults()])
-
-
-@pytest.fixture
-def visit(controller: LibraryController, radio: FastRadio) -> Iterator[Visit]:
-    visit = Visit(controller, [dot_choice(radio)])
-    yield visit
-    visit.close()
-    visit.finish()
+def choice(radio: FastRadio) -> SourceChoice:
+    return dot_choice(radio)
 
 
 @pytest.fixture

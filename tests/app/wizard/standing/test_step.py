@@ -18,7 +18,7 @@ from app.wizard.visit import Visit
 from core.body import Joint, Site
 from core.samples import RecordingKind
 from devices.replay import ReplaySource
-from tests.app.wizard.test_visit import begin
+from tests.app.wizard.begun_visit import begin
 
 SPACE = Intent(KeyAction.RUN)
 

@@ -4,7 +4,6 @@ import datetime
 from collections.abc import Callable
 from uuid import UUID
 
-from PySide6.QtCore import QObject
 from pytestqt.qtbot import QtBot
 
 from app.reports.course import Course, timed_tests_of
@@ -22,26 +21,11 @@ from core.samples import Session
 from core.timed.measures import COLUMNS
 from core.timed.protocols import TimedProtocol
 from tests.app.course_material import analysis, course, recordings, timed
+from tests.app.library_answers import asked
 from tests.core.timed.built_tests import built_test
 
 SHOES, STICK = "Shoes", "Shoes, stick"
 UP, TEN = TimedProtocol.UP_AND_GO, TimedProtocol.TEN_METRES
-
-
-class Asker(QObject):
-    def __init__(self) -> None:
-        super().__init__()
-        self.answers: list[object] = []
-
-    def on_done(self, answer: object) -> None:
-        self.answers.append(answer)
-
-
-def asked(qtbot: QtBot, controller: LibraryController, call: Callable[[OpenedLibrary], object]) -> object:
-    asker = Asker()
-    controller.run(call, asker.on_done, None, asker)
-    qtbot.waitUntil(lambda: bool(asker.answers), timeout=10_000)
-    return asker.answers[0]
 
 
 def with_visits(*days: tuple[str, float, str]) -> Callable[[OpenedLibrary], UUID]:

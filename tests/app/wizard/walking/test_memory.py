@@ -12,9 +12,8 @@ from app.wizard.sensors.step import SensorsStep
 from app.wizard.visit import Visit
 from app.wizard.walking.step import WalkingStep
 from app.wizard.walking.walk_list import WalkState
-from app.workers.library_controller import LibraryController
+from app.wizard.worn_sensors import SourceChoice
 from core.timed.protocols import TimedProtocol
-from devices.emulators.dot import DotFaults
 from tests.app.wizard.emulated_dots import WAIT_MS, dot_choice, open_dots
 from tests.devices.dot.fast_radio import FastRadio
 
@@ -23,16 +22,8 @@ FOR_EVER_NS = 10**15
 
 
 @pytest.fixture
-def radio() -> FastRadio:
-    return FastRadio([DotFaults(), DotFaults()])
-
-
-@pytest.fixture
-def visit(controller: LibraryController, radio: FastRadio) -> Iterator[Visit]:
-    visit = Visit(controller, [dot_choice(radio)])
-    yield visit
-    visit.close()
-    visit.finish()
+def choice(radio: FastRadio) -> SourceChoice:
+    return dot_choice(radio)
 
 
 @pytest.fixture

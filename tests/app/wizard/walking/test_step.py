@@ -23,6 +23,7 @@ from core.body import Joint, Side, Site
 from core.samples import Patient, RecordingKind, Session
 from core.targets import Target, TargetMeasure, tallies_of
 from devices.replay import ReplaySource
+from tests.app.wizard.begun_visit import begin
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
@@ -39,17 +40,7 @@ def source(simulated_session: Session) -> ReplaySource:
 @pytest.fixture
 def step(qtbot: QtBot, look: ThemeNotifier, visit: Visit, worn: dict[str, Site]) -> Iterator[WalkingStep]:
     """Of a patient who wears six sensors, entered, and looked at as the wizard does."""
-    visit.patient.edit(Patient(code="DEMO-7", birth_year=1970, prosthetic_side="left"))
-    with qtbot.waitSignal(visit.patient.changed):
-        visit.patient.commit()
-    with qtbot.waitSignal(visit.changed):
-        visit.begin_session()
-    with qtbot.waitSignal(visit.sensors.opened, timeout=10_000):
-        visit.sensors.search(visit.choices[0])
-    qtbot.waitUntil(lambda: set(visit.sensors.status) == set(worn))
-    visit.sensors.assign_all(worn)
-    with qtbot.waitSignal(visit.changed):
-        visit.place_sensors()
+    begin(qtbot, visit, worn, Patient(code="DEMO-7", birth_year=1970, prosthetic_side="left"))
     step = WalkingStep(look, visit)
     qtbot.addWidget(step.page)
     step.page.resize(1064, 600)

@@ -16,6 +16,7 @@ from core.samples import Patient, RecordingKind, Session
 from core.timed.protocols import PlannedTest, TimedProtocol
 from devices.replay import ReplaySource
 from devices.walker import DEMONSTRATION, Standing, Walk, simulate
+from tests.app.wizard.begun_visit import begin
 
 SPEED = 3.0
 RUN, NEXT_TEST = Intent(KeyAction.RUN), Intent(KeyAction.NEXT_TEST)
@@ -38,17 +39,7 @@ def source(simulated_session: Session) -> ReplaySource:
 @pytest.fixture
 def step(qtbot: QtBot, look: ThemeNotifier, visit: Visit, worn: dict[str, Site]) -> Iterator[WalkingStep]:
     """Of a patient who has stood still, entered, and looked at as the wizard does."""
-    visit.patient.edit(Patient(code="DEMO-7"))
-    with qtbot.waitSignal(visit.patient.changed):
-        visit.patient.commit()
-    with qtbot.waitSignal(visit.changed):
-        visit.begin_session()
-    with qtbot.waitSignal(visit.sensors.opened, timeout=10_000):
-        visit.sensors.search(visit.choices[0])
-    qtbot.waitUntil(lambda: set(visit.sensors.status) == set(worn))
-    visit.sensors.assign_all(worn)
-    with qtbot.waitSignal(visit.changed):
-        visit.place_sensors()
+    begin(qtbot, visit, worn, Patient(code="DEMO-7"))
     acquisition = visit.sensors.acquisition
     assert acquisition is not None
     acquisition.ask(RecordingKind.STANDING)

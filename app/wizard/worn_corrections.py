@@ -1,0 +1,132 @@
+"""Who wore what in recordings that are kept, said anew: left and right swapped, or all since strapped on."""
+
+from collections.abc import Mapping, Sequence
+from functools import partial
+from typing import TYPE_CHECKING
+from uuid import UUID
+
+from PySide6.QtCore import QObject, Signal
+
+from app.storage.stored import PlacedSensor, StoredSession
+from app.storage.three_way import Edited
+from app.wizard.edit_question import EditQuestion
+from app.wizard.recordings import SessionRecording, SessionRecordings
+from app.wizard.resuming import read_recordings
+from app.wizard.worn_sensors import WornSensors
+from app.wording import tr
+from app.workers.library_controller import LibraryController
+from core.body import Site
+
+if TYPE_CHECKING:
+    from app.storage.opened import OpenedLibrary
+
+Worn = tuple[Sequence[UUID], Mapping[Site, PlacedSensor]]
+"""Recordings, and who wore what in them."""
+_Corrected = tuple[Edited[StoredSession], tuple[SessionRecording, ...], Sequence[Worn]]
+
+
+class WornCorrections(QObject):
+    """One correction is made at a time; what is asked for meanwhile is made after it.
+
+    Signals
+    -------
+    corrected
+        The session and its recordings, read anew.
+    refused
+        What the library refused, and what to do; nothing is corrected.
+    asked
+        An EditQuestion: another station said it otherwise meanwhile.
+    """
+
+    corrected = Signal(object, object)
+    refused = Signal(str, str)
+    asked = Signal(object)
+
+    def __init__(
+        self, controller: LibraryController, sensors: WornSensors, recordings: SessionRecordings, parent: QObject
+    ) -> None:
+        super().__init__(parent)
+        self._controller, self._sensors, self._recordings = controller, sensors, recordings
+        self._is_busy = self._must_swap = self._must_place = False
+
+    @property
+    def is_busy(self) -> bool:
+        return self._is_busy
+
+    def swap_sides(self) -> None:
+        """Say that left and right were worn the other way round in all recordings; they are read anew.
+
+        Done again, it is undone.
+        """
+        if self._is_busy:
+            self._must_swap = not self._must_swap
+            return
+        placed: dict[UUID, list[SessionRecording]] = {}
+        for recording in self._recordings.every:
+            if recording.stored.placement is not None:
+                placed.setdefault(recording.stored.placement.id, []).append(recording)
+        worn: list[Worn] = []
+        for recordings in placed.values():
+            placement = recordings[0].stored.placement
+            assert placement is not None  # only such were gathered
+            other = {opposite(site): sensor for site, sensor in placement.sensors.items()}
+            worn.append(([recording.id for recording in recordings], other))
+        self._correct(worn, self._seen())
+
+    def place_as_said_now(self) -> None:
+        """Tell the library that all since the sensors were strapped on was worn as it is said now; it is read anew."""
+        if self._is_busy:
+            self._must_place = True
+            return
+        placed = self._sensors.placed()
+        strapped = [recording.id for recording in self._recordings.since_strapped]
+        self._correct([(strapped, placed)] if strapped else [], self._seen(), placed)
+
+    def _seen(self) -> dict[UUID, UUID | None]:
+        """By recording the placement as the screen has it."""
+        stored = [recording.stored for recording in self._recordings.every]
+        return {one.id: one.placement.id if one.placement is not None else None for one in stored}
+
+    def _correct(
+        self, worn: Sequence[Worn], seen: Mapping[UUID, UUID | None], placed: Mapping[Site, PlacedSensor] | None = None
+    ) -> None:
+        """Say who wore what in recordings, seen as they were; `placed`: also for what is recorded next."""
+        if self._recordings.session is None:
+            return
+        session_id, self._is_busy = self._recordings.session.id, True
+
+        def correct(opened: "OpenedLibrary") -> _Corrected:
+            if placed is not None:
+                opened.library.sessions.place(session_id, placed)
+            edited = opened.library.edits.placement(session_id, seen, worn)
+            return edited, read_recordings(opened, edited.stored), worn
+
+        self._controller.run(correct, self._on_corrected, self._on_refused, self)
+
+    def _on_corrected(self, corrected: _Corrected) -> None:
+        """Show what came of it; swapped again meanwhile, it is swapped again."""
+        edited, recordings, worn = corrected
+        self._is_busy = False
+        self.corrected.emit(edited.stored, recordings)
+        if edited.contests:
+            settle = partial(self._settle, worn, self._seen())
+            self.asked.emit(EditQuestion(tr("The session"), edited.contests, settle))
+        must_swap, must_place = self._must_swap, self._must_place
+        self._must_swap = self._must_place = False
+        if must_place:
+            self.place_as_said_now()
+        if must_swap:
+            self.swap_sides()
+
+    def _settle(self, worn: Sequence[Worn], seen: Mapping[UUID, UUID | None], fields: frozenset[str]) -> None:
+        if fields:
+            self._correct(worn, seen)
+
+    def _on_refused(self, what: str, remedy: str) -> None:
+        self._is_busy = self._must_swap = self._must_place = False
+        self.refused.emit(what, remedy)
+
+
+def opposite(site: Site) -> Site:
+    """The same place on the other leg; the pelvis stays."""
+    return Site.PELVIS if site.side is None else Site(f"{site.side.other}_{site.segment}")

@@ -1,0 +1,39 @@
+"""A visit whose patient wears all sensors of its first source, and what is recorded of it."""
+
+from pytestqt.qtbot import QtBot
+
+from app.wizard.recordings import SessionRecording
+from app.wizard.visit import Visit
+from core.body import Site
+from core.samples import Patient, RecordingKind
+
+DEMO_PATIENT = Patient(code="DEMO-7", birth_year=1970)
+
+
+def begin(qtbot: QtBot, visit: Visit, worn: dict[str, Site], patient: Patient = DEMO_PATIENT) -> None:
+    visit.patient.edit(patient)
+    with qtbot.waitSignal(visit.patient.changed):
+        visit.patient.commit()
+    with qtbot.waitSignal(visit.changed):
+        visit.record.begin()
+    with qtbot.waitSignal(visit.sensors.opened, timeout=10_000):
+        visit.sensors.search(visit.choices[0])
+    qtbot.waitUntil(lambda: set(visit.sensors.status) == set(worn))
+    visit.sensors.assign_all(worn)
+    with qtbot.waitSignal(visit.changed):
+        visit.place_sensors()
+
+
+def record(qtbot: QtBot, visit: Visit, kind: RecordingKind, seconds: float, condition: str = "") -> SessionRecording:
+    acquisition = visit.sensors.acquisition
+    assert acquisition is not None
+    acquisition.ask(kind)
+    with qtbot.waitSignal(visit.recordings.begun, timeout=10_000):
+        visit.recordings.begin(acquisition, kind, condition)
+    until_s = acquisition.now_s + seconds
+    qtbot.waitUntil(lambda: acquisition.now_s > until_s, timeout=10_000)
+    with qtbot.waitSignal(visit.recordings.ended, timeout=10_000) as ended:
+        visit.recordings.stop()
+    recording = ended.args[0]
+    assert isinstance(recording, SessionRecording)
+    return recording
