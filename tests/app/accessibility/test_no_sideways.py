@@ -12,7 +12,7 @@ from tests.app.accessibility.framed_pages import FRAMED, framed
 from tests.app.room import settle
 
 pytestmark = pytest.mark.endurance
-WIDER = {"sensors", "recording", "all figures", "what can be read", "engineering figures"}  # lists that scroll sideways
+WIDER = {"sensors", "recording", "all figures", "what can be read", "engineering figures"}  # still scrolled sideways, some in English too
 
 
 @pytest.fixture(params=["en", "de"])
