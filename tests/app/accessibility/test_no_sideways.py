@@ -12,7 +12,8 @@ from tests.app.accessibility.framed_pages import FRAMED, framed
 from tests.app.room import settle
 
 pytestmark = pytest.mark.endurance
-WIDER = {"sensors", "recording", "all figures", "what can be read", "engineering figures"}  # still scrolled sideways, some in English too
+# still scrolled sideways, some of them in English too
+WIDER = {"sensors", "recording", "all figures", "what can be read", "engineering figures"}
 
 
 @pytest.fixture(params=["en", "de"])
