@@ -5,7 +5,7 @@ A sentence comes from what was measured: without a time no time is told, without
 
 import math
 
-from app.wording import figure_text, joined, name_of, tr, tr_n
+from app.wording import figure_text, joined, later, name_of, tr, tr_n
 from core.timed.found import NotMeasured, TimedTest
 from core.timed.protocols import DEFINITIONS, KnownError, PlannedTest, TimedProtocol
 
@@ -155,14 +155,25 @@ def course_sentence(test: TimedTest) -> str:
     return tr("First third {first:.2f} m/s, last third {last:.2f} m/s.").format(first=speeds[0], last=speeds[-1])
 
 
+MEASURED = (later("six minutes by sensors in insoles"), later("six minutes by a rater"))  # in the sources of errors
+
+
 def error_words(error: KnownError) -> str:
     """What is known of the error of one quantity, with its source; what was not verified has a dagger."""
     mark = "" if error.is_verified else DAGGER
-    most, least = f"{error.high:g}", f"{error.low:g}"
+    most, least = figure_text(error.high, "g"), figure_text(error.low, "g")
     span = tr("up to {most}").format(most=most) if error.low == 0.0 else f"{least}\N{EN DASH}{most}"
     what = {
         "distance_m": tr("Distance: {span} m{mark}, {source}."),
         "distance_percent": tr("Distance: {span} %{mark}, {source}."),
         "time_s": tr("Time: {span} s{mark}, {source}."),
     }[error.quantity]
-    return what.format(span=span, mark=mark, source=error.source)
+    return what.format(span=span, mark=mark, source=_source_words(error))
+
+
+def _source_words(error: KnownError) -> str:
+    """Who says so: of a paper what was measured, and the paper as it is cited."""
+    if error.courses:
+        return tr("the worst of {count} simulated courses").format(count=error.courses)
+    how, comma, paper = error.source.partition(", ")
+    return tr(how) + comma + paper

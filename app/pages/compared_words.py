@@ -47,7 +47,7 @@ def unit_behind(measure: Measure) -> str:
     """As it stands behind a figure; a share of the stride is named before it, since "3 % more" means another thing."""
     if measure.unit == "%":
         return ""
-    return measure.unit if measure.unit == "°" else f"\N{NO-BREAK SPACE}{measure.unit}"
+    return measure.unit if measure.unit == "°" else f"\N{NO-BREAK SPACE}{tr(measure.unit)}"
 
 
 def is_judged(row: Compared | SideRow) -> bool:

@@ -9,7 +9,7 @@ from app.pages.beside_words import beside_columns, beside_rows
 from app.reports.comparison import Comparison
 from app.reports.goals import goal_mark
 from app.reports.patient_report.facts import Facts
-from app.reports.patient_report.numbers_in_words import DAGGER, NOTHING, fixed, in_words, judged_in_words, signed
+from app.reports.patient_report.numbers_in_words import DAGGER, NOTHING, fixed, in_brief, judged_in_words, signed
 from app.reports.patient_report.what_differs import LegsRow, what_differs
 from app.theme import ThemeNotifier
 from app.widgets.card import Card
@@ -110,7 +110,7 @@ def _row(facts: Facts, row: LegsRow) -> TableRow:
         _strip(row),
         TextCell(_error(row), align=RIGHT, tone="ink2"),
         TextCell(_band(facts, row), align=RIGHT, tone="ink2"),
-        TextCell(in_words(found.judgement), size=12, weight=weight, tone="ink" if exceeds else "ink2"),
+        TextCell(in_brief(found.judgement), size=12, weight=weight, tone="ink" if exceeds else "ink2"),
     )
     return TableRow(cells)
 

@@ -97,6 +97,7 @@ class KnownError:
     """How far off a quantity may be, `low` to `high` in the unit of its name, and who says so.
 
     `is_verified`: the source was read, or it was measured here; where not, what rests on it prints a dagger.
+    `courses`: of so many simulated ones `high` is the worst; 0: the source is another.
     """
 
     quantity: str
@@ -104,6 +105,7 @@ class KnownError:
     high: float
     source: str
     is_verified: bool = False
+    courses: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,7 +151,7 @@ _SIMULATED = "the worst of {} simulated courses"
 
 
 def _worst(quantity: str, error: float, courses: int) -> KnownError:
-    return KnownError(quantity, 0.0, error, _SIMULATED.format(courses), is_verified=True)
+    return KnownError(quantity, 0.0, error, _SIMULATED.format(courses), is_verified=True, courses=courses)
 
 
 DEFINITIONS: Mapping[TimedProtocol, Definition] = {

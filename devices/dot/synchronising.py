@@ -267,7 +267,9 @@ async def refuse_while_recording(sensor: DotSensor) -> None:
     state = await sensor.state()
     if state is DotAnswer.RECORDING:
         raise DotRefusedError(
-            "{sensor} is recording in its memory", "Stop that recording, and fetch it, first", sensor=sensor.name
+            "{sensor} is recording in its memory",
+            "Stop that recording in the program that began it, such as Movella's own app, and fetch it there",
+            sensor=sensor.name,
         )
     has_memory = sensor.info is not None and sensor.info.can_synchronise  # both came with the same firmware
     if state is DotAnswer.UNKNOWN and has_memory:

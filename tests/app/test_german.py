@@ -13,6 +13,8 @@ import numpy as np
 import pytest
 from babel.messages.pofile import read_po
 
+from app.pages.compared_words import unit_behind
+from app.reports.comparison import MEASURES
 from app.reports.patient_report.numbers_in_words import fixed, signed
 from app.wording import (
     SENTENCES,
@@ -259,3 +261,13 @@ def test_every_fraction_on_a_screen_or_page_has_the_mark_of_its_language() -> No
     shown = {name: file.read_text(encoding="utf-8") for name, file in named.items() if not name.startswith(WITH_POINTS)}
     assert len(shown) > 300
     assert [f"{name}:{line}" for name, source in shown.items() for line in fractions_in(source)] == []
+
+
+def test_a_unit_in_a_sentence_of_compare_is_german() -> None:
+    cadence = next(one for one in MEASURES if one.unit == "steps/min")
+    assert unit_behind(cadence) == "\N{NO-BREAK SPACE}steps/min"
+    use_language("de")
+    try:
+        assert unit_behind(cadence) == "\N{NO-BREAK SPACE}Schritte/min"
+    finally:
+        use_language("en")

@@ -1,6 +1,7 @@
 """What is said of a timed test: each sentence where it must come, and where it must not."""
 
 import math
+import re
 from dataclasses import replace
 
 import pytest
@@ -17,6 +18,7 @@ from app.timed_words import (
     tape_sentence,
     why_sentence,
 )
+from app.wording import use_language
 from core.body import Side, Site
 from core.timed.found import NotMeasured, Silence, StairStride, TimedPart, TimedTest
 from core.timed.protocols import DEFINITIONS, KnownError, PlannedTest, TimedProtocol
@@ -99,3 +101,13 @@ def test_a_planned_test_is_told_with_its_keys() -> None:
     keyed = PlannedTest(TimedProtocol.TEN_METRES, 3.0, 12.25)
     assert planned_words(keyed) == "10-metre walk, key at the start: 3.0 s, key at the end: 12.2 s"
     assert len({name_of_test(one) for one in TimedProtocol}) == len(TimedProtocol)
+
+
+def test_the_known_errors_are_told_in_german_with_a_comma() -> None:
+    use_language("de")
+    try:
+        every = " ".join(error_words(one) for known in DEFINITIONS.values() for one in known.errors)
+    finally:
+        use_language("en")
+    assert not re.search(r"\b(worst|simulated|minutes|rater)\b", every)
+    assert "bis zu 1,2 %, im schlechtesten von 60 simulierten Verläufen" in every

@@ -9,7 +9,6 @@ from app.gates_in_words import verdict_word
 from app.reports.patient_report.blocks import Block, Cell, Column, Row, heading, note, table
 from app.reports.patient_report.facts import Facts, joint_of
 from app.reports.patient_report.numbers_in_words import DAGGER, NOTHING, dagger_note, fixed, signed, signed_error
-from app.reports.patient_report.peaks_table import hips_note
 from app.reports.patient_report.quality import slipped_straps
 from app.wording import capitalised, name_of, side_name, tr
 from core.body import Joint, JointKind, Side, hip_of
@@ -22,6 +21,7 @@ from core.verdicts.measurement_error import ComparisonKind, sigma_of
 from core.verdicts.model import NOT_MEASURED, GateReason, JointVerdicts
 from core.verdicts.quantities import assessment_of, raw_values
 
+JOINT_WIDTH = "23mm"  # takes a verdict; a joint's longer name, as German has them, breaks before its side
 MARGIN_BEYOND = 100.0  # how many times better says no more from here on
 
 
@@ -42,8 +42,8 @@ def evidence_table(facts: Facts) -> list[Block]:
         return []
     columns = [
         Column(tr("Evidence"), "1fr", is_number=False),
-        *(Column(capitalised(name_of(joint))) for joint in joints),
-        Column(tr("Needed for “{word}”").format(word=tr("can be read")), "41mm", is_number=False),
+        *(Column(capitalised(name_of(joint)), JOINT_WIDTH) for joint in joints),
+        Column(tr("Needed for “{word}”").format(word=tr("can be read")), "46mm", is_number=False),
     ]
     care, most = LIMITS.axis_sd_deg
     knee, ankle = LIMITS.knee_range_deg, LIMITS.ankle_range_deg
@@ -189,7 +189,8 @@ def hips_table(facts: Facts) -> list[Block]:
     for label, found in verdicts:
         words = [Cell(verdict_word(one.verdict), is_bold=True) for one in found]
         rows.append([Cell(label, is_bold=True), *words, ""])
-    return [table(columns, rows, is_dense=True), note(" ".join([clocks_in_words(facts), hips_note()]))]
+    clocks = clocks_in_words(facts)
+    return [table(columns, rows, is_dense=True), *([note(clocks)] if clocks else [])]
 
 
 def clocks_in_words(facts: Facts) -> str:
@@ -214,11 +215,11 @@ def clocks_in_words(facts: Facts) -> str:
 def error_table() -> list[Block]:
     """What has to be exceeded at least, by what lies between two means, and what each comparison contains."""
     columns = [
-        Column(tr("Comparison"), "42mm", is_number=False),
+        Column(tr("Comparison"), "46mm", is_number=False),
         Column(tr("What makes it uncertain"), "1fr", is_number=False),
         Column(tr("Knee range, °")),
         Column(tr("Ankle range, °")),
-        Column(tr("Stance, % of stride")),
+        Column(tr("Stance, % of stride"), "31mm"),
     ]
     told = (
         (ComparisonKind.ATTACHED, tr("Two walks, sensors left on"), tr("strides, drift, clocks; walk to walk")),

@@ -35,11 +35,15 @@ def how_measured(facts: Facts, software_version: str) -> tuple[list[Titled], lis
         (tr("Sensors"), _sensors(facts)),
         (tr("Calibration"), _calibration(facts)),
         (tr("Angles"), _angles(facts)),
-        *([(tr("Hips and pelvis"), _hips())] if facts.has_joint(JointKind.HIP) else []),
         (tr("Events and strides"), _strides(facts)),
     ]
-    said = [(tr("How accurate, and on whom"), _accuracy()), (tr("Words"), _words())]
-    return done, [*said, (tr("Software"), _software(facts, software_version))]
+    said = [
+        (tr("How accurate, and on whom"), _accuracy()),
+        *([(tr("Hips and pelvis"), _hips())] if facts.has_joint(JointKind.HIP) else []),
+        (tr("Words"), _words()),
+        (tr("Software"), _software(facts, software_version)),
+    ]
+    return done, said
 
 
 def _worn(facts: Facts) -> dict[Site, ImuBlock]:

@@ -14,7 +14,7 @@ from app.reports.patient_report.numbers_in_words import fixed
 from app.reports.patient_report.panels import why_no_band
 from app.reports.patient_report.plain_text import plain, plain_lines
 from app.reports.patient_report.request import ReportRequest
-from app.reports.patient_report.time_page import is_evidence_beside_time
+from app.reports.patient_report.time_page import is_evidence_beside_time, speed_class_in_words
 from app.wording import sentence, tr
 from core.findings import Finding, Severity
 
@@ -96,7 +96,7 @@ def _sources(facts: Facts) -> list[str]:
         said.append(
             pattern.format(
                 group=tr(values.group),
-                speed_class=values.speed_class,
+                speed_class=speed_class_in_words(values.speed_class),
                 speed=fixed(values.speed_m_s, 2),
                 n=values.n,
                 source=values.source,

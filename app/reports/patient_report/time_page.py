@@ -87,7 +87,7 @@ def time_distance_table(facts: Facts) -> list[Block]:
     group = facts.values_group
     band = (
         tr("Mean ± SD over strides; band: mean ± SD between people, class “{speed_class}” of speed.").format(
-            speed_class=_speed_class(group.speed_class)
+            speed_class=speed_class_in_words(group.speed_class)
         )
         if group is not None
         else " ".join([tr("Mean ± SD over strides."), panels.why_no_band(facts, facts.bands.why_no_values)])
@@ -194,7 +194,7 @@ def _variation_row(facts: Facts) -> list[Cell | str]:
     return [tr("Variation of stride time (CV), %"), *cells, NOTHING, NOTHING, NOTHING, NOTHING]
 
 
-def _speed_class(name: str) -> str:
+def speed_class_in_words(name: str) -> str:
     return {"slow": tr("slow"), "comfortable": tr("comfortable"), "fast": tr("fast")}[name]
 
 

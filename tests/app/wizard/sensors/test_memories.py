@@ -94,6 +94,7 @@ def test_what_is_kept_is_erased_after_a_second_press(
     assert bar.primary is not None
     assert bar.primary.text == "Back to the sensors"
     assert [other.text for other in bar.others] == ["Erase the memories"]
+    assert bar.quiet == ()  # it is offered once
     opened.on_other(0)
     assert [len(dot.files) for dot in radio.dots] == [1, 1]
     assert "kept in this library, every sample of it" in opened.page.memories.notice.text

@@ -1,0 +1,36 @@
+"""On a screen of 1280 x 800, are pages of a visit no wider than their room? In English and in German."""
+
+from collections.abc import Iterator
+
+import pytest
+from PySide6.QtWidgets import QScrollArea
+from pytestqt.qtbot import QtBot
+
+from app.theme import ThemeNotifier
+from app.wording import use_language
+from tests.app.accessibility.framed_pages import FRAMED, framed
+from tests.app.room import settle
+
+pytestmark = pytest.mark.endurance
+# still scrolled sideways, some of them in English too
+WIDER = {"sensors", "recording", "all figures", "what can be read", "engineering figures"}
+
+
+@pytest.fixture(params=["en", "de"])
+def language(request: pytest.FixtureRequest) -> Iterator[str]:
+    use_language(request.param)
+    yield request.param
+    use_language("en")
+
+
+@pytest.mark.usefixtures("language")
+@pytest.mark.parametrize("name", [name for name in FRAMED if name not in WIDER])
+def test_a_page_need_not_be_scrolled_sideways(qtbot: QtBot, look: ThemeNotifier, name: str) -> None:
+    shell = framed(look, name)
+    qtbot.addWidget(shell)
+    shell.resize(1280, 800)
+    shell.show()
+    settle()
+    areas = [one for one in shell.findChildren(QScrollArea) if one.isVisible()]
+    assert areas
+    assert [one.horizontalScrollBar().maximum() for one in areas] == [0] * len(areas)
