@@ -12,6 +12,7 @@ from PySide6.QtWidgets import QWidget
 
 from app.home.clinic_settings import ClinicSettings
 from app.home.entry import ADMINISTRATOR, SHORTEST
+from app.home.error_report import ErrorReport
 from app.home.key_sheet import KeySheet
 from app.pages.settings_page import DeletedLine, OperatorLine, SettingsPage
 from app.patient_words import person, when
@@ -52,6 +53,9 @@ class SettingsController(QObject):
         self._clinic.moved.connect(self._on_moved)
         self._sheet = KeySheet(self.page)
         self._sheet.told.connect(self.told)
+        self._error_report = ErrorReport(self.page)
+        self._error_report.told.connect(self.told)
+        self._error_report.written.connect(self.page.show_error_report)
         self._show_screen()
         self._connect()
 
@@ -126,6 +130,7 @@ class SettingsController(QObject):
         page.backup_wished.connect(self._on_backup_wished)
         page.backup_folder_wished.connect(self._on_backup_folder_wished)
         page.stop_wished.connect(self._on_stop_wished)
+        page.error_report_wished.connect(self._error_report.save)
         page.operator_added.connect(self._on_operator_added)
         page.operator_removed.connect(self._on_operator_removed)
         page.clinic_named.connect(self._on_clinic_named)

@@ -63,6 +63,7 @@ class SettingsPage(TallPage):
     backup_wished = Signal()
     backup_folder_wished = Signal()
     stop_wished = Signal()
+    error_report_wished = Signal()
     operator_added = Signal(str, str, str, str)  # code, name, role, passphrase
     operator_removed = Signal(str)  # code
     clinic_named = Signal(str)
@@ -84,6 +85,7 @@ class SettingsPage(TallPage):
         self._build_deleted()
         self._build_clinic()
         self._build_operators()
+        self._build_trouble()
         self.column.addStretch(1)
         self._connect()
         self._on_look_changed()
@@ -104,6 +106,7 @@ class SettingsPage(TallPage):
             self.choose_folder,
             *self.station.tab_order,
             *self.more_stations.tab_order,
+            self.report_error,
         ]
 
     def focus(self) -> None:
@@ -319,6 +322,30 @@ class SettingsPage(TallPage):
         self.operators_card.column.addWidget(self.first)
         self._add_left(self.operators_card, self.add)
 
+    def _build_trouble(self) -> None:
+        look = self._look
+        self.trouble_card = self._card(tr("If something went wrong"))
+        hint = tr(
+            "An error report says which versions run here, on which kind of computer, and the end of the log: no "
+            "codes, names or paths, and nothing typed. It is saved as a text that you can read; sending it is "
+            "up to you."
+        )
+        self.trouble_card.column.addWidget(Text(look, hint, tone="ink2", wraps=True))
+        self.report_error = Button(look, tr("Save an error report"), ButtonKind.SECONDARY, Icon.IMPORT)
+        self._add_left(self.trouble_card, self.report_error)
+        self._trouble_said = Text(look, tone="ink2", wraps=True)
+        self.trouble_card.column.addWidget(self._trouble_said)
+        self._trouble_said.hide()
+
+    @property
+    def trouble_said(self) -> str:
+        return self._trouble_said.text()
+
+    def show_error_report(self, path: str) -> None:
+        """Say where the report is that was just saved."""
+        self._trouble_said.setText(tr("Saved as {path}.").format(path=path))
+        self._trouble_said.show()
+
     def _connect(self) -> None:
         self.language.chosen.connect(self.language_chosen)
         self.scheme.chosen.connect(self.scheme_chosen)
@@ -336,6 +363,7 @@ class SettingsPage(TallPage):
         self.remove.clicked.connect(self._on_remove)
         self.keep.clicked.connect(self._on_keep)
         self.clinic.committed.connect(self._on_clinic_named)
+        self.report_error.clicked.connect(self.error_report_wished)
         for field in (self.old, self.new, self.again, self.code, self.name, self.first):
             field.edited.connect(self._on_edited)
 
