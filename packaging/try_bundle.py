@@ -150,7 +150,7 @@ def open_and_close(root: BareRoot, program: str, display: str) -> None:
     began_s = time.monotonic()
     process = subprocess.Popen(root_command(root, display, program), env={"HOME": str(root.home)})
     try:
-        search = ["xdotool", "search", "--onlyvisible", "--name", "^Gaitwright$"]
+        search = ["xdotool", "search", "--onlyvisible", "--name", "^Gaitwright"]
         while (found := subprocess.run(search, env=environment, capture_output=True, text=True)).returncode != 0:
             if process.poll() is not None or time.monotonic() - began_s > WINDOW_S:
                 raise TrialError("No window came.")

@@ -40,7 +40,7 @@ def window_start(program: Path, environment: Mapping[str, str]) -> tuple[float, 
     """
     began_s = time.monotonic()
     process = subprocess.Popen([program], env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    search = ["xdotool", "search", "--onlyvisible", "--name", "^Gaitwright$"]
+    search = ["xdotool", "search", "--onlyvisible", "--name", "^Gaitwright"]
     try:
         while subprocess.run(search, env=environment, stdout=subprocess.DEVNULL).returncode != 0:
             if process.poll() is not None or time.monotonic() - began_s > LONGEST_S:

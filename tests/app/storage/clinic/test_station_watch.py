@@ -115,7 +115,7 @@ def test_what_another_station_does_is_heard_and_its_own_doing_is_not(
     qtbot: QtBot, controller: LibraryController, other: OpenedLibrary
 ) -> None:
     own = opened_of(controller)
-    qtbot.wait(500)  # until it has heard how far the others are
+    qtbot.wait(2000)  # until it has heard how far the others are
     with qtbot.assertNotEmitted(controller.changed_elsewhere, wait=1000):
         own.library.patients.create(Patient(code="P-7"))
     with qtbot.waitSignal(controller.changed_elsewhere, timeout=WAIT_MS):
