@@ -9,8 +9,6 @@ import threading
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
-from tour_words import in_english
-
 if TYPE_CHECKING:
     from PySide6.QtGui import QPixmap
     from PySide6.QtWidgets import QWidget
@@ -120,8 +118,14 @@ def _look_at(window: Any) -> dict[str, Any]:
 
     from app.wording import spoken_language
 
+    language = spoken_language()
+
     def read(said: str) -> tuple[str, ...]:
-        return in_english(said, spoken_language())
+        if language == "en":  # as always in the installed folder, which has neither catalogues to read nor their reader
+            return (said,)
+        from tour_words import in_english
+
+        return in_english(said, language)
 
     screen = window.screens.currentWidget()
     step = getattr(screen, "current", None)

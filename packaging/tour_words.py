@@ -25,8 +25,8 @@ class FieldMessage:
 
 
 def in_english(said: str, language: str) -> tuple[str, ...]:
-    """Give all that `said` may mean, as it stands there first: one word may stand for several English ones."""
-    return tuple(dict.fromkeys([said, *_meant(said, language)])) if language != "en" else (said,)
+    """Give all that `said` of another language may mean, first as it stands: a word may stand for several English ones."""
+    return tuple(dict.fromkeys([said, *_meant(said, language)]))
 
 
 def _meant(said: str, language: str) -> Iterator[str]:
