@@ -457,7 +457,8 @@ class SensorsPage(Themed):
         self._body.setDirection(way)
         if is_stacked:
             self.places.set_narrow(True)
-            self.places.setFixedWidth(room)
+            self.places.setMinimumWidth(0)  # the bar that scrolls both takes of the room
+            self.places.setMaximumWidth(room)
         elif self._is_compact:
             spare = max(0, room - gap - rows - figure)
             self.places.setFixedWidth(min(figure + spare // 2, max(figure, px(FIGURE_WIDTH[0]))))
