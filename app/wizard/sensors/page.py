@@ -446,7 +446,7 @@ class SensorsPage(Themed):
         self._column.setContentsMargins(side, above, side, above)
         room = self.width() - 2 * side
         self.columns.set_room(room)
-        self.dots.set_narrow(self._is_compact)
+        self.dots.set_room(room, is_narrow=self._is_compact)
         self.places.set_narrow(self._is_compact)
         figure, rows = self.places.minimumSizeHint().width(), self.list.minimumSizeHint().width()
         rows = max(rows + px(SCROLL_BAR), self.ways.minimumSizeHint().width())
