@@ -331,14 +331,15 @@ class Gauge(QWidget):
             painter.setPen(QColor(c.ink))
             painter.setFont(theme.font(14, MEDIUM))
             painter.drawText(line.adjusted(px(24), 0, 0, 0), Qt.AlignmentFlag.AlignVCenter, name)
+            room = line.width() - px(24 + 6) - painter.fontMetrics().horizontalAdvance(name)
             painter.setPen(QColor(c.ink2))
             painter.setFont(theme.font(14))
             wanted, short = tr("while walking"), tr("later")  # an ankle's axis
             if measure is not None:
                 wanted, short = tr("under {limit}").format(limit=measure.wanted), f"< {measure.wanted}"
-            metrics = painter.fontMetrics()
-            if metrics.horizontalAdvance(name) + metrics.horizontalAdvance(wanted) + px(24 + 6) > line.width():
+            if painter.fontMetrics().horizontalAdvance(wanted) > room:
                 wanted = short
+                painter.setFont(self._fitting(short, 14, room, REGULAR))
             painter.drawText(line, Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignRight, wanted)
             top += px(26)
 

@@ -73,9 +73,7 @@ def english_in(said: set[str]) -> list[str]:
     known = known_english()
     german = {re.sub(r"\{[^}]*\}", "", pair.german) for pair in pairs()}
     return sorted(
-        text
-        for text in wanted - german
-        if ENGLISH.search(text) or any(pattern.fullmatch(text) for pattern in known)
+        text for text in wanted - german if ENGLISH.search(text) or any(pattern.fullmatch(text) for pattern in known)
     )
 
 
