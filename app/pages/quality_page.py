@@ -123,7 +123,7 @@ class QualityPage(Themed):
         self.findings.show_findings(findings)
 
     def set_room(self, width: int, *, is_compact: bool, is_narrow: bool) -> None:
-        """Leave the figure out where there is no room for it, and let the doors stand below each other in `width` px."""
+        """Leave the figure out where it has no room, and let the doors stand below each other in `width` px."""
         px = self._look.theme.px
         self._figure_card.setVisible(not is_compact)
         beside = 0 if is_compact else px(FIGURE_WIDTH) + self._columns.spacing()

@@ -37,7 +37,7 @@ class Text(QLabel):
         self.setText(text)
         self._on_look_changed()
 
-    def setText(self, text: str) -> None:
+    def setText(self, text: str) -> None:  # noqa: N802  Qt names it
         super().setText(UNIT.sub(JOINER, text) if self.wordWrap() else text)
 
     def text(self) -> str:
