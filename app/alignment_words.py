@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 
-from app.wording import capitalised, later, tr, within_sentence
+from app.wording import capitalised, figure_text, later, tr, within_sentence
 from core.alignment import AlignmentChange, NetChange, PartChange, ProsthesisPart, net_of
 
 MINUS = "\N{MINUS SIGN}"
@@ -53,7 +53,7 @@ def part_name(part: ProsthesisPart) -> str:
 
 def angle_words(part: ProsthesisPart, angle_deg: float) -> str:
     """Say an angle with its direction, "+2° plantar"; of a part whose maker counts, with its sign."""
-    amount = f"{abs(angle_deg):g}°"
+    amount = figure_text(abs(angle_deg), "g") + "°"
     if part not in DIRECTIONS:
         return ("+" if angle_deg >= 0 else MINUS) + amount
     return f"+{amount} {tr(DIRECTIONS[part][angle_deg < 0])}"
@@ -78,11 +78,11 @@ def shift_words(part: ProsthesisPart, shift_mm: float) -> str:
         said = tr("{amount} mm inwards") if shift_mm < 0 else tr("{amount} mm outwards")
     else:
         said = tr("{amount} mm forward") if shift_mm < 0 else tr("{amount} mm back")
-    return said.format(amount=f"{abs(shift_mm):g}")
+    return said.format(amount=figure_text(abs(shift_mm), "g"))
 
 
 def height_words(height_mm: float) -> str:
-    return tr("{sign}{amount} mm").format(sign=MINUS if height_mm < 0 else "+", amount=f"{abs(height_mm):g}")
+    return tr("{sign}{amount} mm").format(sign=MINUS if height_mm < 0 else "+", amount=figure_text(abs(height_mm), "g"))
 
 
 def change_lines(change: AlignmentChange | None) -> list[tuple[str, str]]:

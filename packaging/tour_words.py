@@ -25,7 +25,7 @@ class FieldMessage:
 
 
 def in_english(said: str, language: str) -> tuple[str, ...]:
-    """Give all that `said` of another language may mean, first as it stands: a word may stand for several English ones."""
+    """Give all that `said` of another language may mean, as it stands first: one word may be several English ones."""
     return tuple(dict.fromkeys([said, *_meant(said, language)]))
 
 

@@ -31,6 +31,7 @@ class BesideChoice(Choice):
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__(look, tr("Beside"))
         self.let_shrink(NARROWEST, WIDEST)  # conditions are typed
+        self.keep_whole(tr("Beside the band"), tr("The legs alone"))
         self._visit: AnalysedVisit | None = None
         self._walks: Mapping[str, Part] = {}  # of this session, each alone
         self._shown = ""

@@ -153,11 +153,11 @@ class PatientCell(LineCell):
 class SessionCell(LineCell):
     """Date, conditions, amount and state before an arrow, in columns where there is room for them.
 
-    `has_states`: some line of the list has one, so that all keep its place free.
+    `lines`: all of the list, which share their columns.
     """
 
     line: SessionLine
-    has_states: bool
+    lines: tuple[SessionLine, ...]
 
     def word_rows(self, width: int, theme: Theme) -> list[list[Word]]:
         room, is_wide = width - theme.px(ARROW), width >= WIDE_SESSION_FROM * theme.scale
@@ -170,29 +170,35 @@ class SessionCell(LineCell):
         paint_icon(painter, Icon.NEXT, arrow, theme.colours.ink2)
 
     def _in_columns(self, room: int, theme: Theme) -> list[list[Word]]:
-        px, (date, conditions, amount, state) = theme.px, self._pieces()
-        state = replace(state, left=room - px(STATE))
-        amount = replace(amount, left=(state.left if self.has_states else room) - px(AMOUNT))
+        px, (date, conditions, amount, state) = theme.px, _pieces(self.line)
+        pieces = [_pieces(line) for line in self.lines]
+        states = max(px(STATE), *(piece[3].width(theme) + px(GAP) for piece in pieces))
+        amounts = max(px(AMOUNT), *(piece[2].width(theme) + px(GAP) for piece in pieces))
+        has_states = any(line.state for line in self.lines)
+        state = replace(state, left=room - states)
+        amount = replace(amount, left=(state.left if has_states else room) - amounts)
+        if date.width(theme) + px(GAP) > amount.left:
+            return self._stacked(room, theme)
         if px(DATE) + conditions.width(theme) + px(GAP) <= amount.left:
             return [[date, amount, state, replace(conditions, left=px(DATE))]]
         return [[date, amount, state], *_wrapped(conditions, room, theme)]
 
     def _stacked(self, room: int, theme: Theme) -> list[list[Word]]:
-        date, conditions, amount, state = self._pieces()
+        date, conditions, amount, state = _pieces(self.line)
         at_right = replace(state, is_right=True)
         rows = [[date, at_right]] if _are_beside(date, at_right, room, theme) else [[date], [state]]
         if _are_beside(conditions, amount, room, theme):
             return [*rows, [conditions, replace(amount, is_right=bool(conditions.text))]]
         return [*rows, *_wrapped(conditions, room, theme), [amount]]
 
-    def _pieces(self) -> tuple[Word, Word, Word, Word]:
-        line = self.line
-        state = Word(
-            line.state,
-            weight=SEMIBOLD if line.needs_look or line.mark is Icon.INFO else REGULAR,
-            icon=Icon.WARNING if line.needs_look else line.mark,
-        )
-        return Word(line.when, 15, SEMIBOLD), Word(line.conditions), Word(line.amount, tone="ink2"), state
+
+def _pieces(line: SessionLine) -> tuple[Word, Word, Word, Word]:
+    state = Word(
+        line.state,
+        weight=SEMIBOLD if line.needs_look or line.mark is Icon.INFO else REGULAR,
+        icon=Icon.WARNING if line.needs_look else line.mark,
+    )
+    return Word(line.when, 15, SEMIBOLD), Word(line.conditions), Word(line.amount, tone="ink2"), state
 
 
 class LineList(CellTable):
@@ -229,9 +235,9 @@ class LineList(CellTable):
         """
         scrolled = self.verticalScrollBar().value()
         self.lines = tuple(lines)
-        has_states = any(isinstance(line, SessionLine) and line.state for line in lines)
+        sessions = tuple(line for line in lines if isinstance(line, SessionLine))
         cells: list[LineCell] = [
-            PatientCell(line) if isinstance(line, PatientLine) else SessionCell(line, has_states) for line in lines
+            PatientCell(line) if isinstance(line, PatientLine) else SessionCell(line, sessions) for line in lines
         ]
         self._longest = nlargest(MEASURED, cells, key=lambda cell: len(cell.words))
         self.selectionModel().reset()  # the line that is chosen now is told, even if it is the same

@@ -93,7 +93,9 @@ def liveliness(blocks: Sequence[ImuBlock]) -> tuple[FloatArray, FloatArray]:
 
 def _rates(trial: "ImportedTrial") -> str:
     rates_hz = sorted({round(sensor.info.rate_hz, 1) for sensor in trial.sensors if sensor.info.rate_hz})
-    return tr("{rates} Hz").format(rates=" / ".join(f"{rate_hz:g}" for rate_hz in rates_hz)) if rates_hz else ""
+    return (
+        tr("{rates} Hz").format(rates=" / ".join(figure_text(rate_hz, "g") for rate_hz in rates_hz)) if rates_hz else ""
+    )
 
 
 def _gaps(blocks: Sequence[ImuBlock]) -> str:

@@ -122,10 +122,14 @@ class QualityPage(Themed):
         self.hip_facts.setVisible(bool(hips))
         self.findings.show_findings(findings)
 
-    def set_room(self, *, is_compact: bool, is_narrow: bool) -> None:
-        """Leave the figure out where there is no room for it, and let the doors stand below each other."""
+    def set_room(self, width: int, *, is_compact: bool, is_narrow: bool) -> None:
+        """Leave the figure out where it has no room, and let the doors stand below each other in `width` px."""
+        px = self._look.theme.px
         self._figure_card.setVisible(not is_compact)
-        self._place_doors(is_narrow=is_narrow)
+        beside = 0 if is_compact else px(FIGURE_WIDTH) + self._columns.spacing()
+        doors = (self.engineering, self.how_found, self.agreement)
+        needed = sum(door.sizeHint().width() for door in doors) + 2 * self._doors.spacing()
+        self._place_doors(1 if is_narrow else 3 if needed + beside <= width else 2)
 
     def _build(self) -> None:
         self._list = QVBoxLayout()
@@ -146,7 +150,7 @@ class QualityPage(Themed):
         order.addWidget(IconMark(self._look, Icon.READ), 0, Qt.AlignmentFlag.AlignTop)
         order.addWidget(self.in_order, 1)
         self._order_card.column.addLayout(order)
-        self._figures_card = Card(self._look)
+        self._figures_card = Card(self._look, padding=12)
         tables = QWidget()
         found = QVBoxLayout(tables)
         found.setContentsMargins(0, 0, 0, 0)
@@ -157,7 +161,7 @@ class QualityPage(Themed):
         self._figures_card.column.addWidget(Text(self._look, tr("Everything noticed"), size=16, weight=SEMIBOLD))
         self._figures_card.column.addWidget(self.findings, 1)
         self._doors = QGridLayout()
-        self._place_doors(is_narrow=False)
+        self._place_doors(3)
         self._left = QVBoxLayout()
         self._left.addWidget(self._scroll, 1)
         self._left.addWidget(self._figures_card, 1)
@@ -178,10 +182,12 @@ class QualityPage(Themed):
         self._page.addLayout(self._words)
         self._page.addLayout(self._columns, 1)
 
-    def _place_doors(self, *, is_narrow: bool) -> None:
-        for k, door in enumerate((self.engineering, self.how_found, self.agreement)):
+    def _place_doors(self, in_row: int) -> None:
+        """Put so many beside each other; of two rows the first has one door, as wide as both below it."""
+        places = {1: ((0, 0), (1, 0), (2, 0)), 2: ((0, 0, 1, 2), (1, 0), (1, 1)), 3: ((0, 0), (0, 1), (0, 2))}
+        for door, place in zip((self.engineering, self.how_found, self.agreement), places[in_row], strict=True):
             self._doors.removeWidget(door)
-            self._doors.addWidget(door, *((k, 0) if is_narrow else (0, k)))
+            self._doors.addWidget(door, *place)
 
     def _fill(self) -> None:
         """Make a card of each line anew."""

@@ -55,6 +55,7 @@ ANSWER_PX = 22
 RECORDINGS = (146, 280)  # px: the narrowest and the widest that their box becomes
 BOTTOM = 44  # px high: the row that closes the answer
 BESIDE_TABLE, WITHHELD, NOTE = 484, 40, 24  # px high: all else on a page, a withheld curve, strides left out by hand
+GAP = 12  # px between what stands in one row
 PELVIS = 56  # px high: above the legs
 ANSWER_ICONS = {
     Outcome.DIFFERS: Icon.WARNING,
@@ -98,6 +99,7 @@ class ResultPage(Themed):
         self._room = PageRoom()
         self._width = self._height = 0.0
         self._has_tools = False  # views, recordings and methods in one row
+        self._has_choices = False  # views and what else is chosen in one row
         self._behind = Behind.NOTHING
         self._wanted = ANSWER  # of a walk; kept while recordings without it are looked at
         self.view = Segmented(
@@ -170,9 +172,10 @@ class ResultPage(Themed):
         self.recordings.blockSignals(False)
         self.recordings.updateGeometry()
         self.recordings.setVisible(bool(names))
-        if self._has_tools != self._do_tools_fit():
+        if self._is_placed_otherwise():
             self._place()
         self._on_recording_changed()
+        self._fit_parts()
 
     def set_has_visits(self, has_visits: bool) -> None:
         """Offer earlier visits to compare with."""
@@ -191,9 +194,10 @@ class ResultPage(Themed):
         """
         room = PageRoom.of(width, height)
         self._width, self._height = width, height
-        if room != self._room or self._has_tools != self._do_tools_fit():
+        if room != self._room or self._is_placed_otherwise():
             self._room = room
             self._place()
+        self._fit_parts()
         self._fit_table()
 
     def _fit_table(self) -> None:
@@ -349,17 +353,18 @@ class ResultPage(Themed):
         for widget in (self._notes, self.methods, self.whole):
             self._foot.removeWidget(widget)
         left = Qt.AlignmentFlag.AlignLeft
-        self._has_tools = self._do_tools_fit()
+        self._has_tools, self._has_choices = self._do_tools_fit(), self._do_choices_fit()
         self._controls.addWidget(self.view, 0, 0, left)
         self._controls.addWidget(self.to_answer, 0, 1, left)
         self._controls.setColumnStretch(4, 1)
-        if self._room.is_narrow:
-            self._controls.addWidget(self._choices, 1, 0, 1, 4, left)
-            self._against_row.insertWidget(2, self.compare.view)
-        else:
+        if self._has_choices:
             self._controls.addWidget(self._choices, 0, 2)
-            if self._room.is_compact and (row := self._compared_as.layout()) is not None:
-                row.addWidget(self.compare.view)
+        else:
+            self._controls.addWidget(self._choices, 1, 0, 1, 4, left)
+        if self._room.is_narrow:
+            self._against_row.insertWidget(2, self.compare.view)
+        elif self._room.is_compact and (row := self._compared_as.layout()) is not None:
+            row.addWidget(self.compare.view)
         if self._room.is_narrow:
             self._foot.addWidget(self.methods, 0, 0, left)
             self._foot.addWidget(self.whole, 1, 0, left)
@@ -375,23 +380,51 @@ class ResultPage(Themed):
         room = self._room
         self.compare.set_room(room.is_compact, room.is_spacious, room.has_two_charts, has_view=not room.is_narrow)
         self.strides.set_charts_beside(self._room.has_strides_beside)
-        self.quality.set_room(is_compact=room.is_compact, is_narrow=room.is_narrow)
         for frame in self.charts.frames:
             frame.set_room(is_narrow=room.is_narrow, is_wide=room.has_two_tables)
-        self.charts.phases.set_narrow(self._room.is_narrow)
         self.cycles.set_room(self._room.has_two_charts)
         self.legs.set_brief(self._room.is_compact)
-        across, down = QBoxLayout.Direction.LeftToRight, QBoxLayout.Direction.TopToBottom
-        self._tables.setDirection(across if self._room.has_two_tables else down)
         self._on_look_changed()
         self._tell_answer()
         self._offer()
 
+    def _fit_parts(self) -> None:
+        """Put beside each other what has its room there: tables of figures, the doors, the phases' legend."""
+        room, cycles, phases = self._room, self.cycles, self.charts.phases
+        self.quality.set_room(self._inner_width, is_compact=room.is_compact, is_narrow=room.is_narrow)
+        phases.set_narrow(room.is_narrow or not phases.does_fit(self._inner_width))
+        right = [card for card in (cycles.time_distance, cycles.hips) if not card.isHidden()]
+        needed = _least_width(cycles.peaks) + max(map(_least_width, right), default=0) + self._tables.spacing()
+        does_fit = room.has_two_tables and needed <= self._inner_width
+        across, down = QBoxLayout.Direction.LeftToRight, QBoxLayout.Direction.TopToBottom
+        self._tables.setDirection(across if does_fit else down)
+
+    @property
+    def _inner_width(self) -> int:
+        """Between the margins of the page, in pixels."""
+        return self._look.theme.px(self._width - 2 * self._side)
+
+    @property
+    def _side(self) -> int:
+        """The margin at either side, as of the bar beneath, in px of the design."""
+        return 24 if self._room.is_on_grid else 16
+
+    def _is_placed_otherwise(self) -> bool:
+        return (self._has_tools, self._has_choices) != (self._do_tools_fit(), self._do_choices_fit())
+
     def _do_tools_fit(self) -> bool:
         """Whether views, recordings and methods fit into one row."""
         tools = (self.view, self.recordings, self.methods)
-        side, gap = 24, 12
-        return self._look.theme.px(self._width - 2 * side - 3 * gap) >= sum(one.sizeHint().width() for one in tools)
+        return self._inner_width >= sum(one.sizeHint().width() for one in tools) + self._look.theme.px(3 * GAP)
+
+    def _do_choices_fit(self) -> bool:
+        """Whether the views fit into one row with what is chosen of an answer, and with what of a comparison."""
+        if self._room.is_narrow:
+            return False
+        of_answer = _least_width(self.recordings) + _least_width(self.beside) + self.show_legs.sizeHint().width()
+        of_comparison = self.compare.kinds.sizeHint().width() + self.compare.bases.sizeHint().width()
+        needed = self.view.sizeHint().width() + max(of_answer, of_comparison) + self._look.theme.px(3 * GAP)
+        return self._inner_width >= needed
 
     def _offer(self) -> None:
         """Offer the views that this recording has."""
@@ -609,7 +642,7 @@ class ResultPage(Themed):
 
     def _on_look_changed(self) -> None:
         px, is_compact = self._look.theme.px, self._room.is_compact
-        side = px(24 if self._room.is_on_grid else 16)  # as the bar beneath it
+        side = px(self._side)
         self._page.setContentsMargins(side, px(12 if is_compact else 16), side, px(8 if is_compact else 12))
         self._page.setSpacing(px(12))
         self._controls.setSpacing(px(8 if is_compact else 12))
@@ -623,6 +656,10 @@ class ResultPage(Themed):
             layout.setSpacing(px(8 if is_compact and part is self._choices else 12))
         self._foot.setHorizontalSpacing(px(16))
         self._foot.setVerticalSpacing(px(8))
+
+
+def _least_width(widget: QWidget) -> int:
+    return widget.minimumSizeHint().width()
 
 
 def _hip_curve(hip: HipAngle, method: str) -> Curve | None:

@@ -107,6 +107,13 @@ class PhaseFrame(Card):
         self.column.addWidget(self.lanes)
         self.set_narrow(is_narrow=False)
 
+    def does_fit(self, width: int) -> bool:
+        """Whether title, legend and reading have room beside each other in `width` px."""
+        parts = (self._title, self._legend, self._reading)
+        margins = self.column.contentsMargins()
+        beside = 2 * self._head.horizontalSpacing() + margins.left() + margins.right()
+        return sum(part.sizeHint().width() for part in parts) + beside <= width
+
     def set_narrow(self, is_narrow: bool) -> None:
         """Put the legend under title and reading where it does not fit between them."""
         for part in (self._title, self._legend, self._reading):
@@ -128,6 +135,7 @@ class PhaseFrame(Card):
         self.lanes.setAccessibleName(tr("Gait phases over time"))
         self.lanes.setAccessibleDescription(self.in_words())
         self.setVisible(bool(gait))
+        self._reserve_room()
 
     def read(self, row: int | None, time_s: float | None) -> None:
         """Name what each foot does at sample `row`."""

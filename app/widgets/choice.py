@@ -15,6 +15,7 @@ class Choice(QComboBox):
         self._look = look
         self._least: float | None = None
         self._most = 0.0
+        self._whole: tuple[str, ...] = ()
         self.setAccessibleName(name)
         if sys.platform.startswith("linux"):  # there Qt gives the choice in force as the name, and ours is not heard
             self.setAccessibleDescription(name)
@@ -34,6 +35,11 @@ class Choice(QComboBox):
         self.setSizePolicy(QSizePolicy.Policy.Maximum, QSizePolicy.Policy.Fixed)
         self.updateGeometry()
 
+    def keep_whole(self, *words: str) -> None:
+        """Let none of these be cut: they are ours, and nobody typed them."""
+        self._whole = words
+        self.updateGeometry()
+
     @property
     def is_cut(self) -> bool:
         """Whether the choice in force is wider than its box."""
@@ -47,7 +53,10 @@ class Choice(QComboBox):
         hint = self.sizeHint()
         if self._least is None:
             return hint
-        return QSize(min(self._width_for(self.currentText()), self._look.theme.px(self._least)), hint.height())
+        least = self._look.theme.px(self._least)
+        if self.currentText() in self._whole:
+            least = max(least, self._width_for(self.currentText()))
+        return QSize(min(self._width_for(self.currentText()), least), hint.height())
 
     def event(self, event: QEvent) -> bool:
         if event.type() is QEvent.Type.ToolTip and self._least is not None:

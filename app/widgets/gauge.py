@@ -107,10 +107,10 @@ def _words(face: GaugeFace) -> tuple[object, ...]:
 
 def two_digits(value: float, wanted: float = math.inf) -> str:
     """Write a certainty as it is told: 0.8, 2.4, 11. What is not yet as wanted never reads as if it were."""
-    figure = figure_text(value, ".1f") if round(value, 1) < 10 else f"{value:.0f}"
-    if value > wanted >= float(figure):
+    decimals = 1 if round(value, 1) < 10 else 0
+    if value > wanted >= round(value, decimals):
         return figure_text(wanted + 0.1, ".1f") if wanted < 9.9 else f"{wanted + 1:.0f}"
-    return figure
+    return figure_text(value, f".{decimals}f")
 
 
 def gauge_measure(value: float, wanted: float, begins: float, unit: str, is_closed: bool) -> GaugeMeasure:
@@ -119,9 +119,8 @@ def gauge_measure(value: float, wanted: float, begins: float, unit: str, is_clos
     is_met = is_closed or value <= wanted
     share = 1.0 if is_met else min(max(share, 0.0), 1.0 - 1 / STEPS)
     figure = two_digits(value, math.inf if is_met else wanted) if value < begins else UNKNOWN
-    return GaugeMeasure(
-        figure, unit, f"{wanted:g}{unit}" if unit == "°" else f"{wanted:g} {unit}", _steps(share), is_met
-    )
+    space = "" if unit == "°" else " "
+    return GaugeMeasure(figure, unit, figure_text(wanted, "g") + space + unit, _steps(share), is_met)
 
 
 def _steps(share: float) -> float:
@@ -332,14 +331,15 @@ class Gauge(QWidget):
             painter.setPen(QColor(c.ink))
             painter.setFont(theme.font(14, MEDIUM))
             painter.drawText(line.adjusted(px(24), 0, 0, 0), Qt.AlignmentFlag.AlignVCenter, name)
+            room = line.width() - px(24 + 6) - painter.fontMetrics().horizontalAdvance(name)
             painter.setPen(QColor(c.ink2))
             painter.setFont(theme.font(14))
             wanted, short = tr("while walking"), tr("later")  # an ankle's axis
             if measure is not None:
                 wanted, short = tr("under {limit}").format(limit=measure.wanted), f"< {measure.wanted}"
-            metrics = painter.fontMetrics()
-            if metrics.horizontalAdvance(name) + metrics.horizontalAdvance(wanted) + px(24 + 6) > line.width():
+            if painter.fontMetrics().horizontalAdvance(wanted) > room:
                 wanted = short
+                painter.setFont(self._fitting(short, 14, room, REGULAR))
             painter.drawText(line, Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignRight, wanted)
             top += px(26)
 

@@ -1,5 +1,7 @@
 """A piece of text that follows the theme. It is never cut short: it wraps, or it asks for the room it needs."""
 
+import re
+
 from PySide6.QtCore import QEvent, Qt
 from PySide6.QtGui import QColor, QFont, QPalette
 from PySide6.QtWidgets import QLabel, QWidget
@@ -9,6 +11,8 @@ from app.theme import ThemeNotifier
 REGULAR = QFont.Weight.Normal
 MEDIUM = QFont.Weight.Medium
 SEMIBOLD = QFont.Weight.DemiBold
+JOINER = "\N{WORD JOINER}"
+UNIT = re.compile(r"(?<=[m°]/)(?=s\b)")  # m/s and °/s, which Qt would break behind the stroke
 
 
 class Text(QLabel):
@@ -25,12 +29,20 @@ class Text(QLabel):
         is_code: bool = False,
         parent: QWidget | None = None,
     ) -> None:
-        super().__init__(text, parent)
+        super().__init__(parent)
         self._look = look
         self._size, self._weight, self._tone, self._is_code = size, weight, tone, is_code
         self.setTextFormat(Qt.TextFormat.PlainText)  # what files hold is never markup
         self.setWordWrap(wraps)
+        self.setText(text)
         self._on_look_changed()
+
+    def setText(self, text: str) -> None:  # noqa: N802  Qt names it
+        super().setText(UNIT.sub(JOINER, text) if self.wordWrap() else text)
+
+    def text(self) -> str:
+        """Give the words as they were told, without what keeps a unit in one line."""
+        return super().text().replace(JOINER, "")
 
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)

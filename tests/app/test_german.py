@@ -231,7 +231,8 @@ WITH_POINTS = (  # files, drawings and what a terminal prints: read by programs,
         "app/reports/agreement/printed.py",
         "app/reports/agreement/tables.py",
     ),
-    *("app/reports/csv_report.py", "app/reports/targets.py", "app/compare_command.py"),
+    *("app/reports/csv_report.py", "app/reports/targets.py", "app/compare_command.py", "app/reports/alignments.py"),
+    "app/study/groups.py",
 )
 
 
@@ -243,14 +244,15 @@ def fractions_in(source: str) -> Iterator[int]:
         is_svg = '="' in said or said.startswith("M")
         for part in text.values:
             spec = ast.unparse(part.format_spec) if isinstance(part, ast.FormattedValue) and part.format_spec else ""
-            if re.search(r"\.([1-9]|\{.*\})[fg]", spec) and not is_svg:
+            if re.search(r"\.([1-9]|\{.*\})[fg]|^f?['\"]g", spec) and not is_svg:
                 yield part.lineno
 
 
 def test_a_fraction_that_goes_round_the_language_is_found() -> None:
-    assert list(fractions_in("f'{a:.1f}'\nf'{a:+.{n}f} s'\nf'{a:.0f}'\nf'x=\"{a:.1f}\"'\nfigure_text(a, '.1f')")) == [
+    assert list(fractions_in("f'{a:.1f}'\nf'{a:+.{n}f} s'\nf'{a:.0f}'\nf'x=\"{a:.1f}\"'\nf'{a:g} mm'\nf'{a}'")) == [
         1,
         2,
+        5,
     ]
 
 

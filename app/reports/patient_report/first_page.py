@@ -20,7 +20,7 @@ from app.reports.patient_report.plain_text import CONDITION_LENGTH, typed
 from app.reports.patient_report.request import ReportRequest
 from app.reports.patient_report.what_stands_out import MAX_AWAY_SD, caveat, nothing_found, printed_findings
 from app.reports.walk_figures import by_hand_in_words
-from app.wording import capitalised, joined, name_of, side_name, tr, tr_n
+from app.wording import capitalised, figure_text, joined, name_of, side_name, tr, tr_n
 from core.body import Joint, JointKind, Side
 from core.verdicts.model import Assessment, Verdict, worst
 from core.verdicts.quantities import WINDOWS
@@ -238,7 +238,7 @@ def _sensors(request: ReportRequest, facts: Facts) -> str:
     rates = {info.rate_hz for site, info in request.visit.session.sensors.items() if site in worn and info.rate_hz}
     models = {info.model for site, info in request.visit.session.sensors.items() if site in worn and info.model}
     count = tr_n("{count} motion sensor", "{count} motion sensors", len(worn)).format(count=len(worn))
-    rate = [f"{rates.pop():g}\u00a0Hz"] if len(rates) == 1 else []
+    rate = [figure_text(rates.pop(), "g") + "\u00a0Hz"] if len(rates) == 1 else []
     return ", ".join([count, *rate, *sorted(typed(model, 40) for model in models)])
 
 

@@ -87,7 +87,7 @@ def _sources(facts: Facts) -> list[str]:
             "Values and SD are read from the mean curve, which has no SD of range."
         )
         speed = fixed(curves.speed_m_s, 2)
-        said.append(pattern.format(n=curves.n, group=tr(curves.group), speed=speed, source=curves.source))
+        said.append(pattern.format(n=curves.n, group=tr(curves.group), speed=speed, source=_derived(curves.source)))
     if values is not None:
         pattern = tr(
             "[2] Time and distance: {group}, optical markers and force plates; class “{speed_class}” of the Froude "
@@ -99,10 +99,18 @@ def _sources(facts: Facts) -> list[str]:
                 speed_class=speed_class_in_words(values.speed_class),
                 speed=fixed(values.speed_m_s, 2),
                 n=values.n,
-                source=values.source,
+                source=_derived(values.source),
             )
         )
     return said or [why_no_band(facts, facts.bands.why_no_values)]
+
+
+def _derived(source: str) -> str:
+    """Name a source and who derived its figures: the citation stays as it was published."""
+    published, _, derivation = source.partition(", as derived by ")
+    if not derivation:
+        return source
+    return tr("{published}, as derived by {derivation}").format(published=published, derivation=derivation)
 
 
 def _made(made_at: datetime) -> str:

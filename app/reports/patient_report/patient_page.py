@@ -230,7 +230,7 @@ def _goals(facts: Facts, say: Say, language: str) -> list[str]:
         if what is None:
             continue
         is_angle = goal.column == KNEE
-        value = f"{goal.value:g}".replace(".", "," if language == "de" else ".")
+        value = figure_text(goal.value, "g", language)
         words = say(AT_MOST if goal.is_at_most else AT_LEAST).format(
             what=say(what),
             value=say(DEGREES if is_angle else METRES).format(value=value),

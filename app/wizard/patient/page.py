@@ -316,7 +316,10 @@ class PatientPage(Themed):
         self._beside.setMinimumWidth(0 if self._is_compact else width)
         self._beside.setMaximumWidth(ANY_SIZE if self._is_compact else width)
         cards = (self._form, self._beside)
-        highest = max(px(HIGHEST_CARD), *(card.minimumSizeHint().height() for card in cards))  # long words need more
+        bar = self._scroll.verticalScrollBar().sizeHint().width()
+        form = self.width() - 2 * side - bar - self._cards.spacing() - width
+        needed = (card.heightForWidth(room) for card, room in zip(cards, (form, width), strict=True))
+        highest = max(px(HIGHEST_CARD), *needed)  # long words need more
         for card in cards:
             card.setMaximumHeight(ANY_SIZE if self._is_compact else highest)
 

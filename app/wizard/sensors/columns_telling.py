@@ -90,7 +90,7 @@ class ColumnsTelling(QObject):
             self.changed.emit()
             self._form.focus()
         self._separator = separator
-        self._form.show_values([f"{value:g}" for value in table[-1]])
+        self._form.show_values([figure_text(value, "g") for value in table[-1]])
         columns = self.columns
         self._form.tell(*(_missing() if columns is None else _said_of(columns, table)))
 

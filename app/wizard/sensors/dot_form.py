@@ -1,5 +1,6 @@
 """Which DOTs are worn, and how are they to measure? A list with a tick before each, and three choices beside it."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -24,6 +25,7 @@ ROW, HEAD, PADDING, MARK = 44, 32, 10, 20
 STRONG_DBM, FAIR_DBM = -60, -75
 LOW = 0.15  # of a battery
 AT_LEAST_ROWS = 3
+NOTE_SHARE = 0.6  # of a note's width: broken into two lines it needs no more
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,6 +131,7 @@ class DotForm(Themed):
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look, self._is_narrow = look, False
+        self._room, self._is_window_narrow = math.inf, False
         self._lines: tuple[DotLine, ...] = ()
         self._title = Text(look, size=20, weight=SEMIBOLD, wraps=True)
         self._lead = Text(look, size=14, tone="ink2", wraps=True)
@@ -187,6 +190,7 @@ class DotForm(Themed):
         columns.append(TableColumn(TextCell("", size=12, tone="ink2", wraps=True), share=1))
         self.list.show_rows(columns, [self._row(number, line) for number, line in enumerate(lines)])
         self.list.choose(min(max(row, 0), len(lines) - 1))
+        self._fit()
         count = len(lines)
         title = tr_n("{count} Movella DOT is heard", "{count} Movella DOTs are heard", count)
         self._title.setText(title.format(count=count))
@@ -208,8 +212,19 @@ class DotForm(Themed):
         self.identify_pressed.emit(row)
         return True
 
-    def set_narrow(self, is_narrow: bool) -> None:
-        """Lay list and choices one below the other."""
+    def set_room(self, width: int, *, is_narrow: bool) -> None:
+        """Lay list and choices one below the other in a narrow window, and where both need more than `width` px."""
+        self._room, self._is_window_narrow = width, is_narrow
+        self._fit()
+
+    def _fit(self) -> None:
+        """See whether notes have the room beside the choices to wrap into two lines, which a row holds."""
+        metrics = QFontMetrics(self._look.theme.font(14))
+        note = max((metrics.horizontalAdvance(line.note) for line in self._lines), default=0)
+        least = self.list.minimumSizeHint().width() + NOTE_SHARE * note + self._choices.minimumSize().width()
+        margins = self._card.column.contentsMargins()
+        beside = margins.left() + margins.right() + self._body.spacing()
+        is_narrow = self._is_window_narrow or least + beside > self._room
         if is_narrow != self._is_narrow:
             self._is_narrow = is_narrow
             way = QBoxLayout.Direction.TopToBottom if is_narrow else QBoxLayout.Direction.LeftToRight

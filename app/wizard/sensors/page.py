@@ -446,7 +446,7 @@ class SensorsPage(Themed):
         self._column.setContentsMargins(side, above, side, above)
         room = self.width() - 2 * side
         self.columns.set_room(room)
-        self.dots.set_narrow(self._is_compact)
+        self.dots.set_room(room, is_narrow=self._is_compact)
         self.places.set_narrow(self._is_compact)
         figure, rows = self.places.minimumSizeHint().width(), self.list.minimumSizeHint().width()
         rows = max(rows + px(SCROLL_BAR), self.ways.minimumSizeHint().width())
@@ -457,7 +457,8 @@ class SensorsPage(Themed):
         self._body.setDirection(way)
         if is_stacked:
             self.places.set_narrow(True)
-            self.places.setFixedWidth(room)
+            self.places.setMinimumWidth(0)  # the bar that scrolls both takes of the room
+            self.places.setMaximumWidth(room)
         elif self._is_compact:
             spare = max(0, room - gap - rows - figure)
             self.places.setFixedWidth(min(figure + spare // 2, max(figure, px(FIGURE_WIDTH[0]))))

@@ -20,7 +20,7 @@ from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.themed import Themed
 from app.wizard.walking.bench import ChangeEntry
 from app.wizard.walking.stepper import Stepper
-from app.wording import tr
+from app.wording import figure_text, tr
 from core.alignment import FIGURES, MOST_TEXT, ProsthesisPart
 from core.body import Side
 
@@ -151,7 +151,7 @@ class AlignmentCard(Card):
             caption, unit = shown[name]
             value = entry.figure(name)
             sign = "+" if value > 0 else MINUS if value < 0 else ""
-            said = turns_words(value) if name == "turns" and value else f"{sign}{abs(value):g}{unit}"
+            said = turns_words(value) if name == "turns" and value else sign + figure_text(abs(value), "g") + unit
             stepper.show_value(caption, said)
         self.words.set_text(entry.text)
         line = change_in_words(entry.parts)

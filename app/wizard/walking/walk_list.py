@@ -146,7 +146,8 @@ class WalkList(Card):
         px = self._look.theme.px
         rows = len(self._rows) if self._is_compact else min(LEAST_ROWS, len(self._rows))
         self._scroll.setMinimumHeight(px((ROW + BETWEEN) * rows))
-        self._scroll.setMinimumWidth(max(px(LEAST_WIDTH), self._inside.minimumSizeHint().width()))
+        bar = 0 if self._is_compact else self._scroll.verticalScrollBar().sizeHint().width()
+        self._scroll.setMinimumWidth(max(px(LEAST_WIDTH), self._inside.minimumSizeHint().width() + bar))
 
     def _on_look_changed(self) -> None:
         super()._on_look_changed()

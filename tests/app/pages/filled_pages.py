@@ -36,7 +36,7 @@ from app.wizard.standing.page import StandPhase, StandStillPage, StandStillView
 from app.wizard.walking.page import WalkingPage
 from app.wizard.walking.readout import LiveLane, LiveTrace, PhaseSpan, WalkingReadout
 from app.wizard.walking.walk_list import WalkRow, WalkState
-from app.wording import tr
+from app.wording import figure_text, tr
 from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site
 from core.findings import Finding, Severity
 from core.gait.phases import Phase
@@ -240,10 +240,14 @@ def standing(phase: StandPhase, **more: object) -> Callable[[ThemeNotifier], QWi
 def free_motion(look: ThemeNotifier) -> QWidget:
     page = FreeMotionPage(look)
     open_face = GaugeFace(
-        GaugeState.NOW, GaugeMeasure("11", "°", "1.5°", 0.4, False), GaugeMeasure("34", "mm", "10 mm", 0.3, False)
+        GaugeState.NOW,
+        GaugeMeasure("11", "°", figure_text(1.5, "g") + "°", 0.4, False),
+        GaugeMeasure("34", "mm", "10 mm", 0.3, False),
     )
     enough = GaugeFace(
-        GaugeState.ENOUGH, GaugeMeasure("0.8", "°", "1.5°", 1.0, True), GaugeMeasure("6", "mm", "10 mm", 1.0, True)
+        GaugeState.ENOUGH,
+        GaugeMeasure(figure_text(0.8, "g"), "°", figure_text(1.5, "g") + "°", 1.0, True),
+        GaugeMeasure("6", "mm", "10 mm", 1.0, True),
     )
     faces = dict.fromkeys(LEG_JOINTS, enough) | {Joint.LEFT_KNEE: open_face}
     hint = Hint(tr("Circle the left lower leg"), tr("Change direction."))

@@ -2,7 +2,7 @@
 
 from itertools import pairwise
 from time import process_time
-from uuid import UUID
+from uuid import UUID, uuid4
 
 import pytest
 from PySide6.QtCore import Qt
@@ -10,7 +10,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.pages.home_lists import TEXT_ROW, LineCell, PatientLine, SessionLine
+from app.pages.home_lists import TEXT_ROW, LineCell, PatientLine, SessionCell, SessionLine
 from app.pages.home_page import HomePage
 from app.theme import ThemeNotifier
 
@@ -165,3 +165,17 @@ def test_sessions_that_are_read_anew_keep_the_one_that_is_chosen(page: HomePage)
     page.show_sessions([session(3, "Shoes"), session(2, "Barefoot"), session(1, "Barefoot")])
     assert page.sessions.line is not None
     assert page.sessions.line.id == UUID(int=1)
+
+
+def test_long_words_for_strides_and_state_push_a_sessions_columns_apart(look: ThemeNotifier) -> None:
+    states = ("Bericht nicht geschrieben", "Bericht geschrieben")
+    lines = tuple(SessionLine(uuid4(), "14. Nov. 2026", "Shoes", "24 Doppelschritte", state) for state in states)
+    for line in lines:
+        (row,) = SessionCell(line, lines).word_rows(520, look.theme)
+        placed = sorted(row, key=lambda word: word.left)
+        ends = [word.left + word.width(look.theme) for word in placed]
+        assert [word.text for word in placed] == ["14. Nov. 2026", "Shoes", "24 Doppelschritte", line.state]
+        assert all(end < after.left for end, after in zip(ends, placed[1:], strict=False))
+        assert ends[-1] <= 520
+    lefts = [SessionCell(line, lines).word_rows(520, look.theme)[0][1].left for line in lines]
+    assert lefts[0] == lefts[1], "columns are those of the list"

@@ -8,6 +8,7 @@ from pytestqt.qtbot import QtBot
 
 from app.theme import ThemeNotifier
 from app.widgets.gauge import Gauge, GaugeFace, GaugeState, gauge_face, two_digits
+from app.wording import use_language
 from core.body import Joint
 from core.live.excitation import HUMAN, PROSTHESIS, ExcitationState
 
@@ -38,6 +39,17 @@ def test_figures_have_two_digits(value: float, written: str) -> None:
 )
 def test_what_is_not_yet_as_wanted_does_not_read_as_if_it_were(value: float, wanted: float, written: str) -> None:
     assert two_digits(value, wanted) == written
+
+
+def test_in_german_a_figure_and_what_is_wanted_have_a_comma() -> None:
+    use_language("de")
+    try:
+        face = gauge_face(Joint.LEFT_KNEE, state(3.84, 6.2), HUMAN, is_now=True)
+        assert face.axis is not None
+        assert (face.axis.figure, face.axis.wanted) == ("3,8", "1,5°")
+        assert (two_digits(1.52, 1.5), two_digits(10.3, 10.0)) == ("1,6", "11")
+    finally:
+        use_language("en")
 
 
 def test_a_knee_has_both_rings_and_shows_figures_without_floors() -> None:

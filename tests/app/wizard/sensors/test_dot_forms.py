@@ -1,7 +1,9 @@
 """The forms of sensors with Bluetooth LE: what their lines say, what each choice costs, whether all has its room."""
 
+from dataclasses import replace
+
 import pytest
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
@@ -9,7 +11,7 @@ from app.theme import ThemeNotifier
 from app.widgets.sensors_progress import LineState, ProgressShown, SensorLine, SensorsProgress
 from app.wizard.sensors.dot_form import DotChoice, DotForm, DotLine
 from app.wizard.sensors.memories_form import HeldLine, MemoriesForm
-from tests.app.room import words_cut
+from tests.app.room import settle, words_cut
 from tests.app.wizard.emulated_dots import rows_of
 
 LINES = [
@@ -87,12 +89,23 @@ def test_each_way_to_record_walks_says_its_price(form: DotForm, record_hz: int, 
 
 @pytest.mark.parametrize("size", SIZES)
 def test_everything_on_the_list_of_sensors_has_its_room(form: DotForm, size: tuple[int, int]) -> None:
-    form.set_narrow(size[0] < 1000)
+    form.set_room(size[0], is_narrow=size[0] < 1000)
     form.resize(*size)
     form.tell(
         "Not synchronised: DOT 0A22 (heard too little of the others).", "Lay all sensors side by side, try again."
     )
     assert [cut for cut in words_cut(form) if "DOT 0A2" not in cut] == []
+
+
+def test_choices_stand_below_the_list_where_the_words_of_a_language_are_too_long(form: DotForm) -> None:
+    form.set_room(1016, is_narrow=False)
+    assert form.walks.y() < form.list.geometry().bottom(), "beside it in English"
+    longer = tuple(replace(line, note=2 * line.note) for line in LINES)
+    form.show_dots(longer)
+    settle()
+    assert form.walks.mapTo(form, QPoint(0, 0)).y() > form.list.mapTo(form, QPoint(0, 0)).y() + form.list.height()
+    form.show_dots(LINES)
+    assert form.minimumSizeHint().width() <= 1016
 
 
 @pytest.mark.parametrize("size", SIZES)
