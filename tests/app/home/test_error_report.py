@@ -3,7 +3,6 @@
 from pathlib import Path
 
 import pytest
-from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QFileDialog, QWidget
 from pytestqt.qtbot import QtBot
 
@@ -44,7 +43,9 @@ def test_a_place_that_cannot_be_written_is_said(qtbot: QtBot, report: ErrorRepor
 
 def test_the_dialog_asks_and_writes_where_it_was_told(qtbot: QtBot, report: ErrorReport, tmp_path: Path) -> None:
     report.save()
-    dialog = report.parent().findChild(QFileDialog)
+    window = report.parent()
+    assert isinstance(window, QWidget)
+    dialog = window.findChild(QFileDialog)
     assert isinstance(dialog, QFileDialog)
     assert dialog.selectedFiles()[0].endswith(FILE_NAME)
     with qtbot.waitSignal(report.written):
@@ -56,7 +57,7 @@ def test_the_settings_offer_it_and_say_where_it_went(qtbot: QtBot) -> None:
     page = SettingsPage(ThemeNotifier(), 12, [])
     qtbot.addWidget(page)
     with qtbot.waitSignal(page.error_report_wished):
-        qtbot.mouseClick(page.report_error, Qt.MouseButton.LeftButton)
+        page.report_error.click()
     assert page.trouble_said == ""
     page.show_error_report("/a/b.txt")
     assert page.trouble_said == "Saved as /a/b.txt."
