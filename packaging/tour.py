@@ -44,7 +44,7 @@ MANUAL = {  # which stop of a tour becomes which picture
         "10b-walking": "walking",
         "13a-results": "results",
         "13e-compare": "compare",
-        "26a-report": "report",
+        "14a-report": "report",
         "27-home-again": "home",
     },
     "bench": {"34-b-against-a": "bench"},

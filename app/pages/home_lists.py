@@ -179,8 +179,9 @@ class SessionCell(LineCell):
         amount = replace(amount, left=(state.left if has_states else room) - amounts)
         if date.width(theme) + px(GAP) > amount.left:
             return self._stacked(room, theme)
-        if px(DATE) + conditions.width(theme) + px(GAP) <= amount.left:
-            return [[date, amount, state, replace(conditions, left=px(DATE))]]
+        dates = max(px(DATE), *(piece[0].width(theme) + px(GAP) for piece in pieces))
+        if dates + conditions.width(theme) + px(GAP) <= amount.left:
+            return [[date, amount, state, replace(conditions, left=dates)]]
         return [[date, amount, state], *_wrapped(conditions, room, theme)]
 
     def _stacked(self, room: int, theme: Theme) -> list[list[Word]]:

@@ -69,7 +69,8 @@ def results(view: str, *opened: str) -> Make:
         page.show_visit(visit_of(analysis, session))
         page.view.choose(view)
         for name in opened:
-            {"door": page.door, "figures": page.all_figures, "engineering": page.quality.engineering}[name].click()
+            buttons = {"door": page.door, "figures": page.all_figures, "engineering": page.quality.engineering}
+            {**buttons, "legs": page.show_legs}[name].click()
         return page
 
     return make
@@ -170,6 +171,7 @@ FRAMED: dict[str, tuple[int, Make]] = {
     "timed test": (4, timed),
     "timed result": (4, timed_result),
     "answer": (5, results(ANSWER)),
+    "legs": (5, results(ANSWER, "legs")),
     "whole walk": (5, results(WHOLE)),
     "strides": (5, results(STRIDES)),
     "compare": (5, results(COMPARE)),

@@ -1,4 +1,4 @@
-"""On a screen of 1280 x 800, and at 200 % of 1920 x 1200, are pages of a visit no wider than their room?
+"""On a screen of 1280 x 800, and at 200 % of 1920 x 1200, has every word its room, no page being wider than its own?
 
 In English and in German.
 """
@@ -12,7 +12,7 @@ from pytestqt.qtbot import QtBot
 from app.theme import ThemeNotifier
 from app.wording import use_language
 from tests.app.accessibility.framed_pages import FRAMED, framed
-from tests.app.room import settle
+from tests.app.room import settle, words_cut
 
 pytestmark = pytest.mark.endurance
 
@@ -27,7 +27,7 @@ def language(request: pytest.FixtureRequest) -> Iterator[str]:
 @pytest.mark.usefixtures("language")
 @pytest.mark.parametrize(("scale", "size"), [(1.0, (1280, 800)), (2.0, (1920, 1200))])
 @pytest.mark.parametrize("name", FRAMED)
-def test_a_page_need_not_be_scrolled_sideways(
+def test_a_page_has_all_its_words_and_need_not_be_scrolled_sideways(
     qtbot: QtBot, look: ThemeNotifier, name: str, scale: float, size: tuple[int, int]
 ) -> None:
     look.set_scale(scale)
@@ -39,3 +39,4 @@ def test_a_page_need_not_be_scrolled_sideways(
     areas = [one for one in shell.findChildren(QScrollArea) if one.isVisible()]
     assert areas
     assert [one.horizontalScrollBar().maximum() for one in areas] == [0] * len(areas)
+    assert words_cut(shell) == []
