@@ -4,6 +4,7 @@ No recording of a laboratory is at hand for these formats: the fixtures are buil
 C3D by the library that reads them elsewhere, too.
 """
 
+import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -35,12 +36,25 @@ def limited() -> Iterator[LimitedReading]:
 
 @pytest.fixture
 def read(tmp_path: Path, limited: LimitedReading) -> Read:
-    """Read a content under a name that says nothing."""
+    """Read a content under a name that says nothing: here, and by the process, which says the same."""
 
     def of(content: str | bytes) -> ReferenceFile:
         path = tmp_path / "reference"
         path.write_bytes(content.encode() if isinstance(content, str) else content)
-        return limited.read_reference(path)
+        try:
+            here = read_reference(path)
+        except FileRefusedError as refused:
+            with pytest.raises(FileRefusedError, match=f"^{re.escape(str(refused))}$"):
+                limited.read_reference(path)
+            raise
+        found = limited.read_reference(path)
+        assert (found.format, found.source) == (here.format, here.source)
+        for trial, same in zip(found.trials, here.trials, strict=True):
+            assert set(trial.angles) == set(same.angles)
+            for joint, (time_s, angle_rad) in trial.angles.items():
+                np.testing.assert_array_equal(time_s, same.angles[joint][0])
+                np.testing.assert_array_equal(angle_rad, same.angles[joint][1])
+        return found
 
     return of
 
