@@ -37,7 +37,9 @@ LOOK = ["light 1280x800@100"]
 CALLS = ROOT / "build" / "try" / "calls"  # what strace noted, to look into
 WINDOW_S = 60.0
 PICTURES = ROOT / "build" / "try" / "pictures"
-OF_OTHERS = re.compile(r"/(home|etc/ssl/certs|etc/ca-certificates.conf|usr/local/share/ca-certificates|var/lib/systemd)\b")
+OF_OTHERS = re.compile(
+    r"/(home|etc/ssl/certs|etc/ca-certificates.conf|usr/local/share/ca-certificates|var/lib/systemd)\b"
+)
 
 
 class TrialError(Exception):
