@@ -3,9 +3,10 @@
 from pathlib import Path
 
 from PySide6.QtCore import QObject, Signal
-from PySide6.QtWidgets import QFileDialog, QWidget
+from PySide6.QtWidgets import QWidget
 
 from app.logs import error_report, log_folder
+from app.widgets.folder_dialog import ask_for_new_file
 from app.wording import tr
 
 FILE_NAME = "gaitwright-error-report.txt"
@@ -22,13 +23,7 @@ class ErrorReport(QObject):
         self._window = window
 
     def save(self) -> None:
-        dialog = QFileDialog(self._window, tr("Save an error report"))
-        dialog.setAcceptMode(QFileDialog.AcceptMode.AcceptSave)
-        dialog.setDefaultSuffix("txt")
-        dialog.selectFile(FILE_NAME)
-        dialog.fileSelected.connect(self.write)
-        dialog.finished.connect(dialog.deleteLater)
-        dialog.open()
+        ask_for_new_file(self._window, tr("Save an error report"), FILE_NAME, self.write)
 
     def write(self, path: str) -> None:
         """Write versions, the kind of machine and the log's last lines into a file."""

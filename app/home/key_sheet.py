@@ -5,8 +5,9 @@ from pathlib import Path
 from PySide6.QtCore import QMarginsF, QObject, Qt, Signal
 from PySide6.QtGui import QFont, QPageLayout, QPainter, QPdfWriter
 from PySide6.QtPrintSupport import QPrintDialog, QPrinter
-from PySide6.QtWidgets import QFileDialog, QWidget
+from PySide6.QtWidgets import QWidget
 
+from app.widgets.folder_dialog import ask_for_new_file
 from app.wording import tr
 
 FILE_NAME = "gaitwright-recovery-key.txt"
@@ -33,13 +34,7 @@ class KeySheet(QObject):
 
     def save(self, key: str) -> None:
         self._key = key
-        dialog = QFileDialog(self._window, tr("Save the recovery key"))
-        dialog.setAcceptMode(QFileDialog.AcceptMode.AcceptSave)
-        dialog.setDefaultSuffix("txt")
-        dialog.selectFile(FILE_NAME)
-        dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        dialog.fileSelected.connect(self.write)
-        dialog.open()
+        ask_for_new_file(self._window, tr("Save the recovery key"), FILE_NAME, self.write)
 
     def write(self, path: str) -> None:
         """Write the sheet into a file."""

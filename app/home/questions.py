@@ -15,6 +15,7 @@ from app.study.groups import GroupAnswer, Grouping, GroupQuestion, answer, group
 from app.study.parameter_table import PARQUET, ParameterTable
 from app.theme import ThemeNotifier
 from app.widgets.action_bar import BarAction, BarState
+from app.widgets.folder_dialog import ask_for_new_file
 from app.wording import filled, tr
 from app.workers.background import Background, Report, Work
 from devices.files.refusal import FileRefusedError
@@ -99,15 +100,11 @@ class Questions(QObject):
         """Ask where the groups in sight are to be written."""
         if self.page.found is None:
             return
-        self._dialog = QFileDialog(self.page.window(), tr("Save the groups"))
-        self._dialog.setAcceptMode(QFileDialog.AcceptMode.AcceptSave)
-        self._dialog.setDefaultSuffix("csv")
-        self._dialog.setNameFilters(["CSV (*.csv)"])
         question = self.page.found.question
-        self._dialog.selectFile(f"{question.measure}_by_{question.grouping}.csv")
-        self._dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        self._dialog.fileSelected.connect(self._on_file_selected)
-        self._dialog.open()
+        proposed = f"{question.measure}_by_{question.grouping}.csv"
+        self._dialog = ask_for_new_file(
+            self.page.window(), tr("Save the groups"), proposed, self._on_file_selected, ["CSV (*.csv)"]
+        )
 
     def write(self, path: Path) -> None:
         """Write the groups in sight."""

@@ -1,6 +1,6 @@
 """Which folder or files are meant? The system's own dialog, which holds up nothing meanwhile."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from PySide6.QtCore import Qt
@@ -36,6 +36,22 @@ def ask_for_new_folder(
     dialog.setAcceptMode(QFileDialog.AcceptMode.AcceptSave)
     dialog.setFileMode(QFileDialog.FileMode.AnyFile)
     dialog.selectFile(proposed_in(Path(dialog.directory().absolutePath())))
+    dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+    dialog.fileSelected.connect(on_chosen)
+    dialog.open()
+    return dialog
+
+
+def ask_for_new_file(
+    parent: QWidget, title: str, proposed: str, on_chosen: Callable[[str], None], filters: Sequence[str] = ()
+) -> QFileDialog:
+    """Open a dialog for a file that is to be written; what is typed without a suffix gets that of `proposed`."""
+    dialog = QFileDialog(parent, title)
+    dialog.setAcceptMode(QFileDialog.AcceptMode.AcceptSave)
+    dialog.setDefaultSuffix(Path(proposed).suffix[1:])
+    if filters:
+        dialog.setNameFilters(filters)
+    dialog.selectFile(proposed)
     dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
     dialog.fileSelected.connect(on_chosen)
     dialog.open()

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 from uuid import UUID
 
-from PySide6.QtCore import QObject, Qt, QUrl
+from PySide6.QtCore import QObject, QUrl
 from PySide6.QtGui import QDesktopServices
 from PySide6.QtWidgets import QFileDialog, QStackedWidget
 
@@ -27,6 +27,7 @@ from app.storage.pseudonyms import Typed
 from app.storage.stored import Action, LibraryError
 from app.theme import ThemeNotifier
 from app.widgets.action_bar import BarAction, BarState
+from app.widgets.folder_dialog import ask_for_new_folder
 from app.widgets.rail_row import StepState
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.report.leaving_dialog import LeavingDialog
@@ -146,16 +147,14 @@ class ReportStep(Step):
         self._ask_where()
 
     def _ask_where(self) -> None:
-        self.dialog = QFileDialog(self.page, tr("Save the report and the results into a new folder"))
-        self.dialog.setAcceptMode(QFileDialog.AcceptMode.AcceptSave)
-        self.dialog.setFileMode(QFileDialog.FileMode.AnyFile)
-        if self._visit.session is not None:
-            told = self._visit.session.details
-            place = Path(self.dialog.directory().absolutePath())
-            self.dialog.selectFile(free_name(place, session_name(told.patient.code, told.started)))
-        self.dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        self.dialog.fileSelected.connect(self.save_in)
-        self.dialog.open()
+        title = tr("Save the report and the results into a new folder")
+        self.dialog = ask_for_new_folder(self.page, title, self._proposed_in, self.save_in)
+
+    def _proposed_in(self, place: Path) -> str:
+        if self._visit.session is None:
+            return ""
+        told = self._visit.session.details
+        return free_name(place, session_name(told.patient.code, told.started))
 
     def on_other(self, number: int) -> None:
         if number == 0:
