@@ -149,15 +149,34 @@ class PatientCell(LineCell):
         return _placed(rows, width, theme)
 
 
+class SessionColumns:
+    """How wide date, amount and state of `lines` are, which share their columns; measured once for each look."""
+
+    def __init__(self, lines: Sequence[SessionLine]) -> None:
+        self._pieces = [_pieces(line) for line in lines]
+        self._theme: Theme | None = None
+        self._widths = (0, 0, 0)
+
+    def widths(self, theme: Theme) -> tuple[int, int, int]:
+        """With the gap behind each; 0 for states where no line has one."""
+        if theme is not self._theme:
+            px = theme.px
+            dates, _conditions, amounts, states = zip(*self._pieces, strict=True)
+            date, amount, state = (
+                max(px(least), *(word.width(theme) + px(GAP) for word in words))
+                for least, words in ((DATE, dates), (AMOUNT, amounts), (STATE, states))
+            )
+            has_states = any(word.text for word in states)
+            self._theme, self._widths = theme, (date, amount, state if has_states else 0)
+        return self._widths
+
+
 @dataclass(frozen=True, slots=True)
 class SessionCell(LineCell):
-    """Date, conditions, amount and state before an arrow, in columns where there is room for them.
-
-    `lines`: all of the list, which share their columns.
-    """
+    """Date, conditions, amount and state before an arrow, in columns where there is room for them."""
 
     line: SessionLine
-    lines: tuple[SessionLine, ...]
+    columns: SessionColumns
 
     def word_rows(self, width: int, theme: Theme) -> list[list[Word]]:
         room, is_wide = width - theme.px(ARROW), width >= WIDE_SESSION_FROM * theme.scale
@@ -171,15 +190,11 @@ class SessionCell(LineCell):
 
     def _in_columns(self, room: int, theme: Theme) -> list[list[Word]]:
         px, (date, conditions, amount, state) = theme.px, _pieces(self.line)
-        pieces = [_pieces(line) for line in self.lines]
-        states = max(px(STATE), *(piece[3].width(theme) + px(GAP) for piece in pieces))
-        amounts = max(px(AMOUNT), *(piece[2].width(theme) + px(GAP) for piece in pieces))
-        has_states = any(line.state for line in self.lines)
+        dates, amounts, states = self.columns.widths(theme)
         state = replace(state, left=room - states)
-        amount = replace(amount, left=(state.left if has_states else room) - amounts)
+        amount = replace(amount, left=state.left - amounts)
         if date.width(theme) + px(GAP) > amount.left:
             return self._stacked(room, theme)
-        dates = max(px(DATE), *(piece[0].width(theme) + px(GAP) for piece in pieces))
         if dates + conditions.width(theme) + px(GAP) <= amount.left:
             return [[date, amount, state, replace(conditions, left=dates)]]
         return [[date, amount, state], *_wrapped(conditions, room, theme)]
@@ -236,9 +251,9 @@ class LineList(CellTable):
         """
         scrolled = self.verticalScrollBar().value()
         self.lines = tuple(lines)
-        sessions = tuple(line for line in lines if isinstance(line, SessionLine))
+        columns = SessionColumns([line for line in lines if isinstance(line, SessionLine)])
         cells: list[LineCell] = [
-            PatientCell(line) if isinstance(line, PatientLine) else SessionCell(line, sessions) for line in lines
+            PatientCell(line) if isinstance(line, PatientLine) else SessionCell(line, columns) for line in lines
         ]
         self._longest = nlargest(MEASURED, cells, key=lambda cell: len(cell.words))
         self.selectionModel().reset()  # the line that is chosen now is told, even if it is the same

@@ -10,7 +10,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.pages.home_lists import TEXT_ROW, LineCell, PatientLine, SessionCell, SessionLine
+from app.pages.home_lists import TEXT_ROW, LineCell, PatientLine, SessionCell, SessionColumns, SessionLine
 from app.pages.home_page import HomePage
 from app.theme import ThemeNotifier
 
@@ -170,12 +170,13 @@ def test_sessions_that_are_read_anew_keep_the_one_that_is_chosen(page: HomePage)
 def test_long_words_for_strides_and_state_push_a_sessions_columns_apart(look: ThemeNotifier) -> None:
     states = ("Bericht nicht geschrieben", "Bericht geschrieben")
     lines = tuple(SessionLine(uuid4(), "20. Sept. 2026", "Shoes", "24 Doppelschritte", state) for state in states)
+    columns = SessionColumns(lines)
     for line in lines:
-        (row,) = SessionCell(line, lines).word_rows(520, look.theme)
+        (row,) = SessionCell(line, columns).word_rows(520, look.theme)
         placed = sorted(row, key=lambda word: word.left)
         ends = [word.left + word.width(look.theme) for word in placed]
         assert [word.text for word in placed] == ["20. Sept. 2026", "Shoes", "24 Doppelschritte", line.state]
         assert all(end + 8 < after.left for end, after in zip(ends, placed[1:], strict=False))
         assert ends[-1] <= 520
-    lefts = [SessionCell(line, lines).word_rows(520, look.theme)[0][1].left for line in lines]
+    lefts = [SessionCell(line, columns).word_rows(520, look.theme)[0][1].left for line in lines]
     assert lefts[0] == lefts[1], "columns are those of the list"
