@@ -175,5 +175,4 @@ def _source_words(error: KnownError) -> str:
     """Who says so: of a paper what was measured, and the paper as it is cited."""
     if error.courses:
         return tr("the worst of {count} simulated courses").format(count=error.courses)
-    how, comma, paper = error.source.partition(", ")
-    return tr(how) + comma + paper
+    return ", ".join(filter(None, [tr(error.how) if error.how else "", error.paper]))

@@ -28,20 +28,18 @@ ADULT_FROM_YEARS = 18  # every band there is was measured on adults
 KNEE_OVERREAD = 1.09  # so much more flexion do we read than optical markers, 9 +- 4 %
 MIN_STRIDES_FOR_MEAN, MIN_STRIDES_FOR_SD = 3, 10
 
-SOURCE = (
-    "Fukuchi, Fukuchi & Duarte 2018, PeerJ 6:e4640, data doi 10.6084/m9.figshare.5722711, CC BY 4.0, "
-    "as derived by {derivation}"
-)
+PUBLISHED = "Fukuchi, Fukuchi & Duarte 2018, PeerJ 6:e4640, data doi 10.6084/m9.figshare.5722711, CC BY 4.0"
 
 
 @dataclass(frozen=True, slots=True)
 class ReferenceCurves:
     """Mean and standard deviation between subjects (101,), degrees; flexion and dorsiflexion positive.
 
+    `derivation`: who made these figures of what is PUBLISHED.
     The zero of the hip is that of the pelvis's markers, some 10 deg from standing: its curve tells a shape alone.
     """
 
-    source: str
+    derivation: str
     group: str
     n: int
     ages_years: tuple[int, int]
@@ -53,6 +51,11 @@ class ReferenceCurves:
     ankle_sd_deg: FloatArray
     hip_mean_deg: FloatArray
     hip_sd_deg: FloatArray
+
+    @property
+    def source(self) -> str:
+        """In English, as files have it."""
+        return _source(self.derivation)
 
     @property
     def speed_class(self) -> str:
@@ -76,16 +79,25 @@ class ReferenceCurves:
 class ReferenceValues:
     """Time and distance of one class of speed; `values` holds mean and sd between `n` subjects by parameter."""
 
-    source: str
+    derivation: str
     group: str
     speed_class: str
     n: int
     values: Mapping[str, MeanAndSd]
 
     @property
+    def source(self) -> str:
+        """As `ReferenceCurves.source`."""
+        return _source(self.derivation)
+
+    @property
     def speed_m_s(self) -> float:
         """The group's mean walking speed."""
         return self.values["walking_speed"].mean
+
+
+def _source(derivation: str) -> str:
+    return f"{PUBLISHED}, as derived by {derivation}"
 
 
 def read_curves(of_knee_and_ankle: str, of_hip: str) -> ReferenceCurves:
@@ -105,7 +117,7 @@ def read_curves(of_knee_and_ankle: str, of_hip: str) -> ReferenceCurves:
         return np.array([float(row[name]) for row in (hip_rows if name.startswith("hip") else rows)])
 
     return ReferenceCurves(
-        source=SOURCE.format(derivation="github VIONWILLIAMS/EXO-Forge-Studio"),
+        derivation="github VIONWILLIAMS/EXO-Forge-Studio",
         group="young adults, barefoot, treadmill",
         n=24,
         ages_years=(18, 39),  # "young adults", in the words of the source
@@ -125,7 +137,7 @@ def read_time_distance(text: str) -> tuple[ReferenceValues, ...]:
     rows = _table(text)
     return tuple(
         ReferenceValues(
-            source=SOURCE.format(derivation="github antsal06/openacl"),
+            derivation="github antsal06/openacl",
             group="42 adults, 24 young and 18 older, barefoot, overground",
             speed_class=speed_class,
             n=n,

@@ -97,15 +97,22 @@ class KnownError:
     """How far off a quantity may be, `low` to `high` in the unit of its name, and who says so.
 
     `is_verified`: the source was read, or it was measured here; where not, what rests on it prints a dagger.
-    `courses`: of so many simulated ones `high` is the worst; 0: the source is another.
+    `how` it was measured in `paper`; or, of so many simulated `courses`, `high` is the worst.
     """
 
     quantity: str
     low: float
     high: float
-    source: str
-    is_verified: bool = False
+    how: str = ""
+    paper: str = ""
     courses: int = 0
+    is_verified: bool = False
+
+    @property
+    def source(self) -> str:
+        """Who says so, in English, as files have it."""
+        simulated = f"the worst of {self.courses} simulated courses" if self.courses else ""
+        return ", ".join(filter(None, [self.how, self.paper, simulated]))
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,13 +152,12 @@ _FIRST_CONTACT = "first initial contact after both feet stood for 1 s"
 _LEFT_SEAT = "the thighs have come a tenth of the way from the seat to standing"
 _STUDY = "mean absolute error in healthy people on tracks of 10 and 30 m (BMC Digital Health 2023, 1:48)"
 # doi 10.1186/s44247-023-00038-9: below 13 m by insoles (n = 32), 16.24 m (30 m) and 38.88 m (10 m) by a rater (n = 33)
-_FEET = KnownError("distance_m", 0.0, 13.0, f"six minutes by sensors in insoles, {_STUDY}", is_verified=True)
-_RATER = KnownError("distance_m", 16.0, 39.0, f"six minutes by a rater, {_STUDY}", is_verified=True)
-_SIMULATED = "the worst of {} simulated courses"
+_FEET = KnownError("distance_m", 0.0, 13.0, "six minutes by sensors in insoles", _STUDY, is_verified=True)
+_RATER = KnownError("distance_m", 16.0, 39.0, "six minutes by a rater", _STUDY, is_verified=True)
 
 
 def _worst(quantity: str, error: float, courses: int) -> KnownError:
-    return KnownError(quantity, 0.0, error, _SIMULATED.format(courses), is_verified=True, courses=courses)
+    return KnownError(quantity, 0.0, error, courses=courses, is_verified=True)
 
 
 DEFINITIONS: Mapping[TimedProtocol, Definition] = {

@@ -86,9 +86,9 @@ def test_strides_on_stairs_are_told_apart_where_there_are_some() -> None:
 
 
 def test_an_error_that_was_not_verified_has_a_dagger() -> None:
-    assert error_words(KnownError("time_s", 0.0, 0.2, "us", is_verified=True)) == "Time: up to 0.2 s, us."
+    assert error_words(KnownError("time_s", 0.0, 0.2, paper="us", is_verified=True)) == "Time: up to 0.2 s, us."
     assert (
-        error_words(KnownError("distance_m", 16.0, 39.0, "a paper"))
+        error_words(KnownError("distance_m", 16.0, 39.0, paper="a paper"))
         == "Distance: 16\N{EN DASH}39 m\N{DAGGER}, a paper."
     )
     every = [error_words(one) for known in DEFINITIONS.values() for one in known.errors]

@@ -17,6 +17,7 @@ from app.reports.patient_report.request import ReportRequest
 from app.reports.patient_report.time_page import is_evidence_beside_time, speed_class_in_words
 from app.wording import sentence, tr
 from core.findings import Finding, Severity
+from core.norms import PUBLISHED
 
 LONG = 14  # lines of words that may not fit into what is left of the page
 # what was corrected by hand, and what changes how a number is read: told, however mild
@@ -87,7 +88,7 @@ def _sources(facts: Facts) -> list[str]:
             "Values and SD are read from the mean curve, which has no SD of range."
         )
         speed = fixed(curves.speed_m_s, 2)
-        said.append(pattern.format(n=curves.n, group=tr(curves.group), speed=speed, source=_derived(curves.source)))
+        said.append(pattern.format(n=curves.n, group=tr(curves.group), speed=speed, source=_derived(curves.derivation)))
     if values is not None:
         pattern = tr(
             "[2] Time and distance: {group}, optical markers and force plates; class “{speed_class}” of the Froude "
@@ -99,18 +100,15 @@ def _sources(facts: Facts) -> list[str]:
                 speed_class=speed_class_in_words(values.speed_class),
                 speed=fixed(values.speed_m_s, 2),
                 n=values.n,
-                source=_derived(values.source),
+                source=_derived(values.derivation),
             )
         )
     return said or [why_no_band(facts, facts.bands.why_no_values)]
 
 
-def _derived(source: str) -> str:
-    """Name a source and who derived its figures: the citation stays as it was published."""
-    published, _, derivation = source.partition(", as derived by ")
-    if not derivation:
-        return source
-    return tr("{published}, as derived by {derivation}").format(published=published, derivation=derivation)
+def _derived(derivation: str) -> str:
+    """Name the source and who derived its figures: the citation stays as it was published."""
+    return tr("{published}, as derived by {derivation}").format(published=PUBLISHED, derivation=derivation)
 
 
 def _made(made_at: datetime) -> str:
