@@ -29,7 +29,7 @@ from app.home.entry import Entry
 from app.home.session_screen import SessionScreen
 from app.library_commands import default_folder
 from app.logs import log_qt_messages
-from app.qt_words import QtWords
+from app.qt_words import qt_speaks
 from app.settings import Scheme, Settings
 from app.storage.idle_lock import IdleLock
 from app.theme import ThemeNotifier, load_fonts
@@ -551,7 +551,7 @@ def _show_window(app: QApplication, settings: Settings, folders: list[str]) -> i
     QTimer.singleShot(PREPARE_AFTER_MS, window.prepare)
     if folders:
         window.open_folder(Path(folders[0]))
-    with QtWords(settings.language):
+    with qt_speaks(settings.language):
         code = app.exec()
     window.close()
     window.finish()

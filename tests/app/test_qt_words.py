@@ -4,7 +4,7 @@ import pytest
 from PySide6.QtWidgets import QApplication, QFileDialog
 from pytestqt.qtbot import QtBot
 
-from app.qt_words import QtWords
+from app.qt_words import qt_speaks
 from app.wording import languages
 
 
@@ -14,12 +14,12 @@ def cancel_of() -> str:
 
 @pytest.mark.parametrize("language", languages())
 def test_every_language_of_ours_is_one_of_qt(qapp: QApplication, language: str) -> None:
-    with QtWords(language):
+    with qt_speaks(language):
         assert (cancel_of() == "Cancel") == (language == "en")
 
 
 def test_german_ends_with_it(qapp: QApplication, qtbot: QtBot) -> None:
-    with QtWords("de"):
+    with qt_speaks("de"):
         assert cancel_of() == "Abbrechen"
         dialog = QFileDialog()
         qtbot.addWidget(dialog)
@@ -29,5 +29,5 @@ def test_german_ends_with_it(qapp: QApplication, qtbot: QtBot) -> None:
 
 
 def test_a_language_that_qt_has_not_is_english(qapp: QApplication) -> None:
-    with QtWords("xx"):
+    with qt_speaks("xx"):
         assert cancel_of() == "Cancel"
