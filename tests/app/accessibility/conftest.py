@@ -1,11 +1,21 @@
 """What tests of accessibility get: the roles of our widgets, which the application tells Qt when it starts."""
 
+from collections.abc import Iterator
+
 import pytest
 from PySide6.QtWidgets import QApplication
 
 from app.widgets.accessible_role import tell_roles
+from app.wording import use_language
 
 
 @pytest.fixture(scope="session", autouse=True)
 def _roles(qapp: QApplication) -> None:
     tell_roles()
+
+
+@pytest.fixture(params=["en", "de"])
+def language(request: pytest.FixtureRequest) -> Iterator[str]:
+    use_language(request.param)
+    yield request.param
+    use_language("en")

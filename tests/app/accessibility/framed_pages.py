@@ -69,8 +69,13 @@ def results(view: str, *opened: str) -> Make:
         page.show_visit(visit_of(analysis, session))
         page.view.choose(view)
         for name in opened:
-            buttons = {"door": page.door, "figures": page.all_figures, "engineering": page.quality.engineering}
-            {**buttons, "legs": page.show_legs}[name].click()
+            buttons = {
+                "door": page.door,
+                "figures": page.all_figures,
+                "legs": page.show_legs,
+                "engineering": page.quality.engineering,
+            }
+            buttons[name].click()
         return page
 
     return make

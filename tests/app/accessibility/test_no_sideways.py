@@ -3,25 +3,15 @@
 In English and in German.
 """
 
-from collections.abc import Iterator
-
 import pytest
 from PySide6.QtWidgets import QScrollArea
 from pytestqt.qtbot import QtBot
 
 from app.theme import ThemeNotifier
-from app.wording import use_language
 from tests.app.accessibility.framed_pages import FRAMED, framed
 from tests.app.room import settle, words_cut
 
 pytestmark = pytest.mark.endurance
-
-
-@pytest.fixture(params=["en", "de"])
-def language(request: pytest.FixtureRequest) -> Iterator[str]:
-    use_language(request.param)
-    yield request.param
-    use_language("en")
 
 
 @pytest.mark.usefixtures("language")

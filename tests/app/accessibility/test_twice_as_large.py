@@ -1,26 +1,16 @@
 """At 200 %: is every word whole, and can every control be brought into sight? In English and in German."""
 
-from collections.abc import Iterator
-
 import pytest
 from PySide6.QtWidgets import QPushButton, QScrollArea, QWidget
 from pytestqt.qtbot import QtBot
 
 from app.theme import ThemeNotifier
-from app.wording import use_language
 from tests.app.accessibility.framed_pages import FRAMED, framed
 from tests.app.accessibility.reach import out_of_reach
 from tests.app.room import settle, words_cut
 
 pytestmark = pytest.mark.endurance
 WINDOWS = ((1920, 1200), (1280, 800))
-
-
-@pytest.fixture(params=["en", "de"])
-def language(request: pytest.FixtureRequest) -> Iterator[str]:
-    use_language(request.param)
-    yield request.param
-    use_language("en")
 
 
 @pytest.mark.usefixtures("language")

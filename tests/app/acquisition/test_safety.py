@@ -118,10 +118,10 @@ Hinder = Callable[[Acquisition, float], None]
 
 @pytest.mark.endurance
 @pytest.mark.parametrize("hinder", [block_screen, fill_processor])
-@pytest.mark.parametrize("seconds", [0.4, pytest.param(10.0, marks=pytest.mark.endurance)])
 def test_a_blocked_screen_and_a_full_processor_lose_nothing(
-    acquisition: Acquisition, tmp_path: Path, hinder: Hinder, seconds: float
+    acquisition: Acquisition, tmp_path: Path, hinder: Hinder
 ) -> None:
+    seconds = 10.0
     acquisition.record(open_journal(tmp_path, ID))
     hinder(acquisition, seconds)
     check(acquisition, acquisition.stop_recording(), 0.9 * seconds)
@@ -137,10 +137,10 @@ class Newest:
 
 
 @pytest.mark.endurance
-@pytest.mark.parametrize("seconds", [0.5, pytest.param(4.0, marks=pytest.mark.endurance)])
 def test_a_disk_that_stalls_loses_nothing_and_holds_up_no_view(
-    acquisition: Acquisition, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, seconds: float
+    acquisition: Acquisition, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    seconds = 4.0
     answers, append = threading.Event(), JournalFile.append
     answers.set()
 
@@ -163,11 +163,11 @@ def test_a_disk_that_stalls_loses_nothing_and_holds_up_no_view(
 
 @pytest.mark.endurance
 @pytest.mark.skipif(sys.platform == "win32", reason="the stand-in for the viewer is a script")
-@pytest.mark.parametrize("seconds", [0.3, pytest.param(5.0, marks=pytest.mark.endurance)])
 def test_a_viewer_that_is_killed_loses_nothing(
-    acquisition: Acquisition, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, seconds: float
+    acquisition: Acquisition, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Nothing is said of it either: whose window is gone knows that."""
+    seconds = 5.0
     monkeypatch.setenv("DISPLAY", ":0")
     program = tmp_path / "rerun"
     program.write_text(VIEWER)
@@ -208,10 +208,8 @@ def locked(file: Path, seconds: float) -> Iterator[None]:
 
 
 @pytest.mark.endurance
-@pytest.mark.parametrize("seconds", [1.3, pytest.param(10.0, marks=pytest.mark.endurance)])
-def test_a_database_that_is_locked_loses_nothing(
-    acquisition: Acquisition, opened: OpenedLibrary, seconds: float
-) -> None:
+def test_a_database_that_is_locked_loses_nothing(acquisition: Acquisition, opened: OpenedLibrary) -> None:
+    seconds = 10.0
     patient = opened.library.patients.create(Patient(code="DEMO-1"))
     visit = opened.library.sessions.create(patient.id, Session(()))
     sites = numbered_session("s", SENSORS).sensors

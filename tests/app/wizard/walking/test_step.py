@@ -27,7 +27,7 @@ from tests.app.wizard.begun_visit import begin
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
-SPEED = 6.0  # slower than elsewhere: what a busy machine's live estimator misses would be other strides and axes
+SPEED = 3.0  # slower than elsewhere: what a busy machine's live estimator misses would be other strides and axes
 TICK_MS = 10
 RUN = Intent(KeyAction.RUN)
 
@@ -142,14 +142,15 @@ def test_what_the_patient_reached_is_shown_and_kept_with_the_walk(
     (window,) = [one for one in QApplication.topLevelWidgets() if isinstance(one, PatientWindow) and one.isVisible()]
     wanted = Target(TargetMeasure.KNEE_SWING_PEAK, Side.LEFT, 45)
     controls.target_set.emit(wanted)
-    walk(qtbot, step, visit, 14.0)
+    walk(qtbot, step, visit, 11.0)  # the replay's walk goes on beyond
     assert len(window.view.last) >= 3
-    shown = window.view.last  # the replay's pose jumped as the walk was asked for: the first strides may be anything
+    shown = window.view.last
+    assert all(50 <= peak <= 75 for peak in shown[-3:])  # its pose jumped as the walk was asked for
     qtbot.waitUntil(lambda: visit.recordings.walks[0].details.note != "", timeout=10_000)
     (tally,) = tallies_of(visit.recordings.walks[0].details.note)
     assert tally.target == wanted
     assert tally.strides >= len(shown)
-    assert tally.strides >= tally.reached >= max(1, sum(peak >= wanted.value for peak in shown))
+    assert tally.strides >= tally.reached >= max(3, sum(peak >= wanted.value for peak in shown))
     assert step.on_intent(Intent(KeyAction.LEAVE))
     assert not controls.isVisible()
     walk(qtbot, step, visit, 4.0)  # without the screen: nothing is noted
