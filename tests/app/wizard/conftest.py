@@ -69,9 +69,11 @@ def source(simulated_session: Session) -> ReplaySource:
 
 
 @pytest.fixture
-def radio() -> FastRadio:
+def radio() -> Iterator[FastRadio]:
     """Two DOTs in the air; who wears them takes `emulated_dots.dot_choice`."""
-    return FastRadio([DotFaults(), DotFaults()])
+    radio = FastRadio([DotFaults(), DotFaults()])
+    yield radio
+    radio.close()
 
 
 @pytest.fixture

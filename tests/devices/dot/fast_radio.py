@@ -1,4 +1,7 @@
-"""A radio whose seconds pass faster than ours, in a thread of its own, for what is waited for beside the screen."""
+"""A radio whose seconds pass faster than ours, in a thread of its own, for what is waited for beside the screen.
+
+Its seconds pass while nothing is to be done, and no sensor answers late because the machine is busy.
+"""
 
 import asyncio
 import selectors
@@ -12,32 +15,41 @@ from devices.emulators.dot import DotFaults, EmulatedDot, Motion
 from tests.devices.dot.virtual_time import turning
 
 SPEED = 50.0
-BEGIN_NS = time.monotonic_ns()
-
-
-def fast_ns() -> int:
-    return BEGIN_NS + round((time.monotonic_ns() - BEGIN_NS) * SPEED)
+IDLE_S = 0.01  # of ours, after which the radio's clock is read anew
 
 
 class HurryingSelector(selectors.DefaultSelector):
+    """The clock goes on by what is waited here, and by no more than was asked for."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.now_ns = time.monotonic_ns()
+
     def select(self, timeout: float | None = None) -> list[tuple[selectors.SelectorKey, int]]:
-        return super().select(None if timeout is None else timeout / SPEED)
+        left_s = IDLE_S * SPEED if timeout is None else min(timeout, IDLE_S * SPEED)
+        begin_ns = time.monotonic_ns()
+        ready = super().select(max(left_s, 0.0) / SPEED)
+        self.now_ns += round(min((time.monotonic_ns() - begin_ns) * SPEED, max(left_s, 0.0) * 1e9))
+        return ready
 
 
 class HurryingLoop(asyncio.SelectorEventLoop):
     def __init__(self) -> None:
-        super().__init__(HurryingSelector())
+        self.hurrying = HurryingSelector()
+        super().__init__(self.hurrying)
 
     def time(self) -> float:
-        return fast_ns() / 1e9
+        return self.hurrying.now_ns / 1e9
 
 
 class FastRadio(Radio):
     """Reaches emulated DOTs with these faults; `dots` and `air` are where they live."""
 
     def __init__(self, faults: Sequence[DotFaults], motion: Motion = turning) -> None:
+        self._hurrying = HurryingLoop()
+        self._thread = threading.Thread(target=self._hurrying.run_forever, name="fast bluetooth", daemon=True)
         self.dots = [
-            EmulatedDot(number, motion, fast_ns, fault, skew=(-1) ** number * 20e-6 * number, says_so=True)
+            EmulatedDot(number, motion, self.now_ns, fault, skew=(-1) ** number * 20e-6 * number, says_so=True)
             for number, fault in enumerate(faults)
         ]
         EmulatedDot.meet(self.dots)
@@ -45,14 +57,23 @@ class FastRadio(Radio):
         super().__init__(self.air.backend, self.air.announced)
 
     def now_ns(self) -> int:
-        return fast_ns()
+        return self._hurrying.hurrying.now_ns
 
     def wait(self, event: threading.Event, seconds: float) -> None:
-        event.wait(seconds / SPEED)
+        until_ns = self.now_ns() + round(seconds * 1e9)
+        while self.now_ns() < until_ns and not event.wait(IDLE_S / 10):
+            pass
 
     def _running(self) -> asyncio.AbstractEventLoop:
         with self._starting:
             if self._loop is None:
-                self._loop = HurryingLoop()
-                threading.Thread(target=self._loop.run_forever, name="fast bluetooth", daemon=True).start()
+                self._loop = self._hurrying
+                self._thread.start()
             return self._loop
+
+    def close(self) -> None:
+        """End the thread; who still waits for it waits for ever."""
+        if self._thread.is_alive():
+            self._hurrying.call_soon_threadsafe(self._hurrying.stop)
+            self._thread.join()
+        self._hurrying.close()

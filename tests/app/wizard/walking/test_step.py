@@ -20,34 +20,31 @@ from app.wizard.walking.step import WalkingStep
 from app.wizard.walking.walk_list import WalkState
 from core.alignment import AlignmentChange, PartChange, ProsthesisPart
 from core.body import Joint, Side, Site
-from core.samples import Patient, RecordingKind, Session
+from core.samples import Patient, RecordingKind
 from core.targets import Target, TargetMeasure, tallies_of
 from devices.replay import ReplaySource
 from tests.app.wizard.begun_visit import begin
+from tests.app.wizard.patient_time import PATIENCE_MS, PatientTime
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
-SPEED = 3.0  # slower than elsewhere: what a busy machine's live estimator misses would be other strides and axes
-TICK_MS = 10
 RUN = Intent(KeyAction.RUN)
 
 
 @pytest.fixture
-def source(simulated_session: Session) -> ReplaySource:
-    return ReplaySource(simulated_session, speed=SPEED)
-
-
-@pytest.fixture
-def step(qtbot: QtBot, look: ThemeNotifier, visit: Visit, worn: dict[str, Site]) -> Iterator[WalkingStep]:
+def step(
+    qtbot: QtBot, look: ThemeNotifier, visit: Visit, worn: dict[str, Site], patient_time: PatientTime
+) -> Iterator[WalkingStep]:
     """Of a patient who wears six sensors, entered, and looked at as the wizard does."""
     begin(qtbot, visit, worn, Patient(code="DEMO-7", birth_year=1970, prosthetic_side="left"))
+    patient_time.is_held = lambda: visit.recordings.is_recording and not visit.recordings.has_begun
     step = WalkingStep(look, visit)
     qtbot.addWidget(step.page)
     step.page.resize(1064, 600)
     step.page.show()
     step.enter()
     timer = QTimer()
-    timer.setInterval(TICK_MS)
+    timer.setInterval(10)
     timer.timeout.connect(step.tick)
     timer.start()
     yield step
@@ -55,24 +52,24 @@ def step(qtbot: QtBot, look: ThemeNotifier, visit: Visit, worn: dict[str, Site])
     step.leave()
 
 
-def calibrate(qtbot: QtBot, visit: Visit) -> None:
+def calibrate(qtbot: QtBot, visit: Visit, patient_time: PatientTime) -> None:
     acquisition = visit.sensors.acquisition
     assert acquisition is not None
-    with qtbot.waitSignal(visit.evaluation.done, timeout=20_000):
+    with qtbot.waitSignal(visit.evaluation.done, timeout=PATIENCE_MS):
         for kind, seconds in ((RecordingKind.STANDING, 4.0), (RecordingKind.FREE_MOTION, 14.0)):
             acquisition.ask(kind)
-            with qtbot.waitSignal(visit.recordings.begun, timeout=10_000):
+            with qtbot.waitSignal(visit.recordings.begun, timeout=PATIENCE_MS):
                 visit.recordings.begin(acquisition, kind)
-            qtbot.wait(round(seconds / SPEED * 1000))
-            with qtbot.waitSignal(visit.recordings.ended, timeout=10_000):
+            patient_time.wait(qtbot, seconds)
+            with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
                 visit.recordings.stop()
 
 
-def walk(qtbot: QtBot, step: WalkingStep, visit: Visit, seconds: float) -> None:
-    with qtbot.waitSignal(visit.recordings.begun, timeout=10_000):
+def walk(qtbot: QtBot, step: WalkingStep, visit: Visit, patient_time: PatientTime, seconds: float) -> None:
+    with qtbot.waitSignal(visit.recordings.begun, timeout=PATIENCE_MS):
         assert step.on_intent(RUN)
-    qtbot.wait(round(seconds / SPEED * 1000))
-    with qtbot.waitSignal(visit.recordings.ended, timeout=10_000):
+    patient_time.wait(qtbot, seconds)
+    with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
         step.on_intent(RUN)
 
 
@@ -84,22 +81,24 @@ def states(step: WalkingStep) -> list[tuple[str, str, WalkState]]:
     return [(row.letter, row.label, row.state) for row in step.page.rows]
 
 
-def test_space_starts_and_stops_and_keeps(qtbot: QtBot, step: WalkingStep, visit: Visit) -> None:
-    calibrate(qtbot, visit)
+def test_space_starts_and_stops_and_keeps(
+    qtbot: QtBot, step: WalkingStep, visit: Visit, patient_time: PatientTime
+) -> None:
+    calibrate(qtbot, visit, patient_time)
     primary = step.bar().primary
     assert primary is not None
     assert (primary.text, primary.is_wished) == ("Start walk", True)
-    with qtbot.waitSignal(visit.recordings.begun, timeout=10_000):
+    with qtbot.waitSignal(visit.recordings.begun, timeout=PATIENCE_MS):
         step.on_intent(RUN)
     recording = step.bar().recording
     assert recording is not None
     assert recording.title == "Recording A Alignment A"
     assert step.note == "Recording A Alignment A"
     assert step.cannot_leave
-    qtbot.waitUntil(lambda: max(step.page.live.strides.values(), default=0) >= 5, timeout=10_000)
+    qtbot.waitUntil(lambda: max(step.page.live.strides.values(), default=0) >= 5, timeout=PATIENCE_MS)
     assert set(step.page.live.knees) == set(step.page.live.ankles)
     assert step.page.live.cadence_steps_min > 60
-    with qtbot.waitSignal(visit.recordings.ended, timeout=10_000):
+    with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
         step.on_intent(RUN)
     assert states(step) == [("A", "Alignment A", WalkState.ASKING)]
     assert step.page.bench.isVisible()  # in the place of the question: the leg is prosthetic
@@ -111,22 +110,22 @@ def test_space_starts_and_stops_and_keeps(qtbot: QtBot, step: WalkingStep, visit
     for _ in range(2):
         QTest.keyClick(step.page.bench.alignments.steppers["turns"], Qt.Key.Key_Plus)
     assert [one.text for one in step.bar().others] == ["Walk with B"]
-    with qtbot.waitSignal(visit.recordings.begun, timeout=10_000):
+    with qtbot.waitSignal(visit.recordings.begun, timeout=PATIENCE_MS):
         step.on_intent(RUN)  # keeps it, and starts the next
     assert states(step) == [("A", "Alignment A", WalkState.KEPT), ("B", "Alignment B", WalkState.RECORDING)]
     assert not folds_sensors(step)
-    with qtbot.waitSignal(visit.recordings.ended, timeout=10_000):
+    with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
         step.on_intent(RUN)
     turned = AlignmentChange("Alignment A", (PartChange(ProsthesisPart.FOOT_FRONT_SCREW, turns=0.25),))
     assert [one.stored.details.alignment for one in visit.recordings.walks] == [None, turned]
     assert not bar_says_change(step)
-    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=20_000)
+    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=PATIENCE_MS)
 
 
 def test_what_the_patient_reached_is_shown_and_kept_with_the_walk(
-    qtbot: QtBot, step: WalkingStep, visit: Visit
+    qtbot: QtBot, step: WalkingStep, visit: Visit, patient_time: PatientTime
 ) -> None:
-    calibrate(qtbot, visit)
+    calibrate(qtbot, visit, patient_time)
     assert step.on_intent(Intent(KeyAction.PATIENT_SCREEN))
     controls = step.page.patient_controls
     assert controls.isVisible()
@@ -142,20 +141,20 @@ def test_what_the_patient_reached_is_shown_and_kept_with_the_walk(
     (window,) = [one for one in QApplication.topLevelWidgets() if isinstance(one, PatientWindow) and one.isVisible()]
     wanted = Target(TargetMeasure.KNEE_SWING_PEAK, Side.LEFT, 45)
     controls.target_set.emit(wanted)
-    walk(qtbot, step, visit, 11.0)  # the replay's walk goes on beyond
+    walk(qtbot, step, visit, patient_time, 11.0)  # the replay's walk goes on beyond
     assert len(window.view.last) >= 3
     shown = window.view.last
     assert all(50 <= peak <= 75 for peak in shown[-3:])  # its pose jumped as the walk was asked for
-    qtbot.waitUntil(lambda: visit.recordings.walks[0].details.note != "", timeout=10_000)
+    qtbot.waitUntil(lambda: visit.recordings.walks[0].details.note != "", timeout=PATIENCE_MS)
     (tally,) = tallies_of(visit.recordings.walks[0].details.note)
     assert tally.target == wanted
     assert tally.strides >= len(shown)
     assert tally.strides >= tally.reached >= max(3, sum(peak >= wanted.value for peak in shown))
     assert step.on_intent(Intent(KeyAction.LEAVE))
     assert not controls.isVisible()
-    walk(qtbot, step, visit, 4.0)  # without the screen: nothing is noted
+    walk(qtbot, step, visit, patient_time, 4.0)  # without the screen: nothing is noted
     assert visit.recordings.walks[1].details.note == ""
-    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=20_000)
+    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=PATIENCE_MS)
 
 
 def bar_says_change(step: WalkingStep) -> bool:
@@ -163,27 +162,31 @@ def bar_says_change(step: WalkingStep) -> bool:
 
 
 def test_five_strides_find_the_ankles_axes_anew(
-    qtbot: QtBot, look: ThemeNotifier, step: WalkingStep, visit: Visit
+    qtbot: QtBot, look: ThemeNotifier, step: WalkingStep, visit: Visit, patient_time: PatientTime
 ) -> None:
-    calibrate(qtbot, visit)
-    with qtbot.waitSignal(visit.recordings.begun, timeout=10_000):
+    calibrate(qtbot, visit, patient_time)
+    with qtbot.waitSignal(visit.recordings.begun, timeout=PATIENCE_MS):
         step.on_intent(RUN)
-    qtbot.waitUntil(lambda: bool(step.page.live.ankles), timeout=10_000)
+    qtbot.waitUntil(lambda: bool(step.page.live.ankles), timeout=PATIENCE_MS)
     assert any(ankle.is_provisional for ankle in step.page.live.ankles.values())
-    qtbot.waitUntil(lambda: not any(ankle.is_provisional for ankle in step.page.live.ankles.values()), timeout=20_000)
+    qtbot.waitUntil(
+        lambda: not any(ankle.is_provisional for ankle in step.page.live.ankles.values()), timeout=PATIENCE_MS
+    )
     looked_at = visit.evaluation.session
     assert looked_at is not None
     assert looked_at.recordings[-1].condition == "Alignment A"  # a part of it stands at the bench under its own name
-    with qtbot.waitSignal(visit.recordings.ended, timeout=10_000):
+    with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
         step.on_intent(RUN)
     results = ResultsStep(look, visit)
     qtbot.addWidget(results.page)
     results.enter()  # what was evaluated last holds a part of this walk only
-    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=20_000)
+    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=PATIENCE_MS)
 
 
-def test_a_walk_is_discarded_and_comes_back(qtbot: QtBot, step: WalkingStep, visit: Visit) -> None:
-    walk(qtbot, step, visit, 4.0)
+def test_a_walk_is_discarded_and_comes_back(
+    qtbot: QtBot, step: WalkingStep, visit: Visit, patient_time: PatientTime
+) -> None:
+    walk(qtbot, step, visit, patient_time, 4.0)
     with qtbot.waitSignal(step.offered) as offered:
         step.on_intent(Intent(KeyAction.DISCARD))
     assert offered.args == ["A Alignment A discarded."]
@@ -193,29 +196,31 @@ def test_a_walk_is_discarded_and_comes_back(qtbot: QtBot, step: WalkingStep, vis
     qtbot.waitUntil(lambda: visit.recordings.walks[0].details.is_kept)
     assert states(step) == [("A", "Alignment A", WalkState.KEPT)]
     assert step.bar().primary is not None
-    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=20_000)
+    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=PATIENCE_MS)
 
 
-def test_digits_choose_what_the_next_walk_is_called(qtbot: QtBot, step: WalkingStep, visit: Visit) -> None:
+def test_digits_choose_what_the_next_walk_is_called(
+    qtbot: QtBot, step: WalkingStep, visit: Visit, patient_time: PatientTime
+) -> None:
     assert step.on_intent(Intent(KeyAction.LABEL, 4))
-    walk(qtbot, step, visit, 2.0)
+    walk(qtbot, step, visit, patient_time, 2.0)
     assert visit.recordings.walks[0].details.condition == "Barefoot"
-    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=20_000)
+    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=PATIENCE_MS)
 
 
 def test_a_silent_sensor_is_said_and_so_is_its_return(
     qtbot: QtBot, step: WalkingStep, visit: Visit, source: ReplaySource
 ) -> None:
-    with qtbot.waitSignal(visit.recordings.begun, timeout=10_000):
+    with qtbot.waitSignal(visit.recordings.begun, timeout=PATIENCE_MS):
         step.on_intent(RUN)
     source.silence("DEMO-right_foot")
-    qtbot.waitUntil(lambda: "R foot has been silent" in step.page.notice.text, timeout=10_000)
+    qtbot.waitUntil(lambda: "R foot has been silent" in step.page.notice.text, timeout=PATIENCE_MS)
     assert "right ankle, right phases" in step.page.notice.text
     source.wake("DEMO-right_foot")
-    qtbot.waitUntil(lambda: "R foot is back after" in step.page.notice.text, timeout=10_000)
-    with qtbot.waitSignal(visit.recordings.ended, timeout=10_000):
+    qtbot.waitUntil(lambda: "R foot is back after" in step.page.notice.text, timeout=PATIENCE_MS)
+    with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
         step.on_intent(RUN)
-    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=20_000)
+    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=PATIENCE_MS)
 
 
 def test_sensors_strapped_anew_go_back_to_standing(qtbot: QtBot, step: WalkingStep, visit: Visit) -> None:
@@ -231,7 +236,7 @@ def test_while_no_sensor_is_heard_the_charts_go_on_with_a_gap(
     qtbot: QtBot, step: WalkingStep, visit: Visit, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     step.on_primary()
-    qtbot.waitUntil(lambda: visit.recordings.is_recording, timeout=10_000)
+    qtbot.waitUntil(lambda: visit.recordings.is_recording, timeout=PATIENCE_MS)
     acquisition, shown = visit.sensors.acquisition, list[WalkingReadout]()
     assert acquisition is not None
     monkeypatch.setattr(step.page, "show_view", shown.append)
@@ -240,9 +245,9 @@ def test_while_no_sensor_is_heard_the_charts_go_on_with_a_gap(
     qtbot.waitUntil(lambda: len(shown) > 3 and set(shown[-1].missing) == set(visit.sensors.site_of.values()))
     assert shown[-1].now_s > shown[-2].now_s
     assert all(lane.silent_s[-1][1] is None for lane in shown[-1].lanes.values())
-    with qtbot.waitSignal(visit.recordings.ended, timeout=10_000):
+    with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
         step.on_intent(RUN)
-    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=20_000)
+    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=PATIENCE_MS)
 
 
 def test_while_no_sensor_is_heard_no_walk_is_started(

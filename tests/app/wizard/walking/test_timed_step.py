@@ -14,39 +14,35 @@ from app.wizard.walking.step import WalkingStep
 from core.body import Site
 from core.samples import Patient, RecordingKind, Session
 from core.timed.protocols import PlannedTest, TimedProtocol
-from devices.replay import ReplaySource
 from devices.walker import DEMONSTRATION, Standing, Walk, simulate
 from tests.app.wizard.begun_visit import begin
+from tests.app.wizard.patient_time import PATIENCE_MS, PatientTime
 
-SPEED = 3.0
 RUN, NEXT_TEST = Intent(KeyAction.RUN), Intent(KeyAction.NEXT_TEST)
 
 
 @pytest.fixture(scope="module")
 def simulated_session() -> Session:
-    """A patient who stands a while before each walk: at this speed much of it passes until a recording begins."""
-    walk = Walk(strides=14, standing_before_s=8.0)
+    """A patient who stands a while before each walk."""
+    walk = Walk(strides=14, standing_before_s=3.0)
     played = (Standing(duration_s=10.0), walk, replace(walk, name="walk 2"))
     return simulate(replace(DEMONSTRATION, recordings=played)).session
 
 
 @pytest.fixture
-def source(simulated_session: Session) -> ReplaySource:
-    """Slower than elsewhere: what a busy machine's live estimator misses would be a test that never begins."""
-    return ReplaySource(simulated_session, speed=SPEED)
-
-
-@pytest.fixture
-def step(qtbot: QtBot, look: ThemeNotifier, visit: Visit, worn: dict[str, Site]) -> Iterator[WalkingStep]:
+def step(
+    qtbot: QtBot, look: ThemeNotifier, visit: Visit, worn: dict[str, Site], patient_time: PatientTime
+) -> Iterator[WalkingStep]:
     """Of a patient who has stood still, entered, and looked at as the wizard does."""
     begin(qtbot, visit, worn, Patient(code="DEMO-7"))
+    patient_time.is_held = lambda: visit.recordings.is_recording and not visit.recordings.has_begun
     acquisition = visit.sensors.acquisition
     assert acquisition is not None
     acquisition.ask(RecordingKind.STANDING)
-    with qtbot.waitSignal(visit.recordings.begun, timeout=10_000):
+    with qtbot.waitSignal(visit.recordings.begun, timeout=PATIENCE_MS):
         visit.recordings.begin(acquisition, RecordingKind.STANDING)
-    qtbot.wait(round(4.0 / SPEED * 1000))
-    with qtbot.waitSignal(visit.recordings.ended, timeout=10_000):
+    patient_time.wait(qtbot, 4.0)
+    with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
         visit.recordings.stop()
     step = WalkingStep(look, visit)
     qtbot.addWidget(step.page)
@@ -70,15 +66,15 @@ def is_for_clicker(step: WalkingStep) -> bool:
 def test_ten_metres_by_the_motion_alone(qtbot: QtBot, step: WalkingStep, visit: Visit) -> None:
     assert step.on_intent(NEXT_TEST)
     assert step.page.next.test.box.currentText() == "10-metre walk"
-    with qtbot.waitSignal(visit.recordings.ended, timeout=30_000):  # which stops by itself
+    with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):  # which stops by itself
         step.on_intent(RUN)
-        qtbot.waitUntil(lambda: step.page.timed.isVisible(), timeout=10_000)
+        qtbot.waitUntil(lambda: step.page.timed.isVisible(), timeout=PATIENCE_MS)
         assert is_for_clicker(step)
-        qtbot.waitUntil(lambda: step.page.timed.time.text not in ("", "0.0"), timeout=10_000)
+        qtbot.waitUntil(lambda: step.page.timed.time.text not in ("", "0.0"), timeout=PATIENCE_MS)
     assert not is_for_clicker(step)
     (walk,) = visit.recordings.walks
     assert walk.details.test == PlannedTest(TimedProtocol.TEN_METRES)
-    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=20_000)
+    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=PATIENCE_MS)
     assert step.page.timed_result.isVisible()
     assert step.page.timed_result.first.text().startswith("10-metre walk: ")
     analysis = visit.evaluation.analysis
@@ -90,19 +86,21 @@ def test_ten_metres_by_the_motion_alone(qtbot: QtBot, step: WalkingStep, visit: 
 
 
 @pytest.mark.endurance
-def test_a_key_at_the_tape_wins_and_is_kept(qtbot: QtBot, step: WalkingStep, visit: Visit) -> None:
+def test_a_key_at_the_tape_wins_and_is_kept(
+    qtbot: QtBot, step: WalkingStep, visit: Visit, patient_time: PatientTime
+) -> None:
     step.on_intent(NEXT_TEST)
-    with qtbot.waitSignal(visit.recordings.ended, timeout=30_000):
+    with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
         step.on_intent(RUN)
-        qtbot.waitUntil(lambda: step.page.timed.time.text not in ("", "0.0", "0.1", "0.2"), timeout=10_000)
-        qtbot.wait(round(3.0 / SPEED * 1000))
+        qtbot.waitUntil(lambda: step.page.timed.time.text not in ("", "0.0", "0.1", "0.2"), timeout=PATIENCE_MS)
+        patient_time.wait(qtbot, 3.0)
         step.on_intent(RUN)  # at the tape, long before the sensors' 10 m
     (walk,) = visit.recordings.walks
     assert walk.details.test is not None
     assert walk.details.test.start_key_s is None
     pressed_s = walk.details.test.end_key_s
     assert pressed_s is not None
-    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=20_000)
+    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=PATIENCE_MS)
     analysis = visit.evaluation.analysis
     assert analysis is not None
     found = analysis.recordings[-1].timed
@@ -115,21 +113,21 @@ def test_a_key_at_the_tape_wins_and_is_kept(qtbot: QtBot, step: WalkingStep, vis
 
 def test_esc_breaks_a_test_off_and_no_test_is_a_walk_as_ever(qtbot: QtBot, step: WalkingStep, visit: Visit) -> None:
     step.on_intent(NEXT_TEST)
-    with qtbot.waitSignal(visit.recordings.begun, timeout=10_000):
+    with qtbot.waitSignal(visit.recordings.begun, timeout=PATIENCE_MS):
         step.on_intent(RUN)
-    with qtbot.waitSignal(visit.recordings.ended, timeout=10_000):
+    with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
         assert step.on_intent(Intent(KeyAction.LEAVE))
-    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=20_000)
+    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=PATIENCE_MS)
     assert "no time was taken" in step.page.timed_result.first.text()
     for _ in TimedProtocol:
         step.on_intent(NEXT_TEST)
     assert step.page.next.test.box.currentIndex() == 0
-    with qtbot.waitSignal(visit.recordings.begun, timeout=10_000):
+    with qtbot.waitSignal(visit.recordings.begun, timeout=PATIENCE_MS):
         step.on_intent(RUN)
     assert not step.takes_clicker
     assert not step.page.timed.isVisible()
-    with qtbot.waitSignal(visit.recordings.ended, timeout=10_000):
+    with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
         step.on_intent(RUN)
     assert visit.recordings.walks[-1].details.test is None
     assert not step.page.timed_result.isVisible()
-    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=20_000)
+    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=PATIENCE_MS)

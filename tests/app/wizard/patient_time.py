@@ -1,0 +1,86 @@
+"""The time of a simulated patient, which goes on only when everybody has heard what was before.
+
+A replay by the machine's clock goes on while a busy machine's screen, library or live estimator is late: then a walk is
+over before its recording has begun, and strides are never seen. Here nobody misses anything, however long it takes.
+"""
+
+from collections.abc import Callable, Mapping
+
+from PySide6.QtCore import QTimer
+from pytestqt.qtbot import QtBot
+
+from app.acquisition.acquisition import Acquisition, LiveEstimator
+from core.samples import ImuBlock
+from devices.host_clock import host_time_ns
+from devices.live import LiveSource
+
+TICK_MS = 10
+TICK_NS = 50_000_000
+BEHIND_S = 0.2  # what a reader and the thread of the live estimator have not passed on yet
+PATIENCE_MS = 120_000
+
+
+class PatientTime:
+    """A clock for a replay and for the acquisition that hears it.
+
+    Attributes
+    ----------
+    is_held
+        Whether time stands still; asked before each tick.
+    """
+
+    def __init__(self) -> None:
+        self._now_ns = host_time_ns()
+        self._acquisition: _Followed | None = None
+        self.is_held: Callable[[], bool] = lambda: False
+        self._timer = QTimer()
+        self._timer.setInterval(TICK_MS)
+        self._timer.timeout.connect(self._pass_on)
+
+    def start(self) -> None:
+        self._timer.start()
+
+    def stop(self) -> None:
+        self._timer.stop()
+
+    def now_ns(self) -> int:
+        return self._now_ns
+
+    def acquisition(self, source: LiveSource) -> Acquisition:
+        """What hears a source, and is waited for from now on."""
+        self._acquisition = _Followed([source], self.now_ns)
+        return self._acquisition
+
+    def wait(self, qtbot: QtBot, seconds: float) -> None:
+        """Let the patient go on for so long."""
+        until_ns = self._now_ns + round(seconds * 1e9)
+        qtbot.waitUntil(lambda: self._now_ns >= until_ns, timeout=PATIENCE_MS)
+
+    def _pass_on(self) -> None:
+        if self.is_held() or (self._acquisition is not None and self._acquisition.behind_s() > BEHIND_S):
+            return
+        self._now_ns += TICK_NS
+
+
+class _Followed(Acquisition):
+    """An acquisition that knows how far its live estimator has come."""
+
+    _heard: "_Heard | None" = None
+
+    def behind_s(self) -> float:
+        return 0.0 if self._heard is None else self.now_s - self._heard.heard_s
+
+    def set_estimator(self, estimator: LiveEstimator | None) -> None:
+        self._heard = None if estimator is None else _Heard(estimator, self.now_s)
+        super().set_estimator(self._heard)
+
+
+class _Heard:
+    """A live estimator, and the last stamp that it has had."""
+
+    def __init__(self, estimator: LiveEstimator, now_s: float) -> None:
+        self._estimator, self.heard_s = estimator, now_s
+
+    def update(self, blocks: Mapping[str, ImuBlock]) -> None:
+        self._estimator.update(blocks)
+        self.heard_s = max(float(block.time_s[-1]) for block in blocks.values())
