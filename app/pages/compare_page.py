@@ -25,15 +25,8 @@ from app.pages.compared_words import (
 )
 from app.plots.compared_chart import ComparedChart, ComparedFrame
 from app.plots.cycle_chart import CycleCharts
-from app.reports.comparison import (
-    Comparison,
-    Contrast,
-    Part,
-    SideRow,
-    compare_sides,
-    first_and_second,
-    left_out_of_parts,
-)
+from app.reports.comparison import Comparison, Contrast, SideRow, compare_sides, first_and_second
+from app.reports.conditions import Part, left_out_of_parts
 from app.reports.reference_bands import NOBODY, bands_of, reference_curves, sides_with_band
 from app.reports.visits import ComparedVisits, condition_in_words
 from app.theme import ThemeNotifier

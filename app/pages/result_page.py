@@ -18,7 +18,8 @@ from app.plots.angle_chart import Curve
 from app.recording_names import with_shown_names
 from app.reports.agreed import agreed_with
 from app.reports.beside import changes_on_curves
-from app.reports.comparison import Comparison, Part, conditions_of
+from app.reports.comparison import Comparison
+from app.reports.conditions import Part, conditions_of
 from app.reports.patient_report.answer import Outcome, answer_of
 from app.reports.patient_report.data_quality import data_quality, quality_without_walk
 from app.reports.patient_report.facts import Facts

@@ -19,7 +19,8 @@ from app.pages.compare_page import CURVES, PLOT, TABLE
 from app.pages.compared_table import comparison_table, side_table_row
 from app.pages.compared_words import conclusion
 from app.pages.result_page import ANSWER, COMPARE, STRIDES, WHOLE, ResultPage
-from app.reports.comparison import Comparison, Contrast, Part, compare_sides, conditions_of, first_and_second
+from app.reports.comparison import Comparison, Contrast, compare_sides, first_and_second
+from app.reports.conditions import Part, conditions_of
 from app.reports.differences import (
     COMPARED_CYCLES,
     DIFFERENCES,
