@@ -33,6 +33,7 @@ from app.theme import ThemeNotifier
 from app.widgets.chip import LETTERS
 from app.widgets.chips import Chips
 from app.widgets.choice import Choice
+from app.widgets.heard_order import hear_as_laid_out
 from app.widgets.icons import IconMark
 from app.widgets.segmented import Segmented
 from app.widgets.text import Text
@@ -244,6 +245,8 @@ class ComparePage(Themed):
             self._page.insertWidget(1, self.view, 0, Qt.AlignmentFlag.AlignLeft)
         elif self._has_view:
             self._head.addWidget(self.view, 0, Qt.AlignmentFlag.AlignTop)
+        for part in (self, self._words):
+            hear_as_laid_out(part)
 
     def _show_parts(self) -> None:
         self._place_words()

@@ -33,6 +33,7 @@ from app.widgets.button import Button, ButtonKind
 from app.widgets.choice import Choice
 from app.widgets.door import Door
 from app.widgets.fact_strip import FactStrip
+from app.widgets.heard_order import hear_as_laid_out
 from app.widgets.notice import Notice
 from app.widgets.segmented import Segmented
 from app.widgets.text import Text
@@ -385,6 +386,8 @@ class ResultPage(Themed):
             frame.set_room(is_narrow=room.is_narrow, is_wide=room.has_two_tables)
         self.cycles.set_room(self._room.has_two_charts)
         self.legs.set_brief(self._room.is_compact)
+        for part in (self, self._curves):
+            hear_as_laid_out(part)
         self._on_look_changed()
         self._tell_answer()
         self._offer()

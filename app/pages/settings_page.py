@@ -15,6 +15,7 @@ from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.choice import Choice
 from app.widgets.field import Field
+from app.widgets.heard_order import hear_as_laid_out
 from app.widgets.segmented import Segmented
 from app.widgets.tall_page import TallPage
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
@@ -181,6 +182,7 @@ class SettingsPage(TallPage):
             row = _OperatorRow(self._look, operator)
             row.switched.connect(self._on_operator_switched)
             self.operator_rows.addWidget(row)
+        hear_as_laid_out(self.operators_card)
 
     def show_deleted(self, lines: Sequence[DeletedLine]) -> None:
         """Show what can still be had back."""

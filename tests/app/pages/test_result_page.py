@@ -7,6 +7,7 @@ from functools import cache
 import numpy as np
 import pytest
 from PySide6.QtCore import Qt
+from PySide6.QtGui import QAccessible
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QLineEdit
 from pytestqt.qtbot import QtBot
@@ -26,6 +27,7 @@ from core.samples import Session
 from core.verdicts.model import Verdict
 from core.verdicts.quantities import raw_values
 from devices.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
+from tests.app.accessibility.accessible_tree import elements, wrong_hearing
 from tests.app.changed_analysis import recalibrated, rewalked, visit_of, walk_of, with_few_strides
 from tests.app.reports.patient_report.test_what_stands_out import with_more
 
@@ -411,3 +413,29 @@ def test_legs_stand_beside_the_curves_in_step_with_their_cursor(page: ResultPage
     assert not page.legs.isVisible()
     assert knee.readings == {}
     assert page.differs.isVisible()
+
+
+def test_the_views_are_heard_before_what_they_show_in_every_room(page: ResultPage) -> None:
+    for room in (COMPACT, WIDE, (700.0, 600.0)):
+        page.set_room(*room)
+        for view in (ANSWER, COMPARE, WHOLE, STRIDES):
+            page.view.choose(view)
+            assert wrong_hearing(page) == []
+            heard = [one.name for one in elements(page)]
+            assert heard.index("View") == min(k for k, name in enumerate(heard) if name)
+
+
+def test_a_folded_part_is_told_as_not_checked_and_is_heard_only_unfolded(page: ResultPage) -> None:
+    folds = {page.show_legs: page.legs, page.all_figures: page.cycles.peaks.table}
+    folds[page.quality.engineering] = page.quality.facts
+    for fold, part in folds.items():
+        if fold is page.quality.engineering:
+            page.door.click()
+        for is_unfolded in (False, True, False):
+            told = elements(page)
+            (toggle,) = (one for one in told if (one.kind, one.name) == ("Toggle", fold.text()))
+            assert (toggle.role, toggle.is_checked) == (QAccessible.Role.CheckBox, is_unfolded)
+            named = (type(part).__name__, part.accessibleName())
+            assert any((one.kind, one.name) == named for one in told) is is_unfolded
+            fold.click()
+        fold.click()
