@@ -124,7 +124,7 @@ def test_a_walk_that_gets_another_condition_stays_on_the_screen_under_its_new_na
     renamed = (replace(one, condition="stick") if one.name == "walk 3" else one for one in session.recordings)
     page.show_visit(AnalysedVisit(replace(session, recordings=tuple(renamed)), analysis))
     assert (page.recordings.currentData(), page.recordings.currentText()) == ("walk 3", "B stick")
-    assert page.charts.accessibleName() == "Knee and ankle angles of B stick"
+    assert page.whole.charts.accessibleName() == "Knee and ankle angles of B stick"
 
 
 @pytest.mark.parametrize("condition", ["Barefoot", "Own shoes with insoles of four millimetres"])

@@ -102,14 +102,14 @@ def test_a_walk_opens_with_its_answer_its_mean_cycle_and_what_differs(page: Resu
         assert part.isVisible()
     assert page.differs.table.cells.rowCount() > 2
     assert not page.cycles.peaks.isVisible()
-    assert not page.charts.isVisible()
+    assert not page.whole.charts.isVisible()
     assert set(page.cycles.charts.knee.chart.cycles) == set(Side)
 
 
 def test_the_whole_walk_has_its_lanes_and_its_methods(page: ResultPage) -> None:
     page.view.choose(WHOLE)
-    assert page.charts.phases.isVisible()
-    assert page.methods.isVisible()
+    assert page.whole.charts.phases.isVisible()
+    assert page.whole.methods.isVisible()
     for part in (page.answer, page.cycles, page.differs):
         assert not part.isVisible()
 
@@ -118,7 +118,7 @@ def test_free_motion_is_shown_whole_and_the_walk_comes_back_as_it_was_left(page:
     page.recordings.setCurrentIndex(page.recordings.findText("free motion"))
     assert page.view.choice == WHOLE
     assert not page.view.isVisible()
-    assert not page.charts.phases.isVisible()
+    assert not page.whole.charts.phases.isVisible()
     page.recordings.setCurrentIndex(page.recordings.findText("walk 1"))
     assert page.view.choice == ANSWER
     assert page.view.isVisible()
@@ -326,7 +326,7 @@ def test_one_side_alone_has_its_column_alone(page: ResultPage, analysis: Analysi
     assert table.isColumnHidden(1)
     assert not table.isColumnHidden(2)
     assert set(page.cycles.charts.knee.chart.cycles) == {Side.RIGHT}
-    assert page.charts.phases.lanes.lanes.keys() == {Side.RIGHT}
+    assert page.whole.charts.phases.lanes.lanes.keys() == {Side.RIGHT}
 
 
 def test_the_answer_stands_over_the_mean_cycle_and_nothing_scrolls_for_it(page: ResultPage, analysis: Analysis) -> None:
