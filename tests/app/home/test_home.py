@@ -319,13 +319,13 @@ def test_a_recovered_walk_is_asked_for_at_every_start_until_it_is_decided(
     qtbot.waitUntil(lambda: [one.needs_look for one in lines(home)] == [True, False], timeout=WAIT_MS)
     qtbot.waitUntil(lambda: [one.id for one in sessions(home) if one.needs_look] == [session_id], timeout=WAIT_MS)
     home.session_opened.emit(session_id)  # looking is not deciding
-    home.refresh()
+    home.patients.read()
     qtbot.waitUntil(lambda: any(one.needs_look for one in sessions(home)), timeout=WAIT_MS)
     with Library.open(folder, KeySlots(folder / KEYS).open("hk", PASSPHRASE)) as library:
         library.log_in("hk")
         (walk,) = library.recordings.undecided()
         library.recordings.decide(walk.recording, is_kept=True)
-    home.refresh()
+    home.patients.read()
     qtbot.waitUntil(lambda: not any_needs_look(home), timeout=WAIT_MS)
     with qtbot.waitSignal(controller.closed, timeout=WAIT_MS):
         controller.close()
