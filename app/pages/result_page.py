@@ -323,7 +323,6 @@ class ResultPage(Themed):
             self._controls.addWidget(self.whole.methods, 0, 3)
         self.compare.set_room(room.is_compact, room.is_spacious, room.has_two_charts, has_view=not room.is_narrow)
         self.strides.set_charts_beside(self._room.has_strides_beside)
-        self.cycles.set_room(self._room.has_two_charts)
         self.legs.set_brief(self._room.is_compact)
         hear_as_laid_out(self)
         self._on_look_changed()
