@@ -11,7 +11,8 @@ from app.library_commands import add_key_arguments, default_folder, read_place, 
 from devices.files.refusal import FileRefusedError, one_line
 
 if TYPE_CHECKING:
-    from app.reports.comparison import Comparison, Part
+    from app.reports.comparison import Comparison
+    from app.reports.conditions import Part
     from core.results import Analysis
     from core.samples import Session
 

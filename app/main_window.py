@@ -330,7 +330,7 @@ class MainWindow(QWidget):
 
     def _on_wizard_left(self) -> None:
         if self._home is not None:
-            self._home.refresh()
+            self._home.patients.read()
             self._show(self._home)
 
     def _on_settings_wanted(self) -> None:
@@ -385,7 +385,7 @@ class MainWindow(QWidget):
         self._must_refresh = self.is_covered  # under the cover it waits for the passphrase
         if self._home is None or self.is_covered:
             return
-        self._home.refresh()
+        self._home.patients.read()
         if self._wizard is not None:
             self._wizard.look_for_changes()
 

@@ -1,8 +1,5 @@
 """Home: whose sessions are in the library, what begins from here, what comes in, what goes out of sight for 30 days."""
 
-import datetime
-from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 from uuid import UUID
@@ -18,7 +15,7 @@ from app.home.filling_demonstration import FillingDemonstration
 from app.home.goals import GoalsOfPatient
 from app.home.importing import Importing
 from app.home.library_notices import LibraryNotices
-from app.home.patient_reading import PatientReading, read_patient
+from app.home.patients import PatientsAtHome
 from app.home.questions import Questions
 from app.home.recovering import Recovering
 from app.home.settings_controller import SettingsController
@@ -29,7 +26,6 @@ from app.pages.home_page import HomePage
 from app.pages.import_page import ImportPage
 from app.pages.questions_page import QuestionsPage
 from app.pages.settings_page import SettingsPage
-from app.patient_words import patient_line, person
 from app.settings import Scheme, Settings
 from app.theme import ThemeNotifier
 from app.widgets.action_bar import ActionBar, BarAction, BarState
@@ -44,20 +40,11 @@ from app.workers.library_controller import LibraryController
 from app.workers.library_state import OpenedState
 
 if TYPE_CHECKING:
-    from app.storage import stored
-    from app.storage.opened import OpenedLibrary
+    pass
 
 COMPACT_BELOW = (1180, 720)
 WIDE_FROM = 1800
 PATIENTS, DEMONSTRATION, IMPORT, QUESTIONS = range(4)
-
-
-@dataclass(frozen=True, slots=True)
-class _Patients:
-    """All patients, and which of them have a walk that was recovered and is not decided yet."""
-
-    every: "tuple[stored.StoredPatient, ...]"
-    undecided: frozenset[UUID]
 
 
 class Home(Themed):
@@ -73,9 +60,6 @@ class Home(Themed):
         super().__init__()
         self._look, self._controller, self._settings = look, controller, settings
         self.state: OpenedState | None = None
-        self._patients: dict[UUID, stored.StoredPatient] = {}
-        self._sessions_of: UUID | None = None  # the patient whose sessions are shown, or being read
-        self._reading: PatientReading | None = None
         self.rail = StepRail(look)
         self.banner = Banner(look)
         self.notices = LibraryNotices(look, controller, self)
@@ -92,6 +76,7 @@ class Home(Themed):
         self.deleting = Deleting(controller, self)
         self.computing = ComputingCourses(controller, self)
         self.filling = FillingDemonstration(look, controller, self)
+        self.patients = PatientsAtHome(controller, self.page, self.filling.is_awaited, self)
         self._build()
         self._connect()
         self._go_to(self.page)
@@ -126,7 +111,7 @@ class Home(Themed):
         if self._goals is None:
             made = self._goals = GoalsOfPatient(self._look, self._controller, self)
             self._add_page(made.page)
-            made.kept.connect(self.refresh)
+            made.kept.connect(self.patients.read)
             made.told.connect(self.banner.tell)
             self._fit()
         return self._goals
@@ -151,7 +136,7 @@ class Home(Themed):
         made = self._settings_controller = SettingsController(self._look, self._controller, self._settings, self)
         self._add_page(made.page)
         made.told.connect(self.banner.tell)
-        made.restored.connect(self.refresh)
+        made.restored.connect(self.patients.read)
         made.moved.connect(self._on_moved)
         self.deleting.undone.connect(made.read_deleted)
         if self.state is not None:
@@ -170,8 +155,7 @@ class Home(Themed):
         """Show a library that was just opened, and bring back what was being recorded when it was last in use."""
         self.state = state
         self.banner.hide()
-        self.page.search.clear()
-        self.page.forget_patients()
+        self.patients.forget()
         if self._settings_controller is not None:
             self._settings_controller.show_library(state)
         if state.is_end_lost:
@@ -182,7 +166,7 @@ class Home(Themed):
         self.notices.show(state)
         self.recovering.begin(state)
         self.filling.begin(state)
-        self.refresh()
+        self.patients.read()
         self._go_to(self.page)
 
     def clear(self) -> None:
@@ -196,25 +180,16 @@ class Home(Themed):
         self.filling.stop()
         if self._questions is not None:
             self._questions.forget()
-        self._patients.clear()
-        self._reading = None
         self.deleting.forget()
         self.toast.hide()
         self.banner.hide()
         self.notices.forget()
-        self.page.search.clear()
-        self.page.forget_patients()
-        self.page.show_patient("", "")
+        self.patients.forget()
 
     def _on_moved(self, state: OpenedState) -> None:
         self.state = state
         self._show()
-        self.refresh()
-
-    def refresh(self, chosen: UUID | None = None) -> None:
-        """Read the patients anew, and choose one of them, else the one that was chosen."""
-        self._chosen = chosen  # none: whoever is chosen once they are read
-        self._controller.run(_patients_in, self._on_patients, self.banner.tell, self)
+        self.patients.read()
 
     def show_settings(self) -> None:
         self.settings.read()
@@ -271,7 +246,8 @@ class Home(Themed):
 
     def _connect(self) -> None:
         page = self.page
-        page.patient_chosen.connect(self._on_patient_chosen)
+        self.patients.chosen.connect(self._show)
+        self.patients.refused.connect(self.banner.tell)
         page.session_opened.connect(self.session_opened)
         page.new_session_wished.connect(self._on_primary)
         page.new_patient_wished.connect(self._on_new_patient)
@@ -294,21 +270,21 @@ class Home(Themed):
         self.importing.progressed.connect(self._on_progressed)
         self.importing.asked.connect(self._on_import_asked)
         self.importing.left.connect(self._on_import_left)
-        self.importing.imported.connect(self.refresh)
+        self.importing.imported.connect(self.patients.read)
         self.importing.told.connect(self.banner.tell)
         self.working.stop_pressed.connect(self._on_stop)
-        self.recovering.recovered.connect(self.refresh)
+        self.recovering.recovered.connect(self.patients.read)
         self.notices.log_in_wished.connect(self.own_library_wished)
         self.notices.refused.connect(self.banner.tell)
         self.computing.working.connect(self._work)
         self.computing.progressed.connect(self._on_progressed)
         self.computing.left.connect(self._on_computing_left)
         self.computing.told.connect(self.banner.tell)
-        self.filling.changed.connect(self.refresh)
+        self.filling.changed.connect(self.patients.read)
         self.filling.told.connect(self.banner.tell)
         self.toast.undone.connect(self.deleting.undo)
         self.deleting.done.connect(self._on_deleted)
-        self.deleting.undone.connect(self.refresh)
+        self.deleting.undone.connect(self.patients.read)
         self.deleting.refused.connect(self.banner.tell)
         for keys, slot in (
             ("Ctrl+F", self._on_find),
@@ -395,7 +371,7 @@ class Home(Themed):
         if self.current is not self.page:
             return BarState()
         new = BarAction(tr("New patient"), tr("Ctrl N"), Icon.ADD)
-        patient = self.patient
+        patient = self.patients.patient
         if self.page.is_empty:
             return BarState(note=tr("No session is running."), has_back=False)
         if patient is None:
@@ -417,58 +393,12 @@ class Home(Themed):
     def _is_asking(self) -> bool:
         return self._questions is not None and self.current is self._questions.page
 
-    @property
-    def patient(self) -> "stored.StoredPatient | None":
-        """The patient whose sessions are shown."""
-        return self._patients.get(self.page.patient_id) if self.page.patient_id is not None else None
-
-    def _on_patients(self, patients: _Patients) -> None:
-        self._patients = {patient.id: patient for patient in patients.every}
-        now = datetime.datetime.now().astimezone()
-        lines = [patient_line(patient, now, patient.id in patients.undecided) for patient in patients.every]
-        self.page.show_patients(lines, self._chosen)
-        self._on_patient_chosen(self.page.patient_id)
-
-    def _on_patient_chosen(self, patient_id: UUID | None) -> None:
-        patient = self._patients.get(patient_id) if patient_id is not None else None
-        self._show()
-        if patient is None:
-            self._sessions_of = self._reading = None
-            self.page.show_patient("", "")
-            self.page.forget_sessions()
-            return
-        told = patient.details
-        about = " · ".join(filter(None, [person(told), told.device, told.aids]))
-        self.page.show_patient(told.code, about)
-        own = patient.id
-        if own != self._sessions_of:  # what stands there is another patient's
-            self._sessions_of, self._reading = own, None
-            self.page.forget_sessions()
-
-        def read(opened: "OpenedLibrary") -> PatientReading:
-            return read_patient(opened, own)
-
-        self._controller.run(read, self._on_sessions, self.banner.tell, self)
-
-    def _on_sessions(self, reading: PatientReading) -> None:
-        if reading.patient_id != self.page.patient_id:
-            return  # another was chosen meanwhile
-        if reading == self._reading:
-            return  # somebody may be moving in what stands there
-        now = datetime.datetime.now().astimezone()
-        self._reading = reading
-        is_awaited = self.patient is not None and self.filling.is_awaited(self.patient.details.code)
-        self.page.panel.say_none_yet(is_awaited=is_awaited)
-        self.page.show_sessions(reading.lines(now), reading.visits(now), reading.next_step(now), reading.goals)
-
     def _on_computing_wished(self) -> None:
-        if self._reading is not None:
-            visits = self._reading.visits(datetime.datetime.now().astimezone())
-            self.computing.begin([visit.id for visit in visits if visit.course is None])
+        self.computing.begin([visit.id for visit in self.patients.visits if visit.course is None])
 
     def _on_computing_left(self) -> None:
         self._go_to(self.page)
-        self.refresh()
+        self.patients.read()
 
     def _on_new_patient(self) -> None:
         if self.current is self.page:
@@ -483,8 +413,8 @@ class Home(Themed):
             self.again.analyse()
         elif self._has_goals:
             self.goals.page.submit()
-        elif self.current is self.page and self.patient is not None:
-            self.session_wished.emit(self.patient)
+        elif self.current is self.page and self.patients.patient is not None:
+            self.session_wished.emit(self.patients.patient)
 
     def _on_quiet(self, _number: int) -> None:
         if self.current is self.importing.page:
@@ -506,8 +436,8 @@ class Home(Themed):
 
     def _begin_goals(self) -> None:
         """Show what was agreed with the patient who is chosen."""
-        if self.patient is not None:
-            self.goals.begin(self.patient)
+        if self.patients.patient is not None:
+            self.goals.begin(self.patients.patient)
             self._go_to(self.goals.page)
 
     def _on_analysed_again(self, what: str, then: str) -> None:
@@ -566,22 +496,18 @@ class Home(Themed):
     # what is deleted can be had back
 
     def _on_patient_deleted(self, patient_id: UUID) -> None:
-        self.deleting.patient(self._patients[patient_id])
+        if (patient := self.patients.known(patient_id)) is not None:
+            self.deleting.patient(patient)
 
     def _on_deleted(self, words: str) -> None:
         self.toast.offer(words)
         self._fit()
-        self.refresh()
+        self.patients.read()
 
     # what comes in
 
-    def take(self, paths: Sequence[Path]) -> None:
-        """Read what was dropped onto the window, to be imported."""
-        if self.current is not self.working:
-            self.importing.read(paths)
-
     def _begin_import(self) -> None:
-        self.importing.begin(self.patient.details.code if self.patient is not None else "")
+        self.importing.begin(self.patients.patient.details.code if self.patients.patient is not None else "")
 
     def _on_import_asked(self) -> None:
         self._go_to(self.importing.page)
@@ -612,8 +538,3 @@ class Home(Themed):
         self._banner_row.setContentsMargins(px(24), 0, px(24), 0)
         self._fit()
         self.update()
-
-
-def _patients_in(opened: "OpenedLibrary") -> _Patients:
-    undecided = opened.library.recordings.undecided()
-    return _Patients(opened.library.patients.search(), frozenset(walk.patient_id for walk in undecided))

@@ -14,7 +14,8 @@ from app.home.clinic_settings import ClinicSettings
 from app.home.entry import ADMINISTRATOR, SHORTEST
 from app.home.error_report import ErrorReport
 from app.home.key_sheet import KeySheet
-from app.pages.settings_page import DeletedLine, OperatorLine, SettingsPage
+from app.pages.operators_card import OperatorLine
+from app.pages.settings_page import DeletedLine, SettingsPage
 from app.patient_words import person, when
 from app.settings import Scheme, Settings
 from app.storage.backup import back_up
@@ -131,8 +132,8 @@ class SettingsController(QObject):
         page.backup_folder_wished.connect(self._on_backup_folder_wished)
         page.stop_wished.connect(self._on_stop_wished)
         page.error_report_wished.connect(self._error_report.save)
-        page.operator_added.connect(self._on_operator_added)
-        page.operator_removed.connect(self._on_operator_removed)
+        page.operators.added.connect(self._on_operator_added)
+        page.operators.removed.connect(self._on_operator_removed)
         page.clinic_named.connect(self._on_clinic_named)
         page.restore_wished.connect(self._on_restore_wished)
         self._settings.changed.connect(self._show_screen)
@@ -260,7 +261,7 @@ class SettingsController(QObject):
         if self._state is None:
             return
         own, roles = self._state.operator.code, _roles()
-        self.page.show_operators(
+        self.page.operators.show_operators(
             [
                 OperatorLine(
                     one.code, one.name, roles[one.role.value], one.is_active, one.code == own, one.code in codes
@@ -290,12 +291,12 @@ class SettingsController(QObject):
         self._controller.run(add, self._on_operator_changed, self._on_operator_refused, self)
 
     def _on_operator_removed(self, code: str) -> None:
-        self.page.show_key_change(tr("Changing the library's key"), is_running=True)
+        self.page.operators.show_key_change(tr("Changing the library's key"), is_running=True)
         self._controller.change_key(code, self._on_key_changed, self._on_key_refused, self._on_key_progressed, self)
 
     def _on_key_progressed(self, share: float, _what: str) -> None:
         sentence = tr("Changing the library's key, {percent} %").format(percent=round(share * 100))
-        self.page.show_key_change(sentence, is_running=True)
+        self.page.operators.show_key_change(sentence, is_running=True)
 
     def _on_key_changed(self, changed: "ChangedKey") -> None:
         said = [tr("The library has a new key. Backups made before keep the old one: make a new one now.")]
@@ -308,11 +309,11 @@ class SettingsController(QObject):
         if changed.recovery_key:
             said.append(tr("The recovery key is a new one, shown above."))
             self.page.show_recovery_key(changed.recovery_key)
-        self.page.show_key_change(" ".join(said), is_running=False)
+        self.page.operators.show_key_change(" ".join(said), is_running=False)
         self._read_operators()
 
     def _on_key_refused(self, what: str, remedy: str) -> None:
-        self.page.show_key_change(f"{what} {remedy}", is_running=False)
+        self.page.operators.show_key_change(f"{what} {remedy}", is_running=False)
         self._read_operators()
 
     def _on_operator_changed(self, _nothing: object) -> None:
@@ -320,7 +321,7 @@ class SettingsController(QObject):
         self._read_operators()
 
     def _on_operator_refused(self, what: str, remedy: str) -> None:
-        self.page.refuse_operator(f"{what} {remedy}")
+        self.page.operators.refuse(f"{what} {remedy}")
 
     def _on_refused(self, what: str, remedy: str) -> None:
         self.told.emit(what, remedy)

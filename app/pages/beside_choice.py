@@ -7,7 +7,8 @@ from PySide6.QtCore import Qt
 
 from app.reports.agreed import agreed_with
 from app.reports.beside import beside_last_visit, beside_walk, walks_alone
-from app.reports.comparison import Comparison, Part
+from app.reports.comparison import Comparison
+from app.reports.conditions import Part
 from app.reports.patient_report.request import AnalysedVisit
 from app.reports.visits import ComparedVisits
 from app.theme import ThemeNotifier

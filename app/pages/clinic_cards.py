@@ -4,17 +4,15 @@ from dataclasses import dataclass
 
 from PySide6.QtCore import Signal
 from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent
-from PySide6.QtWidgets import QHBoxLayout, QWidget
+from PySide6.QtWidgets import QWidget
 
 from app.icons import Icon
+from app.pages.settings_card import SettingsCard
 from app.theme import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
-from app.widgets.card import Card
 from app.widgets.server_fields import ServerFields
-from app.widgets.text import MEDIUM, SEMIBOLD, Text
+from app.widgets.text import MEDIUM, Text
 from app.wording import tr, tr_n
-
-PADDING, SPACING = 20, 10
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,26 +27,7 @@ class StationView:
     waiting: int | None = None
 
 
-class _ClinicCard(Card):
-    """A title, texts as wide as the card, and buttons as wide as their words."""
-
-    def __init__(self, look: ThemeNotifier, title: str) -> None:
-        super().__init__(look, padding=PADDING, spacing=SPACING)
-        self._fill(Text(look, title, size=16, weight=SEMIBOLD, wraps=True))
-
-    def _fill(self, *parts: QWidget) -> None:
-        for part in parts:
-            self.column.addWidget(part)
-
-    def _add_left(self, *buttons: QWidget) -> None:
-        row = QHBoxLayout()
-        for button in buttons:
-            row.addWidget(button)
-        row.addStretch(1)
-        self.column.addLayout(row)
-
-
-class StationCard(_ClinicCard):
+class StationCard(SettingsCard):
     """`copy_wished` also while a copy is made: then `stop_wished` comes instead."""
 
     copy_wished = Signal()
@@ -86,10 +65,10 @@ class StationCard(_ClinicCard):
         self.back = Button(look, tr("Bring back into a folder"))
         self.sure = Button(look, tr("Bring it back, and close it to all others"))
         self.keep = Button(look, tr("Cancel"), ButtonKind.QUIET)
-        self._fill(self.server, self.place, self.waiting, self._copy_hint, self.copy_said)
-        self._add_left(self.copy)
-        self._fill(self._back_hint, self.back_said)
-        self._add_left(self.back, self.sure, self.keep)
+        self.fill(self.server, self.place, self.waiting, self._copy_hint, self.copy_said)
+        self.add_left(self.copy)
+        self.fill(self._back_hint, self.back_said)
+        self.add_left(self.back, self.sure, self.keep)
         self.copy.clicked.connect(self._on_copy)
         self.back.clicked.connect(self._on_back)
         self.sure.clicked.connect(self._on_sure)
@@ -156,7 +135,7 @@ class StationCard(_ClinicCard):
         self.back.setFocus()
 
 
-class MoreStationsCard(_ClinicCard):
+class MoreStationsCard(SettingsCard):
     """How a library in a folder gets to the server of a clinic."""
 
     move_wished = Signal(str, str, str)  # address, password, place
@@ -179,10 +158,10 @@ class MoreStationsCard(_ClinicCard):
         self.choose = Button(look, tr("Choose the folder"), ButtonKind.QUIET, Icon.FOLDER)
         self.said = Text(look, weight=MEDIUM, wraps=True)
         self.move_there = Button(look, tr("Move to the clinic's server"))
-        self._fill(self._hint, *self.server.fields)
-        self._add_left(self.choose)
-        self._fill(self.said)
-        self._add_left(self.move_there)
+        self.fill(self._hint, *self.server.fields)
+        self.add_left(self.choose)
+        self.fill(self.said)
+        self.add_left(self.move_there)
         self.choose.clicked.connect(self.place_wished)
         self.move_there.clicked.connect(self._on_move)
         self.show_move("")

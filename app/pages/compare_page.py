@@ -25,21 +25,15 @@ from app.pages.compared_words import (
 )
 from app.plots.compared_chart import ComparedChart, ComparedFrame
 from app.plots.cycle_chart import CycleCharts
-from app.reports.comparison import (
-    Comparison,
-    Contrast,
-    Part,
-    SideRow,
-    compare_sides,
-    first_and_second,
-    left_out_of_parts,
-)
+from app.reports.comparison import Comparison, Contrast, SideRow, compare_sides, first_and_second
+from app.reports.conditions import Part, left_out_of_parts
 from app.reports.reference_bands import NOBODY, bands_of, reference_curves, sides_with_band
 from app.reports.visits import ComparedVisits, condition_in_words
 from app.theme import ThemeNotifier
 from app.widgets.chip import LETTERS
 from app.widgets.chips import Chips
 from app.widgets.choice import Choice
+from app.widgets.heard_order import hear_as_laid_out
 from app.widgets.icons import IconMark
 from app.widgets.segmented import Segmented
 from app.widgets.text import Text
@@ -251,6 +245,8 @@ class ComparePage(Themed):
             self._page.insertWidget(1, self.view, 0, Qt.AlignmentFlag.AlignLeft)
         elif self._has_view:
             self._head.addWidget(self.view, 0, Qt.AlignmentFlag.AlignTop)
+        for part in (self, self._words):
+            hear_as_laid_out(part)
 
     def _show_parts(self) -> None:
         self._place_words()

@@ -5,7 +5,8 @@ from collections.abc import Sequence
 
 from app.pages.compared_words import BRIEF, change_in_words, why_not_told
 from app.plots.difference_plot import DifferenceGroup, DifferenceRow, Dot
-from app.reports.comparison import Compared, Comparison, Measure, SideRow
+from app.reports.comparison import Compared, Comparison, SideRow
+from app.reports.measures import Measure
 from app.widgets.chip import LETTERS
 from app.wording import tr
 from core.body import Side

@@ -8,7 +8,8 @@ from app.charts.cycles import is_mean_enough, is_spread_enough
 from app.gates_in_words import verdict_word
 from app.icons import Icon
 from app.pages.compared_words import BRIEF, MINUS, change_in_words, days_of, error_in_figures
-from app.reports.comparison import Compared, Comparison, Contrast, Part, SideRow
+from app.reports.comparison import Compared, Comparison, Contrast, SideRow
+from app.reports.conditions import Part
 from app.reports.goals import goal_mark
 from app.reports.patient_report.numbers_in_words import DAGGER, NOTHING, fixed
 from app.reports.visit_trend import trend_of

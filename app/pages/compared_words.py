@@ -5,7 +5,10 @@ from collections.abc import Sequence
 from app.dates import day_in_words
 from app.gates_in_words import verdict_word
 from app.recording_names import name_in_words
-from app.reports.comparison import Compared, Measure, Part, Reservation, SideRow, sources_in_words
+from app.reports.comparison import Compared, Reservation, SideRow
+from app.reports.conditions import Part
+from app.reports.error_sources import sources_in_words
+from app.reports.measures import Measure
 from app.reports.patient_report.numbers_in_words import DAGGER, NOTHING, fixed, signed
 from app.reports.walk_figures import reason_in_words
 from app.widgets.chip import LETTERS

@@ -69,10 +69,6 @@ class CyclePage(QWidget):
     def tables(self) -> list[QWidget]:
         return [self.peaks.table, self.time_distance.table, self.hips.table]
 
-    def set_room(self, has_two_charts: bool) -> None:
-        """Put the charts side by side where that is the better use of the page."""
-        self.charts.set_side_by_side(has_two_charts)
-
     def set_notes_shown(self, is_shown: bool) -> None:
         """Say under the charts what was left out by hand, where nothing beside them does."""
         self.by_hand.setVisible(is_shown and bool(self.by_hand.text()))

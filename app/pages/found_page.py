@@ -28,6 +28,7 @@ from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.chip import Chip
 from app.widgets.findings_list import ORDER, FindingRow
+from app.widgets.heard_order import hear_as_laid_out
 from app.widgets.line_keys import LineKeys
 from app.widgets.reading_area import ReadingArea
 from app.widgets.segmented import Segmented
@@ -184,6 +185,7 @@ class FoundPage(Themed):
             self._head.addWidget(self.joints, 0, 1, left)
         else:
             self._head.addWidget(self.joints, 1, 0, 1, 3, left)
+        hear_as_laid_out(self)
 
     def _show_findings(self, findings: Sequence[Finding]) -> None:
         _empty(self.noticed)

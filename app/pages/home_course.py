@@ -29,6 +29,7 @@ from app.theme import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.chip import Chip
+from app.widgets.heard_order import hear_as_laid_out
 from app.widgets.icons import IconMark
 from app.widgets.text import REGULAR, SEMIBOLD, Text
 from app.widgets.themed import Themed
@@ -183,6 +184,7 @@ class CourseCard(Card):
         self._grid.addWidget(self.axis, 2 * len(self.rows), 0 if is_narrow else 1, 1, 2 if is_narrow else 1)
         self._grid.setColumnStretch(0, 1 if is_narrow else 0)
         self._grid.setColumnStretch(1, 0 if is_narrow else 1)
+        hear_as_laid_out(self._grid_room)
         self._on_look_changed()
 
     def _on_look_changed(self) -> None:

@@ -8,6 +8,7 @@ from app.icons import Icon
 from app.theme import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
+from app.widgets.heard_order import hear_as_laid_out
 from app.widgets.icons import IconMark
 from app.widgets.painted_text import CENTRE, PaintedText
 from app.widgets.text import SEMIBOLD, Text
@@ -76,6 +77,7 @@ class EmptyLibrary(Card):
         is_narrow = width < NARROW_BELOW
         for number, part in enumerate(self._need_parts):
             self._needs.addWidget(part, number if is_narrow else 0, 0 if is_narrow else number)
+        hear_as_laid_out(self)
         self.steps.set_room(room)
         self._begin.setMaximumWidth(px(WIDEST_WORDS))
         self._on_look_changed()

@@ -20,6 +20,7 @@ from app.theme import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.choice import Choice
+from app.widgets.heard_order import hear_as_laid_out
 from app.widgets.small_curve import SmallCurve
 from app.widgets.text import SEMIBOLD, Text
 from app.wording import joined, tr, tr_n
@@ -122,6 +123,8 @@ class DraftCards(QWidget):
             row.kind.currentIndexChanged.connect(self._on_changed)
         for sensor in self._sensors:
             sensor.site.currentIndexChanged.connect(self._on_changed)
+        for card in (self._of_recordings, self._of_sensors):
+            hear_as_laid_out(card)
         self._on_changed()
 
     def show_chains(self, chains: "Chains") -> bool:

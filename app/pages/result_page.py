@@ -3,7 +3,6 @@
 from collections.abc import Mapping, Sequence
 from enum import Enum, auto
 
-import numpy as np
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QKeySequence, QShortcut
 from PySide6.QtWidgets import QBoxLayout, QGridLayout, QHBoxLayout, QVBoxLayout, QWidget
@@ -14,11 +13,11 @@ from app.pages.beside_choice import Beside, BesideChoice
 from app.pages.beside_words import answer_beside, key_figures_beside
 from app.pages.differs_card import DiffersCard
 from app.pages.result_parts import PageRoom, ResultParts
-from app.plots.angle_chart import Curve
 from app.recording_names import with_shown_names
 from app.reports.agreed import agreed_with
 from app.reports.beside import changes_on_curves
-from app.reports.comparison import Comparison, Part, conditions_of
+from app.reports.comparison import Comparison
+from app.reports.conditions import Part, conditions_of
 from app.reports.patient_report.answer import Outcome, answer_of
 from app.reports.patient_report.data_quality import data_quality, quality_without_walk
 from app.reports.patient_report.facts import Facts
@@ -32,18 +31,15 @@ from app.widgets.button import Button, ButtonKind
 from app.widgets.choice import Choice
 from app.widgets.door import Door
 from app.widgets.fact_strip import FactStrip
+from app.widgets.heard_order import hear_as_laid_out
 from app.widgets.notice import Notice
 from app.widgets.segmented import Segmented
-from app.widgets.text import Text
 from app.widgets.themed import Themed
 from app.widgets.toggle import Toggle
 from app.wording import later, tr
 from core.body import Joint, JointKind, Side, Site
-from core.hip.results import HipAngle
-from core.results import JointAngle, RecordingAnalysis
+from core.results import RecordingAnalysis
 from core.samples import FloatArray, RecordingKind
-
-RESULT, PUBLISHED, ORIENTATION, BOTH = "result", "published", "orientation", "both"
 
 LEG_KINDS = (JointKind.KNEE, JointKind.ANKLE)  # whose charts are always there
 
@@ -63,15 +59,6 @@ ANSWER_ICONS = {
     Outcome.OPEN: Icon.INFO,
     Outcome.UNREADABLE: Icon.WITHHELD,
 }
-
-HINTS = {
-    RESULT: later("Pale: certainty, ± 2 SD."),
-    PUBLISHED: later("Equation 15 of the paper, on the same joint axes. No certainty is known for it."),
-    ORIENTATION: later("Equation 10 of the paper, from orientations with magnetometer. No certainty is known for it."),
-    BOTH: later("Bold: the result, pale its certainty of ± 2 SD. Thin: the published method."),
-}
-KEYS = later("Wheel or + \N{MINUS SIGN} zooms, drag or Page Up, Page Down moves, mouse or arrows read.")
-EVENT_KEYS = later("[ ] step through contacts and toe-offs. Pre-swing is heel rise to toe-off.")
 
 
 class Behind(Enum):
@@ -116,16 +103,6 @@ class ResultPage(Themed):
         self.recordings = Choice(look, tr("Recording"))
         self.beside = BesideChoice(look)
         self.recordings.let_shrink(*RECORDINGS)  # conditions are typed
-        self.methods = Segmented(
-            look,
-            tr("Method"),
-            [
-                (RESULT, tr("Result"), tr("relative orientation")),
-                (PUBLISHED, tr("Published"), tr("equation 15")),
-                (ORIENTATION, tr("Orientation"), tr("equation 10")),
-                (BOTH, tr("Both"), tr("result and published")),
-            ],
-        )
         self.answer = Notice(look, ANSWER_PX, padding=4)
         self.key_figures = FactStrip(look)
         self.differs = DiffersCard(look)
@@ -136,11 +113,8 @@ class ResultPage(Themed):
         self.legs = parts.legs
         self.strides = parts.strides
         self.compare = parts.compare
-        self.charts = parts.charts
+        self.whole = parts.whole
         self.quality = parts.quality
-        self.shown = Text(look, size=14, tone="ink2")
-        self.whole = Button(look, tr("Whole recording"), ButtonKind.QUIET, Icon.WHOLE, tr("Home"), height=44)
-        self.hint = Text(look, size=12, tone="ink2", wraps=True)
         self._build()
         self._connect()
 
@@ -213,7 +187,7 @@ class ResultPage(Themed):
         if self._behind is Behind.QUALITY:
             self.quality.focus()
         else:
-            (self.methods if self.view.isHidden() else self.view).focus()
+            (self.whole.methods if self.view.isHidden() else self.view).focus()
 
     def leave_behind(self) -> bool:
         """Go back to the answer from what stands behind it; whether there was anything to leave."""
@@ -245,11 +219,10 @@ class ResultPage(Themed):
             self.recordings,
             self.beside,
             self.show_legs,
-            *self.methods.segments,
+            *self.whole.methods.segments,
         ]
         shown = [
-            self.charts,
-            self.whole,
+            *self.whole.tab_order,
             *self.strides.tab_order,
             self.differs.table,
             *self.cycles.tables,
@@ -272,19 +245,6 @@ class ResultPage(Themed):
         choices.setContentsMargins(0, 0, 0, 0)
         for widget in (self.recordings, self.beside, self.show_legs, self._against):
             choices.addWidget(widget)
-        self._curves = QWidget()
-        left = QVBoxLayout(self._curves)
-        left.setContentsMargins(0, 0, 0, 0)
-        left.addWidget(self.charts, 1)
-        self._notes = QWidget()
-        notes = QVBoxLayout(self._notes)
-        notes.setContentsMargins(0, 0, 0, 0)
-        notes.setSpacing(2)
-        notes.addWidget(self.shown)
-        notes.addWidget(self.hint)
-        self._foot = QGridLayout()
-        self._foot.setColumnStretch(0, 1)
-        left.addLayout(self._foot)
         self._head = QHBoxLayout()
         self._head.addWidget(self.answer, 1)
         self._head.addWidget(self.key_figures, 0, Qt.AlignmentFlag.AlignTop)
@@ -298,7 +258,7 @@ class ResultPage(Themed):
         self._tables.addLayout(right, 1)
         self._columns = QHBoxLayout()
         for widget, share in (
-            (self._curves, 1),
+            (self.whole, 1),
             (self.cycles, 1),
             (self.legs, 0),
             (self.strides, 0),
@@ -318,18 +278,12 @@ class ResultPage(Themed):
         self._page.addLayout(self._columns, 1)
         self._page.addWidget(self.differs)
         self._page.addLayout(self._bottom)
-        policy = self.whole.sizePolicy()
-        policy.setRetainSizeWhenHidden(True)  # what comes and goes must not move what stays
-        self.whole.setSizePolicy(policy)
         self._place()
 
     def _connect(self) -> None:
         self.view.chosen.connect(self._on_view_chosen)
-        self.methods.chosen.connect(self._on_method_chosen)
         self.recordings.currentIndexChanged.connect(self._on_recording_changed)
         self.beside.currentIndexChanged.connect(self._on_beside_changed)
-        self.charts.view_changed.connect(self._on_view_changed)
-        self.whole.clicked.connect(self.charts.show_whole)
         self.strides.chosen.connect(self._on_stride_chosen)
         self.cycles.charts.picked.connect(self._on_stride_picked)
         self.show_legs.toggled.connect(self._on_legs_toggled)
@@ -348,10 +302,8 @@ class ResultPage(Themed):
 
     def _place(self) -> None:
         """Put the controls into one row, where they fit; the methods go under the curves where they do not."""
-        for widget in (self.view, self.to_answer, self.methods, self._choices):
+        for widget in (self.view, self.to_answer, self.whole.methods, self._choices):
             self._controls.removeWidget(widget)
-        for widget in (self._notes, self.methods, self.whole):
-            self._foot.removeWidget(widget)
         left = Qt.AlignmentFlag.AlignLeft
         self._has_tools, self._has_choices = self._do_tools_fit(), self._do_choices_fit()
         self._controls.addWidget(self.view, 0, 0, left)
@@ -365,34 +317,23 @@ class ResultPage(Themed):
             self._against_row.insertWidget(2, self.compare.view)
         elif self._room.is_compact and (row := self._compared_as.layout()) is not None:
             row.addWidget(self.compare.view)
-        if self._room.is_narrow:
-            self._foot.addWidget(self.methods, 0, 0, left)
-            self._foot.addWidget(self.whole, 1, 0, left)
-            self._foot.addWidget(self._notes, 2, 0)
-        elif not self._has_tools:
-            self._foot.addWidget(self.methods, 0, 0, 1, 2, left)
-            self._foot.addWidget(self._notes, 1, 0)
-            self._foot.addWidget(self.whole, 1, 1)
-        else:
-            self._controls.addWidget(self.methods, 0, 3)
-            self._foot.addWidget(self._notes, 0, 0)
-            self._foot.addWidget(self.whole, 0, 1)
-        room = self._room
+        room, has_methods = self._room, self._has_tools and not self._room.is_narrow
+        self.whole.place(has_methods=not has_methods, is_narrow=room.is_narrow, is_wide=room.has_two_tables)
+        if has_methods:
+            self._controls.addWidget(self.whole.methods, 0, 3)
         self.compare.set_room(room.is_compact, room.is_spacious, room.has_two_charts, has_view=not room.is_narrow)
         self.strides.set_charts_beside(self._room.has_strides_beside)
-        for frame in self.charts.frames:
-            frame.set_room(is_narrow=room.is_narrow, is_wide=room.has_two_tables)
-        self.cycles.set_room(self._room.has_two_charts)
         self.legs.set_brief(self._room.is_compact)
+        hear_as_laid_out(self)
         self._on_look_changed()
         self._tell_answer()
         self._offer()
 
     def _fit_parts(self) -> None:
         """Put beside each other what has its room there: tables of figures, the doors, the phases' legend."""
-        room, cycles, phases = self._room, self.cycles, self.charts.phases
+        room, cycles = self._room, self.cycles
         self.quality.set_room(self._inner_width, is_compact=room.is_compact, is_narrow=room.is_narrow)
-        phases.set_narrow(room.is_narrow or not phases.does_fit(self._inner_width))
+        self.whole.fit_phases(self._inner_width, is_narrow=room.is_narrow)
         right = [card for card in (cycles.time_distance, cycles.hips) if not card.isHidden()]
         needed = _least_width(cycles.peaks) + max(map(_least_width, right), default=0) + self._tables.spacing()
         does_fit = room.has_two_tables and needed <= self._inner_width
@@ -414,7 +355,7 @@ class ResultPage(Themed):
 
     def _do_tools_fit(self) -> bool:
         """Whether views, recordings and methods fit into one row."""
-        tools = (self.view, self.recordings, self.methods)
+        tools = (self.view, self.recordings, self.whole.methods)
         return self._inner_width >= sum(one.sizeHint().width() for one in tools) + self._look.theme.px(3 * GAP)
 
     def _do_choices_fit(self) -> bool:
@@ -458,7 +399,7 @@ class ResultPage(Themed):
         is_quality = behind is Behind.QUALITY
         self.view.setVisible(is_walk and not is_quality)
         self.to_answer.setVisible(is_quality)
-        self.methods.setVisible(view == WHOLE and not is_quality)
+        self.whole.methods.setVisible(view == WHOLE and not is_quality)
         self.recordings.setVisible(view != COMPARE and self.recordings.count() > 0)
         self.beside.setVisible(view == ANSWER and not is_quality and (has_curves or behind is Behind.FIGURES))
         self.show_legs.setVisible(view == ANSWER and behind is Behind.NOTHING)
@@ -467,7 +408,7 @@ class ResultPage(Themed):
         self.compare.setVisible(view == COMPARE)
         self.answer.setVisible(has_answer and behind is Behind.NOTHING and bool(self.answer.text))
         self.key_figures.setVisible(is_answer and not self._room.is_compact)
-        self._curves.setVisible(view == WHOLE and not is_quality)
+        self.whole.setVisible(view == WHOLE and not is_quality)
         self.cycles.setVisible(has_curves or (view == STRIDES and self._room.has_strides_beside))
         has_legs = is_answer and self.show_legs.isChecked()
         has_table = not has_legs or self._room.is_spacious
@@ -503,24 +444,18 @@ class ResultPage(Themed):
 
     def _on_recording_changed(self) -> None:
         recording, visit = self.recording, self._visit
-        self.charts.setEnabled(recording is not None)
         self._show_quality()
+        called = self._called(recording.name) if recording is not None else ""
+        self.whole.show_recording(recording, called, is_simulated=visit is not None and visit.analysis.is_simulated)
         if recording is None or visit is None:
-            self.charts.show_recording(tr("no recording"), np.zeros(0), is_simulated=False)
             self._facts = self._found = None
             self._offer()
             return
-        analysis = visit.analysis
-        has_orientation = any(angle.orientation_rad is not None for angle in recording.joints.values())
-        self.methods.set_reason(ORIENTATION, "" if has_orientation else tr("no magnetometer"))
-        called = self._called(recording.name)
-        self.charts.show_recording(called, recording.time_s, analysis.is_simulated, recording.gait)
         who = age_and_height(visit.session)
-        self.cycles.show_walk(recording, analysis.is_simulated, who, sides_with_band(recording))
+        self.cycles.show_walk(recording, visit.analysis.is_simulated, who, sides_with_band(recording))
         self.strides.show_walk(recording, self._can_choose)
         self.beside.offer(recording.name, has_visits=self.compare.has_visits)
         self._show_beside()
-        self._on_method_chosen()
         self._offer()
 
     def _called(self, name: str) -> str:
@@ -589,18 +524,6 @@ class ResultPage(Themed):
         then = [answer.then, figures_in_short(facts) if self._room.is_compact else ""]
         self.answer.tell(ANSWER_ICONS[answer.outcome], answer.first, " ".join(filter(None, then)))
 
-    def _on_method_chosen(self) -> None:
-        recording = self.recording
-        if recording is None:
-            return
-        method = self.methods.choice
-        curves = {joint: curve for joint, angle in recording.joints.items() if (curve := _curve(angle, method))}
-        curves |= {joint: curve for joint, hip in recording.hips.items() if (curve := _hip_curve(hip, method))}
-        self.charts.show_joints(curves)
-        self.hint.setText(
-            " ".join(filter(None, [tr(HINTS[method]), tr(KEYS), tr(EVENT_KEYS) if recording.gait else ""]))
-        )
-
     def _show_strides(self) -> None:
         """Draw single strides where they are chosen from; the one in force only there."""
         is_choosing = self.view.choice == STRIDES
@@ -634,12 +557,6 @@ class ResultPage(Themed):
         self._show_beside()
         self._show_parts()
 
-    def _on_view_changed(self, is_whole: bool, words: str) -> None:
-        self.shown.setText(words)
-        if is_whole and self.whole.hasFocus():
-            self.charts.setFocus()
-        self.whole.setVisible(not is_whole)
-
     def _on_look_changed(self) -> None:
         px, is_compact = self._look.theme.px, self._room.is_compact
         side = px(self._side)
@@ -650,33 +567,11 @@ class ResultPage(Themed):
         self._head.setSpacing(px(24))
         self._bottom.setSpacing(px(12))
         self._tables.setSpacing(px(12))
-        for part in (self._curves, self._against, self._choices):
+        for part in (self._against, self._choices):
             layout = part.layout()
             assert layout is not None
             layout.setSpacing(px(8 if is_compact and part is self._choices else 12))
-        self._foot.setHorizontalSpacing(px(16))
-        self._foot.setVerticalSpacing(px(8))
 
 
 def _least_width(widget: QWidget) -> int:
     return widget.minimumSizeHint().width()
-
-
-def _hip_curve(hip: HipAngle, method: str) -> Curve | None:
-    """Give a hip's flexion, in degrees; neither the published method nor a magnetometer gives one."""
-    is_result = method in (RESULT, BOTH)
-    return Curve(np.rad2deg(hip.angle_rad), np.rad2deg(hip.sd_rad)) if is_result else None
-
-
-def _curve(angle: JointAngle, method: str) -> Curve | None:
-    """Give what `method` draws of one joint, in degrees; None where it has nothing."""
-    result, sd, published = (np.rad2deg(values) for values in (angle.angle_rad, angle.sd_rad, angle.published_rad))
-    match method:
-        case "published":
-            return Curve(published)
-        case "orientation":
-            return None if angle.orientation_rad is None else Curve(np.rad2deg(angle.orientation_rad))
-        case "both":
-            return Curve(result, sd, published)
-        case _:
-            return Curve(result, sd)

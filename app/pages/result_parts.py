@@ -7,7 +7,7 @@ from app.pages.compare_page import ComparePage
 from app.pages.cycle_page import CyclePage
 from app.pages.quality_page import QualityPage
 from app.pages.strides_page import StridesPage
-from app.plots.joint_charts import JointCharts
+from app.pages.whole_page import WholePage
 from app.plots.moving_legs import MovingLegs
 from app.theme import ThemeNotifier
 from app.widgets import grid
@@ -65,8 +65,8 @@ class ResultParts:
         return ComparePage(self._look)
 
     @cached_property
-    def charts(self) -> JointCharts:
-        return JointCharts(self._look)
+    def whole(self) -> WholePage:
+        return WholePage(self._look)
 
     @cached_property
     def legs(self) -> MovingLegs:
@@ -78,9 +78,7 @@ class ResultParts:
 
     def make_next(self) -> bool:
         """Make one part; whether there was one left to be made."""
-        left = [
-            name for name in ("cycles", "strides", "compare", "charts", "quality", "legs") if name not in vars(self)
-        ]
+        left = [name for name in ("cycles", "strides", "compare", "whole", "quality", "legs") if name not in vars(self)]
         if left:
             getattr(self, left[0])
         return bool(left)

@@ -5,14 +5,15 @@ from dataclasses import dataclass
 from uuid import UUID
 
 from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
 from app.icons import Icon
 from app.pages.clinic_cards import MoreStationsCard, StationCard
+from app.pages.operators_card import OperatorsCard
+from app.pages.settings_card import SettingsCard
 from app.passphrases import REFUSED, strength_in_words, strength_of
 from app.theme import SCALES, ThemeNotifier
 from app.widgets.button import Button, ButtonKind
-from app.widgets.card import Card
 from app.widgets.choice import Choice
 from app.widgets.field import Field
 from app.widgets.segmented import Segmented
@@ -24,18 +25,6 @@ from app.wording import LANGUAGES, languages, tr
 COLUMN = 720
 FRONT, BEHIND = "front", "behind"
 AS_SYSTEM, LESS_MOTION = "system", "less"
-
-
-@dataclass(frozen=True, slots=True)
-class OperatorLine:
-    """Who works here; `role` in words. `has_key`: the passphrase opens the library."""
-
-    code: str
-    name: str
-    role: str
-    is_active: bool
-    is_self: bool
-    has_key: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,14 +53,12 @@ class SettingsPage(TallPage):
     backup_folder_wished = Signal()
     stop_wished = Signal()
     error_report_wished = Signal()
-    operator_added = Signal(str, str, str, str)  # code, name, role, passphrase
-    operator_removed = Signal(str)  # code
     clinic_named = Signal(str)
     restore_wished = Signal(object, bool)  # id, whether it is a patient's
 
     def __init__(self, look: ThemeNotifier, shortest: int, roles: Sequence[tuple[str, str]]) -> None:
         super().__init__()
-        self._look, self._shortest, self._roles = look, shortest, roles
+        self._look, self._shortest = look, shortest
         self._own: tuple[str, ...] = ()
         self._title = Text(look, tr("Settings"), size=26, weight=SEMIBOLD)
         self.column.addWidget(self._title)
@@ -84,7 +71,8 @@ class SettingsPage(TallPage):
             self.column.addWidget(card)
         self._build_deleted()
         self._build_clinic()
-        self._build_operators()
+        self.operators = OperatorsCard(look, shortest, roles, self.clinic)
+        self.column.addWidget(self.operators)
         self._build_trouble()
         self.column.addStretch(1)
         self._connect()
@@ -142,14 +130,15 @@ class SettingsPage(TallPage):
         self.station.setVisible(is_station)
         self.more_stations.setVisible(may_move)
         self._clinic.setVisible(has_operators)
-        self.operators_card.setVisible(has_operators)
+        self.operators.setVisible(has_operators)
         self.forget_typed()
         self.show_recovery_key("")
 
     def forget_typed(self) -> None:
-        for field in (self.old, self.new, self.again, self.code, self.name, self.first):
+        for field in self._fields:
             field.set_text("")
             field.set_wrong("")
+        self.operators.forget_typed()
         self.more_stations.server.forget_typed()
         self._said.setText("")
         self._strength.setText(strength_in_words("", self._shortest))
@@ -172,16 +161,6 @@ class SettingsPage(TallPage):
     def show_clinic(self, name: str) -> None:
         self.clinic.set_text(name)
 
-    def show_operators(self, operators: Sequence[OperatorLine]) -> None:
-        while (item := self.operator_rows.takeAt(0)) is not None:
-            if (widget := item.widget()) is not None:
-                widget.hide()
-                widget.deleteLater()
-        for operator in operators:
-            row = _OperatorRow(self._look, operator)
-            row.switched.connect(self._on_operator_switched)
-            self.operator_rows.addWidget(row)
-
     def show_deleted(self, lines: Sequence[DeletedLine]) -> None:
         """Show what can still be had back."""
         while (item := self.deleted_rows.takeAt(0)) is not None:
@@ -193,9 +172,6 @@ class SettingsPage(TallPage):
             row.restored.connect(self.restore_wished)
             self.deleted_rows.addWidget(row)
         self.none_deleted.setVisible(not lines)
-
-    def refuse_operator(self, sentence: str) -> None:
-        self.code.set_wrong(sentence)
 
     def _build_screen(self) -> None:
         look = self._look
@@ -225,9 +201,9 @@ class SettingsPage(TallPage):
             (tr("The patient is seen"), self.side),
             (tr("Motion on the screen"), self.motion),
         ):
-            self._screen.column.addWidget(Text(look, label, weight=MEDIUM))
-            self._add_left(self._screen, control)
-        self._add_left(self._screen, self.sound)
+            self._screen.fill(Text(look, label, weight=MEDIUM))
+            self._screen.add_left(control)
+        self._screen.add_left(self.sound)
 
     def _build_access(self) -> None:
         look = self._look
@@ -251,16 +227,16 @@ class SettingsPage(TallPage):
         )
         self.print = Button(look, tr("Print"), ButtonKind.SECONDARY, Icon.PRINT)
         self.save = Button(look, tr("Save as a file"), ButtonKind.SECONDARY, Icon.IMPORT)
-        self.access_card.column.addWidget(self.old)
-        self.access_card.column.addWidget(self.new)
-        self.access_card.column.addWidget(self._strength)
-        self.access_card.column.addWidget(self.again)
-        self._add_left(self.access_card, self.change)
-        self.access_card.column.addWidget(self._said)
-        self._add_left(self.access_card, self.renew)
-        self.access_card.column.addWidget(self._key_words)
-        self.access_card.column.addWidget(self._key_hint)
-        self._add_left(self.access_card, self.print, self.save)
+        self.access_card.fill(self.old)
+        self.access_card.fill(self.new)
+        self.access_card.fill(self._strength)
+        self.access_card.fill(self.again)
+        self.access_card.add_left(self.change)
+        self.access_card.fill(self._said)
+        self.access_card.add_left(self.renew)
+        self.access_card.fill(self._key_words)
+        self.access_card.fill(self._key_hint)
+        self.access_card.add_left(self.print, self.save)
         self.show_recovery_key("")
 
     def _build_backup(self) -> None:
@@ -275,10 +251,10 @@ class SettingsPage(TallPage):
         self.backup_said = Text(look, weight=MEDIUM, wraps=True)
         self.back_up = Button(look, tr("Back up now"))
         self.choose_folder = Button(look, tr("Choose the folder"), ButtonKind.QUIET, Icon.FOLDER)
-        self.backup_card.column.addWidget(Text(look, hint, tone="ink2", wraps=True))
-        self.backup_card.column.addWidget(self.backup_folder)
-        self.backup_card.column.addWidget(self.backup_said)
-        self._add_left(self.backup_card, self.back_up, self.choose_folder)
+        self.backup_card.fill(Text(look, hint, tone="ink2", wraps=True))
+        self.backup_card.fill(self.backup_folder)
+        self.backup_card.fill(self.backup_said)
+        self.backup_card.add_left(self.back_up, self.choose_folder)
         self.show_backup("", "")
 
     def _build_deleted(self) -> None:
@@ -289,38 +265,12 @@ class SettingsPage(TallPage):
             look, tr("Nothing. What is deleted can be had back from here."), tone="ink2", wraps=True
         )
         self.deleted_card.column.addLayout(self.deleted_rows)
-        self.deleted_card.column.addWidget(self.none_deleted)
+        self.deleted_card.fill(self.none_deleted)
 
     def _build_clinic(self) -> None:
         self._clinic = self._card(tr("Your clinic"))
         self.clinic = Field(self._look, tr("Name, as reports print it"), is_optional=True)
-        self._clinic.column.addWidget(self.clinic)
-
-    def _build_operators(self) -> None:
-        look = self._look
-        self.operators_card = self._card(tr("Who works with this library"))
-        self.operator_rows = QVBoxLayout()
-        self.operators_card.column.addLayout(self.operator_rows)
-        self._leaving = ""
-        self.leaving_words = Text(look, wraps=True)
-        self.remove = Button(look, tr("Remove and change the key"))
-        self.keep = Button(look, tr("Cancel"), ButtonKind.QUIET)
-        self.operators_card.column.addWidget(self.leaving_words)
-        self._add_left(self.operators_card, self.remove, self.keep)
-        self._show_leaving("")
-        self.code = Field(look, tr("Code of a new operator"), is_code=True)
-        self.name = Field(look, tr("Name"))
-        self.role = Choice(look, tr("Role"))
-        for key, words in self._roles:
-            self.role.addItem(words, key)
-        self.first = Field(look, tr("First passphrase, to be changed by its owner"), is_secret=True)
-        self.add = Button(look, tr("Add the operator"), ButtonKind.SECONDARY, Icon.ADD)
-        self.operators_card.column.addWidget(self.code)
-        self.operators_card.column.addWidget(self.name)
-        self.operators_card.column.addWidget(Text(look, tr("Role"), weight=MEDIUM))
-        self._add_left(self.operators_card, self.role)
-        self.operators_card.column.addWidget(self.first)
-        self._add_left(self.operators_card, self.add)
+        self._clinic.fill(self.clinic)
 
     def _build_trouble(self) -> None:
         look = self._look
@@ -330,11 +280,11 @@ class SettingsPage(TallPage):
             "codes, names or paths, and nothing typed. It is saved as a text that you can read; sending it is "
             "up to you."
         )
-        self.trouble_card.column.addWidget(Text(look, hint, tone="ink2", wraps=True))
+        self.trouble_card.fill(Text(look, hint, tone="ink2", wraps=True))
         self.report_error = Button(look, tr("Save an error report"), ButtonKind.SECONDARY, Icon.IMPORT)
-        self._add_left(self.trouble_card, self.report_error)
+        self.trouble_card.add_left(self.report_error)
         self._trouble_said = Text(look, tone="ink2", wraps=True)
-        self.trouble_card.column.addWidget(self._trouble_said)
+        self.trouble_card.fill(self._trouble_said)
         self._trouble_said.hide()
 
     @property
@@ -359,55 +309,10 @@ class SettingsPage(TallPage):
         self.save.clicked.connect(self._on_save)
         self.back_up.clicked.connect(self._on_back_up)
         self.choose_folder.clicked.connect(self.backup_folder_wished)
-        self.add.clicked.connect(self._on_add)
-        self.remove.clicked.connect(self._on_remove)
-        self.keep.clicked.connect(self._on_keep)
         self.clinic.committed.connect(self._on_clinic_named)
         self.report_error.clicked.connect(self.error_report_wished)
-        for field in (self.old, self.new, self.again, self.code, self.name, self.first):
+        for field in self._fields:
             field.edited.connect(self._on_edited)
-
-    def show_key_change(self, sentence: str, *, is_running: bool) -> None:
-        """Say how far the change of the library's key is, or how it ended."""
-        self.leaving_words.setText(sentence)
-        self.leaving_words.setVisible(bool(sentence))
-        for button in (self.remove, self.keep):
-            button.hide()
-        self.operators_card.setEnabled(not is_running)
-
-    def _show_leaving(self, code: str) -> None:
-        """Ask before somebody is removed, and say what is out of reach; without a code nothing is asked."""
-        self._leaving = code
-        self.show_key_change(
-            tr(
-                "{code} then opens this library no longer, and it gets a new key: an old copy of its key file, with "
-                "the passphrase of {code}, opens nothing that is on this computer from then on. All others keep "
-                "their passphrases. Backups that were made before keep their old key: with the old passphrase, who "
-                "has one can still read it. Nothing can be recorded until the change is done."
-            ).format(code=code)
-            if code
-            else "",
-            is_running=False,
-        )
-        for button in (self.remove, self.keep):
-            button.setVisible(bool(code))
-
-    def _on_operator_switched(self, operator: OperatorLine) -> None:
-        if operator.is_active or operator.has_key:
-            self._show_leaving(operator.code)
-            return
-        self._show_leaving("")
-        self.code.set_text(operator.code)
-        self.name.set_text(operator.name)
-        self.role.setCurrentIndex(max(self.role.findText(operator.role), 0))
-        self.first.set_wrong(tr("Type a first passphrase: the old one opens nothing any more."))
-        self.first.setFocus()
-
-    def _on_remove(self) -> None:
-        self.operator_removed.emit(self._leaving)
-
-    def _on_keep(self) -> None:
-        self._show_leaving("")
 
     def show_backup(self, sentence: str, folder: str, *, is_running: bool = False) -> None:
         """Say how the latest backup went, and where backups go."""
@@ -423,19 +328,10 @@ class SettingsPage(TallPage):
         self._is_backing_up = is_running
         self.choose_folder.setEnabled(not is_running)
 
-    def _card(self, title: str) -> Card:
-        card = Card(self._look, padding=20, spacing=10)
-        card.column.addWidget(Text(self._look, title, size=16, weight=SEMIBOLD, wraps=True))
+    def _card(self, title: str) -> SettingsCard:
+        card = SettingsCard(self._look, title)
         self.column.addWidget(card)
         return card
-
-    def _add_left(self, card: Card, *widgets: QWidget) -> None:
-        """Give controls the width that they need, one beside the other."""
-        row = QHBoxLayout()
-        for widget in widgets:
-            row.addWidget(widget)
-        row.addStretch(1)
-        card.column.addLayout(row)
 
     def _on_scale_chosen(self, _index: int) -> None:
         self.scale_chosen.emit(float(self.scale.currentData()))
@@ -447,7 +343,7 @@ class SettingsPage(TallPage):
         self.motion_chosen.emit(key == LESS_MOTION)
 
     def _on_edited(self, _text: str) -> None:
-        for field in (self.old, self.new, self.again, self.code, self.name, self.first):
+        for field in self._fields:
             field.set_wrong("")
         self._strength.setText(strength_in_words(self.new.text, self._shortest, self._known))
 
@@ -474,56 +370,19 @@ class SettingsPage(TallPage):
         (self.stop_wished if self._is_backing_up else self.backup_wished).emit()
 
     @property
+    def _fields(self) -> tuple[Field, ...]:
+        return self.old, self.new, self.again
+
+    @property
     def _known(self) -> tuple[str, ...]:
         return *self._own, self.clinic.text
-
-    def _on_add(self) -> None:
-        first, known = self.first.text or "-", (self.code.text, self.name.text, self.clinic.text)
-        if not self.code.text.strip():
-            self.code.set_wrong(tr("Type a code."))
-        elif not self.name.text.strip():
-            self.name.set_wrong(tr("Type a name."))
-        elif strength_of(first, self._shortest, known) in REFUSED:
-            self.first.set_wrong(strength_in_words(first, self._shortest, known))
-        else:
-            name = self.name.text.strip()
-            self.operator_added.emit(self.code.text.strip(), name, str(self.role.currentData()), self.first.text)
 
     def _on_look_changed(self) -> None:
         px = self._look.theme.px
         self.setMaximumWidth(px(COLUMN + 48))
         self.column.setContentsMargins(px(24), px(16), px(24), px(20))
         self.column.setSpacing(px(16))
-        self.operator_rows.setSpacing(px(4))
         self.deleted_rows.setSpacing(px(4))
-
-
-class _OperatorRow(QWidget):
-    switched = Signal(object)  # OperatorLine
-
-    def __init__(self, look: ThemeNotifier, operator: OperatorLine) -> None:
-        super().__init__()
-        self._operator = operator
-        row = QBoxLayout(QBoxLayout.Direction.LeftToRight, self)
-        row.setContentsMargins(0, 0, 0, 0)
-        words = ", ".join([operator.code, operator.name, operator.role])
-        row.addWidget(Text(look, words, size=15, wraps=True), 1)
-        self.button = Button(
-            look,
-            tr("Works here no longer")
-            if operator.is_active
-            else tr("Change the key now")
-            if operator.has_key
-            else tr("Works here again"),
-            height=44,
-        )
-        self.button.setAccessibleName(f"{self.button.text()}, {operator.code}")
-        self.button.setVisible(not operator.is_self)
-        self.button.clicked.connect(self._on_clicked)
-        row.addWidget(self.button)
-
-    def _on_clicked(self) -> None:
-        self.switched.emit(self._operator)
 
 
 class _DeletedRow(QWidget):

@@ -461,9 +461,9 @@ class CycleChart(Themed):
         """At the hip laid at the height of the curves, for its group's zero is another one."""
         if self.band is None or not self.has_band or self.is_about_mean:
             return None
-        means = [curve.angle_deg for curve in self._curves() if curve.is_known]
         if self._kind is not JointKind.HIP:
             return self.band
+        means = [curve.angle_deg for curve in self._curves() if curve.is_known]
         return laid_at_height_of(np.mean(means, axis=0), self.band) if means else None
 
     def _curves(self) -> tuple[StrideCurve, ...]:

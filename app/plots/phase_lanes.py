@@ -17,6 +17,7 @@ from app.theme import ThemeNotifier
 from app.tokens import Theme
 from app.widgets.card import Card
 from app.widgets.chip import CHIP, Chip, paint_chip
+from app.widgets.heard_order import hear_as_laid_out
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.wording import joined, later, tr, tr_n
 from core.body import Side
@@ -125,6 +126,7 @@ class PhaseFrame(Card):
         else:
             self._head.addLayout(self._legend, 0, 1)
         self._head.setColumnStretch(1, 1)
+        hear_as_laid_out(self)
 
     def show_gait(self, time_s: FloatArray, gait: Mapping[Side, SideGait], is_simulated: bool) -> None:
         self.lanes.show_lanes({side: Lane.of(time_s, gait[side]) for side in Side if side in gait})

@@ -5,7 +5,8 @@ from dataclasses import replace
 
 from app.charts.marks import Deviation, extreme_of
 from app.recording_names import shown_names
-from app.reports.comparison import Comparison, Contrast, Part, conditions_of
+from app.reports.comparison import Comparison, Contrast
+from app.reports.conditions import Part, conditions_of
 from app.reports.patient_report.marks_on_curves import windows_of
 from app.reports.patient_report.numbers_in_words import fixed
 from app.reports.visits import ComparedVisits

@@ -8,7 +8,8 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from app.reports.comparison import CADENCE, Measure, Part
+from app.reports.conditions import Part
+from app.reports.measures import CADENCE
 from app.reports.visits import by_condition
 from core.body import Joint, Side
 from core.goals import OF_LEGS
@@ -213,7 +214,7 @@ def change(
 def _condition(name: str, part: Part, tests: tuple[CourseTest, ...]) -> CourseCondition:
     figures = [_of_walk(part, column) for column in (SPEED, CADENCE)]
     for side in part.sides:
-        for column in (one for one in OF_A_LEG if one not in OF_HIPS or part.is_measured(side, Measure.of(one))):
+        for column in (one for one in OF_A_LEG if one not in OF_HIPS or part.is_measured(side, one)):
             found = part.assessment(side, column)
             figures.append(_figure(column, side, part.mean(side, column, ComparisonKind.VISITS), found))
     withheld = []

@@ -10,17 +10,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from app.reports.agreed import agreed_with
-from app.reports.comparison import (
-    MEASURES,
-    Comparison,
-    Contrast,
-    Measure,
-    Part,
-    Reservation,
-    compare_legs,
-    conditions_of,
-)
+from app.reports.comparison import Comparison, Contrast, Reservation, compare_legs
+from app.reports.conditions import Part, conditions_of
 from app.reports.csv_report import figure_cell, typed_cell, write_table
+from app.reports.measures import MEASURES, Measure
 from app.reports.status import status_of
 from app.reports.visits import by_condition
 from core.body import Joint, Side
@@ -197,7 +190,7 @@ def write_sides(parts: Sequence[Part], sides: tuple[Side, Side], path: Path) -> 
         left_out = [str(part.left_out_by_hand(side)) for side in sides]
         for column in COMPARED:
             one, other = (part.value(side, column) for side in sides)
-            if not all(_is_measured(part, side, column) for side in sides):
+            if not all(part.is_measured(side, column) for side in sides):
                 continue
             status = together(part.assessment(side, column) for side in sides).verdict
             is_size = CLASSES[column] is not QuantityClass.HEIGHT and column not in SIGNED
@@ -239,10 +232,6 @@ def _of_both(comparison: Comparison, part: Part) -> Iterator[Row]:
             if name in OF_WALKS:
                 found = comparison.compare_walks(OF_WALKS[name], part, against).difference
             yield Row(part, against, None, name, value, other, found, status)
-
-
-def _is_measured(part: Part, side: Side, column: str) -> bool:
-    return part.is_measured(side, Measure.of(column))
 
 
 def _cells(row: Row) -> list[str]:

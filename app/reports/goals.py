@@ -5,7 +5,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from app.measure_names import decimals, goal_in_words, limit, short_unit
-from app.reports.comparison import Measure, Part, compare_legs
+from app.reports.comparison import compare_legs
+from app.reports.conditions import Part
 from app.reports.course import Course, CourseCondition, CourseTest, timed_test_of
 from app.reports.patient_report.numbers_in_words import fixed
 from app.wording import tr
@@ -37,7 +38,7 @@ class GoalFigure:
 def measured(goal: Goal, part: Part) -> GoalFigure:
     """What the walks of a part say of a goal."""
     if goal.of is GoalOf.BETWEEN:
-        has_both = all(part.is_measured(side, Measure.of(goal.column)) for side in Side)
+        has_both = all(part.is_measured(side, goal.column) for side in Side)
         between = compare_legs(part, goal.column, (Side.LEFT, Side.RIGHT)) if has_both else None
         said = [part.assessment(side, goal.column).verdict for side in Side] if has_both else [Verdict.NOT_MEASURED]
         return _between(goal, between, Verdict.CARE if Verdict.CARE in said else said[0])
@@ -50,7 +51,7 @@ def measured(goal: Goal, part: Part) -> GoalFigure:
         return _figure(goal, found, part.assessment_of_walk(goal.column))
     side = goal.of.side
     assert side is not None  # the other two are told above
-    if not part.is_measured(side, Measure.of(goal.column)):
+    if not part.is_measured(side, goal.column):
         return _nothing(goal, Verdict.NOT_MEASURED)
     found = part.mean(side, goal.column, ComparisonKind.VISITS)
     return _figure(goal, found, part.assessment(side, goal.column))

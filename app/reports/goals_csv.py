@@ -6,7 +6,7 @@ Who agreed on a goal and what was typed of it stands in the library and in an id
 import math
 from collections.abc import Iterator, Sequence
 
-from app.reports.comparison import Part
+from app.reports.conditions import Part
 from app.reports.csv_report import typed_cell
 from app.reports.goals import GoalFigure, of_part
 from core.goals import AgreedGoals

@@ -14,7 +14,8 @@ from pathlib import Path, PurePosixPath
 from app.reports.agreed import agreed_with
 from app.reports.alignments import ALIGNMENTS, write_alignments
 from app.reports.columns import COLUMNS, write_columns
-from app.reports.comparison import Comparison, Contrast, conditions_of, first_and_second
+from app.reports.comparison import Comparison, Contrast, first_and_second
+from app.reports.conditions import conditions_of
 from app.reports.csv_report import write_angles, write_table
 from app.reports.csvw import METADATA, write_metadata
 from app.reports.differences import (

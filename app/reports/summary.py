@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from app.gates_in_words import gate_sentence
-from app.reports.comparison import Part, compare_legs, first_and_second
+from app.reports.comparison import compare_legs, first_and_second
+from app.reports.conditions import Part
 from app.reports.fitting_csv import fitting_of_side
 from app.reports.goals_csv import goal_figures, goals_of_walk
 from app.reports.pelvis_summary import hip_figures, summarise_pelvis

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from app.charts.cycles import is_mean_enough
-from app.reports.comparison import Compared, Comparison, Part
+from app.reports.comparison import Compared, Comparison
+from app.reports.conditions import Part
 from core.verdicts.measurement_error import Z95, ComparisonKind, sigma_of
 from core.verdicts.model import Verdict
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from datetime import date
 from typing import NamedTuple
 
-from app.reports.comparison import Part, conditions_of
+from app.reports.conditions import Part, conditions_of
 from app.wording import tr
 from core.goals import NO_GOALS, AgreedGoals
 from core.results import Analysis

@@ -196,6 +196,9 @@ class ActionBar(Themed):
             buttons.append(button)
             for before, after in pairwise(self.buttons):
                 QWidget.setTabOrder(before, after)
+            words, verbs = [self._title, self._note], [self.sound, *self._others, self.primary]
+            for part in (self._clock, self.back, *self._quiet, *words, *verbs):
+                part.raise_()  # as it is read: Qt tells of the parts as they are stacked
 
     def _colour(self) -> None:
         c = self._look.theme.colours

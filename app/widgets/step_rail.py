@@ -15,6 +15,7 @@ from app.icons import Icon
 from app.theme import ThemeNotifier
 from app.tokens import CONTROL_RADIUS
 from app.widgets.header import ProductMark
+from app.widgets.heard_order import hear_as_laid_out
 from app.widgets.rail_row import BelowRow, RailButton, RailForm, RailRow
 from app.widgets.text import REGULAR, SEMIBOLD, Text
 from app.widgets.themed import Themed
@@ -102,8 +103,8 @@ class StepRail(Themed):
         self._mark.setParent(self._head)
         self._name.setParent(self._head)
         self._head.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
-        inside = QWidget()
-        self._column = QVBoxLayout(inside)
+        self._inside = QWidget()
+        self._column = QVBoxLayout(self._inside)
         self._column.setSpacing(0)
         self._steps = QVBoxLayout()
         self._foot = QVBoxLayout()
@@ -122,7 +123,7 @@ class StepRail(Themed):
         self._scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         for hide in (self._scroll.setHorizontalScrollBarPolicy, self._scroll.setVerticalScrollBarPolicy):
             hide(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)  # no room for one; the wheel and the arrows scroll
-        self._scroll.setWidget(inside)
+        self._scroll.setWidget(self._inside)
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.addWidget(self._scroll)
@@ -141,6 +142,7 @@ class StepRail(Themed):
             row.looked_at.connect(self._on_looked_at)
             layout.addWidget(row)
             rows.append(row)
+            hear_as_laid_out(self._inside)
 
     def _all(self) -> list[RailButton]:
         return [*self.rows, *self.below]

@@ -69,8 +69,9 @@ class LibraryController(QObject):
         self._long.progressed.connect(self._on_long_progressed)
         self._long.done.connect(self._on_long_done)
         self._long.failed.connect(self._on_long_failed)
-        self._long_job: Job | None = None
         self._long.stopped.connect(self._on_long_stopped)
+        self._long.idle.connect(self._lock_now)
+        self._long_job: Job | None = None
         self._long_ended: WeakMethod[Callable[[bool], object]] | None = None
         self._long_progressed: WeakMethod[Callable[[float, str], object]] | None = None
 
@@ -156,7 +157,7 @@ class LibraryController(QObject):
         if self._state is None or self._state.is_demonstration:
             return
         self._is_to_be_locked = self._is_locked = True
-        if not self._long.is_busy:
+        if self._long.is_idle:  # what was stopped and has not ended yet still works with the key
             self._calls.ask(Job(self._recordings.passed().wait, None, None, ref(self)))
             self._calls.ask(Job(self._holder.lock, None, None, ref(self)))
 
@@ -498,7 +499,6 @@ class LibraryController(QObject):
 
     def _on_long_done(self, result: object) -> None:
         job, self._long_job = self._long_job, None
-        self._lock_now()
         if job is not None and (done := job.listening(job.done)):
             done(result)
 
@@ -509,7 +509,6 @@ class LibraryController(QObject):
 
     def _on_long_failed(self, error: Exception) -> None:
         job, self._long_job = self._long_job, None
-        self._lock_now()
         if job is not None:
             refusal = refusal_of(error)
             self._tell_refusal(job, refusal.what, refusal.remedy)

@@ -14,7 +14,7 @@ import pytest
 from babel.messages.pofile import read_po
 
 from app.pages.compared_words import unit_behind
-from app.reports.comparison import MEASURES
+from app.reports.measures import MEASURES
 from app.reports.patient_report.numbers_in_words import fixed, signed
 from app.wording import (
     SENTENCES,

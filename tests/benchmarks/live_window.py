@@ -124,7 +124,7 @@ def _session(
     from app.wizard.sensors.page import Way
 
     assert window.home is not None
-    window.home.session_wished.emit(window.home.patient)
+    window.home.session_wished.emit(window.home.patients.patient)
     wizard = window.wizard
     assert wizard is not None
     yield _after(PAUSE_S)

@@ -82,7 +82,7 @@ class SensibleUser(Hands):
             ("old", "new", "open", "settings", "help", "demonstration", "import", "search", "delete", "undo", "theme"),
             (40, 25, 25, 3, 2, 1, 3, 3, 2, 2, 1),
         )[0]
-        if deed == "old" and home.patient is not None:
+        if deed == "old" and home.patients.patient is not None:
             for _ in range(self._chance.randrange(4)):
                 page.patients.step(self._chance.choice((-1, 1)))
             self.click(home.bar.primary)

@@ -42,7 +42,7 @@ ANALYSED_WITHIN_S = 3600.0
 def lead(application: QApplication, window: MainWindow) -> "tuple[Wizard, Visit]":
     """Go from home to a walk that is being recorded."""
     assert window.home is not None
-    window.home.session_wished.emit(window.home.patient)
+    window.home.session_wished.emit(window.home.patients.patient)
     wizard = window.wizard
     assert wizard is not None
     visit = wizard.visit

@@ -103,7 +103,7 @@ def opened_window(open_sensors: Callable[[], Acquisition]) -> Iterator[tuple[QAp
         window.open_demonstration()
         wait(application, lambda: window.home is not None and window.home.isVisible())
         wait(application, lambda: window.preparing.is_idle)
-        wait(application, lambda: window.home is not None and window.home.patient is not None)
+        wait(application, lambda: window.home is not None and window.home.patients.patient is not None)
         # what fills the demonstration beside the screen is not what is looked at
         wait(application, lambda: window.home is not None and not window.home.filling.is_busy, FILLED_S)
         yield application, window

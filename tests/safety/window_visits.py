@@ -33,7 +33,7 @@ LISTENS_S = 0.5
 def make_visit(application: QApplication, window: MainWindow) -> None:
     """Begin a session, put six sensors on, look at every page that may be entered, and leave."""
     assert window.home is not None
-    window.home.session_wished.emit(window.home.patient)
+    window.home.session_wished.emit(window.home.patients.patient)
     wizard = window.wizard
     assert wizard is not None
     visit: Visit | None = wizard.visit

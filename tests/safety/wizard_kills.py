@@ -62,9 +62,9 @@ class Guide:
         """Open the library, begin a session with its patient, put the sensors on, stand and move."""
         window = self._window
         window.controller.open(library, passphrase)
-        self._wait(lambda: window.home is not None and window.home.patient is not None)
+        self._wait(lambda: window.home is not None and window.home.patients.patient is not None)
         assert window.home is not None
-        window.home.session_wished.emit(window.home.patient)
+        window.home.session_wished.emit(window.home.patients.patient)
         assert window.wizard is not None
         assert window.wizard.visit is not None
         self.wizard, self.visit = window.wizard, window.wizard.visit

@@ -11,18 +11,10 @@ from app.charts.on_paper import compared_look, draw
 from app.charts.stride_chart import NOT_KNOWN, StrideChart
 from app.gates_in_words import verdict_word
 from app.reports.agreed import agreed_with
-from app.reports.comparison import (
-    MEASURES,
-    Compared,
-    Comparison,
-    Contrast,
-    Measure,
-    Part,
-    Reservation,
-    conditions_of,
-    left_out_of_parts,
-    sources_in_words,
-)
+from app.reports.comparison import Compared, Comparison, Contrast, Reservation
+from app.reports.conditions import Part, conditions_of, left_out_of_parts
+from app.reports.error_sources import sources_in_words
+from app.reports.measures import MEASURES, Measure
 from app.reports.patient_report import panels
 from app.reports.patient_report.blocks import Block, Cell, Column, Row, figures, heading, legend, note, paragraph, table
 from app.reports.patient_report.dates import day
@@ -262,7 +254,7 @@ def _table(comparison: Comparison, shown: Facts, sides: Sequence[Side]) -> Block
         counts = ", ".join(count.format(count=part.strides(side), part=part.letter) for part in comparison.parts)
         rows.append(tr("{side}: strides {counts}").format(side=capitalised(role(shown, side)), counts=counts))
         for measure in MEASURES:
-            if not measure.is_of_walk and any(part.is_measured(side, measure) for part in comparison.parts):
+            if not measure.is_of_walk and any(part.is_measured(side, measure.column) for part in comparison.parts):
                 rows.append(_row(comparison, side, measure))
     rows.append(tr("Both legs"))
     rows += [_row(comparison, sides[0], measure) for measure in MEASURES if measure.is_of_walk]

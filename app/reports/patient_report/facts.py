@@ -10,7 +10,8 @@ import numpy as np
 
 from app.charts.cycles import is_mean_enough
 from app.reports.agreed import agreed_with
-from app.reports.comparison import Measure, Part, first_and_second
+from app.reports.comparison import first_and_second
+from app.reports.conditions import Part
 from app.reports.goals import GoalFigure, of_part
 from app.reports.patient_report.numbers_in_words import Band
 from app.reports.patient_report.request import AnalysedVisit
@@ -130,7 +131,7 @@ class Facts:
 
     def is_worn(self, side: Side, column: str) -> bool:
         """Whether a column of strides.csv is of the leg itself, or of a joint that was measured."""
-        return self.alone.is_measured(side, Measure.of(column))
+        return self.alone.is_measured(side, column)
 
     @property
     def kinds(self) -> tuple[JointKind, ...]:

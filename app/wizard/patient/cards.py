@@ -10,6 +10,7 @@ from app.icons import Icon
 from app.theme import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
+from app.widgets.heard_order import hear_as_laid_out
 from app.widgets.icons import IconMark
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.wording import figure_text, tr
@@ -161,6 +162,7 @@ class LastVisitCard(Card):
             ):
                 self._facts.addWidget(text, row, column, Qt.AlignmentFlag.AlignTop)
                 self._shown.append(text)
+        hear_as_laid_out(self)
 
     def _on_look_changed(self) -> None:
         super()._on_look_changed()

@@ -9,6 +9,7 @@ from PySide6.QtWidgets import QProgressBar, QVBoxLayout
 from app.icons import Icon
 from app.theme import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
+from app.widgets.heard_order import hear_as_laid_out
 from app.widgets.notice import Notice
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed
@@ -86,6 +87,7 @@ class NoSource(Themed):
             self.buttons.append(button)
             if option.key == focused_key:
                 button.setFocus()
+        hear_as_laid_out(self)
         self._on_look_changed()
 
     def _on_clicked(self) -> None:

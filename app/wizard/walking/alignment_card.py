@@ -15,6 +15,7 @@ from app.widgets.card import Card
 from app.widgets.chip import Chip
 from app.widgets.choice import Choice
 from app.widgets.field import Field
+from app.widgets.heard_order import hear_as_laid_out
 from app.widgets.painted_text import CENTRE, LEFT, PaintedText, height_for
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.themed import Themed
@@ -95,6 +96,7 @@ class AlignmentCard(Card):
         if self._chip is None:
             self._chip = Chip(self._look, side)
             self._head.insertWidget(2, self._chip)
+            hear_as_laid_out(self._head_row)
         while len(self._rows) > len(rows):
             self._rows.pop().deleteLater()
         while len(self._rows) < len(rows):

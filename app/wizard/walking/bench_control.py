@@ -6,7 +6,8 @@ from PySide6.QtCore import QObject, Signal, Slot
 
 from app.alignment_words import change_lines, to_do_in_words
 from app.reports.agreed import agreed_with
-from app.reports.comparison import Comparison, Contrast, Part, conditions_of
+from app.reports.comparison import Comparison, Contrast
+from app.reports.conditions import Part, conditions_of
 from app.reports.patient_report.answer import Answer, Outcome
 from app.reports.patient_report.numbers_in_words import fixed
 from app.wizard.walking.alignment_card import AlignmentRow, RowRole

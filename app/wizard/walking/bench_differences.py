@@ -3,7 +3,8 @@
 from app.alignment_words import NO_PROOF
 from app.icons import Icon
 from app.pages.compared_words import change_in_words, is_judged, why_not_told
-from app.reports.comparison import FITTED, Compared, Comparison
+from app.reports.comparison import Compared, Comparison
+from app.reports.measures import FITTED
 from app.reports.patient_report.numbers_in_words import DAGGER, judged_in_words
 from app.theme import ThemeNotifier
 from app.widgets.card import Card

@@ -11,7 +11,8 @@ from app.icons import Icon
 from app.pages.compared_words import withheld_in_words
 from app.plots.compared_chart import ComparedChart, ComparedFrame
 from app.reports.beside import changes_on_curves
-from app.reports.comparison import Comparison, Part
+from app.reports.comparison import Comparison
+from app.reports.conditions import Part
 from app.reports.patient_report.answer import Answer, Outcome
 from app.theme import ThemeNotifier
 from app.widgets.focus_ring import NO_RING

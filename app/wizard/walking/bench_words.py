@@ -3,7 +3,8 @@
 import math
 
 from app.pages.compared_words import error_in_sentence, is_judged, unit_behind
-from app.reports.comparison import Compared, Comparison, Part
+from app.reports.comparison import Compared, Comparison
+from app.reports.conditions import Part
 from app.reports.patient_report.answer import Answer, Outcome
 from app.reports.patient_report.numbers_in_words import fixed
 from app.reports.patient_report.what_stands_out import FAMILIES

@@ -21,6 +21,7 @@ WORKED = frozenset(
 SEEN = frozenset((Role.Chart, Role.Graphic))
 MEANINGLESS = frozenset((Role.NoRole, Role.Client, Role.Pane, Role.Border, Role.LayeredPane, Role.Window))
 IDENTIFIER = re.compile(r"[a-z]+(_[a-z0-9]+)+|qt_\w*|_\w*")
+LEGS_TOGETHER = ("_Tile “R thigh", "BodyFigure “The patient faces you")  # words go from leg to leg, not from row to row
 MOST_STOPS = 120  # more than any page has
 
 
@@ -44,7 +45,7 @@ class Element:
 
 def elements(page: QWidget) -> list[Element]:
     """Give all that is in sight, a widget before what is inside it."""
-    return [_element(one) for one in _interfaces(QAccessible.queryAccessibleInterface(page))]
+    return [_element(one) for one in _interfaces(_interface(page))]
 
 
 def complaints(page: QWidget) -> list[str]:
@@ -79,6 +80,28 @@ def wrong_order(window: QWidget) -> list[str]:
         if one.parentWidget() is other.parentWidget() and _is_before(_place(other), _place(one))
     ]
     return missed + back
+
+
+def wrong_hearing(page: QWidget) -> list[str]:
+    """Say what is heard after what stands before it, of the parts of one widget; legs may each be told as a whole."""
+    heard = [[_widget(one.child(k)) for k in range(one.childCount())] for one in _interfaces(_interface(page))]
+    shown = [[part for part in parts if part is not None and part.window() is page.window()] for parts in heard]
+    return [
+        f"{_called(other)} is heard after {_called(one)} and stands before it"
+        for parts in shown
+        for one, other in pairwise(parts)
+        if _is_before(_place(other), _place(one)) and not _called(other).startswith(LEGS_TOGETHER)
+    ]
+
+
+def _interface(one: QWidget) -> QAccessibleInterface | None:
+    return QAccessible.queryAccessibleInterface(one)
+
+
+def _widget(one: QAccessibleInterface | None) -> QWidget | None:
+    """The widget of an element, where it is in sight and has one."""
+    found = one.object() if one is not None and not one.state().invisible else None
+    return found if isinstance(found, QWidget) else None
 
 
 def _interfaces(one: QAccessibleInterface | None) -> Iterator[QAccessibleInterface]:

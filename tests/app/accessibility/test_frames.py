@@ -5,7 +5,7 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.theme import ThemeNotifier
-from tests.app.accessibility.accessible_tree import complaints, wrong_order
+from tests.app.accessibility.accessible_tree import complaints, wrong_hearing, wrong_order
 from tests.app.accessibility.framed_pages import FRAMED, framed
 from tests.app.room import settle
 
@@ -21,6 +21,7 @@ def test_a_page_of_a_visit_is_heard_and_worked_by_tab_alone(qtbot: QtBot, look: 
         shell.activateWindow()
     settle()
     assert complaints(shell) == []
+    assert wrong_hearing(shell) == []
     shell.show_page(FRAMED[name][0])
     assert QApplication.focusWidget() is not None
     assert [one for one in wrong_order(shell) if not one.startswith("_Tile “R thigh")] == []  # words go L then R

@@ -4,7 +4,7 @@ import pytest
 from pytestqt.qtbot import QtBot
 
 from app.theme import ThemeNotifier
-from tests.app.accessibility.accessible_tree import complaints
+from tests.app.accessibility.accessible_tree import complaints, wrong_hearing
 from tests.app.pages.filled_pages import PAGES
 
 
@@ -16,3 +16,4 @@ def test_everything_on_a_page_has_a_name_and_a_role(qtbot: QtBot, look: ThemeNot
     page.resize(1064, 672)
     page.show()
     assert complaints(page) == []
+    assert wrong_hearing(page) == []

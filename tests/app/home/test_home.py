@@ -319,13 +319,13 @@ def test_a_recovered_walk_is_asked_for_at_every_start_until_it_is_decided(
     qtbot.waitUntil(lambda: [one.needs_look for one in lines(home)] == [True, False], timeout=WAIT_MS)
     qtbot.waitUntil(lambda: [one.id for one in sessions(home) if one.needs_look] == [session_id], timeout=WAIT_MS)
     home.session_opened.emit(session_id)  # looking is not deciding
-    home.refresh()
+    home.patients.read()
     qtbot.waitUntil(lambda: any(one.needs_look for one in sessions(home)), timeout=WAIT_MS)
     with Library.open(folder, KeySlots(folder / KEYS).open("hk", PASSPHRASE)) as library:
         library.log_in("hk")
         (walk,) = library.recordings.undecided()
         library.recordings.decide(walk.recording, is_kept=True)
-    home.refresh()
+    home.patients.read()
     qtbot.waitUntil(lambda: not any_needs_look(home), timeout=WAIT_MS)
     with qtbot.waitSignal(controller.closed, timeout=WAIT_MS):
         controller.close()
@@ -516,13 +516,13 @@ def test_an_operator_is_removed_with_a_change_of_the_key_and_comes_back_with_a_n
     page = home.settings.page
 
     def add(passphrase: str) -> None:
-        page.code.set_text("ab")
-        page.name.set_text("A. Bauer")
-        page.first.set_text(passphrase)
-        page.add.click()
+        page.operators.code.set_text("ab")
+        page.operators.name.set_text("A. Bauer")
+        page.operators.first.set_text(passphrase)
+        page.operators.add.click()
 
     def row() -> tuple[Button, str]:
-        found = page.operator_rows.itemAt(0)
+        found = page.operators.rows.itemAt(0)
         widget = found.widget() if found is not None else None
         assert widget is not None
         button = widget.findChild(Button)
@@ -530,24 +530,24 @@ def test_an_operator_is_removed_with_a_change_of_the_key_and_comes_back_with_a_n
         return button, button.text()
 
     add("first words for now")
-    qtbot.waitUntil(lambda: page.operator_rows.count() == 2, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: page.operators.rows.count() == 2, timeout=WAIT_MS)
     shutil.copy(folder / KEYS, folder.parent / "old.json")
     row()[0].click()
-    assert "Backups that were made before keep their old key" in page.leaving_words.text()
-    page.keep.click()
-    assert not page.remove.isVisible()
+    assert "Backups that were made before keep their old key" in page.operators.leaving_words.text()
+    page.operators.keep.click()
+    assert not page.operators.remove.isVisible()
     row()[0].click()
-    page.remove.click()
-    assert not page.operators_card.isEnabled()
+    page.operators.remove.click()
+    assert not page.operators.isEnabled()
     qtbot.waitUntil(lambda: row()[1] == "Works here again", timeout=WAIT_MS)
-    assert "has a new key" in page.leaving_words.text()
+    assert "has a new key" in page.operators.leaving_words.text()
     stolen = KeySlots(folder.parent / "old.json").open("ab", "first words for now")
     with pytest.raises(LibraryError):
         Library.open(folder, stolen)
     assert controller.state is not None
     assert controller.state.library.data_key == KeySlots(folder / KEYS).open("hk", PASSPHRASE)
     row()[0].click()
-    assert page.first.is_wrong
+    assert page.operators.first.is_wrong
     add("other words for then")
     qtbot.waitUntil(lambda: row()[1] == "Works here no longer", timeout=WAIT_MS)
     assert KeySlots(folder / KEYS).open("ab", "other words for then") == controller.state.library.data_key
@@ -557,12 +557,12 @@ def test_an_operator_is_added_and_may_log_in(
     qtbot: QtBot, home: Home, controller: LibraryController, folder: Path
 ) -> None:
     page = home.settings.page
-    page.code.set_text("vi")
-    page.name.set_text("V. Iten")
-    page.first.set_text("first words for now")
-    page.role.setCurrentIndex(page.role.findData("viewer"))
-    page.add.click()
-    qtbot.waitUntil(lambda: page.operator_rows.count() == 2, timeout=WAIT_MS)
+    page.operators.code.set_text("vi")
+    page.operators.name.set_text("V. Iten")
+    page.operators.first.set_text("first words for now")
+    page.operators.role.setCurrentIndex(page.operators.role.findData("viewer"))
+    page.operators.add.click()
+    qtbot.waitUntil(lambda: page.operators.rows.count() == 2, timeout=WAIT_MS)
     controller.close()
     with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as told:
         controller.open(folder, "first words for now", "vi")
@@ -570,7 +570,7 @@ def test_an_operator_is_added_and_may_log_in(
     assert state.operator.role is Role.VIEWER
     home.show_library(state)
     home.show_settings()
-    assert not page.operators_card.isVisible()
+    assert not page.operators.isVisible()
     assert not page.backup_card.isVisible()
     assert page.access_card.isVisible()
 

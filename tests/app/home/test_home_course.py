@@ -225,7 +225,7 @@ def test_a_goal_that_another_changed_meanwhile_is_not_written_over(
     panel, page = home.page.panel, home.goals.page
     panel.goals.click()
     qtbot.waitUntil(lambda: page.none_yet.isVisible(), timeout=WAIT_MS)
-    patient = home.patient
+    patient = home.patients.patient
     assert patient is not None
     theirs = Goal("speed_m_s", GoalOf.WALK, 0.9, datetime.date(2026, 1, 5), "B. Berger")
 

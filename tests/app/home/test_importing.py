@@ -40,7 +40,7 @@ def shown(page: ImportPage) -> str:
 
 
 def read(qtbot: QtBot, home: Home, *paths: Path) -> ImportPage:
-    home.take(paths)
+    home.importing.read(paths)
     qtbot.waitUntil(lambda: home.current is home.importing.page, timeout=WAIT_MS)
     return home.importing.page
 
@@ -153,7 +153,7 @@ def test_what_could_not_be_read_is_said_beside_what_was(qtbot: QtBot, home: Home
 
 def test_a_single_file_of_no_program_is_refused_in_words(qtbot: QtBot, home: Home, tmp_path: Path) -> None:
     (tmp_path / "notes.txt").write_text("to be left out\n")
-    home.take([tmp_path / "notes.txt"])
+    home.importing.read([tmp_path / "notes.txt"])
     qtbot.waitUntil(home.banner.isVisible, timeout=WAIT_MS)
     assert home.banner.text == "This is of no program whose files can be read. Leave it out. Where: notes.txt."
     assert home.current is home.page

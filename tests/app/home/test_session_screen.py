@@ -19,15 +19,12 @@ from app.home.session_screen import ENDED_EARLY, STOPPED, SessionScreen
 from app.pages.found_page import FoundPage
 from app.pages.result_page import (
     ANSWER,
-    BOTH,
     COMPARE,
-    ORIENTATION,
-    PUBLISHED,
-    RESULT,
     STRIDES,
     WHOLE,
     ResultPage,
 )
+from app.pages.whole_page import BOTH, ORIENTATION, PUBLISHED, RESULT
 from app.plots.angle_chart import AngleChart
 from app.theme import ThemeNotifier
 from app.widgets.findings_list import FindingRow
@@ -163,7 +160,7 @@ def endless(ended: Event) -> Work:
 
 
 def drawn_deg(page: ResultPage, joint: Joint) -> FloatArray:
-    frame = page.charts.knee if joint.is_knee else page.charts.ankle
+    frame = page.whole.charts.knee if joint.is_knee else page.whole.charts.ankle
     return frame.chart.curve_points(joint.side)[1]
 
 
@@ -271,11 +268,11 @@ def test_the_method_changes_what_is_drawn(results: ResultPage) -> None:
     knee = angle(Joint.LEFT_KNEE, True)
     assert knee.orientation_rad is not None
     for method, expected in ((PUBLISHED, knee.published_rad), (ORIENTATION, knee.orientation_rad)):
-        results.methods.choose(method)
+        results.whole.methods.choose(method)
         np.testing.assert_allclose(drawn_deg(results, Joint.LEFT_KNEE), np.rad2deg(expected))
-        assert results.charts.knee.chart.curves[Side.LEFT].sd_deg is None
-    results.methods.choose(BOTH)
-    curve = results.charts.knee.chart.curves[Side.LEFT]
+        assert results.whole.charts.knee.chart.curves[Side.LEFT].sd_deg is None
+    results.whole.methods.choose(BOTH)
+    curve = results.whole.charts.knee.chart.curves[Side.LEFT]
     np.testing.assert_allclose(curve.angle_deg, np.rad2deg(knee.angle_rad))
     assert curve.second_deg is not None
     np.testing.assert_allclose(curve.second_deg, np.rad2deg(knee.published_rad))
@@ -293,16 +290,16 @@ def test_enter_presses_the_button_in_focus(window: SessionScreen) -> None:
 
 
 def test_arrows_change_the_method(qtbot: QtBot, results: ResultPage) -> None:
-    results.methods.focus()
+    results.whole.methods.focus()
     focused = QApplication.focusWidget()
     assert focused is not None
     QTest.keyClick(focused, Qt.Key.Key_Right)
-    assert results.methods.choice == PUBLISHED
+    assert results.whole.methods.choice == PUBLISHED
 
 
 def test_gaps_stay_gaps_with_every_method(results: ResultPage) -> None:
     for method in (RESULT, PUBLISHED, ORIENTATION, BOTH):
-        results.methods.choose(method)
+        results.whole.methods.choose(method)
         for joint in LEG_JOINTS:
             drawn = drawn_deg(results, joint)
             assert np.isnan(drawn[GAP]).all()
@@ -312,41 +309,41 @@ def test_gaps_stay_gaps_with_every_method(results: ResultPage) -> None:
 def test_without_orientations_that_method_is_off_and_says_why(
     qtbot: QtBot, window: SessionScreen, results: ResultPage, open_work: OpenWork
 ) -> None:
-    results.methods.choose(ORIENTATION)
+    results.whole.methods.choose(ORIENTATION)
     open_work(lambda _report: opened(has_orientation=False))
     qtbot.waitUntil(lambda: not window.is_working)
-    segment = results.methods._segments[ORIENTATION]
-    assert results.methods.choice == RESULT
+    segment = results.whole.methods._segments[ORIENTATION]
+    assert results.whole.methods.choice == RESULT
     assert not segment.isEnabled()
     assert segment.accessibleName() == "Orientation, no magnetometer"
 
 
 def test_another_recording_is_shown_whole(results: ResultPage) -> None:
-    results.charts.zoom(0.5)
-    assert results.whole.isVisible()
+    results.whole.charts.zoom(0.5)
+    assert results.whole.to_whole.isVisible()
     results.recordings.setCurrentIndex(0)
-    assert results.charts.accessibleName() == "Knee and ankle angles of free motion"
-    assert results.charts.is_whole
-    assert not results.whole.isVisible()
+    assert results.whole.charts.accessibleName() == "Knee and ankle angles of free motion"
+    assert results.whole.charts.is_whole
+    assert not results.whole.to_whole.isVisible()
 
 
 def test_the_way_back_to_the_whole_is_in_sight_when_it_is_needed(qtbot: QtBot, results: ResultPage) -> None:
-    assert not results.whole.isVisible()
-    results.charts.zoom(0.5)
-    assert results.shown.text() == "1.5 to 4.5 s of 6.0 s"
-    QTest.mouseClick(results.whole, Qt.MouseButton.LeftButton)
-    assert results.charts.is_whole
+    assert not results.whole.to_whole.isVisible()
+    results.whole.charts.zoom(0.5)
+    assert results.whole.shown.text() == "1.5 to 4.5 s of 6.0 s"
+    QTest.mouseClick(results.whole.to_whole, Qt.MouseButton.LeftButton)
+    assert results.whole.charts.is_whole
 
 
 def test_simulated_is_said_in_header_and_charts_and_only_then(
     qtbot: QtBot, window: SessionScreen, results: ResultPage, open_work: OpenWork
 ) -> None:
     assert not window.header.simulated.isVisible()
-    assert not results.charts.knee._simulated.isVisible()
+    assert not results.whole.charts.knee._simulated.isVisible()
     open_work(lambda _report: opened(is_simulated=True))
     qtbot.waitUntil(lambda: not window.is_working)
     assert window.header.simulated.isVisible()
-    assert results.charts.knee._simulated.isVisible()
+    assert results.whole.charts.knee._simulated.isVisible()
 
 
 def test_the_table_says_how_each_joint_was_found(results: ResultPage) -> None:
@@ -406,7 +403,7 @@ def test_dark_and_light_change_palette_and_charts(results: ResultPage, look: The
     for is_dark, colours in ((True, DARK), (False, LIGHT)):
         look.set_dark(is_dark)
         assert qapp.palette().color(QPalette.ColorRole.Window).name().upper() == colours.ground
-        picture = results.charts.knee.chart.grab().toImage()
+        picture = results.whole.charts.knee.chart.grab().toImage()
         assert picture.pixelColor(picture.width() - 2, 2).name().upper() == colours.surface
 
 
@@ -481,8 +478,8 @@ def test_every_word_fits(
     window.resize(*size)
     look.set_scale(scale)
     window.banner.tell("left_thigh.csv, line 4: the clock steps back.", "Export the recording again.")
-    results.charts.zoom(0.5)
-    results.charts._read_at(4.0)
+    results.whole.charts.zoom(0.5)
+    results.whole.charts._read_at(4.0)
     pages: list[tuple[QWidget, str]] = [(results, view) for view in (ANSWER, WHOLE, COMPARE, STRIDES)]
     behind = [(results, ANSWER, button) for button in (results.all_figures, results.door, results.quality.engineering)]
     others = [(page, view, None) for page, view in (*pages, (window.empty, ANSWER), (window.working, ANSWER))]
@@ -529,5 +526,5 @@ def test_tab_goes_in_the_order_of_reading(qtbot: QtBot, window: SessionScreen, r
 
 
 def test_a_click_on_a_curve_gives_its_keys_the_focus(qtbot: QtBot, results: ResultPage) -> None:
-    QTest.mouseClick(results.charts.ankle.chart.viewport(), Qt.MouseButton.LeftButton)
-    assert results.charts.hasFocus()
+    QTest.mouseClick(results.whole.charts.ankle.chart.viewport(), Qt.MouseButton.LeftButton)
+    assert results.whole.charts.hasFocus()

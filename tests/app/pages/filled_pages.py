@@ -18,8 +18,9 @@ from app.pages.home_page import PATIENT, HomePage
 from app.pages.import_page import ImportPage
 from app.pages.join_page import JoinPage
 from app.pages.log_in_page import LogInPage
+from app.pages.operators_card import OperatorLine
 from app.pages.questions_page import QuestionsPage
-from app.pages.settings_page import OperatorLine, SettingsPage
+from app.pages.settings_page import SettingsPage
 from app.reports.course_lanes import CourseVisit
 from app.reports.course_words import NextStep
 from app.study.groups import GroupAnswer, Grouping, GroupQuestion, GroupRow
@@ -169,7 +170,7 @@ def no_table(look: ThemeNotifier) -> QWidget:
 def settings(look: ThemeNotifier) -> QWidget:
     page = SettingsPage(look, 12, [("clinician", tr("clinician")), ("administrator", tr("administrator"))])
     page.show_library(has_access=True, has_backup=True, has_operators=True)
-    page.show_operators([OperatorLine("hk", "H. Keller", tr("administrator"), is_active=True, is_self=True)])
+    page.operators.show_operators([OperatorLine("hk", "H. Keller", tr("administrator"), is_active=True, is_self=True)])
     return page
 
 

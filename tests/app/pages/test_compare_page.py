@@ -19,7 +19,8 @@ from app.pages.compare_page import CURVES, PLOT, TABLE
 from app.pages.compared_table import comparison_table, side_table_row
 from app.pages.compared_words import conclusion
 from app.pages.result_page import ANSWER, COMPARE, STRIDES, WHOLE, ResultPage
-from app.reports.comparison import Comparison, Contrast, Part, compare_sides, conditions_of, first_and_second
+from app.reports.comparison import Comparison, Contrast, compare_sides, first_and_second
+from app.reports.conditions import Part, conditions_of
 from app.reports.differences import (
     COMPARED_CYCLES,
     DIFFERENCES,
@@ -123,7 +124,7 @@ def test_a_walk_that_gets_another_condition_stays_on_the_screen_under_its_new_na
     renamed = (replace(one, condition="stick") if one.name == "walk 3" else one for one in session.recordings)
     page.show_visit(AnalysedVisit(replace(session, recordings=tuple(renamed)), analysis))
     assert (page.recordings.currentData(), page.recordings.currentText()) == ("walk 3", "B stick")
-    assert page.charts.accessibleName() == "Knee and ankle angles of B stick"
+    assert page.whole.charts.accessibleName() == "Knee and ankle angles of B stick"
 
 
 @pytest.mark.parametrize("condition", ["Barefoot", "Own shoes with insoles of four millimetres"])

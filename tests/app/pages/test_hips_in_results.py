@@ -93,7 +93,7 @@ def test_without_a_pelvis_nothing_of_hips_is_there(page: ResultPage) -> None:
     assert not page.cycles.hips.isVisible()
     page.all_figures.click()
     page.view.choose(WHOLE)
-    assert not page.charts.hip.isVisible()
+    assert not page.whole.charts.hip.isVisible()
     page.view.choose(ANSWER)
     page.door.click()
     assert page.quality.first.text() == "All four joints can be read."
@@ -150,9 +150,9 @@ def test_every_stride_tells_its_hip(page: ResultPage) -> None:
 
 def test_the_whole_walk_has_three_lanes(page: ResultPage) -> None:
     page.view.choose(WHOLE)
-    assert page.charts.hip.isVisible()
+    assert page.whole.charts.hip.isVisible()
     hip = walk_of(hip_analysis()).hips[Joint.LEFT_HIP]
-    drawn = page.charts.hip.chart.curves[Side.LEFT].angle_deg
+    drawn = page.whole.charts.hip.chart.curves[Side.LEFT].angle_deg
     np.testing.assert_allclose(drawn, np.rad2deg(hip.angle_rad))
 
 

@@ -7,6 +7,7 @@ from functools import cache
 import numpy as np
 import pytest
 from PySide6.QtCore import Qt
+from PySide6.QtGui import QAccessible
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QLineEdit
 from pytestqt.qtbot import QtBot
@@ -26,6 +27,7 @@ from core.samples import Session
 from core.verdicts.model import Verdict
 from core.verdicts.quantities import raw_values
 from devices.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
+from tests.app.accessibility.accessible_tree import elements, wrong_hearing
 from tests.app.changed_analysis import recalibrated, rewalked, visit_of, walk_of, with_few_strides
 from tests.app.reports.patient_report.test_what_stands_out import with_more
 
@@ -100,14 +102,14 @@ def test_a_walk_opens_with_its_answer_its_mean_cycle_and_what_differs(page: Resu
         assert part.isVisible()
     assert page.differs.table.cells.rowCount() > 2
     assert not page.cycles.peaks.isVisible()
-    assert not page.charts.isVisible()
+    assert not page.whole.charts.isVisible()
     assert set(page.cycles.charts.knee.chart.cycles) == set(Side)
 
 
 def test_the_whole_walk_has_its_lanes_and_its_methods(page: ResultPage) -> None:
     page.view.choose(WHOLE)
-    assert page.charts.phases.isVisible()
-    assert page.methods.isVisible()
+    assert page.whole.charts.phases.isVisible()
+    assert page.whole.methods.isVisible()
     for part in (page.answer, page.cycles, page.differs):
         assert not part.isVisible()
 
@@ -116,7 +118,7 @@ def test_free_motion_is_shown_whole_and_the_walk_comes_back_as_it_was_left(page:
     page.recordings.setCurrentIndex(page.recordings.findText("free motion"))
     assert page.view.choice == WHOLE
     assert not page.view.isVisible()
-    assert not page.charts.phases.isVisible()
+    assert not page.whole.charts.phases.isVisible()
     page.recordings.setCurrentIndex(page.recordings.findText("walk 1"))
     assert page.view.choice == ANSWER
     assert page.view.isVisible()
@@ -324,7 +326,7 @@ def test_one_side_alone_has_its_column_alone(page: ResultPage, analysis: Analysi
     assert table.isColumnHidden(1)
     assert not table.isColumnHidden(2)
     assert set(page.cycles.charts.knee.chart.cycles) == {Side.RIGHT}
-    assert page.charts.phases.lanes.lanes.keys() == {Side.RIGHT}
+    assert page.whole.charts.phases.lanes.lanes.keys() == {Side.RIGHT}
 
 
 def test_the_answer_stands_over_the_mean_cycle_and_nothing_scrolls_for_it(page: ResultPage, analysis: Analysis) -> None:
@@ -411,3 +413,29 @@ def test_legs_stand_beside_the_curves_in_step_with_their_cursor(page: ResultPage
     assert not page.legs.isVisible()
     assert knee.readings == {}
     assert page.differs.isVisible()
+
+
+def test_the_views_are_heard_before_what_they_show_in_every_room(page: ResultPage) -> None:
+    for room in (COMPACT, WIDE, (700.0, 600.0)):
+        page.set_room(*room)
+        for view in (ANSWER, COMPARE, WHOLE, STRIDES):
+            page.view.choose(view)
+            assert wrong_hearing(page) == []
+            heard = [one.name for one in elements(page)]
+            assert heard.index("View") == min(k for k, name in enumerate(heard) if name)
+
+
+def test_a_folded_part_is_told_as_not_checked_and_is_heard_only_unfolded(page: ResultPage) -> None:
+    folds = {page.show_legs: page.legs, page.all_figures: page.cycles.peaks.table}
+    folds[page.quality.engineering] = page.quality.facts
+    for fold, part in folds.items():
+        if fold is page.quality.engineering:
+            page.door.click()
+        for is_unfolded in (False, True, False):
+            told = elements(page)
+            (toggle,) = (one for one in told if (one.kind, one.name) == ("Toggle", fold.text()))
+            assert (toggle.role, toggle.is_checked) == (QAccessible.Role.CheckBox, is_unfolded)
+            named = (type(part).__name__, part.accessibleName())
+            assert any((one.kind, one.name) == named for one in told) is is_unfolded
+            fold.click()
+        fold.click()

@@ -2,7 +2,9 @@
 
 from dataclasses import replace
 
-from app.reports.comparison import MEASURES, Comparison, Contrast, Part
+from app.reports.comparison import Comparison, Contrast
+from app.reports.conditions import Part
+from app.reports.measures import MEASURES
 from core.body import Joint, Side
 from core.verdicts.measurement_error import ComparisonKind, compare
 from tests.app.course_material import analysis, unsure, walked

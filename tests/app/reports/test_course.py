@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import pytest
 
-from app.reports.comparison import CADENCE, Comparison, Contrast, conditions_of
+from app.reports.comparison import Comparison, Contrast
+from app.reports.conditions import conditions_of
 from app.reports.course import (
     KNEE,
     OF_A_LEG,
@@ -19,6 +20,7 @@ from app.reports.course import (
     course_in_json,
     course_of,
 )
+from app.reports.measures import CADENCE
 from core.body import Joint, Side
 from core.samples import Recording
 from core.timed.measures import COLUMNS

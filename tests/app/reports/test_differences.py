@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.reports.comparison import Comparison, Contrast, Part
+from app.reports.comparison import Comparison, Contrast
+from app.reports.conditions import Part
 from app.reports.differences import (
     comparisons_of,
     rows_along_chain,

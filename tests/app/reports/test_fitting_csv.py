@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.reports.comparison import Measure
 from app.reports.fitting_csv import fitting_means, fitting_of_side, write_fitting_strides
+from app.reports.measures import Measure
 from core.analysis import analyse
 from core.body import Joint, Side
 from core.results import RecordingAnalysis

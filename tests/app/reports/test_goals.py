@@ -15,7 +15,7 @@ import pytest
 from app.exports.fhir_bundle import bundle
 from app.measure_names import goal_in_words, spoken_value, wanted
 from app.reports.agreed import agreed_with
-from app.reports.comparison import Part
+from app.reports.conditions import Part
 from app.reports.course import Course, CourseCondition
 from app.reports.goals import (
     GoalFigure,

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.reports.comparison import Part, left_out_of_parts
+from app.reports.conditions import Part, left_out_of_parts
 from app.reports.differences import SIDES, write_sides
 from app.reports.gait_csv import gait_tables
 from app.reports.reference_bands import (

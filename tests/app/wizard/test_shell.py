@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 import pytest
 from PySide6.QtCore import QPoint, Qt
+from PySide6.QtGui import QAccessible
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QComboBox, QPushButton, QVBoxLayout, QWidget
 from pytestqt.qtbot import QtBot
@@ -232,10 +233,14 @@ def test_the_folded_strip_opens_at_a_press(shell: WizardShell) -> None:
     shell.set_strip_mode(StripMode.FOLDED)
     assert not shell.strip.isVisible()
     assert shell.header.fold.text() == "6 sensors, all heard"
+    told = QAccessible.queryAccessibleInterface(shell.header.fold)
+    assert (told.role(), bool(told.state().checked)) == (QAccessible.Role.CheckBox, False)
     QTest.mouseClick(shell.header.fold, Qt.MouseButton.LeftButton)
     assert shell.strip.isVisible()
+    assert told.state().checked
     QTest.mouseClick(shell.header.fold, Qt.MouseButton.LeftButton)
     assert not shell.strip.isVisible()
+    assert not told.state().checked
 
 
 def test_an_opened_strip_is_folded_again_with_the_next_session(shell: WizardShell) -> None:

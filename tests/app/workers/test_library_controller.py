@@ -452,6 +452,30 @@ def test_a_lock_waits_for_long_work(qtbot: QtBot, controller: LibraryController,
     qtbot.waitUntil(lambda: bool(asker.results) and not key, timeout=WAIT_MS)
 
 
+def test_a_lock_waits_for_long_work_that_was_stopped_and_has_not_ended(
+    qtbot: QtBot, controller: LibraryController, folder: Path
+) -> None:
+    asker, begun, slow = Asker(), Event(), Event()
+    state = opened(qtbot, controller, folder)
+    key = state.library.data_key
+    assert key is not None
+
+    def work(library: OpenedLibrary, _report: Report) -> int:
+        begun.set()
+        slow.wait(60)
+        return len(library.library.patients.search())
+
+    controller.run_long(work, asker.on_done, asker.on_failed, None, asker)
+    assert begun.wait(60)
+    controller.stop_long()
+    controller.lock()
+    controller.look(folder, asker.on_done, asker.on_failed, asker)  # is asked after what locks
+    qtbot.waitUntil(lambda: bool(asker.results), timeout=WAIT_MS)
+    assert key
+    slow.set()
+    qtbot.waitUntil(lambda: not key, timeout=WAIT_MS)
+
+
 def test_the_key_is_changed_and_who_left_opens_nothing(
     qtbot: QtBot, controller: LibraryController, folder: Path
 ) -> None:

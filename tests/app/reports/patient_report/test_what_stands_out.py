@@ -6,7 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.reports.comparison import MEASURES, Comparison
+from app.reports.comparison import Comparison
+from app.reports.measures import MEASURES
 from app.reports.patient_report.comparison_page import comparison_of
 from app.reports.patient_report.document import facts_of
 from app.reports.patient_report.facts import Facts

@@ -10,7 +10,8 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
-from app.reports.comparison import Comparison, Contrast, Part
+from app.reports.comparison import Comparison, Contrast
+from app.reports.conditions import Part
 from app.reports.patient_report.answer import Outcome
 from app.theme import ThemeNotifier
 from app.widgets.table_cells import TextCell
