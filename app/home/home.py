@@ -1,7 +1,6 @@
 """Home: whose sessions are in the library, what begins from here, what comes in, what goes out of sight for 30 days."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 from uuid import UUID
 
 from PySide6.QtCore import Qt, Signal
@@ -38,9 +37,6 @@ from app.widgets.toast import Toast
 from app.wording import place, tr
 from app.workers.library_controller import LibraryController
 from app.workers.library_state import OpenedState
-
-if TYPE_CHECKING:
-    pass
 
 COMPACT_BELOW = (1180, 720)
 WIDE_FROM = 1800
