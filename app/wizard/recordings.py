@@ -158,8 +158,11 @@ class SessionRecordings(QObject):
 
     @property
     def is_stopping(self) -> bool:
-        """Whether a recording has been stopped and is waited for: until it is read back, or for a few seconds."""
-        return self._phase is RecordingPhase.STOPPING
+        """Whether a recording has been stopped and is waited for: until it is read back, or for a few seconds.
+
+        Also one that has not begun: it is waited for until it has.
+        """
+        return self._phase in (RecordingPhase.BEGINNING_TO_STOP, RecordingPhase.STOPPING)
 
     @property
     def is_in_memory(self) -> bool:
@@ -192,6 +195,10 @@ class SessionRecordings(QObject):
         """What each is called on the screen, by its name."""
         told = {one.name: one for one in (*self.told[: len(self.every)], *self.in_sensors, *self.told)}
         return shown_names(tuple(told.values()))
+
+    def called(self, name: str) -> str:
+        """What one of them is called on the screen, by its name."""
+        return str(self.shown_names[name])
 
     @property
     def standing(self) -> SessionRecording | None:
@@ -308,7 +315,9 @@ class SessionRecordings(QObject):
         Not `is_kept`: it was broken off and does not count; nothing is deleted.
         """
         if self._phase in (RecordingPhase.BEGINNING, RecordingPhase.BEGINNING_TO_STOP):
-            self._phase, self._must_keep, self._strides = RecordingPhase.BEGINNING_TO_STOP, is_kept, strides
+            self._phase, self._strides = RecordingPhase.BEGINNING_TO_STOP, strides
+            self._must_keep = self._must_keep and is_kept  # what was broken off stays so
+            self.changed.emit()
         if self._phase is not RecordingPhase.WRITING or self._latest is None or self.ongoing is None:
             return
         recorder = self._latest
@@ -523,13 +532,16 @@ class SessionRecordings(QObject):
         if self._phase is RecordingPhase.CLOSED:
             return
         must_stop = self._phase is RecordingPhase.BEGINNING_TO_STOP
-        self._phase, self._latest = RecordingPhase.WRITING, recorder
+        self._latest = recorder
+        if not must_stop:
+            self._phase = RecordingPhase.WRITING
         self._is_restrapped = False
         self._is_without_row = not recorder.has_row
         self.begun.emit()
         if self.trouble_message() != NOTHING:
             self.troubled.emit(*self.trouble_message())
         if must_stop:
+            self._phase = RecordingPhase.WRITING
             self.stop(self._strides, is_kept=self._must_keep)
 
     def _moved(self) -> Message:
@@ -589,7 +601,7 @@ class SessionRecordings(QObject):
 
     def _on_not_read_back(self, what: str, _remedy: str) -> None:
         """What was recorded is on the disk: try for a while to read it back, then leave that to the next start."""
-        is_first = self.is_stopping or self._readings == 1
+        is_first = self._phase is RecordingPhase.STOPPING or self._readings == 1
         self._is_reading = False
         self._go_on()
         if self._controller.state is not None and (self._controller.is_gone or self._readings < MOST_READINGS):

@@ -495,7 +495,7 @@ class FreeMotionStep(Step):
     # slots
 
     def _on_begun(self) -> None:
-        if self._is_recording:
+        if self._is_recording and self._is_in_sight:  # one that was left before it had begun ends at once
             self._ask_patient()  # only what is recorded counts
             self._watch()
 

@@ -247,7 +247,7 @@ class StandStillStep(Step):
     # slots
 
     def _on_begun(self) -> None:
-        if self._is_recording:
+        if self._is_recording and self._is_entered:  # one that was left before it had begun ends at once
             self._watch()  # only what is recorded counts
 
     def _on_ended(self, recording: SessionRecording) -> None:

@@ -21,6 +21,7 @@ from app.wizard import wizard as wizard_module
 from app.wizard.free_motion.step import FreeMotionStep
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.recordings import Ongoing
+from app.wizard.standing.step import StandStillStep
 from app.wizard.visit import Visit
 from app.wizard.walking.step import WATCH_TICKS, WalkingStep
 from app.wizard.wizard import DEAF_S, FREE_MOTION, RESULTS, WALKING, Wizard
@@ -229,6 +230,24 @@ def test_a_free_motion_that_is_refused_waits_for_a_word(
         step.on_intent(Intent(KeyAction.RUN))
     with qtbot.waitSignal(looked_at.recordings.ended, timeout=WAIT_MS):
         step.leave()
+
+
+@pytest.mark.parametrize("kind", [StandStillStep, FreeMotionStep])
+def test_a_step_that_was_left_before_it_began_leaves_the_samples_to_the_next(
+    qtbot: QtBot, looked_at: Visit, kind: type[StandStillStep] | type[FreeMotionStep], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The library answers when the next step looks at the sensors already."""
+    acquisition, watching = looked_at.sensors.acquisition, list[object]()
+    assert acquisition is not None
+    step = kind(ThemeNotifier(), looked_at)
+    qtbot.addWidget(step.page)
+    step.enter()
+    if not looked_at.recordings.is_recording:  # a free motion begins by itself
+        step.on_intent(Intent(KeyAction.RUN))
+    with qtbot.waitSignal(looked_at.recordings.ended, timeout=WAIT_MS):
+        step.leave()
+        monkeypatch.setattr(acquisition, "set_estimator", watching.append)
+    assert watching == []
 
 
 def test_a_new_calibration_that_is_broken_off_is_asked_for_again(qtbot: QtBot, looked_at: Visit) -> None:

@@ -132,6 +132,8 @@ def test_what_was_broken_off_does_not_count(qtbot: QtBot, visit: Visit, worn: di
     assert acquisition is not None
     recordings.begin(acquisition, RecordingKind.STANDING)
     recordings.stop(is_kept=False)  # before it has begun
+    assert recordings.is_stopping
+    recordings.stop()  # who says so once more does not say that it counts
     qtbot.waitUntil(lambda: bool(recordings.every) and not recordings.every[0].details.is_kept, timeout=WAIT_MS)
     assert recordings.standing is None
     record(qtbot, visit, RecordingKind.STANDING, 2.0)
