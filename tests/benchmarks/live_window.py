@@ -188,7 +188,7 @@ def _asking_again(walking: Any, until: Callable[[], bool]) -> Callable[[], bool]
     """Let the walking step ask for the ankles again as soon as it has its answer."""
 
     def is_over() -> bool:
-        walking._is_ankle_asked = False
+        walking._preview._is_ankle_asked = False
         return until()
 
     return is_over
