@@ -31,7 +31,7 @@ from app.wizard.free_motion.motion_shown import gauge_faces, hip_faces, sensor_m
 from app.wizard.free_motion.page import FreeMotionFace, FreeMotionPage
 from app.wizard.free_motion.side_question import SILENT, SideQuestion, Words
 from app.wizard.keys import Intent, KeyAction
-from app.wizard.recordings import SessionRecording
+from app.wizard.session_recording import SessionRecording
 from app.wizard.step import Step
 from app.wizard.worn_corrections import opposite
 from app.wording import name_of, tr

@@ -13,7 +13,7 @@ from app.theme import ThemeNotifier
 from app.widgets.action_bar import BarAction, BarState
 from app.widgets.rail_row import StepState
 from app.wizard.keys import Intent, KeyAction
-from app.wizard.recordings import SessionRecording
+from app.wizard.session_recording import SessionRecording
 from app.wizard.standing.estimator import StandingEstimator
 from app.wizard.standing.page import StandPhase, StandStillPage, StandStillView
 from app.wizard.step import Step

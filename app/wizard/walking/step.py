@@ -31,7 +31,7 @@ from core.samples import RecordingKind
 from core.targets import TargetTally, with_tallies
 
 if TYPE_CHECKING:
-    from app.wizard.recordings import Ongoing, SessionRecording
+    from app.wizard.session_recording import Ongoing, SessionRecording
     from app.wizard.visit import Visit
     from app.wizard.walking.page import WalkingPage
     from app.wizard.walking.readout import WalkingReadout

@@ -26,7 +26,7 @@ from core.timed.protocols import DEFINITIONS, KeyMeaning, PlannedTest, TimedProt
 if TYPE_CHECKING:
     from app.reports.course import Course
     from app.reports.course_lanes import CourseLane, CourseVisit
-    from app.wizard.recordings import SessionRecording
+    from app.wizard.session_recording import SessionRecording
     from app.wizard.visit import Visit
     from app.wizard.walking.estimator import WalkingEstimator
 

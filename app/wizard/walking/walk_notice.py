@@ -15,7 +15,8 @@ from app.wizard.walk_messages import (
 from core.body import Side
 
 if TYPE_CHECKING:
-    from app.wizard.recordings import SessionRecording, SessionRecordings
+    from app.wizard.recordings import SessionRecordings
+    from app.wizard.session_recording import SessionRecording
     from app.wizard.visit import Visit
     from app.wizard.walking.readout import WalkingReadout
 

@@ -18,7 +18,7 @@ from app.wizard.walking.walk_start import WalkStart
 from app.wording import capitalised, tr
 
 if TYPE_CHECKING:
-    from app.wizard.recordings import Ongoing
+    from app.wizard.session_recording import Ongoing
     from app.wizard.visit import Visit
 
 

@@ -16,11 +16,10 @@ from app.storage.opened import OpenedLibrary
 from app.storage.shared_edits import SharedEdits
 from app.storage.stored import LibraryBusyError, LibraryError, RecordingState
 from app.theme import ThemeNotifier
-from app.wizard import recordings as recordings_module
 from app.wizard import wizard as wizard_module
 from app.wizard.free_motion.step import FreeMotionStep
 from app.wizard.keys import Intent, KeyAction
-from app.wizard.recordings import Ongoing
+from app.wizard.session_recording import Ongoing
 from app.wizard.standing.step import StandStillStep
 from app.wizard.visit import Visit
 from app.wizard.walking.step import WATCH_TICKS, WalkingStep
@@ -91,7 +90,7 @@ def test_a_correction_that_is_refused_does_not_hide_the_walk_that_has_just_begun
 def test_a_walk_that_the_library_is_too_busy_for_is_read_back_later(
     qtbot: QtBot, looked_at: Visit, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(recordings_module, "READ_AGAIN_MS", 20)
+    monkeypatch.setattr("app.wizard.reading_back.READ_AGAIN_MS", 20)
     monkeypatch.setattr(Recorder, "stop", failing_once_halted(2))
     told: list[tuple[str, str]] = []
     looked_at.recordings.refused.connect(lambda *words: told.append(words))
@@ -108,7 +107,7 @@ def test_a_library_that_stays_busy_does_not_hold_the_visit_for_ever(
 ) -> None:
     recordings, acquisition = looked_at.recordings, looked_at.sensors.acquisition
     assert acquisition is not None
-    monkeypatch.setattr("app.wizard.recordings.READ_AGAIN_MS", 1)
+    monkeypatch.setattr("app.wizard.reading_back.READ_AGAIN_MS", 1)
     monkeypatch.setattr(Recorder, "stop", failing(10_000, BUSY, Recorder.stop))
     with qtbot.waitSignal(recordings.begun, timeout=WAIT_MS):
         recordings.begin(acquisition, RecordingKind.WALKING)

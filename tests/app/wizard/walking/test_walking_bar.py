@@ -7,7 +7,7 @@ import pytest
 
 from app.storage.stored import RecordingState
 from app.widgets.action_bar import BarAction
-from app.wizard.recordings import Ongoing
+from app.wizard.session_recording import Ongoing
 from app.wizard.visit import Visit
 from app.wizard.walking.bench_control import Bench
 from app.wizard.walking.memory_control import MemoryControl
