@@ -28,6 +28,7 @@ from app.workers.background import Report
 from app.workers.library_controller import LibraryController
 from core.body import LEG_SITES, Site
 from core.samples import Patient, Recording, RecordingKind, Session
+from tests.app.library_answers import asked
 from tests.app.wizard.begun_visit import begin, record
 
 BUSY = LibraryBusyError("Another program keeps the library busy", "Wait a moment")
@@ -276,6 +277,17 @@ def test_strapping_anew_before_what_does_not_count_is_told_of_what_does(qtbot: Q
     recordings.keep(discarded, is_kept=False)
     qtbot.waitUntil(lambda: len(recordings.counted()) == 2, timeout=WAIT_MS)
     assert [recording.is_restrapped_before for recording in recordings.counted()] == [False, True]
+
+
+def test_a_demonstration_that_was_left_gives_its_patient_to_no_other_session(
+    qtbot: QtBot, controller: LibraryController, wizard: Wizard
+) -> None:
+    wizard.begin(None)
+    wizard.steps[0].demonstration_wanted.emit()
+    wizard.begin(None)  # before the library has answered
+    asked(qtbot, controller, lambda _opened: None)
+    assert wizard.visit is not None
+    assert wizard.visit.patient.details.code == ""
 
 
 def test_who_skips_the_free_motion_is_told_its_price(qtbot: QtBot, looked_at: Visit) -> None:
