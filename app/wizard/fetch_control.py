@@ -84,8 +84,8 @@ class FetchControl(QObject):
         self.changed.emit()
 
     def begun(self) -> None:
-        """A recording begins: what was put off is fetched with it, once it has ended."""
-        self._is_put_off = False
+        """A recording begins: what was put off is fetched with it, once it has ended, if that is in the sensors too."""
+        self._is_put_off = self._is_put_off and not self._sensors.are_in_memory
 
     @property
     def _progress(self) -> ProgressShown:

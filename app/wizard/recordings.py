@@ -1,83 +1,46 @@
 """The recordings of a visit: begun, stopped, kept or not. What is shown live is a preview of what comes back here."""
 
 import datetime
-from collections import deque
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping
 from concurrent.futures import Future
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import Enum, auto
-from functools import partial
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 from uuid import UUID
 
 from PySide6.QtCore import QObject, QTimer, Signal, Slot
 
 from app.acquisition.recorder import Recorder
-from app.edit_words import others_message
 from app.recording_names import OWN_NAMES, ShownName, shown_names
-from app.storage.edited_fields import KEPT, recording_fields, with_recording_fields
+from app.storage.edited_fields import recording_fields
 from app.storage.journal.disk import TOLD, Trouble
 from app.storage.stored import StoredRecording, StoredSession
-from app.storage.three_way import Contest, Edited, Values
-from app.wizard.edit_question import EditQuestion, chosen_fields
 from app.wizard.journal_words import (
     ENDS,
     is_written,
     no_row_message,
     standstill_message,
     trouble_message,
-    unread_message,
 )
 from app.wizard.losses import NOTHING, Message
 from app.wizard.memory_fetches import MemoryFetches
-from app.wording import capitalised, tr
+from app.wizard.reading_back import ReadingBack, Stopped
+from app.wizard.recording_edits import RecordingEdits
+from app.wizard.session_recording import Ongoing, SessionRecording, counted
+from app.wording import tr
 from app.workers.library_controller import LibraryController
 from core.body import Side
 from core.samples import Recording, RecordingKind
 
 if TYPE_CHECKING:
     from app.acquisition.acquisition import Acquisition
-    from app.acquisition.memory_fetching import Lack
     from app.acquisition.recorder import InMemory
     from app.storage.opened import OpenedLibrary
     from core.alignment import AlignmentChange
     from core.timed.protocols import PlannedTest
 
 
-READ_AGAIN_MS = 2000  # after the library did not answer
 WAITED_MS = 3000  # for a recording to be read back, before the next may begin without it
-MOST_READINGS = 15
-
-
-@dataclass(frozen=True, slots=True)
-class Ongoing:
-    """What is being recorded. `began_s` is on the acquisition's clock."""
-
-    details: Recording
-    began_s: float
-
-
-@dataclass(frozen=True, slots=True)
-class SessionRecording:
-    """A recording that has ended. `read_back` holds what its journal holds; None until it has been read.
-
-    `strides` are those counted live. `is_decided`: somebody has said whether it is kept; until then it is. `lacks`:
-    what could not be fetched from the sensors' memories.
-    """
-
-    stored: StoredRecording
-    read_back: Recording | None = None
-    strides: Mapping[Side, int] | None = None
-    is_decided: bool = True
-    lacks: "tuple[Lack, ...]" = ()
-
-    @property
-    def id(self) -> UUID:
-        return self.stored.id
-
-    @property
-    def details(self) -> Recording:
-        return self.stored.details
 
 
 class RecordingPhase(Enum):
@@ -89,15 +52,6 @@ class RecordingPhase(Enum):
     WRITING = auto()  # what comes in is written
     STOPPING = auto()  # stopped, and waited for: until it is read back, or for a few seconds
     CLOSED = auto()  # the visit ended before it had begun: the library ends it itself
-
-
-class _Unread(NamedTuple):
-    """What was stopped and is not read back yet; `strides` as in `SessionRecording`. Not kept: it was broken off."""
-
-    recorder: Recorder
-    details: Recording
-    strides: Mapping[Side, int] | None
-    is_kept: bool
 
 
 class SessionRecordings(QObject):
@@ -120,26 +74,27 @@ class SessionRecordings(QObject):
         self.session: StoredSession | None = None
         self.ongoing: Ongoing | None = None
         self.every: tuple[SessionRecording, ...] = ()
-        self._saying: deque[tuple[UUID, Recording | None]] = deque()  # said and not answered yet, oldest first
         self._phase = RecordingPhase.IDLE
         self._latest: Recorder | None = None  # also once it has been stopped; none before the library has answered
         self._trouble: Trouble | None = None  # of the latest
         self._is_without_row = False
         self._acquisition: Acquisition | None = None
         self._lost_before: Mapping[str, int] = {}
-        self._unread: list[_Unread] = []  # oldest first
-        self._readings = 0  # of the oldest
-        self._is_reading = False
         self._must_keep = True
         self._strides: Mapping[Side, int] | None = None
         self._is_restrapped = False
         self._beginning: Future[Recorder]
         self.fetches = MemoryFetches(self)
         """What is in the sensors' memories still."""
-        self.fetches.fetched.connect(self._on_fetched)
-        self._again = QTimer(self)
-        self._again.setSingleShot(True)
-        self._again.timeout.connect(self._read_back)
+        self._edits = RecordingEdits(controller, self.find, self.called, self)
+        self._edits.saved.connect(self._on_saved)
+        self._edits.settled.connect(self.changed)
+        self._edits.refused.connect(self.refused)
+        self._edits.merged.connect(self.merged)
+        self._edits.asked.connect(self.asked)
+        self._reading_back = ReadingBack(controller, self.fetches, self)
+        self._reading_back.read.connect(self._on_read)
+        self._reading_back.failed.connect(self._on_not_read)
         self._waited = QTimer(self)
         self._waited.setSingleShot(True)
         self._waited.timeout.connect(self._on_waited)
@@ -158,8 +113,11 @@ class SessionRecordings(QObject):
 
     @property
     def is_stopping(self) -> bool:
-        """Whether a recording has been stopped and is waited for: until it is read back, or for a few seconds."""
-        return self._phase is RecordingPhase.STOPPING
+        """Whether a recording has been stopped and is waited for: until it is read back, or for a few seconds.
+
+        Also one that has not begun: it is waited for until it has.
+        """
+        return self._phase in (RecordingPhase.BEGINNING_TO_STOP, RecordingPhase.STOPPING)
 
     @property
     def is_in_memory(self) -> bool:
@@ -169,13 +127,12 @@ class SessionRecordings(QObject):
     @property
     def in_sensors(self) -> tuple[Recording, ...]:
         """Those that have ended and are in the sensors' memories still, oldest first."""
-        waiting = self.fetches.waiting
-        return tuple(unread.details for unread in self._unread if unread.recorder in waiting)
+        return self._reading_back.in_sensors
 
     @property
     def is_idle(self) -> bool:
         """Whether nothing is being recorded, and all that was has been read back."""
-        return self.ongoing is None and not self._unread
+        return self.ongoing is None and self._reading_back.is_idle
 
     @property
     def walks(self) -> tuple[SessionRecording, ...]:
@@ -192,6 +149,14 @@ class SessionRecordings(QObject):
         """What each is called on the screen, by its name."""
         told = {one.name: one for one in (*self.told[: len(self.every)], *self.in_sensors, *self.told)}
         return shown_names(tuple(told.values()))
+
+    def find(self, recording_id: UUID) -> SessionRecording | None:
+        """One that has ended, as it stands on the screen."""
+        return next((one for one in self.every if one.id == recording_id), None)
+
+    def called(self, name: str) -> str:
+        """What one of them is called on the screen, by its name."""
+        return str(self.shown_names.get(name, name))
 
     @property
     def standing(self) -> SessionRecording | None:
@@ -241,7 +206,7 @@ class SessionRecordings(QObject):
 
     def awaits(self, kind: RecordingKind) -> bool:
         """Whether one of a kind that counts has been stopped, and is still to be read back."""
-        return any(unread.recorder.kind is kind and unread.is_kept for unread in self._unread)
+        return self._reading_back.awaits(kind)
 
     def take_over(self, session: StoredSession, recordings: tuple[SessionRecording, ...]) -> None:
         """Go on with a session of the library."""
@@ -308,7 +273,9 @@ class SessionRecordings(QObject):
         Not `is_kept`: it was broken off and does not count; nothing is deleted.
         """
         if self._phase in (RecordingPhase.BEGINNING, RecordingPhase.BEGINNING_TO_STOP):
-            self._phase, self._must_keep, self._strides = RecordingPhase.BEGINNING_TO_STOP, is_kept, strides
+            self._phase, self._strides = RecordingPhase.BEGINNING_TO_STOP, strides
+            self._must_keep = self._must_keep and is_kept  # what was broken off stays so
+            self.changed.emit()
         if self._phase is not RecordingPhase.WRITING or self._latest is None or self.ongoing is None:
             return
         recorder = self._latest
@@ -317,14 +284,13 @@ class SessionRecordings(QObject):
             recorder.halt()
 
         self._phase = RecordingPhase.STOPPING
-        self._unread.append(_Unread(recorder, self.ongoing.details, strides, is_kept))
+        self._reading_back.add(Stopped(recorder, self.ongoing.details, strides, is_kept))
         self._controller.record(halt, None, self._on_not_halted, self)
         if recorder.memory is not None:
             self.fetches.add(recorder)
         else:
             self._waited.start(WAITED_MS)
-            if not self._again.isActive():
-                self._read_back()
+            self._reading_back.begin()
         self.changed.emit()
 
     def fetch_later(self) -> None:
@@ -340,21 +306,15 @@ class SessionRecordings(QObject):
         """
         if self.ongoing is None or self._phase in (RecordingPhase.WRITING, RecordingPhase.STOPPING):
             self.stop()
-            self._leave_in_sensors()
+            self._reading_back.leave_in_sensors()
             return
+        self._reading_back.leave_in_sensors()
         begun, self._phase = self._beginning, RecordingPhase.CLOSED
 
         def end(opened: "OpenedLibrary") -> None:
             begun.result().stop(opened)
 
         self._controller.run(end, self._on_closed, self._on_not_started, self)
-
-    def _leave_in_sensors(self) -> None:
-        """Close the journals of what is still to be fetched: it does not count until it is fetched anew."""
-        left = self.fetches.give_up()
-        self._unread = [unread for unread in self._unread if unread.recorder not in left]
-        for recorder in left:
-            self._controller.run(partial(_without_samples, recorder), None, None, self._controller)
 
     def trouble_message(self) -> Message:
         """What befell the latest recording's journal, as its counters have it by now; nothing where nothing did."""
@@ -413,10 +373,9 @@ class SessionRecordings(QObject):
         if recording.details.is_restrapped_before and not is_kept and recording.id == self.every[-1].id:
             self._is_restrapped = True  # what comes next is the first that counts
         is_asked = recording.stored.is_unjudged or not recording.stored.is_decided
-        is_answered = any(recording.id == said for said, _ in self._saying)
         self._put(replace(recording, is_decided=True))
-        if is_asked and not is_answered:
-            self._decide(recording, is_kept)
+        if is_asked and not self._edits.is_saving(recording.id):
+            self._edits.decide(recording.id, is_kept)
         else:  # also where it seems to be so already: what was said a moment before may still be on its way
             self.change(recording, lambda told: replace(told, is_kept=is_kept))
 
@@ -426,8 +385,7 @@ class SessionRecordings(QObject):
 
     def said(self, recording: SessionRecording) -> Recording:
         """What is told of a recording, the last word of it on the screen."""
-        known = next((one.details for one in self.every if one.id == recording.id), recording.details)
-        return next((told for said, told in reversed(self._saying) if told and said == recording.id), known)
+        return self._edits.said(self.find(recording.id) or recording)
 
     def change(self, recording: SessionRecording, corrected: Callable[[Recording], Recording]) -> None:
         """Correct what was told of a recording; `changed` follows.
@@ -436,41 +394,10 @@ class SessionRecordings(QObject):
         merged and told, or `asked` about.
         """
         shown = self.said(recording)
-        self._edit(recording.id, recording_fields(shown), recording_fields(corrected(shown)))
-
-    def _edit(self, recording_id: UUID, upon: Values, said: Values) -> None:
-        def save(opened: "OpenedLibrary") -> Edited[StoredRecording]:
-            return opened.library.edits.recording(recording_id, upon, said)
-
-        self._say(recording_id, said)
-        self._controller.run(save, self._on_changed, self._on_not_changed, self)
-
-    def _decide(self, recording: SessionRecording, is_kept: bool) -> None:
-        """Give the answer that was asked for: nobody is asked again, at the next start either."""
-
-        def decide(opened: "OpenedLibrary") -> Edited[StoredRecording]:
-            return opened.library.edits.decision(recording.id, is_kept)
-
-        self._say(recording.id, {KEPT: is_kept})
-        self._controller.run(decide, self._on_changed, self._on_not_changed, self)
-
-    def _say(self, recording_id: UUID, said: Values) -> None:
-        recording = next((one for one in self.every if one.id == recording_id), None)
-        told = with_recording_fields(self.said(recording), said) if recording is not None else None
-        self._saying.append((recording_id, told))
-
-    def _settle(self, recording_id: UUID, contests: Sequence[Contest], fields: frozenset[str]) -> None:
-        """Save what was chosen of both sides."""
-        upon, said = chosen_fields(contests, fields)
-        if said:
-            self._edit(recording_id, upon, said)
-        self.changed.emit()
+        self._edits.save(recording.id, recording_fields(shown), recording_fields(corrected(shown)))
 
     def counted(self) -> tuple[Recording, ...]:
-        """Those that count and have been read, in order of time, as an analysis takes them.
-
-        That sensors were strapped anew before one that does not count is told of the next.
-        """
+        """Those that count and have been read, as an analysis takes them."""
         return counted(self.every)
 
     def _of(self, kind: RecordingKind) -> tuple[SessionRecording, ...]:
@@ -479,23 +406,20 @@ class SessionRecordings(QObject):
     def _new_name(self, kind: RecordingKind) -> str:
         """`walk 2`, `free motion`, `standing 3`: the kind's name in files, numbered."""
         word = OWN_NAMES[kind]
-        taken = {one.details.name for one in self.every} | {unread.details.name for unread in self._unread}
+        taken = {one.details.name for one in self.every} | self._reading_back.names
         first = f"{word} 1" if kind is RecordingKind.WALKING else word
         return next(name for name in [first, *(f"{word} {k}" for k in range(2, 10_000))] if name not in taken)
 
     def _put(self, recording: SessionRecording) -> None:
-        known = {other.id: other for other in self.every}
-        self.every = tuple((known | {recording.id: recording}).values())
+        """Show it as it stands now; a new one in the order of beginning, which that of their ids is."""
+        if any(other.id == recording.id for other in self.every):
+            self.every = tuple(recording if other.id == recording.id else other for other in self.every)
+        else:
+            place = len(self.every)
+            while place and self.every[place - 1].id > recording.id:  # one that was fetched later than it was made
+                place -= 1
+            self.every = (*self.every[:place], recording, *self.every[place:])
         self.changed.emit()
-
-    def _on_fetched(self, _recorder: Recorder) -> None:
-        self._read_back()
-
-    def _read_back(self) -> None:
-        if self._unread and not self._is_reading and self._unread[0].recorder.is_whole:
-            self._is_reading = True
-            self._readings += 1
-            self._controller.run(self._unread[0].recorder.stop, self._on_read_back, self._on_not_read_back, self)
 
     def _go_on(self) -> None:
         """The next recording may begin."""
@@ -523,13 +447,16 @@ class SessionRecordings(QObject):
         if self._phase is RecordingPhase.CLOSED:
             return
         must_stop = self._phase is RecordingPhase.BEGINNING_TO_STOP
-        self._phase, self._latest = RecordingPhase.WRITING, recorder
+        self._latest = recorder
+        if not must_stop:
+            self._phase = RecordingPhase.WRITING
         self._is_restrapped = False
         self._is_without_row = not recorder.has_row
         self.begun.emit()
         if self.trouble_message() != NOTHING:
             self.troubled.emit(*self.trouble_message())
         if must_stop:
+            self._phase = RecordingPhase.WRITING
             self.stop(self._strides, is_kept=self._must_keep)
 
     def _moved(self) -> Message:
@@ -539,46 +466,36 @@ class SessionRecordings(QObject):
         place = shelter.folder if shelter is not None else ""
         return f"{tr(what)}.", f"{tr(remedy)}.".format(shelter=place)
 
-    def _on_read_back(self, result: tuple[StoredRecording, Recording]) -> None:
-        stored, read_back = result
-        unread = self._unread.pop(0)
-        self._is_reading, self._readings = False, 0
-        memory = unread.recorder.memory
-        lacks = memory.lacks() if memory is not None else ()
-        recording = SessionRecording(stored, read_back, unread.strides, stored.is_decided, lacks)
-        if not self._unread:
+    @Slot(object, object)
+    def _on_read(self, stopped: Stopped, recording: SessionRecording) -> None:
+        if stopped.recorder is self._latest:
             self._go_on()
         self._put(recording)
         self.ended.emit(recording)
-        if not unread.is_kept:
+        if not stopped.is_kept:
             self.keep(recording, is_kept=False)
-        self._read_back()
+
+    @Slot(str, str, bool)
+    def _on_not_read(self, what: str, where: str, is_news: bool) -> None:
+        """What was recorded is on the disk; the next may begin."""
+        must_tell = is_news or self._phase is RecordingPhase.STOPPING
+        self._go_on()
+        self.changed.emit()
+        if must_tell:
+            self.refused.emit(what, where)
 
     def _on_waited(self) -> None:
         self._go_on()
         self.changed.emit()
-        self.refused.emit(tr("The recording is not read back yet."), self._where(is_tried_again=True))
+        self.refused.emit(tr("The recording is not read back yet."), self._reading_back.where)
 
     def _on_not_halted(self, _what: str, _remedy: str) -> None:
         """Whoever reads it back meets the same, and tells."""
 
-    def _on_changed(self, edited: Edited[StoredRecording]) -> None:
-        self._saying.popleft()
-        stored = edited.stored
-        before = next((recording for recording in self.every if recording.id == stored.id), None)
-        if before is not None:
+    @Slot(object)
+    def _on_saved(self, stored: StoredRecording) -> None:
+        if (before := self.find(stored.id)) is not None:
             self._put(replace(before, stored=stored))
-        called = capitalised(str(self.shown_names.get(stored.details.name, stored.details.name)))
-        if edited.others:
-            self.merged.emit(*others_message(called, edited.others, datetime.datetime.now().astimezone()))
-        if edited.contests:
-            settle = partial(self._settle, stored.id, edited.contests)
-            self.asked.emit(EditQuestion(called, edited.contests, settle))
-
-    def _on_not_changed(self, what: str, remedy: str) -> None:
-        self._saying.popleft()
-        self.changed.emit()
-        self.refused.emit(what, remedy)
 
     def _on_not_started(self, what: str, remedy: str) -> None:
         self.ongoing = None
@@ -587,53 +504,6 @@ class SessionRecordings(QObject):
         self.changed.emit()
         self.refused.emit(what, remedy)
 
-    def _on_not_read_back(self, what: str, _remedy: str) -> None:
-        """What was recorded is on the disk: try for a while to read it back, then leave that to the next start."""
-        is_first = self.is_stopping or self._readings == 1
-        self._is_reading = False
-        self._go_on()
-        if self._controller.state is not None and (self._controller.is_gone or self._readings < MOST_READINGS):
-            self._again.start(READ_AGAIN_MS)
-            self.changed.emit()
-            if is_first:
-                self.refused.emit(what, self._where(is_tried_again=True))
-            return
-        where = self._where(is_tried_again=False)
-        self._unread.pop(0)
-        self._readings = 0
-        self.changed.emit()
-        self.refused.emit(what, where)
-        self._read_back()
-
-    def _where(self, *, is_tried_again: bool) -> str:
-        """Where the oldest is that has not been read back."""
-        return unread_message(self._unread[0].recorder.status, is_tried_again=is_tried_again)
-
-
-def _without_samples(recorder: Recorder, opened: "OpenedLibrary") -> None:
-    recorder.leave_in_memory()
-    stored, _ = recorder.stop(opened)
-    opened.library.edits.decision(stored.id, is_kept=False)
-
 
 def _now() -> str:
     return datetime.datetime.now().astimezone().isoformat(timespec="seconds")
-
-
-def counted(recordings: Sequence[SessionRecording]) -> tuple[Recording, ...]:
-    """Those of one session's recordings that count, with their samples, as `SessionRecordings.counted` tells them."""
-    found = []
-    is_restrapped = False
-    for recording in recordings:
-        is_restrapped |= recording.details.is_restrapped_before
-        if recording.details.is_kept and recording.read_back is not None:
-            told = replace(recording.details, imu=recording.read_back.imu, is_restrapped_before=is_restrapped)
-            found.append(replace(told, test=_with_its_keys(told.test, recording.read_back.test)))
-            is_restrapped = False
-    return tuple(found)
-
-
-def _with_its_keys(told: "PlannedTest | None", read: "PlannedTest | None") -> "PlannedTest | None":
-    """The test as it is told; a recovered recording's keys are in its journal alone."""
-    has_keys = told is not None and (told.start_key_s, told.end_key_s) != (None, None)
-    return told if told is None or read is None or has_keys or read.protocol is not told.protocol else read

@@ -11,7 +11,7 @@ from app.storage.exchange import recording_with_samples
 from app.storage.kept_analyses import bare, find_analysis, inputs_of, keep_analysis
 from app.storage.kept_courses import course_key, keep_course
 from app.storage.stored import Limits, RecordingState, ResultKind, StoredPatient, StoredSession
-from app.wizard.recordings import SessionRecording, counted
+from app.wizard.session_recording import SessionRecording, counted
 from app.workers.background import Report
 from core.analysis import analyse
 from core.body import LEG_JOINTS

@@ -19,7 +19,7 @@ from app.wizard.evaluation import Evaluation
 from app.wizard.fetch_control import FetchControl
 from app.wizard.kept_results import KeptResults
 from app.wizard.patient_record import PatientRecord
-from app.wizard.recordings import SessionRecording, SessionRecordings
+from app.wizard.recordings import SessionRecordings
 from app.wizard.resuming import (
     USABLE,
     Resumed,
@@ -32,6 +32,7 @@ from app.wizard.resuming import (
 )
 from app.wizard.reviewing import Reviewing
 from app.wizard.session_record import SessionRecord, current_time
+from app.wizard.session_recording import SessionRecording
 from app.wizard.worn_corrections import WornCorrections
 from app.wizard.worn_sensors import SourceChoice, WornSensors
 from app.wording import tr
@@ -306,15 +307,15 @@ class Visit(QObject):
     def close(self) -> None:
         """Let go of the sensors and wait for what runs; a recording that goes on is stopped first."""
         self.patient.commit()
-        if self.recordings.is_recording and (acquisition := self.sensors.detach()) is not None:
-            self.recordings.close()
+        acquisition = self.sensors.detach() if self.recordings.is_recording else None
+        self.recordings.close()
+        if acquisition is not None:
 
             def close(_opened: "OpenedLibrary", _turn: "Future[None]") -> None:
                 acquisition.close()
 
-            self._controller.record(
-                close, None, None, self._controller
-            )  # in its turn, after the recording has been stopped
+            # in its turn, after the recording has been stopped
+            self._controller.record(close, None, None, self._controller)
         else:
             self.sensors.close()
 

@@ -1,8 +1,6 @@
 """The wizard: seven steps, one at a time, jumped between at will, and what is always in sight round them."""
 
 import time
-from collections.abc import Mapping
-from dataclasses import replace
 from typing import TYPE_CHECKING, Protocol, runtime_checkable
 from uuid import UUID
 
@@ -15,7 +13,6 @@ from app.settings import Settings
 from app.theme import ThemeNotifier
 from app.widgets.action_bar import BarState
 from app.widgets.rail_row import RailRow, StepState
-from app.widgets.sensor_tile import SensorTile
 from app.wizard.asked_edits import AskedEdits
 from app.wizard.edit_question import EditQuestion
 from app.wizard.free_motion.step import FreeMotionStep
@@ -31,14 +28,13 @@ from app.wizard.standing.step import StandStillStep
 from app.wizard.step import Step
 from app.wizard.visit import DEMO, Visit
 from app.wizard.walking.step import WalkingStep
+from app.wizard.worn_tiles import worn_tiles
 from app.wording import tr
 from app.workers.library_controller import LibraryController
 from app.workers.preload import is_preloaded
-from core.body import LEG_SITES, Site
 from core.samples import Patient
 
 if TYPE_CHECKING:
-    from app.acquisition.acquisition import SensorStatus
     from app.storage.opened import OpenedLibrary
     from app.storage.stored import StoredPatient
 
@@ -48,7 +44,6 @@ PREPARE_MS = 400  # between one page that is made ahead and the next: what the u
 DEAF_S = 0.4  # after a page turned by itself; a hand that was on its way arrives, one that answers takes longer
 SLOW_TICKS = 8  # tiles and stopwatch: four times a second
 DEMO_PATIENT = f"{DEMO}-1"
-MOVES_RAD_S = 0.1  # a sensor on a standing patient stays below
 
 
 @runtime_checkable
@@ -69,6 +64,7 @@ class Wizard(QWidget):
         super().__init__()
         self._look, self._controller, self._settings = look, controller, settings
         self._visit: Visit | None = None
+        self._demonstration: Visit | None = None  # that waits for its patient
         self._closing: list[Visit] = []  # their threads end by themselves
         self._steps: list[Step] = []
         self._current = PATIENT
@@ -145,7 +141,7 @@ class Wizard(QWidget):
             self._closing.append(self._visit)
         for step in self._steps:
             step.deleteLater()
-        self._visit, self._steps, self._to_prepare = None, [], []
+        self._visit, self._demonstration, self._steps, self._to_prepare = None, None, [], []
         self.shell.clear_pages()
 
     def _forget_closed(self) -> None:
@@ -277,11 +273,7 @@ class Wizard(QWidget):
         if visit is None:
             return
         self.shell.header.show_elapsed(visit.elapsed_s)
-        status, worn = visit.sensors.status, visit.sensors.sensor_at
-        is_awaited = visit.sensors.is_left_to_motion and not worn
-        has_pelvis = Site.PELVIS in worn or (is_awaited and Site.PELVIS in visit.sensors.places)
-        sites = tuple(Site) if has_pelvis else LEG_SITES
-        self.shell.strip.show_tiles({site: _tile(site, worn.get(site), status, is_awaited) for site in sites})
+        self.shell.strip.show_tiles(worn_tiles(visit.sensors))
 
     def _tell(self, what: str, then: str) -> None:
         if what:
@@ -417,15 +409,17 @@ class Wizard(QWidget):
     def _on_demonstration_wanted(self) -> None:
         """Begin anew with the patient whom simulated recordings are kept for, found or made."""
         self.begin(None)
+        self._demonstration = self._visit
         self._controller.run(_demonstration_patient, self._on_demonstration_found, self._on_refused, self)
 
     def _on_demonstration_found(self, stored: "StoredPatient | None") -> None:
-        if self._visit is None or self._visit.patient.details.code:
-            return  # somebody has typed another meanwhile
+        visit = self._demonstration
+        if visit is None or visit is not self._visit or visit.patient.details.code:
+            return  # it was left, or somebody has typed another meanwhile
         if stored is not None:
-            self._visit.patient.choose(stored)
+            visit.patient.choose(stored)
         else:
-            self._visit.patient.edit(Patient(code=DEMO_PATIENT))
+            visit.patient.edit(Patient(code=DEMO_PATIENT))
         self._steps[PATIENT].enter()
         self._show()
 
@@ -522,22 +516,3 @@ _STRIP = {
     RESULTS: StripMode.FOLDED,
     REPORT: StripMode.FOLDED,
 }
-
-
-def _tile(site: Site, sensor: str | None, status: "Mapping[str, SensorStatus]", is_awaited: bool = False) -> SensorTile:
-    if sensor is None or sensor not in status:
-        nothing = SensorTile(site, sensor or "", None, 0.0, 0.0, 0.0, is_moving=False, is_worn=False)
-        return replace(nothing, is_awaited=is_awaited)
-    heard = status[sensor]
-    return SensorTile(
-        site,
-        sensor,
-        heard.details.battery,
-        heard.heard_hz,
-        heard.lost_share,
-        heard.silent_s,
-        is_moving=heard.movement_rad_s > MOVES_RAD_S,
-        is_worn=True,
-        quiet=heard.details.quiet,
-        is_loss_seen=heard.details.is_loss_seen,
-    )

@@ -10,8 +10,9 @@ from PySide6.QtCore import QObject, Signal
 from app.storage.stored import PlacedSensor, StoredSession
 from app.storage.three_way import Edited
 from app.wizard.edit_question import EditQuestion
-from app.wizard.recordings import SessionRecording, SessionRecordings
+from app.wizard.recordings import SessionRecordings
 from app.wizard.resuming import read_recordings
+from app.wizard.session_recording import SessionRecording
 from app.wizard.worn_sensors import WornSensors
 from app.wording import tr
 from app.workers.library_controller import LibraryController

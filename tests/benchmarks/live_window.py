@@ -145,7 +145,7 @@ def _session(
     yield lambda: wizard.step_number == 3
     free = wizard.steps[3]
     assert isinstance(free, FreeMotionStep)
-    yield lambda: wizard.step_number == 4 or free._side.asked is not None
+    yield lambda: wizard.step_number == 4 or free._labels._side.asked is not None
     if wizard.step_number == 3:
         yield _after(PAUSE_S)
         free.page.answered.emit(0)
@@ -188,7 +188,7 @@ def _asking_again(walking: Any, until: Callable[[], bool]) -> Callable[[], bool]
     """Let the walking step ask for the ankles again as soon as it has its answer."""
 
     def is_over() -> bool:
-        walking._is_ankle_asked = False
+        walking._preview._is_ankle_asked = False
         return until()
 
     return is_over

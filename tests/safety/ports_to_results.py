@@ -33,9 +33,9 @@ from PySide6.QtWidgets import QApplication
 from app.settings import Settings
 from app.storage.journal.header import JournalHeader
 from app.theme import ThemeNotifier, load_fonts
-from app.wizard.recordings import SessionRecording
 from app.wizard.sensors.sources import COLUMNS, SEARCH
 from app.wizard.sensors.step import SensorsStep
+from app.wizard.session_recording import SessionRecording
 from app.wizard.visit import Visit
 from app.wizard.wizard import Wizard
 from app.workers.library_controller import LibraryController

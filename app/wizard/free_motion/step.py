@@ -4,7 +4,7 @@ from dataclasses import replace
 from enum import Enum, auto
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QObject, QTimer
+from PySide6.QtCore import QObject, QTimer, Slot
 
 from app import sounds
 from app.acquisition.live_sensors import live_sensors
@@ -27,21 +27,20 @@ from app.wizard.free_motion.hints import (
     recorded_hint,
     unplaced_hint,
 )
+from app.wizard.free_motion.label_questions import LabelQuestions
 from app.wizard.free_motion.motion_shown import gauge_faces, hip_faces, sensor_marks
 from app.wizard.free_motion.page import FreeMotionFace, FreeMotionPage
-from app.wizard.free_motion.side_question import SILENT, SideQuestion, Words
+from app.wizard.free_motion.side_question import SILENT
 from app.wizard.keys import Intent, KeyAction
-from app.wizard.recordings import SessionRecording
+from app.wizard.session_recording import SessionRecording
 from app.wizard.step import Step
-from app.wizard.worn_corrections import opposite
-from app.wording import name_of, tr
-from core.body import Joint, Side, Site
+from app.wording import tr
+from core.body import Joint, Side
 from core.live.free_motion import FreeMotionState
 from core.samples import RecordingKind
 
 if TYPE_CHECKING:
     from app.wizard.visit import Visit
-    from core.placement.chains import Chains
 
 SENSORS = 1  # the step that says who wears what
 SETTLED_MS = 2000  # enough motion: time to see it, and to say otherwise
@@ -75,8 +74,6 @@ class FreeMotionStep(Step):
         self._repeated: Side | None = None
         self._again_side: Side | None = None  # that was being repeated when it was to begin again
         self._elapsed_s: float | None = None
-        self._kept_labels: set[tuple[Site, ...]] = set()
-        self._doubted: tuple[Site, ...] = ()
         self._enough: frozenset[Joint] = frozenset()  # joints with enough motion, as their gauges say
         self._replaced: FreeMotionState | None = None  # of the free motion that is in force while another is recorded
         self._left = "", ""  # what is to be said of one that was left before its end
@@ -84,8 +81,11 @@ class FreeMotionStep(Step):
         self._plays_to_s = 0.0
         self._then = AfterRecording.ITSELF
         self._is_in_sight = self._must_correct = False
-        self._side = SideQuestion()
-        self._sides_told: dict[str, Side] = {}  # in this visit, by the sensor's name
+        self._labels = LabelQuestions(visit, self)
+        self._labels.changed.connect(self._show_question)
+        self._labels.relabelled.connect(self._on_relabelled)
+        self._labels.leg_named.connect(self._on_leg_named)
+        self._labels.sensors_wanted.connect(self._on_sensors_wanted)
         self._asked_words = SILENT
         self._ticks = 0
         self._settled = QTimer(self)
@@ -100,7 +100,7 @@ class FreeMotionStep(Step):
     def page(self) -> FreeMotionPage:
         if self._page is None:
             self._page = FreeMotionPage(self._look)
-            self._page.answered.connect(self._on_answered)
+            self._page.answered.connect(self._labels.answer)
         return self._page
 
     @property
@@ -143,10 +143,7 @@ class FreeMotionStep(Step):
     def leave(self) -> None:
         self._is_in_sight = False
         self._settled.stop()
-        if self._is_recording and self._then not in (
-            AfterRecording.NEXT_STEP,
-            AfterRecording.ANOTHER,
-        ):  # not to its end
+        if self._is_recording and not self._visit.recordings.is_stopping:  # not to its end
             self._break_off()
         if self._then is AfterRecording.ANOTHER:
             self._then = AfterRecording.ITSELF
@@ -158,8 +155,9 @@ class FreeMotionStep(Step):
         self._ticks += 1
         if self._ticks % TICKS or not self._is_in_sight:
             return
-        if self._estimator is not None and self._is_recording:
-            self._look_at_motion()
+        if self._is_recording:
+            if self._estimator is not None and self._visit.recordings.has_begun:  # and is not stopped
+                self._look_at_motion()
         elif self._may_begin:
             self._begin(self._again_side)  # what was recorded before has been closed by now
         self._show()
@@ -205,8 +203,8 @@ class FreeMotionStep(Step):
         self._repeat(self._repeatable[number])
 
     def undo(self) -> None:
-        if self._is_recording and self._side.told is not None and not self._doubted:
-            self._on_answered(1)
+        if self._is_recording and self._labels.is_understood:
+            self._labels.answer(1)
 
     def on_intent(self, intent: Intent) -> bool:
         if intent.action is KeyAction.RUN:
@@ -273,7 +271,7 @@ class FreeMotionStep(Step):
         self._before = self._other_leg(side) if side is not None else FreeMotionState()
         self._repeated, self._motion, self._elapsed_s = side, self._before, None
         self._then, self._again_side = AfterRecording.ITSELF, None
-        self._side, self._doubted = SideQuestion(), ()
+        self._labels.begin()
         self._enough = self._with_enough()
         if side is not None:
             self._visit.place_sensors(only=side)
@@ -301,7 +299,7 @@ class FreeMotionStep(Step):
             self._estimator = self._unplaced = UnplacedFreeMotionEstimator(
                 live, Side.LEFT, prosthetic, without, standing
             )
-            self._unplaced.name_leg(self._side.told)
+            self._unplaced.name_leg(self._labels.named)
         else:
             self._unplaced = None
             site_of = {
@@ -319,18 +317,22 @@ class FreeMotionStep(Step):
         if view.site_of and not sensors.site_of:  # the motion has told it
             sensors.assign_all(view.site_of)
             self._must_correct = True
-            self._side.withdraw()
+            self._labels.withdraw()
         had_joints, was_done = bool(self._motion.joints), self._is_done
         self._motion = self._joined(view.motion)
         if sensors.site_of:
-            self._doubt(view.exchanged)
+            self._labels.doubt(view.exchanged)
         else:
-            self._ask_for_side(view.chains if view.is_side_open else None)
+            self._labels.ask_for_side(view.chains if view.is_side_open else None)
         enough = self._with_enough() | {joint for joint, hip in self._motion.hips.items() if hip.is_sure}
         if enough - self._enough:
             sounds.play(Sound.READY)
         self._enough = enough
-        is_whole = self._is_done and all(one.is_closed for one in self._motion.joints.values()) and not self._doubted
+        is_whole = (
+            self._is_done
+            and all(one.is_closed for one in self._motion.joints.values())
+            and not self._labels.is_in_doubt
+        )
         if is_whole and not self._settled.isActive():
             self._settled.start()
         elif not is_whole:
@@ -401,67 +403,27 @@ class FreeMotionStep(Step):
 
     # what somebody has to answer
 
-    def _doubt(self, exchanged: tuple[tuple[Site, ...], ...]) -> None:
-        """Say which labels the motion contradicts, until somebody has answered."""
-        self._doubted = next((group for group in exchanged if group not in self._kept_labels), ())
-        self._show_question()
-
-    def _ask_for_side(self, chains: "Chains | None") -> None:
-        """The motion does not tell left from right: both legs began together, or one alone wears sensors."""
-        if chains is not None:
-            session = self._visit.session
-            placed = session.placements[-1].site_of if session is not None and session.placements else {}
-            earlier = {name: site.side for name, site in placed.items() if site.side is not None}
-            self._side.look(chains, earlier | self._sides_told)
-            self._show_question()
-
+    @Slot()
     def _show_question(self) -> None:
         """Show what is to be answered, or what was understood; the page is left alone where that stands there."""
-        words = self._question() if self._is_recording else SILENT
+        words = self._labels.words if self._is_recording else SILENT
         if words != self._asked_words:
             self._asked_words = words
-            self.page.ask(*words, is_understood=self._side.told is not None and not self._doubted)
+            self.page.ask(*words, is_understood=self._labels.is_understood)
 
-    def _question(self) -> Words:
-        doubted, keep = self._doubted, tr("Keep as worn")
-        if not doubted:
-            return self._side.words
-        if len(doubted) == 2:
-            what = tr("{first} and {last} seem swapped: the legs move otherwise.")
-            named = what.format(first=name_of(doubted[0]), last=name_of(doubted[1]))
-            return named, tr("Swap them, or keep as worn."), (tr("Swap them"), keep)
-        what = tr("{sites} seem mixed up: the legs move otherwise.")
-        named = what.format(sites=", ".join(name_of(site) for site in doubted))
-        return named, tr("Place them anew, or keep as worn."), (tr("Go to Sensors"), keep)
+    @Slot()
+    def _on_relabelled(self) -> None:
+        self._must_correct = True
+        self._watch()  # what the motion told was told of others
 
-    def _on_answered(self, number: int) -> None:
-        doubted, self._doubted = self._doubted, ()
-        sensors = self._visit.sensors
-        if not doubted:
-            self._side.answer(number)
-            self._take_side()
-        elif number == 1:
-            self._kept_labels.add(doubted)
-        elif len(doubted) == 2:
-            sensors.assign(sensors.sensor_at[doubted[0]], doubted[1])
-            self._must_correct = True
-            self._watch()  # what the motion told was told of others
-        else:
-            self.jumped.emit(SENSORS)
-        self._show_question()
+    @Slot()
+    def _on_leg_named(self) -> None:
+        if self._unplaced is not None:
+            self._unplaced.name_leg(self._labels.named)
 
-    def _take_side(self) -> None:
-        """Let the motion be that of the leg that was named; what was placed already changes legs."""
-        told, sensors = self._side.told, self._visit.sensors
-        if told is not None:
-            self._sides_told[told[0]] = told[1]
-        if not sensors.site_of:
-            if self._unplaced is not None:
-                self._unplaced.name_leg(told)
-        elif told is not None and told[0] in sensors.site_of and sensors.site_of[told[0]].side is not told[1]:
-            sensors.assign_all({name: opposite(site) for name, site in sensors.site_of.items()})
-            self._must_correct = True
-            self._watch()  # as with labels that are swapped
+    @Slot()
+    def _on_sensors_wanted(self) -> None:
+        self.jumped.emit(SENSORS)
 
     # the page
 
@@ -495,7 +457,7 @@ class FreeMotionStep(Step):
     # slots
 
     def _on_begun(self) -> None:
-        if self._is_recording:
+        if self._is_recording and self._is_in_sight:  # one that was left before it had begun ends at once
             self._ask_patient()  # only what is recorded counts
             self._watch()
 

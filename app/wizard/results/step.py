@@ -33,7 +33,7 @@ from core.samples import RecordingKind
 if TYPE_CHECKING:
     from app.pages.result_page import ResultPage
     from app.pages.result_parts import ResultParts
-    from app.wizard.recordings import SessionRecording
+    from app.wizard.session_recording import SessionRecording
     from app.wizard.visit import Visit
     from core.results import Analysis
     from core.samples import Session

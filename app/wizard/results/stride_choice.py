@@ -12,7 +12,8 @@ from core.body import Side
 
 if TYPE_CHECKING:
     from app.widgets.stride_list import StrideLine
-    from app.wizard.recordings import SessionRecording, SessionRecordings
+    from app.wizard.recordings import SessionRecordings
+    from app.wizard.session_recording import SessionRecording
 
 LeftOut = Mapping[Side, tuple[float, ...]]
 

@@ -13,7 +13,7 @@ from app.theme import ThemeNotifier
 from app.widgets.action_bar import BarAction, BarState
 from app.widgets.rail_row import StepState
 from app.wizard.keys import Intent, KeyAction
-from app.wizard.recordings import SessionRecording
+from app.wizard.session_recording import SessionRecording
 from app.wizard.standing.estimator import StandingEstimator
 from app.wizard.standing.page import StandPhase, StandStillPage, StandStillView
 from app.wizard.step import Step
@@ -247,7 +247,7 @@ class StandStillStep(Step):
     # slots
 
     def _on_begun(self) -> None:
-        if self._is_recording:
+        if self._is_recording and self._is_entered:  # one that was left before it had begun ends at once
             self._watch()  # only what is recorded counts
 
     def _on_ended(self, recording: SessionRecording) -> None:

@@ -1,4 +1,4 @@
-"""What can be done at the bench between two walks: walk on, keep, return to where it began, look at all walks."""
+"""What can be done at the bench between two walks: walk on, keep, return to where it began."""
 
 from app.icons import Icon
 from app.widgets.action_bar import BarAction, BarState
@@ -9,8 +9,7 @@ from app.wording import tr
 def bench_bar(bench: Bench, asked: str | None, cannot_start: str, can_start: bool) -> BarState:
     """`asked`: the condition of the walk that waits to be kept; None where none does.
 
-    The last of the others starts a walk; one before it returns to the first alignment. The first of the quiet ones
-    shows all walks, the second discards the walk that waits.
+    The last of the others starts a walk; one before it returns to the first alignment.
     """
     chain = bench.chain
     is_new = bool(bench.entry.parts)
@@ -21,10 +20,8 @@ def bench_bar(bench: Bench, asked: str | None, cannot_start: str, can_start: boo
     if chain.way_back(chain.first):
         back = tr("Return to {letter}").format(letter=chain.letters.get(chain.first, ""))
         others = (BarAction(back, "", Icon.REPEAT, is_wished=False), start)
-    every = BarAction(tr("Walks"))
     if asked is None:
         results = BarAction(tr("Results"), "", Icon.NEXT)
-        return BarState(primary=results, others=others, quiet=(every,), note=cannot_start)
+        return BarState(primary=results, others=others, note=cannot_start)
     keep = BarAction(tr("Keep {letter}").format(letter=chain.letters.get(asked, "")), tr("Enter"), Icon.CHECK)
-    discard = BarAction(tr("Discard"), "D")
-    return BarState(primary=keep, others=others, quiet=(every, discard), note=cannot_start)
+    return BarState(primary=keep, others=others, note=cannot_start)

@@ -60,6 +60,11 @@ class Bench(QObject):
         return self.side is not None and bool(kept) and is_alignment(kept[-1])
 
     @property
+    def is_shown(self) -> bool:
+        """Whether it stands in the place of the walks, while none is recorded."""
+        return self.is_wished and self.is_offered
+
+    @property
     def chain(self) -> AlignmentChain:
         return chain_of([one.details for one in self._visit.recordings.every], self._returned_to)
 

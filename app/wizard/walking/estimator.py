@@ -39,6 +39,8 @@ class WalkingEstimator:
 
     Attributes
     ----------
+    calibrated
+        The joints with a calibration whose two sensors are worn and heard.
     on_value
         Called by the estimator's thread whenever `state` has a new value of a stride, so that nobody has to look.
     test
@@ -55,11 +57,13 @@ class WalkingEstimator:
         self._site_of = {name: site for name, site in site_of.items() if name in live_sensors}
         sensors = {site: live_sensors[name] for name, site in self._site_of.items()}
         self._walking = LiveWalk(sensors, calibration, hips)
-        known = [
+        self.calibrated = frozenset(
             joint for joint in LEG_JOINTS if joint in calibration and {joint.proximal, joint.distal} <= set(sensors)
-        ]
+        )
         self._steps_s = {site: sensor.step_s for site, sensor in sensors.items()}
-        self._curves = {joint: _Curve(self._steps_s[joint.proximal]) for joint in known}
+        self._curves = {
+            joint: _Curve(self._steps_s[joint.proximal]) for joint in LEG_JOINTS if joint in self.calibrated
+        }
         self._feet = {site.leg_side: _Foot() for site in sensors if site.segment is Segment.FOOT}
         self._heard_s: dict[Site, float] = {}
         self._first_s: float | None = None

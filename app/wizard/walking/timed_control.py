@@ -26,7 +26,7 @@ from core.timed.protocols import DEFINITIONS, KeyMeaning, PlannedTest, TimedProt
 if TYPE_CHECKING:
     from app.reports.course import Course
     from app.reports.course_lanes import CourseLane, CourseVisit
-    from app.wizard.recordings import SessionRecording
+    from app.wizard.session_recording import SessionRecording
     from app.wizard.visit import Visit
     from app.wizard.walking.estimator import WalkingEstimator
 
@@ -48,9 +48,11 @@ class TimedControl(QObject):
         self.earlier = EarlierTests(visit, self)
         self.earlier.changed.connect(self.changed)
         self.protocol: TimedProtocol | None = None
+        self._estimator: WalkingEstimator | None = None
         self._live: LiveTest | None = None
         self._has_begun = self._is_over = False
         self._pressed_end_s = math.nan
+        visit.recordings.changed.connect(self._on_recordings_changed)
 
     @property
     def planned(self) -> PlannedTest | None:
@@ -81,7 +83,7 @@ class TimedControl(QObject):
         every: list[TimedProtocol | None] = [None, *TimedProtocol]
         self.choose(every[(every.index(self.protocol) + 1) % len(every)])
 
-    def begin(self, estimator: "WalkingEstimator | None", began_s: float) -> None:
+    def begin(self, began_s: float) -> None:
         """The recording of the test that was chosen begins, if one was."""
         self._live = None
         self._has_begun = self._is_over = False
@@ -96,10 +98,12 @@ class TimedControl(QObject):
         }
         feet = frozenset(site.side for site in worn.values() if site.segment is Segment.FOOT and site.side is not None)
         self._live = LiveTest(self.protocol, upright, visit.prosthetic_sides, feet, began_s)
-        self.watch(estimator)
+        self.watch(self._estimator)
 
+    @Slot(object)
     def watch(self, estimator: "WalkingEstimator | None") -> None:
-        """Give the samples of this estimator to the test."""
+        """Give the samples of this estimator to the test, and to those that follow."""
+        self._estimator = estimator
         if estimator is not None:
             estimator.test = self._live
 
@@ -147,11 +151,10 @@ class TimedControl(QObject):
         due_s = state.start_s + duration_s
         return due_s if self.now_s >= due_s else math.nan
 
-    def end(self, estimator: "WalkingEstimator | None") -> bool:
+    def end(self) -> bool:
         """The recording has ended; whether it was heard that the test was over."""
         self._live = None
-        if estimator is not None:
-            estimator.test = None
+        self.watch(self._estimator)
         return self._is_over
 
     def view(self) -> TimedViewState | None:
@@ -213,6 +216,14 @@ class TimedControl(QObject):
         analysis = self._visit.evaluation.analysis
         walks = () if analysis is None else analysis.recordings
         return next((one.timed for one in walks if one.name == recording.details.name), None)
+
+    @Slot()
+    def _on_recordings_changed(self) -> None:
+        """A recording that was refused, or that a full disk has ended, ends the test too."""
+        recordings = self._visit.recordings
+        if self._live is not None and (recordings.is_stopping or not recordings.is_recording):
+            self.end()
+            self.changed.emit()
 
     @Slot(str)
     def on_chosen(self, value: str) -> None:

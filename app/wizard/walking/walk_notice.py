@@ -15,7 +15,8 @@ from app.wizard.walk_messages import (
 from core.body import Side
 
 if TYPE_CHECKING:
-    from app.wizard.recordings import SessionRecording, SessionRecordings
+    from app.wizard.recordings import SessionRecordings
+    from app.wizard.session_recording import SessionRecording
     from app.wizard.visit import Visit
     from app.wizard.walking.readout import WalkingReadout
 
@@ -50,9 +51,9 @@ class WalkNotice:
             return self._of_ongoing(view)
         asked = asked_walk(recordings)
         if asked is not None and asked.stored.state is RecordingState.RECOVERED:
-            return recovered_message(str(recordings.shown_names[asked.details.name]), length_s(asked))
+            return recovered_message(recordings.called(asked.details.name), length_s(asked))
         if asked is not None and asked.lacks:
-            return lacks_message(str(recordings.shown_names[asked.details.name]), asked.lacks)
+            return lacks_message(recordings.called(asked.details.name), asked.lacks)
         if sensors.are_loose:
             return loose_message(sensors.on_own_clocks)
         return self._few_strides()

@@ -12,7 +12,8 @@ from core.body import Side
 from core.samples import RecordingKind
 
 if TYPE_CHECKING:
-    from app.wizard.recordings import Ongoing, SessionRecording, SessionRecordings
+    from app.wizard.recordings import SessionRecordings
+    from app.wizard.session_recording import Ongoing, SessionRecording
     from app.wizard.visit import Visit
 
 LETTERS = {Side.LEFT: "L", Side.RIGHT: "R"}

@@ -16,11 +16,11 @@ from app.storage.opened import OpenedLibrary
 from app.storage.shared_edits import SharedEdits
 from app.storage.stored import LibraryBusyError, LibraryError, RecordingState
 from app.theme import ThemeNotifier
-from app.wizard import recordings as recordings_module
 from app.wizard import wizard as wizard_module
 from app.wizard.free_motion.step import FreeMotionStep
 from app.wizard.keys import Intent, KeyAction
-from app.wizard.recordings import Ongoing
+from app.wizard.session_recording import Ongoing
+from app.wizard.standing.step import StandStillStep
 from app.wizard.visit import Visit
 from app.wizard.walking.step import WATCH_TICKS, WalkingStep
 from app.wizard.wizard import DEAF_S, FREE_MOTION, RESULTS, WALKING, Wizard
@@ -28,6 +28,7 @@ from app.workers.background import Report
 from app.workers.library_controller import LibraryController
 from core.body import LEG_SITES, Site
 from core.samples import Patient, Recording, RecordingKind, Session
+from tests.app.library_answers import asked
 from tests.app.wizard.begun_visit import begin, record
 
 BUSY = LibraryBusyError("Another program keeps the library busy", "Wait a moment")
@@ -90,7 +91,7 @@ def test_a_correction_that_is_refused_does_not_hide_the_walk_that_has_just_begun
 def test_a_walk_that_the_library_is_too_busy_for_is_read_back_later(
     qtbot: QtBot, looked_at: Visit, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(recordings_module, "READ_AGAIN_MS", 20)
+    monkeypatch.setattr("app.wizard.reading_back.READ_AGAIN_MS", 20)
     monkeypatch.setattr(Recorder, "stop", failing_once_halted(2))
     told: list[tuple[str, str]] = []
     looked_at.recordings.refused.connect(lambda *words: told.append(words))
@@ -107,7 +108,7 @@ def test_a_library_that_stays_busy_does_not_hold_the_visit_for_ever(
 ) -> None:
     recordings, acquisition = looked_at.recordings, looked_at.sensors.acquisition
     assert acquisition is not None
-    monkeypatch.setattr("app.wizard.recordings.READ_AGAIN_MS", 1)
+    monkeypatch.setattr("app.wizard.reading_back.READ_AGAIN_MS", 1)
     monkeypatch.setattr(Recorder, "stop", failing(10_000, BUSY, Recorder.stop))
     with qtbot.waitSignal(recordings.begun, timeout=WAIT_MS):
         recordings.begin(acquisition, RecordingKind.WALKING)
@@ -231,6 +232,24 @@ def test_a_free_motion_that_is_refused_waits_for_a_word(
         step.leave()
 
 
+@pytest.mark.parametrize("kind", [StandStillStep, FreeMotionStep])
+def test_a_step_that_was_left_before_it_began_leaves_the_samples_to_the_next(
+    qtbot: QtBot, looked_at: Visit, kind: type[StandStillStep] | type[FreeMotionStep], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The library answers when the next step looks at the sensors already."""
+    acquisition, watching = looked_at.sensors.acquisition, list[object]()
+    assert acquisition is not None
+    step = kind(ThemeNotifier(), looked_at)
+    qtbot.addWidget(step.page)
+    step.enter()
+    if not looked_at.recordings.is_recording:  # a free motion begins by itself
+        step.on_intent(Intent(KeyAction.RUN))
+    with qtbot.waitSignal(looked_at.recordings.ended, timeout=WAIT_MS):
+        step.leave()
+        monkeypatch.setattr(acquisition, "set_estimator", watching.append)
+    assert watching == []
+
+
 def test_a_new_calibration_that_is_broken_off_is_asked_for_again(qtbot: QtBot, looked_at: Visit) -> None:
     recordings = looked_at.recordings
     for kind in (RecordingKind.STANDING, RecordingKind.FREE_MOTION, RecordingKind.WALKING):
@@ -258,6 +277,17 @@ def test_strapping_anew_before_what_does_not_count_is_told_of_what_does(qtbot: Q
     recordings.keep(discarded, is_kept=False)
     qtbot.waitUntil(lambda: len(recordings.counted()) == 2, timeout=WAIT_MS)
     assert [recording.is_restrapped_before for recording in recordings.counted()] == [False, True]
+
+
+def test_a_demonstration_that_was_left_gives_its_patient_to_no_other_session(
+    qtbot: QtBot, controller: LibraryController, wizard: Wizard
+) -> None:
+    wizard.begin(None)
+    wizard.steps[0].demonstration_wanted.emit()
+    wizard.begin(None)  # before the library has answered
+    asked(qtbot, controller, lambda _opened: None)
+    assert wizard.visit is not None
+    assert wizard.visit.patient.details.code == ""
 
 
 def test_who_skips_the_free_motion_is_told_its_price(qtbot: QtBot, looked_at: Visit) -> None:

@@ -8,11 +8,11 @@ from threading import Event
 import pytest
 from pytestqt.qtbot import QtBot
 
-from app.acquisition.recorder import ROW_WAIT_S
+from app.acquisition.recorder import ROW_WAIT_S, Recorder
 from app.storage.opened import OpenedLibrary
 from app.storage.recordings import Recordings
 from app.storage.stored import LibraryFaultError, RecordingState
-from app.wizard.recordings import SessionRecording
+from app.wizard.session_recording import SessionRecording
 from app.wizard.visit import Visit
 from app.workers.library_controller import LibraryController
 from core.body import LEG_SITES, Side, Site
@@ -88,7 +88,7 @@ def test_a_database_that_fails_in_whatever_way_costs_no_recording(
 
         monkeypatch.setattr(Recordings, name, call)
     recordings, acquisition = visit.recordings, visit.sensors.acquisition
-    monkeypatch.setattr("app.wizard.recordings.READ_AGAIN_MS", 50)
+    monkeypatch.setattr("app.wizard.reading_back.READ_AGAIN_MS", 50)
     assert acquisition is not None
     with qtbot.waitSignals([recordings.begun, recordings.troubled], timeout=WAIT_MS):
         recordings.begin(acquisition, RecordingKind.WALKING)
@@ -100,6 +100,28 @@ def test_a_database_that_fails_in_whatever_way_costs_no_recording(
     with qtbot.waitSignal(recordings.ended, timeout=WAIT_MS) as ended:
         pass
     assert ended.args[0].details.name == "walk 1"
+
+
+def test_the_name_of_one_that_could_not_be_read_back_is_not_given_again(
+    qtbot: QtBot, visit: Visit, worn: dict[str, Site], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The library has it still, and would refuse another of this name at every start of a walk."""
+
+    def unreadable(*_arguments: object) -> None:
+        raise FAULT
+
+    begin(qtbot, visit, worn)
+    recordings, acquisition = visit.recordings, visit.sensors.acquisition
+    assert acquisition is not None
+    monkeypatch.setattr("app.wizard.reading_back.MOST_READINGS", 1)
+    with monkeypatch.context() as broken:
+        broken.setattr(Recorder, "stop", unreadable)
+        with qtbot.waitSignal(recordings.begun, timeout=WAIT_MS):
+            recordings.begin(acquisition, RecordingKind.WALKING)
+        with qtbot.waitSignal(recordings.refused, timeout=WAIT_MS):
+            recordings.stop()
+    assert recordings.is_idle
+    assert record(qtbot, visit, RecordingKind.WALKING, 0.5).details.name == "walk 2"
 
 
 def test_corrections_that_follow_each_other_quickly_all_hold(qtbot: QtBot, visit: Visit, worn: dict[str, Site]) -> None:
@@ -132,6 +154,8 @@ def test_what_was_broken_off_does_not_count(qtbot: QtBot, visit: Visit, worn: di
     assert acquisition is not None
     recordings.begin(acquisition, RecordingKind.STANDING)
     recordings.stop(is_kept=False)  # before it has begun
+    assert recordings.is_stopping
+    recordings.stop()  # who says so once more does not say that it counts
     qtbot.waitUntil(lambda: bool(recordings.every) and not recordings.every[0].details.is_kept, timeout=WAIT_MS)
     assert recordings.standing is None
     record(qtbot, visit, RecordingKind.STANDING, 2.0)

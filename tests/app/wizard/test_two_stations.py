@@ -16,9 +16,9 @@ from app.storage.opened import open_library
 from app.storage.stored import BEGINNING, Limits, PlacedSensor
 from app.storage.three_way import Value
 from app.wizard.edit_dialog import EditDialog
-from app.wizard.recordings import SessionRecording
 from app.wizard.report.step import ReportStep
 from app.wizard.results.stride_choice import StrideChoice
+from app.wizard.session_recording import SessionRecording
 from app.wizard.visit import Visit
 from app.wizard.wizard import SENSORS, Wizard
 from app.workers.library_controller import LibraryController

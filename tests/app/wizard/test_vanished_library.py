@@ -17,7 +17,7 @@ from app.settings import Settings
 from app.storage.stored import RecordingState
 from app.theme import ThemeNotifier, load_fonts
 from app.wizard import wizard as wizard_module
-from app.wizard.recordings import SessionRecording
+from app.wizard.session_recording import SessionRecording
 from app.wizard.visit import Visit
 from app.wizard.walking.step import WalkingStep
 from app.wizard.wizard import WALKING, Wizard
@@ -41,7 +41,7 @@ def _own_data_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 def looked_at(qtbot: QtBot, visit: Visit, worn: dict[str, Site], monkeypatch: pytest.MonkeyPatch) -> Visit:
     """A visit with sensors on, whose recordings nobody evaluates."""
     monkeypatch.setattr(visit, "evaluate", lambda: None)
-    monkeypatch.setattr("app.wizard.recordings.READ_AGAIN_MS", 50)
+    monkeypatch.setattr("app.wizard.reading_back.READ_AGAIN_MS", 50)
     begin(qtbot, visit, worn)
     return visit
 
@@ -112,7 +112,9 @@ def test_renamed_between_two_walks_the_next_begins_all_the_same(
     assert said.args[0] == "The library can no longer be written where it was, and the recording goes on."
     qtbot.wait(200)
     recordings.stop()
-    qtbot.waitUntil(lambda: recordings._readings > 16, timeout=WAIT_MS)  # more than it is patient with a busy library
+    qtbot.waitUntil(
+        lambda: recordings._reading_back._readings > 16, timeout=WAIT_MS
+    )  # more than it is patient with a busy library
     assert not recordings.is_idle
     with qtbot.waitSignals([recordings.ended, controller.back], timeout=WAIT_MS):
         elsewhere.rename(folder)
@@ -188,7 +190,7 @@ def test_a_whole_day_on_which_the_disk_comes_and_goes(
     assert wizard is not None
     visit = wizard.visit
     assert visit is not None
-    monkeypatch.setattr("app.wizard.recordings.READ_AGAIN_MS", 100)
+    monkeypatch.setattr("app.wizard.reading_back.READ_AGAIN_MS", 100)
     begin(qtbot, visit, worn)
     wizard._go_to(WALKING)
     start_walk(qtbot, visit)

@@ -269,16 +269,46 @@ def test_a_missing_foot_sensor_and_a_foot_without_joint_have_no_gauge(
     assert step.page.gauges[Joint.LEFT_ANKLE].face.state is GaugeState.ABSENT
 
 
+def test_what_a_recording_before_it_told_neither_ends_nor_counts_for_the_next(
+    qtbot: QtBot, step: FreeMotionStep, visit: Visit, worn: dict[str, Site]
+) -> None:
+    """While the library has not answered, and once it was stopped."""
+    step.enter()
+    ticks(qtbot, step, lambda: visit.recordings.has_begun)
+    closed = {joint: state(0.8, 6.0, None, is_closed=True) for joint in LEG_JOINTS}
+    tell(step, worn, FreeMotionState(closed))
+    ticks(qtbot, step, lambda: step._settled.isActive())
+    with qtbot.waitSignal(visit.recordings.ended, timeout=10_000):
+        step.on_intent(SPACE)
+    qtbot.waitUntil(lambda: not visit.recordings.is_recording, timeout=10_000)
+    note = step.note
+    step.on_intent(SPACE)  # another
+    for _ in range(6):
+        step.tick()  # the library has not answered
+    assert not step._settled.isActive()
+    assert not step._motion.joints
+    ticks(qtbot, step, lambda: visit.recordings.has_begun)
+    still = {joint: replace(state(9.0, 60.0), moved_s=0.0) for joint in LEG_JOINTS}
+    tell(step, worn, FreeMotionState(still))
+    ticks(qtbot, step, lambda: bool(step._motion.joints))
+    step.on_intent(SPACE)
+    for _ in range(6):
+        step.tick()
+    assert step.note == note  # no leg moved, so the one before it stays in force
+    with qtbot.waitSignal(visit.recordings.ended, timeout=10_000):
+        pass
+
+
 def test_labels_that_are_kept_are_not_asked_about_again(qtbot: QtBot, step: FreeMotionStep, visit: Visit) -> None:
     pair = (Site.LEFT_THIGH, Site.LEFT_SHANK)
     step.enter()
-    step._doubt((pair,))
+    step._labels.doubt((pair,))
     assert step.page.question.notice.text == (
         "L thigh and L shank seem swapped: the legs move otherwise. Swap them, or keep as worn."
     )
     step.page.answered.emit(1)
     assert step.page.question.isHidden()
-    step._doubt((pair,))
+    step._labels.doubt((pair,))
     assert step.page.question.isHidden()
 
 
@@ -287,7 +317,7 @@ def test_swapped_labels_change_places_and_what_was_recorded_is_corrected(
 ) -> None:
     step.enter()
     ticks(qtbot, step, lambda: visit.recordings.is_recording and knows(step))
-    step._doubt(((Site.LEFT_THIGH, Site.LEFT_SHANK),))
+    step._labels.doubt(((Site.LEFT_THIGH, Site.LEFT_SHANK),))
     step.page.answered.emit(0)
     assert visit.sensors.sensor_at[Site.LEFT_THIGH] == f"DEMO-{Site.LEFT_SHANK}"
     with qtbot.waitSignal(step.done, timeout=10_000):
@@ -323,19 +353,19 @@ def test_two_legs_that_begin_together_are_told_apart_by_asking(
     together = chains(*shanks)
     question, unplaced = step.page.question, step._unplaced
     assert unplaced is not None
-    step._ask_for_side(together)
+    step._labels.ask_for_side(together)
     assert question.notice.text == f"Both legs moved at once. Which one wears {shanks[0]} on its shank?"
     step.page.answered.emit(1)
-    assert step._side.told is None  # the library knows it of the left leg
+    assert step._labels.named is None  # the library knows it of the left leg
     assert question.notice.text == f"Earlier {shanks[0]} was worn on the left leg. Which leg wears it now?"
     step.page.answered.emit(1)
     assert unplaced._answer == (shanks[0], Side.RIGHT)
     for _ in range(3):
-        step._ask_for_side(together)  # the estimator has not taken it yet
+        step._labels.ask_for_side(together)  # the estimator has not taken it yet
     assert question.notice.text == f"Understood: {shanks[0]} is on the right leg."
     assert [button.text() for button in question.buttons if not button.isHidden()] == ["Undo"]
     step.page.answered.emit(1)
-    assert step._side.told is None
+    assert step._labels.named is None
     assert "Which one wears" in question.notice.text
     step.page.answered.emit(0)
     assert question.notice.text == f"Understood: {shanks[0]} is on the left leg."
@@ -348,7 +378,7 @@ def test_a_leg_that_was_named_wrongly_changes_places_when_that_is_undone(
     step.enter()
     ticks(qtbot, step, lambda: step._unplaced is not None)
     shank = f"DEMO-{Site.LEFT_SHANK}"
-    step._ask_for_side(chains(shank, f"DEMO-{Site.RIGHT_SHANK}"))
+    step._labels.ask_for_side(chains(shank, f"DEMO-{Site.RIGHT_SHANK}"))
     for _ in range(2):  # the library knows it of the left leg
         step.page.answered.emit(1)
     visit.sensors.assign_all({sensor: opposite(site) for sensor, site in worn.items()})  # as the motion then tells

@@ -82,8 +82,8 @@ def test_no_zero_is_called_set_while_the_library_has_not_taken_the_standing(
         raise LibraryError("This session is not in the library any more", "Reload the session")
 
     monkeypatch.setattr(Recorder, "stop", refusing)
-    monkeypatch.setattr("app.wizard.recordings.MOST_READINGS", 2)
-    monkeypatch.setattr("app.wizard.recordings.READ_AGAIN_MS", 200)
+    monkeypatch.setattr("app.wizard.reading_back.MOST_READINGS", 2)
+    monkeypatch.setattr("app.wizard.reading_back.READ_AGAIN_MS", 200)
     assert step.on_intent(SPACE)
     ticks(qtbot, step, lambda: phase(step) is StandPhase.DONE)
     assert (step.state, step.note) == (StepState.TODO, "being read back")

@@ -200,7 +200,6 @@ def test_the_bar_says_what_the_next_walk_is_walked_with(bench: Bench) -> None:
     assert [one.text for one in asked.others] == ["Return to A", "Walk with D"]
     assert asked.primary is not None
     assert (asked.primary.text, asked.note) == ("Keep C", "")
-    assert [one.text for one in asked.quiet] == ["Walks", "Discard"]
 
 
 def test_no_bench_where_no_side_is_sound_or_nothing_was_walked(bench: Bench, visit: SimpleNamespace) -> None:

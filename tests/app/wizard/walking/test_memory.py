@@ -131,6 +131,42 @@ def test_a_walk_may_be_fetched_later_and_a_lost_sensor_is_named_and_tried_again(
 
 
 @pytest.mark.endurance
+def test_a_walk_that_is_fetched_later_holds_up_no_live_one_and_stands_before_it(
+    qtbot: QtBot, visit: Visit, walking: Callable[[int], WalkingStep]
+) -> None:
+    step = walking(120)
+    make_ready(qtbot, visit, step)
+    walk(qtbot, visit, step)
+    step.page.memory.stop_pressed.emit()
+    qtbot.waitUntil(lambda: visit.recordings.fetches.is_idle, timeout=WAIT_MS)
+    step._memory.send_live()
+    qtbot.waitUntil(lambda: not visit.sensors.are_in_memory and visit.sensors.sync.is_idle, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: not visit.sensors.are_silent, timeout=WAIT_MS)
+    walk(qtbot, visit, step)
+    qtbot.waitUntil(lambda: [one.details.name for one in visit.recordings.walks] == ["walk 2"], timeout=WAIT_MS)
+    assert not visit.recordings.is_recording
+    assert texts(step.bar())[1] == ["Fetch 1 walk", "Patient's screen"]
+    step.on_quiet(0)
+    qtbot.waitUntil(lambda: len(visit.recordings.walks) == 2, timeout=WAIT_MS)
+    assert [one.details.name for one in visit.recordings.walks] == ["walk 1", "walk 2"]
+
+
+@pytest.mark.endurance
+def test_a_visit_that_is_left_with_a_walk_in_the_sensors_ends(
+    qtbot: QtBot, visit: Visit, radio: FastRadio, walking: Callable[[int], WalkingStep]
+) -> None:
+    step = walking(120)
+    make_ready(qtbot, visit, step)
+    radio.dots[1].faults.unreachable_after_drop_s = 1e6
+    radio.dots[1].faults.drops_export_after = [20]
+    walk(qtbot, visit, step)
+    qtbot.waitUntil(lambda: visit.recordings.fetches.failure[0] != "", timeout=WAIT_MS)
+    step.on_other(0)
+    visit.close()
+    qtbot.waitUntil(lambda: visit.is_idle, timeout=WAIT_MS)
+
+
+@pytest.mark.endurance
 def test_at_the_live_rate_they_are_ready_at_once_and_live_again_for_a_timed_test(
     qtbot: QtBot, visit: Visit, radio: FastRadio, walking: Callable[[int], WalkingStep]
 ) -> None:

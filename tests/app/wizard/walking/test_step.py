@@ -9,7 +9,9 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
+from app.acquisition.recorder import Recorder
 from app.patient_screen.window import PatientWindow
+from app.storage.stored import LibraryError
 from app.theme import ThemeNotifier
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.results.step import ResultsStep
@@ -18,10 +20,11 @@ from app.wizard.visit import Visit
 from app.wizard.walking.readout import WalkingReadout
 from app.wizard.walking.step import WalkingStep
 from app.wizard.walking.walk_list import WalkState
+from app.wizard.worn_sensors import WornSensors
 from core.alignment import AlignmentChange, PartChange, ProsthesisPart
 from core.body import Joint, Side, Site
 from core.samples import Patient, RecordingKind
-from core.targets import Target, TargetMeasure, tallies_of
+from core.targets import Target, TargetMeasure, TargetTally, tallies_of
 from devices.replay import ReplaySource
 from tests.app.wizard.begun_visit import begin
 from tests.app.wizard.patient_time import PATIENCE_MS, PatientTime
@@ -75,6 +78,10 @@ def walk(qtbot: QtBot, step: WalkingStep, visit: Visit, patient_time: PatientTim
 
 def folds_sensors(step: WalkingStep) -> bool:
     return step.folds_sensors
+
+
+def takes_clicker(step: WalkingStep) -> bool:
+    return step.takes_clicker
 
 
 def states(step: WalkingStep) -> list[tuple[str, str, WalkState]]:
@@ -199,6 +206,48 @@ def test_a_walk_is_discarded_and_comes_back(
     qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=PATIENCE_MS)
 
 
+def test_space_pressed_twice_at_the_end_keeps_what_the_patient_reached(
+    qtbot: QtBot, step: WalkingStep, visit: Visit, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    tally = TargetTally(Target(TargetMeasure.CADENCE, None, 100), reached=3, strides=5)
+    reached = [(tally,)]
+    assert step._feedback is not None
+    monkeypatch.setattr(step._feedback, "end_walk", lambda: reached.pop() if reached else ())
+    with qtbot.waitSignal(visit.recordings.begun, timeout=PATIENCE_MS):
+        step.on_intent(RUN)
+    with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
+        step.on_intent(RUN)
+        assert step.cannot_leave == "The walk is being read back."
+        step.on_intent(RUN)
+    qtbot.waitUntil(lambda: tallies_of(visit.recordings.walks[0].details.note) == (tally,), timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=PATIENCE_MS)
+
+
+def test_a_walk_that_is_refused_ends_its_test_and_leaves_what_was_told_of_the_prosthesis(
+    qtbot: QtBot, step: WalkingStep, visit: Visit, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(*_arguments: object, **_more: object) -> None:
+        raise LibraryError("A recording needs 620 MB of free disk", "Delete files")
+
+    monkeypatch.setattr(Recorder, "begin", refuse)
+    step.page.bench.alignments.steppers["turns"].stepped.emit(1)
+    step.on_intent(Intent(KeyAction.NEXT_TEST))
+    with qtbot.waitSignal(visit.recordings.refused, timeout=PATIENCE_MS):
+        step.on_intent(RUN)
+        assert takes_clicker(step)
+    assert not takes_clicker(step)
+    assert step._bench.entry.parts
+    assert step.bar().quiet
+
+
+def test_that_clocks_have_drifted_apart_is_shown_when_it_comes(
+    qtbot: QtBot, step: WalkingStep, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    qtbot.wait(100)
+    with qtbot.waitSignal(step.changed, timeout=5000):
+        monkeypatch.setattr(WornSensors, "are_loose", True)
+
+
 def test_digits_choose_what_the_next_walk_is_called(
     qtbot: QtBot, step: WalkingStep, visit: Visit, patient_time: PatientTime
 ) -> None:
@@ -230,6 +279,16 @@ def test_sensors_strapped_anew_go_back_to_standing(qtbot: QtBot, step: WalkingSt
     assert visit.recordings.is_restrapped
     assert step.cannot_enter
     assert not step.on_intent(Intent(KeyAction.KEEP))
+
+
+def test_who_left_before_the_sensors_were_live_again_is_not_fetched_back(
+    qtbot: QtBot, step: WalkingStep, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(WornSensors, "are_in_memory", True)
+    step.page.restrapped_pressed.emit()
+    step.leave()
+    with qtbot.assertNotEmitted(step.jumped):
+        step._memory.lives.emit()  # as when walks are sent live on the sensors' step
 
 
 def test_while_no_sensor_is_heard_the_charts_go_on_with_a_gap(

@@ -1,0 +1,122 @@
+"""What somebody has to answer while the legs move: labels that the motion contradicts, and which leg it is."""
+
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject, Signal, Slot
+
+from app.wizard.free_motion.side_question import SideQuestion, Words
+from app.wizard.worn_corrections import opposite
+from app.wording import name_of, tr
+from core.body import Side, Site
+
+if TYPE_CHECKING:
+    from app.wizard.visit import Visit
+    from core.placement.chains import Chains
+
+
+class LabelQuestions(QObject):
+    """Knows the visit and no page.
+
+    Signals
+    -------
+    changed
+        Something else is asked, or nothing any more.
+    relabelled
+        Sensors are worn otherwise than they were said to be: what the motion has told was told of others.
+    leg_named
+        Which leg a sensor is on was answered, or that was undone, before the motion has told the sites.
+    sensors_wanted
+        The sensors are to be placed anew by hand.
+    """
+
+    changed = Signal()
+    relabelled = Signal()
+    leg_named = Signal()
+    sensors_wanted = Signal()
+
+    def __init__(self, visit: "Visit", parent: QObject) -> None:
+        super().__init__(parent)
+        self._visit = visit
+        self._kept_labels: set[tuple[Site, ...]] = set()
+        self._doubted: tuple[Site, ...] = ()
+        self._side = SideQuestion()
+        self._sides_told: dict[str, Side] = {}  # in this visit, by the sensor's name
+
+    @property
+    def named(self) -> tuple[str, Side] | None:
+        """The sensor and the leg that it was said to be on; None before, and once that is undone."""
+        return self._side.told
+
+    @property
+    def is_in_doubt(self) -> bool:
+        """Whether labels are contradicted, and nobody has answered yet."""
+        return bool(self._doubted)
+
+    @property
+    def is_understood(self) -> bool:
+        """Whether `words` say what was understood, which can be undone by the answer 1."""
+        return self._side.told is not None and not self._doubted
+
+    @property
+    def words(self) -> Words:
+        """What is asked and what can be answered, or what was understood; empty while there is nothing."""
+        doubted, keep = self._doubted, tr("Keep as worn")
+        if not doubted:
+            return self._side.words
+        if len(doubted) == 2:
+            what = tr("{first} and {last} seem swapped: the legs move otherwise.")
+            named = what.format(first=name_of(doubted[0]), last=name_of(doubted[1]))
+            return named, tr("Swap them, or keep as worn."), (tr("Swap them"), keep)
+        what = tr("{sites} seem mixed up: the legs move otherwise.")
+        named = what.format(sites=", ".join(name_of(site) for site in doubted))
+        return named, tr("Place them anew, or keep as worn."), (tr("Go to Sensors"), keep)
+
+    def begin(self) -> None:
+        """Another recording begins: nothing is asked yet. What was kept or told of sensors holds for the visit."""
+        self._side, self._doubted = SideQuestion(), ()
+
+    def doubt(self, exchanged: tuple[tuple[Site, ...], ...]) -> None:
+        """Say which labels the motion contradicts, until somebody has answered."""
+        self._doubted = next((group for group in exchanged if group not in self._kept_labels), ())
+        self.changed.emit()
+
+    def ask_for_side(self, chains: "Chains | None") -> None:
+        """The motion does not tell left from right: both legs began together, or one alone wears sensors."""
+        if chains is not None:
+            session = self._visit.session
+            placed = session.placements[-1].site_of if session is not None and session.placements else {}
+            earlier = {name: site.side for name, site in placed.items() if site.side is not None}
+            self._side.look(chains, earlier | self._sides_told)
+            self.changed.emit()
+
+    def withdraw(self) -> None:
+        """The motion has told the sites itself."""
+        self._side.withdraw()
+
+    @Slot(int)
+    def answer(self, number: int) -> None:
+        """Take the answer of this number, as `words` offers them."""
+        doubted, self._doubted = self._doubted, ()
+        sensors = self._visit.sensors
+        if not doubted:
+            self._side.answer(number)
+            self._take_side()
+        elif number == 1:
+            self._kept_labels.add(doubted)
+        elif len(doubted) == 2:
+            sensors.assign(sensors.sensor_at[doubted[0]], doubted[1])
+            self.relabelled.emit()
+        else:
+            self.sensors_wanted.emit()
+        self.changed.emit()
+
+    def _take_side(self) -> None:
+        """Let the motion be that of the leg that was named; what was placed already changes legs."""
+        told, sensors = self._side.told, self._visit.sensors
+        if told is not None:
+            self._sides_told[told[0]] = told[1]
+        if not sensors.site_of:
+            self.leg_named.emit()
+        elif told is not None and told[0] in sensors.site_of and sensors.site_of[told[0]].side is not told[1]:
+            sensors.assign_all({name: opposite(site) for name, site in sensors.site_of.items()})
+            self.relabelled.emit()

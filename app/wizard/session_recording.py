@@ -1,0 +1,67 @@
+"""One recording of a visit as it stands: the one that goes on, those that have ended, and which of them count."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+from uuid import UUID
+
+from app.storage.stored import StoredRecording
+from core.body import Side
+from core.samples import Recording
+
+if TYPE_CHECKING:
+    from app.acquisition.memory_fetching import Lack
+    from core.timed.protocols import PlannedTest
+
+
+@dataclass(frozen=True, slots=True)
+class Ongoing:
+    """What is being recorded. `began_s` is on the acquisition's clock."""
+
+    details: Recording
+    began_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class SessionRecording:
+    """A recording that has ended. `read_back` holds what its journal holds; None until it has been read.
+
+    `strides` are those counted live. `is_decided`: somebody has said whether it is kept; until then it is. `lacks`:
+    what could not be fetched from the sensors' memories.
+    """
+
+    stored: StoredRecording
+    read_back: Recording | None = None
+    strides: Mapping[Side, int] | None = None
+    is_decided: bool = True
+    lacks: "tuple[Lack, ...]" = ()
+
+    @property
+    def id(self) -> UUID:
+        return self.stored.id
+
+    @property
+    def details(self) -> Recording:
+        return self.stored.details
+
+
+def counted(recordings: Sequence[SessionRecording]) -> tuple[Recording, ...]:
+    """Those of one session's recordings that count and have been read, in order of time, as an analysis takes them.
+
+    That sensors were strapped anew before one that does not count is told of the next.
+    """
+    found = []
+    is_restrapped = False
+    for recording in recordings:
+        is_restrapped |= recording.details.is_restrapped_before
+        if recording.details.is_kept and recording.read_back is not None:
+            told = replace(recording.details, imu=recording.read_back.imu, is_restrapped_before=is_restrapped)
+            found.append(replace(told, test=_with_its_keys(told.test, recording.read_back.test)))
+            is_restrapped = False
+    return tuple(found)
+
+
+def _with_its_keys(told: "PlannedTest | None", read: "PlannedTest | None") -> "PlannedTest | None":
+    """The test as it is told; a recovered recording's keys are in its journal alone."""
+    has_keys = told is not None and (told.start_key_s, told.end_key_s) != (None, None)
+    return told if told is None or read is None or has_keys or read.protocol is not told.protocol else read

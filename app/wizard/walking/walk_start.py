@@ -1,0 +1,45 @@
+"""Whether a walk can be started; where it cannot, what is missing for one, in a sentence."""
+
+from typing import TYPE_CHECKING
+
+from app.wizard.walking.memory_control import MemoryControl
+from app.wizard.walking.timed_control import TimedControl
+from app.wording import tr
+
+if TYPE_CHECKING:
+    from app.wizard.visit import Visit
+
+
+class WalkStart:
+    """Of the visit as it is at each call."""
+
+    def __init__(self, visit: "Visit", memory: MemoryControl, timed: TimedControl) -> None:
+        self._visit, self._memory, self._timed = visit, memory, timed
+
+    @property
+    def is_possible(self) -> bool:
+        return self._visit.session is not None and not self._visit.recordings.is_recording and not self.missing_now
+
+    @property
+    def missing(self) -> str:
+        """What is missing for walks at all; empty where nothing is."""
+        sensors = self._visit.sensors
+        if sensors.acquisition is None:
+            return tr("Choose the source of the sensors first.")
+        if self._visit.cannot_record:
+            return self._visit.cannot_record
+        if not sensors.site_of:
+            return tr("Say first which sensor is worn where.")
+        if sensors.are_silent:
+            return tr("No sensor is heard. Switch them on, or bring the receiver nearer.")
+        if self._visit.recordings.must_move:
+            return tr("The sensors were re\N{NON-BREAKING HYPHEN}strapped. Stand still and move freely first.")
+        return ""
+
+    @property
+    def missing_now(self) -> str:
+        """As `missing`, and what the sensors' memories are missing still."""
+        missing = self.missing or self._memory.cannot_start
+        if not missing and self._visit.sensors.are_in_memory and self._timed.planned is not None:
+            return tr("Timed tests need what the sensors send live: choose no test, or send walks live.")
+        return missing

@@ -1,0 +1,132 @@
+"""What can be done on the Walking step, as the bar below it says: while a walk is recorded, and between two walks."""
+
+from dataclasses import replace
+from enum import Enum, auto
+from typing import TYPE_CHECKING
+
+from app import sounds
+from app.icons import Icon
+from app.widgets.action_bar import BarAction, BarState, RecordingNote
+from app.wizard.walking.bench_bar import bench_bar
+from app.wizard.walking.bench_control import Bench
+from app.wizard.walking.memory_control import MemoryControl
+from app.wizard.walking.timed_bar import timed_bar
+from app.wizard.walking.timed_control import TimedControl
+from app.wizard.walking.walk_notice import asked_walk
+from app.wizard.walking.walk_rows import ongoing_walk
+from app.wizard.walking.walk_start import WalkStart
+from app.wording import capitalised, tr
+
+if TYPE_CHECKING:
+    from app.wizard.session_recording import Ongoing
+    from app.wizard.visit import Visit
+
+
+class Quiet(Enum):
+    """What one of the quiet actions does."""
+
+    BENCH = auto()  # shows the bench, or all walks in its place
+    DISCARD = auto()  # the walk that waits to be kept
+    MEMORY = auto()  # what the sensors' memories have to offer
+    PATIENT_SCREEN = auto()
+
+
+class WalkingBar:
+    """Knows the visit and what is joined to it, and no page."""
+
+    def __init__(
+        self, visit: "Visit", start: WalkStart, bench: Bench, timed: TimedControl, memory: MemoryControl
+    ) -> None:
+        self._visit, self._start = visit, start
+        self._bench, self._timed, self._memory = bench, timed, memory
+
+    def state(self, label: str) -> BarState:
+        """All of the bar; `label`: what the next walk is called."""
+        return replace(self._state(label), quiet=tuple(self.quiet.values()))
+
+    @property
+    def quiet(self) -> dict[Quiet, BarAction]:
+        """The quiet actions in their order, by what they do."""
+        offered: dict[Quiet, BarAction] = {}
+        is_between = not self._visit.recordings.is_recording and not self.has_memory
+        if is_between and self._bench.is_shown:
+            offered[Quiet.BENCH] = BarAction(tr("Walks"))
+            if asked_walk(self._visit.recordings) is not None:
+                offered[Quiet.DISCARD] = BarAction(tr("Discard"), "D")
+        elif is_between:
+            if self._bench.is_offered:
+                offered[Quiet.BENCH] = BarAction(tr("Bench"))
+            if (memory := self._memory.quiet(wants_live=self._timed.planned is not None)) is not None:
+                offered[Quiet.MEMORY] = memory
+        if not self._bench.is_shown and not self._timed.is_running:  # the bench has no room for it; the key is there
+            offered[Quiet.PATIENT_SCREEN] = BarAction(tr("Patient's screen"), "F8")
+        return offered
+
+    @property
+    def has_memory(self) -> bool:
+        """Whether the bar is about the sensors' memories: nothing else can be done then."""
+        visit, recordings = self._visit, self._visit.recordings
+        is_between = not recordings.is_recording or recordings.is_stopping
+        is_held_up = bool(visit.cannot_record) or recordings.must_move or not visit.sensors.site_of
+        return is_between and not is_held_up and self._memory.bar() is not None
+
+    def _state(self, label: str) -> BarState:
+        recordings = self._visit.recordings
+        walk = ongoing_walk(recordings)
+        if walk is not None and not recordings.is_stopping:
+            return self._of_walk(walk)
+        if self.has_memory:
+            return self._memory.bar() or BarState()
+        if walk is not None:
+            return BarState(primary=self._start_action, note=tr("The walk is being read back."))
+        if recordings.ongoing is not None:  # of the step before
+            said = f"{capitalised(recordings.called(recordings.ongoing.details.name))}: {tr('being read back')}"
+            return BarState(primary=self._start_action, note=said)
+        if self._bench.is_shown:
+            asked = asked_walk(recordings)
+            condition = None if asked is None else asked.details.condition
+            return bench_bar(self._bench, condition, self._start.missing_now, self._start.is_possible)
+        return self._between_walks(label)
+
+    def _of_walk(self, walk: "Ongoing") -> BarState:
+        acquisition, recordings = self._visit.sensors.acquisition, self._visit.recordings
+        elapsed_s = 0.0 if acquisition is None else max(0.0, acquisition.now_s - walk.began_s)
+        if self._timed.is_running:
+            return timed_bar(self._timed, elapsed_s)
+        return BarState(
+            primary=BarAction(tr("Stop walk"), tr("Space"), Icon.STOP),
+            recording=RecordingNote(
+                tr("Recording {walk}").format(walk=recordings.called(walk.details.name)),
+                " ".join(filter(None, [self._saved(), tr("The space bar stops it, with a sound.")])),
+                elapsed_s,
+                sounds.is_on(),
+            ),
+            has_back=False,
+        )
+
+    def _between_walks(self, label: str) -> BarState:
+        """Where there is no bench."""
+        recordings, start, missing = self._visit.recordings, self._start_action, self._start.missing_now
+        if asked_walk(recordings) is not None:
+            both = replace(start, text=tr("Keep, start next"), is_wished=False)
+            return BarState(primary=both, note=missing or self._timed.next_words(label))
+        if any(recording.details.is_kept for recording in recordings.walks):
+            results = BarAction(tr("Results"), "", Icon.NEXT)
+            return BarState(primary=results, others=(replace(start, is_wished=False),), note=missing)
+        note = self._timed.next_words(label)
+        if not recordings.has_moved:
+            note = tr("Without a free motion, angles are poor or missing.")
+        return BarState(primary=start, note=missing or note)
+
+    @property
+    def _start_action(self) -> BarAction:
+        return BarAction(tr("Start walk"), tr("Space"), Icon.PLAY, is_enabled=self._start.is_possible)
+
+    def _saved(self) -> str:
+        """Say that what comes in is saved, only while the journal has it so."""
+        recordings = self._visit.recordings
+        if not recordings.has_begun:
+            return tr("It begins in a moment.")
+        if recordings.is_in_memory:
+            return tr("Kept in the sensors.")
+        return tr("Saved as it comes in.") if recordings.is_written else ""

@@ -1,0 +1,42 @@
+"""The tiles of the sensors that are worn, as they stand above every step: heard, silent, moving, their batteries."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from app.widgets.sensor_tile import SensorTile
+from app.wizard.worn_sensors import WornSensors
+from core.body import LEG_SITES, Site
+
+if TYPE_CHECKING:
+    from app.acquisition.acquisition import SensorStatus
+
+MOVES_RAD_S = 0.1  # a sensor on a standing patient stays below
+
+
+def worn_tiles(sensors: WornSensors) -> dict[Site, SensorTile]:
+    """Give one for each site of the legs, and for the pelvis where a sensor is worn there or may be."""
+    status, worn = sensors.status, sensors.sensor_at
+    is_awaited = sensors.is_left_to_motion and not worn
+    has_pelvis = Site.PELVIS in worn or (is_awaited and Site.PELVIS in sensors.places)
+    sites = tuple(Site) if has_pelvis else LEG_SITES
+    return {site: _tile(site, worn.get(site), status, is_awaited) for site in sites}
+
+
+def _tile(site: Site, sensor: str | None, status: "Mapping[str, SensorStatus]", is_awaited: bool) -> SensorTile:
+    if sensor is None or sensor not in status:
+        nothing = SensorTile(site, sensor or "", None, 0.0, 0.0, 0.0, is_moving=False, is_worn=False)
+        return replace(nothing, is_awaited=is_awaited)
+    heard = status[sensor]
+    return SensorTile(
+        site,
+        sensor,
+        heard.details.battery,
+        heard.heard_hz,
+        heard.lost_share,
+        heard.silent_s,
+        is_moving=heard.movement_rad_s > MOVES_RAD_S,
+        is_worn=True,
+        quiet=heard.details.quiet,
+        is_loss_seen=heard.details.is_loss_seen,
+    )

@@ -1,0 +1,90 @@
+"""The bar below the Walking step: its quiet actions do what they say, and what is no walk is not called one."""
+
+from types import SimpleNamespace
+from typing import Any, cast
+
+import pytest
+
+from app.storage.stored import RecordingState
+from app.widgets.action_bar import BarAction
+from app.wizard.session_recording import Ongoing
+from app.wizard.visit import Visit
+from app.wizard.walking.bench_control import Bench
+from app.wizard.walking.memory_control import MemoryControl
+from app.wizard.walking.timed_control import TimedControl
+from app.wizard.walking.walk_start import WalkStart
+from app.wizard.walking.walking_bar import Quiet, WalkingBar
+from core.samples import Recording, RecordingKind
+from tests.app.wizard.walking.bench_material import bench_visit
+
+SYNCHRONISE = BarAction("Synchronise again")
+
+
+@pytest.fixture
+def visit() -> Any:
+    """Nothing is recorded, and the latest of three walks waits to be kept."""
+    visit = bench_visit()
+    for one in visit.recordings.walks:
+        one.is_decided, one.stored = one is not visit.recordings.walks[-1], SimpleNamespace(state=RecordingState.CLOSED)
+    told = {"is_recording": False, "is_stopping": False, "ongoing": None, "must_move": False, "called": str}
+    visit.recordings = SimpleNamespace(**vars(visit.recordings), **told)
+    visit.cannot_record, visit.sensors = "", SimpleNamespace(site_of={"a": "left_foot"})
+    return visit
+
+
+@pytest.fixture
+def bench(visit: Any) -> Bench:
+    return Bench(cast("Visit", visit), cast("Any", None))
+
+
+@pytest.fixture
+def bar(visit: Any, bench: Bench) -> WalkingBar:
+    """Of sensors whose clocks have drifted apart."""
+    memory = SimpleNamespace(bar=lambda: None, quiet=lambda *, wants_live: SYNCHRONISE)
+    timed = SimpleNamespace(planned=None, is_running=False)
+    start = SimpleNamespace(is_possible=False, missing_now="")
+    return WalkingBar(
+        visit,
+        cast("WalkStart", start),
+        bench,
+        cast("TimedControl", timed),
+        cast("MemoryControl", memory),
+    )
+
+
+def told(bar: WalkingBar) -> list[tuple[Quiet, str]]:
+    assert bar.state("Shoes").quiet == tuple(bar.quiet.values())
+    return [(what, action.text) for what, action in bar.quiet.items()]
+
+
+def test_at_the_bench_discard_discards_also_while_clocks_drift(visit: Any, bar: WalkingBar) -> None:
+    assert told(bar) == [(Quiet.BENCH, "Walks"), (Quiet.DISCARD, "Discard")]
+    visit.recordings.walks[-1].is_decided = True
+    assert told(bar) == [(Quiet.BENCH, "Walks")]
+
+
+def test_beside_the_list_of_walks_the_clocks_can_be_synchronised(visit: Any, bench: Bench, bar: WalkingBar) -> None:
+    bench.is_wished = False
+    visit.recordings.walks[-1].is_decided = True
+    assert list(bar.quiet) == [Quiet.BENCH, Quiet.MEMORY, Quiet.PATIENT_SCREEN]
+    assert bar.quiet[Quiet.MEMORY] is SYNCHRONISE
+
+
+@pytest.mark.parametrize(
+    ("kind", "is_stopping", "primary", "note"),
+    [
+        (RecordingKind.WALKING, True, "Start walk", "The walk is being read back."),
+        (RecordingKind.FREE_MOTION, True, "Start walk", "Free motion: being read back"),
+        (RecordingKind.FREE_MOTION, False, "Start walk", "Free motion: being read back"),
+    ],
+)
+def test_what_another_step_recorded_is_not_called_a_walk(
+    visit: Any, bar: WalkingBar, kind: RecordingKind, is_stopping: bool, primary: str, note: str
+) -> None:
+    name = str(kind).replace("_", " ")
+    visit.recordings.ongoing = Ongoing(Recording(name, kind, name, {}), 1.0)
+    visit.recordings.is_recording, visit.recordings.is_stopping = True, is_stopping
+    state = bar.state("Shoes")
+    assert state.primary is not None
+    assert (state.primary.text, state.primary.is_enabled, state.note) == (primary, False, note)
+    assert state.recording is None
