@@ -5,7 +5,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 from uuid import UUID
 
-from PySide6.QtCore import QObject, Signal
+from PySide6.QtCore import QObject, Signal, Slot
 
 from app.storage.stored import PlacedSensor, StoredSession
 from app.storage.three_way import Edited
@@ -48,11 +48,22 @@ class WornCorrections(QObject):
     ) -> None:
         super().__init__(parent)
         self._controller, self._sensors, self._recordings = controller, sensors, recordings
-        self._is_busy = self._must_swap = self._must_place = False
+        self._is_busy = self._must_swap = self._must_place = self._is_awaited = False
+        self._held: Mapping[Site, PlacedSensor] | None = None  # what was said when the sensors were let go
+        recordings.ended.connect(self._on_ended)
 
     @property
     def is_busy(self) -> bool:
         return self._is_busy
+
+    def place_once_ended(self) -> None:
+        """Once what is being recorded has ended, do as `place_as_said_now`."""
+        self._is_awaited = True
+
+    def hold(self) -> None:
+        """Keep what is said now, where it is still to be told: the sensors are about to be let go."""
+        if self._is_awaited:
+            self._held = self._sensors.placed()
 
     def swap_sides(self) -> None:
         """Say that left and right were worn the other way round in all recordings; they are read anew.
@@ -79,9 +90,15 @@ class WornCorrections(QObject):
         if self._is_busy:
             self._must_place = True
             return
-        placed = self._sensors.placed()
+        placed = self._sensors.placed() if self._held is None else self._held
         strapped = [recording.id for recording in self._recordings.since_strapped]
         self._correct([(strapped, placed)] if strapped else [], self._seen(), placed)
+
+    @Slot()
+    def _on_ended(self) -> None:
+        if self._is_awaited:
+            self._is_awaited = False
+            self.place_as_said_now()
 
     def _seen(self) -> dict[UUID, UUID | None]:
         """By recording the placement as the screen has it."""

@@ -80,7 +80,7 @@ class FreeMotionStep(Step):
         self._plays_s: float | None = None  # for how long a replayed patient moves
         self._plays_to_s = 0.0
         self._then = AfterRecording.ITSELF
-        self._is_in_sight = self._must_correct = False
+        self._is_in_sight = False
         self._labels = LabelQuestions(visit, self)
         self._labels.changed.connect(self._show_question)
         self._labels.relabelled.connect(self._on_relabelled)
@@ -316,7 +316,7 @@ class FreeMotionStep(Step):
         self._elapsed_s = view.elapsed_s
         if view.site_of and not sensors.site_of:  # the motion has told it
             sensors.assign_all(view.site_of)
-            self._must_correct = True
+            self._visit.worn.place_once_ended()
             self._labels.withdraw()
         had_joints, was_done = bool(self._motion.joints), self._is_done
         self._motion = self._joined(view.motion)
@@ -413,7 +413,7 @@ class FreeMotionStep(Step):
 
     @Slot()
     def _on_relabelled(self) -> None:
-        self._must_correct = True
+        self._visit.worn.place_once_ended()
         self._watch()  # what the motion told was told of others
 
     @Slot()
@@ -477,9 +477,6 @@ class FreeMotionStep(Step):
         if self._repeated is not None:  # the other leg's sensors are worn as before
             self._repeated = None
             self._visit.place_sensors()
-        if self._must_correct:
-            self._must_correct = False
-            self._visit.worn.place_as_said_now()
         self.changed.emit()
         if self._then is AfterRecording.NEXT_STEP and self._is_in_sight:
             self._then = AfterRecording.ITSELF

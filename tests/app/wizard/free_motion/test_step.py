@@ -19,6 +19,7 @@ from app.wizard.free_motion.step import FreeMotionStep
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.visit import Visit
 from app.wizard.worn_corrections import opposite
+from app.workers.library_controller import LibraryController
 from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site
 from core.live.free_motion import FreeMotionState
 from core.samples import RecordingKind
@@ -329,6 +330,23 @@ def test_swapped_labels_change_places_and_what_was_recorded_is_corrected(
         return placement is not None and placement.sensors[Site.LEFT_THIGH].name == f"DEMO-{Site.LEFT_SHANK}"
 
     qtbot.waitUntil(is_corrected, timeout=10_000)
+
+
+def test_labels_swapped_in_a_visit_that_is_closed_amid_the_motion_are_in_the_library(
+    qtbot: QtBot, step: FreeMotionStep, visit: Visit, controller: LibraryController
+) -> None:
+    step.enter()
+    ticks(qtbot, step, lambda: visit.recordings.is_recording and knows(step))
+    step._labels.doubt(((Site.LEFT_THIGH, Site.LEFT_SHANK),))
+    step.page.answered.emit(0)
+    with qtbot.waitSignal(visit.recordings.ended, timeout=10_000):
+        visit.close()
+    qtbot.waitUntil(lambda: visit.is_idle, timeout=10_000)
+    assert visit.session is not None
+    assert controller.state is not None
+    (stored,) = controller.state.library.library.sessions.get(visit.session.id).recordings
+    assert stored.placement is not None
+    assert stored.placement.sensors[Site.LEFT_THIGH].name == f"DEMO-{Site.LEFT_SHANK}"
 
 
 def test_sensors_that_nobody_placed_are_placed_once_the_motion_tells(
