@@ -54,6 +54,11 @@ def is_trusted(found: HipFit | HipIdentification) -> bool:
     return found.margin >= MIN_MARGIN and found.disagreement < MAX_DISAGREEMENT
 
 
+def is_by_cardan_angles(fit: HipFit) -> bool:
+    """Whether its heading is sure enough for Cardan angles, and is one of neighbours at all."""
+    return fit.sd_rad <= MAX_3D_SD_RAD and is_trusted(fit)
+
+
 def fits_of(tracks: SensorTracks, recording: Recording, clocks: HipClocks, side: Side) -> list[HipFit | None]:
     """The fits of one hip's stretches in the first block.
 
@@ -149,12 +154,10 @@ def measure_hips(
         rad from standing; NaN where unknown.
     """
     worn = [side for side in frames.thighs if tracks.is_usable(recording, Site.PELVIS, hip_of(side).distal)]
-    from_pelvis_s = -clocks.lag_s.get(worn[0], 0.0) if worn else 0.0  # the first thigh gives the recording its clock
+    from_pelvis_s = clocks.from_pelvis_s(worn[0]) if worn else 0.0  # the first thigh gives the recording its clock
     hips = {}
     for side in worn:
-        angle = _hip(
-            tracks, recording, frames, side, clocks, fits.get((recording.name, side), []), time_s, from_pelvis_s
-        )
+        angle = _hip(tracks, recording, frames, side, clocks, fits.get((recording.name, side), []), time_s)
         if angle is not None:
             hips[hip_of(side)] = angle
     return HipsAndPelvis(_with_places(hips, frames), *_pelvis(tracks, recording, frames, time_s, from_pelvis_s))
@@ -168,9 +171,9 @@ def _hip(
     clocks: HipClocks,
     first_fits: list[HipFit | None],
     time_s: FloatArray,
-    from_pelvis_s: float,
 ) -> HipAngle | None:
-    lag_s = clocks.lag_s.get(side, 0.0)
+    """One hip on its own leg's clock, as its knee is: where clocks are not known to be one, only its leg's hold."""
+    lag_s, from_pelvis_s = clocks.lag_s.get(side, 0.0), clocks.from_pelvis_s(side)
     flexion, abduction = np.full(len(time_s), np.nan), np.full(len(time_s), np.nan)
     known: list[HipFit] = []
     for block in tracks.blocks(recording):
@@ -198,7 +201,7 @@ def _hip(
         margin=longest.margin,
         disagreement=longest.disagreement,
         heading_sd_rad=longest.sd_rad,
-        is_3d=longest.sd_rad <= MAX_3D_SD_RAD,
+        is_3d=is_by_cardan_angles(longest),
         moving_s=longest.moving_s,
         lag_s=lag_s,
         standing_from=frames.standing_from,
@@ -212,7 +215,7 @@ def _hip(
 def _angles(pair: Pair, fit: HipFit, frames: HipFrames, side: Side) -> tuple[FloatArray, FloatArray]:
     """Flexion and abduction (n,) of one stretch: by Cardan angles where its heading is sure, else by the vertical."""
     pelvis, thigh = frames.pelvis, frames.thighs[side]
-    if fit.sd_rad <= MAX_3D_SD_RAD and is_trusted(fit):
+    if is_by_cardan_angles(fit):
         first, second = hip_cardan(pelvis, thigh, pair.earth_from_1, pair.earth_from_2, fit.heading(pair))
         return -first, second if side is Side.LEFT else -second
     pitch_1, pitch_2 = pitch_and_roll(pelvis, pair.earth_from_1)[0], pitch_and_roll(thigh, pair.earth_from_2)[0]

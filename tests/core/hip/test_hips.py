@@ -83,6 +83,18 @@ def test_a_short_walk_leaves_the_clocks_unknown() -> None:
     assert walk.verdicts.between.verdict is Verdict.WITHHELD
 
 
+def test_where_clocks_are_unknown_each_hip_stays_on_its_own_leg_s() -> None:
+    """As its knee and its strides do: on the other leg's it would be 40 ms beside them."""
+    wanted = replace(settings(late_s=0.04), recordings=(Standing(), Walk(strides=8)))
+    made = simulate(wanted)
+    walk = analyse(made.session).recordings[-1]
+    assert walk.hips[Joint.RIGHT_HIP].identification.lag_s == pytest.approx(-0.04, abs=0.002)
+    late = truth(made, Side.RIGHT, late_s=0.04)
+    own_clock = replace(late, time_s=late.time_s + 0.04)
+    assert np.std(flexion_error_deg(walk, own_clock, Side.RIGHT)) < 0.4
+    assert np.std(flexion_error_deg(walk, truth(made, Side.LEFT), Side.LEFT)) < 0.4
+
+
 def test_the_pelvis_tells_its_obliquity_rotation_and_the_turn() -> None:
     made, analysis = analysed()
     walk = analysis.recordings[-1]
@@ -154,8 +166,9 @@ def test_a_sensor_that_is_not_on_the_pelvis_is_told() -> None:
     recordings = tuple(swapped(one, Site.PELVIS, Site.LEFT_FOOT) for one in made.session.recordings)
     walk = analyse(replace(made.session, recordings=recordings)).recordings[-1]
     for side in Side:
-        if hip_of(side) in walk.hips:
+        if (hip := walk.hips.get(hip_of(side))) is not None:
             assert walk.verdicts.joint(hip_of(side)).shape.verdict is Verdict.WITHHELD
+            assert hip.identification.is_3d == np.isfinite(hip.abduction_rad).any()
     assert walk.leg_clock is None or walk.leg_clock.status is not ClockStatus.FOUND
 
 
