@@ -245,6 +245,19 @@ def test_a_recording_that_ended_because_the_memory_was_full_is_fetched_to_there(
     assert results["DOT 0001"].is_complete
 
 
+def test_a_sensor_whose_end_could_not_be_fetched_is_not_said_to_have_ended_early(
+    radio: VirtualRadio, tmp_path: Path
+) -> None:
+    session = MemorySession(radio, tmp_path, [DotFaults()])
+    session.record(10.0)
+    session.dots[0].unreadable = set(range(600, len(session.file(0).ticks)))
+    session.fetch()
+    (lack,) = session.memory.lacks()
+    assert session.files.results["DOT 0001"].samples == 600
+    assert (lack.early_s, lack.is_end_known) == (0.0, False)
+    session.writer.stop()
+
+
 @pytest.mark.parametrize("by_notice", [False, True], ids=["answered", "noticed"])
 def test_a_full_memory_is_understood_however_it_is_told(radio: VirtualRadio, tmp_path: Path, by_notice: bool) -> None:
     session = MemorySession(radio, tmp_path, [DotFaults(full_by_notice=by_notice)])

@@ -1,11 +1,16 @@
 """What the sensors' memories hold: told, fetched where it was left, erased once it was said what is lost by that."""
 
+from dataclasses import replace
 from datetime import datetime
+from typing import Any
 
 import pytest
 from pytestqt.qtbot import QtBot
 
+from app.acquisition import dot_memories
 from app.acquisition.dot_memories import KnownRecording, known
+from app.acquisition.memory_fetching import FETCHED
+from app.storage.journal.decoding import DecodedJournal, decode
 from app.storage.opened import OpenedLibrary
 from app.wizard.sensors.step import SensorsStep
 from app.wizard.visit import Visit
@@ -198,3 +203,25 @@ def test_a_recording_is_found_by_the_second_in_which_it_was_begun(
     assert found[0].lacking == frozenset()
     assert found[1].rows == ()
     assert found[1].kept == frozenset()
+
+
+def test_what_lacked_when_it_was_fetched_first_and_was_had_then_is_not_lacking(
+    qtbot: QtBot, opened: SensorsStep, visit: Visit, controller: LibraryController, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    walk_in_memory(qtbot, visit, is_fetched=True)
+    (walk,) = visit.recordings.walks
+    utc_s = int(datetime.fromisoformat(walk.details.started).timestamp())
+
+    def fetched_before(*journal: Any) -> DecodedJournal:
+        """The same, with a first attempt that was not told where the first sensor's file ends."""
+        whole = decode(*journal)
+        count = len(whole.sensors["DOT 0001"].block)
+        first = replace(whole.marks[0], text=f'{FETCHED}{{"DOT 0001": [{utc_s}, {count}, false]}}')
+        return replace(whole, marks=(first, *whole.marks))
+
+    monkeypatch.setattr(dot_memories, "decode", fetched_before)
+    found: list[KnownRecording] = []
+    controller.run(lambda library: found.append(known(library, utc_s)), None, None, visit)
+    qtbot.waitUntil(lambda: len(found) == 1, timeout=WAIT_MS)
+    assert found[0].kept == frozenset({"DOT 0001", "DOT 0002"})
+    assert found[0].lacking == frozenset()
