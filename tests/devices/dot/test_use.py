@@ -10,7 +10,7 @@ from devices.dot.sensor import DotRefusedError
 from devices.dot.source import DotUse
 from devices.dot.synchronising import SyncStage
 from devices.emulators.bluetooth import Notification
-from devices.emulators.dot import DotFaults
+from devices.emulators.dot_faults import DotFaults
 from devices.live import SourceRestartedError
 from devices.quiet import Quiet
 from tests.devices.dot.virtual_time import VirtualRadio
@@ -50,7 +50,7 @@ def test_one_that_says_too_little_of_its_rate_is_a_refusal_and_nobody_records(
     monkeypatch.setattr(cut, "read", lambda which: whole(which)[:4] if which == 0x1002 else whole(which))
     with pytest.raises(DotRefusedError, match="DOT 0002 is out of reach"):
         radio.run(record(wearing.group.sensors, UTC_S, 120))
-    assert [dot.files for dot in wearing.dots] == [[], []]
+    assert [dot.memory.files for dot in wearing.dots] == [[], []]
 
 
 def test_a_late_notice_about_synchronising_is_no_part_of_a_list_of_files(
@@ -151,7 +151,7 @@ def test_where_one_was_switched_off_its_own_clock_is_found_out_and_all_are_synch
     names = [sensor.name for sensor in group.sensors]
     with pytest.raises(OwnClockError, match=r"^DOT 0002 was switched off") as refused:
         radio.run(record(group.sensors, UTC_S, 120, names))
-    assert [dot.state for dot in wearing.dots] == [0x06, 0x06]
+    assert [dot.memory.state for dot in wearing.dots] == [0x06, 0x06]
     group.leave(refused.value.sensor)
     group.make_ready_to_record()
     assert all(dot.is_synchronised for dot in wearing.dots)

@@ -101,12 +101,12 @@ def test_what_is_kept_is_erased_after_a_second_press(
     assert [other.text for other in bar.others] == ["Erase the memories"]
     assert bar.quiet == ()  # it is offered once
     opened.on_other(0)
-    assert [len(dot.files) for dot in radio.dots] == [1, 1]
+    assert [len(dot.memory.files) for dot in radio.dots] == [1, 1]
     assert "kept in this library, every sample of it" in opened.page.memories.notice.text
     assert [other.text for other in opened.bar().others] == ["Erase now"]
     opened.on_other(0)
     wait(qtbot, opened)
-    assert [len(dot.files) for dot in radio.dots] == [0, 0]
+    assert [len(dot.memory.files) for dot in radio.dots] == [0, 0]
     assert opened.page.memories.title == "The sensors' memories are empty"
     assert opened.page.focusWidget() is opened.page.memories, "Enter would press another button"
 
@@ -137,7 +137,9 @@ def test_what_a_closed_visit_left_in_the_sensors_is_fetched_where_the_session_go
     fetched = recordings.walks[1]
     assert fetched.details.condition == "Shoes"
     assert fetched.read_back is not None
-    assert [len(block) for block in fetched.read_back.imu.values()] == [len(dot.files[0].ticks) for dot in radio.dots]
+    assert [len(block) for block in fetched.read_back.imu.values()] == [
+        len(dot.memory.files[0].ticks) for dot in radio.dots
+    ]
     assert told_lines(opened) == [["2 sensors", "Kept: A Shoes."]]
 
 
@@ -159,10 +161,10 @@ def test_what_is_not_of_this_library_is_not_fetched_and_is_named_before_it_is_lo
     opened.on_other(0)
     assert "1 recording is not kept in this library, and would be lost." in opened.page.memories.notice.text
     assert [other.text for other in opened.bar().others] == ["Erase now, and lose what is not kept"]
-    assert [len(dot.files) for dot in radio.dots] == [1, 1]
+    assert [len(dot.memory.files) for dot in radio.dots] == [1, 1]
     opened.on_other(0)
     wait(qtbot, opened)
-    assert [len(dot.files) for dot in radio.dots] == [0, 0]
+    assert [len(dot.memory.files) for dot in radio.dots] == [0, 0]
 
 
 @pytest.mark.endurance
