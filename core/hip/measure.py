@@ -190,11 +190,7 @@ def _hip(
         return None
     unwrap_over_gaps(flexion)
     longest = max(known, key=lambda fit: fit.moving_s)
-    heard = np.isfinite(flexion)
-    median = float(np.median(flexion[heard])) if heard.any() else 0.0
-    flexion -= 2 * np.pi * np.round(median / (2 * np.pi))
-    sd = SD_RAD + SD_SHARE * np.abs(flexion - wrap(np.array(median)))
-    sd = np.where(flexion > DEEP_RAD, sd + DEEP_SD_RAD, sd)
+    flexion, sd = with_sd(flexion)
     identification = HipIdentification(
         centre_proximal_m=longest.centre_proximal_m,
         centre_distal_m=longest.centre_distal_m,
@@ -210,6 +206,28 @@ def _hip(
         frame_distal=frames.thighs[side],
     )
     return HipAngle(flexion, sd, abduction, identification)
+
+
+def with_sd(flexion_rad: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """The flexion whose median is within half a turn of standing, and how sure it is.
+
+    The sd is 2 deg and a tenth of the distance from the median, and 4 deg more beyond 80 deg.
+
+    Parameters
+    ----------
+    flexion_rad : (n,)
+        Up to whole turns; NaN where unknown.
+
+    Returns
+    -------
+    (n,) and (n,)
+        rad, and its sd in rad; NaN where unknown.
+    """
+    heard = flexion_rad[np.isfinite(flexion_rad)]
+    median = float(np.median(heard)) if len(heard) else 0.0
+    flexion_rad = flexion_rad - 2 * np.pi * np.round(median / (2 * np.pi))
+    sd_rad = SD_RAD + SD_SHARE * np.abs(flexion_rad - wrap(np.array(median)))
+    return flexion_rad, np.where(flexion_rad > DEEP_RAD, sd_rad + DEEP_SD_RAD, sd_rad)
 
 
 def _angles(pair: Pair, fit: HipFit, frames: HipFrames, side: Side) -> tuple[FloatArray, FloatArray]:

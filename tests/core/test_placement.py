@@ -236,9 +236,10 @@ def test_names_order_and_mounting_of_the_sensors_change_nothing(circling: Sessio
 
 
 @pytest.mark.parametrize("first", list(Side))
-def test_the_leg_that_moved_first_names_both(first: Side) -> None:
+@pytest.mark.parametrize("sites", [LEG_SITES, LEG_SITES[::-1]], ids=["in order", "the other way round"])
+def test_the_leg_that_moved_first_names_both(first: Side, sites: tuple[Site, ...]) -> None:
     session = walked(Standing(), FreeMotion(duration_s=5.0, is_in_turn=True)).session
-    found = chains_of(session)
+    found = chains_of(session, sites)
     assert found.is_first_certain
     assert found.lead_s == pytest.approx(5.0, abs=0.5)
     told = found.sites(first)

@@ -8,6 +8,7 @@ import pytest
 from core.analysis import analyse
 from core.body import Joint, Side, Site, hip_of
 from core.gait.clocks import ClockTie
+from core.hip.measure import with_sd
 from core.hip.results import ClockStatus
 from core.samples import Recording, RecordingKind, Session
 from core.verdicts.model import Verdict
@@ -26,6 +27,14 @@ def test_a_rigid_hip_reads_what_its_bones_do(side: Side) -> None:
     centre = walk.hips[hip_of(side)].identification
     assert np.linalg.norm(centre.centre_proximal_m - known.centre_proximal_m) < 0.01
     assert np.linalg.norm(centre.centre_distal_m - known.centre_distal_m) < 0.01
+
+
+def test_flexion_is_less_sure_far_from_its_median_and_beyond_80_degrees_whatever_turns_it_counts() -> None:
+    flexion_deg = np.array([10.0, 10.0, 10.0, 0.0, 79.0, 81.0, np.nan])
+    for turns in (-1, 0, 2):
+        found_rad, sd_rad = with_sd(np.deg2rad(flexion_deg + 360.0 * turns))
+        np.testing.assert_allclose(np.rad2deg(found_rad), flexion_deg, atol=1e-9)
+        np.testing.assert_allclose(np.rad2deg(sd_rad), [2.0, 2.0, 2.0, 3.0, 8.9, 13.1, np.nan], atol=1e-9)
 
 
 @pytest.mark.endurance
