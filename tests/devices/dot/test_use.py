@@ -75,6 +75,18 @@ def test_a_late_notice_about_synchronising_is_no_part_of_a_list_of_files(
     assert file.started_utc_s == UTC_S
 
 
+def test_an_order_to_a_busy_sensor_is_given_again(radio: VirtualRadio) -> None:
+    wearing = WornDots(radio, [DotFaults()])
+    wearing.group.make_ready_to_record()
+    (sensor,), (dot,) = wearing.group.sensors, wearing.dots
+    radio.run(record([sensor], UTC_S, 120))
+    radio.pass_s(1.0)
+    radio.run(stop(sensor))
+    dot.faults.busy = 4  # more than a list is asked for anew
+    (file,) = radio.run(list_files(sensor))
+    assert file.started_utc_s == UTC_S
+
+
 def test_asking_how_long_clocks_hold_is_answered_while_they_are_ended(
     radio: VirtualRadio, monkeypatch: pytest.MonkeyPatch
 ) -> None:
