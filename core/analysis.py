@@ -22,7 +22,7 @@ from core.hip.analysis import HipsOfSpan, find_hips, with_hips
 from core.identified import Identified, clock_moved_s, identify
 from core.joint_findings import about_angles, about_joint, about_missing_joints, about_session
 from core.measure import Twist, measure
-from core.placement.labels import about_labels, doubted_sites
+from core.placement.labels import doubted_labels
 from core.published.angles import DEFAULT_TAU_S
 from core.quality import look_at, lost_percent
 from core.rate_kind import tracks_of_kind
@@ -124,8 +124,8 @@ def _analyse_span(
     """Everything of one span: what every joint is, and the angles and gait of what moves."""
     span, stiff_sides = tracks.span, _stiff_sides(session.patient)
     has_stood = any(r.is_kept and r.kind is RecordingKind.STANDING for r in session.recordings)
-    of_labels, drifts = about_labels(tracks), clock_drifts(tracks)
-    findings = [*of_labels, *about_clocks(drifts)]
+    doubted, drifts = doubted_labels(tracks), clock_drifts(tracks)
+    findings = [*doubted.findings, *about_clocks(drifts)]
     bases = _bases(tracks)
     steps.expect(len(set(bases.values())) + len(bases))
     identified = _identify(tracks, bases, method, tau_s, steps)
@@ -149,7 +149,7 @@ def _analyse_span(
             found = replace(found, timed=time_test(tracks, recording, recording.test))
         found = replace(found, clocks=clocks_in(tracks, recording, found.gait, _lags_in(recording, lags)))
         found = replace(found, drifting_percent={s: p for (name, s), p in drifts.items() if name == recording.name})
-        found = replace(found, doubted_sites=doubted_sites(of_labels))
+        found = replace(found, doubted_sites=doubted.sites)
         here = {joint: calibrated[bases[recording.name, joint]] for joint in found.joints}
         found = with_hips(found, tracks, recording, hips, here)
         found = replace(found, verdicts=verdicts_of(found, here, stiff_sides))

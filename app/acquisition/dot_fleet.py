@@ -19,7 +19,7 @@ from app.acquisition.acquisition import Acquisition
 from devices.bluetooth import Radio, Tick
 from devices.dot.fetching import reached
 from devices.dot.memory import RECORD_HZ, stop
-from devices.dot.messages import EMULATED, DotAnswer, DotMessageError
+from devices.dot.messages import EMULATED, DotAnswer
 from devices.dot.sensor import DotSensor
 from devices.dot.source import GENERAL, LIVE_HZ, DotGroup
 from devices.live import SourceLostError
@@ -76,7 +76,7 @@ class DotFleet:
         with self._talking:
             try:
                 return self.radio.run(_left(self.dots[number].sensor, _asked), tick)
-            except (SourceLostError, DotMessageError):
+            except SourceLostError:
                 return DotAsked.SILENT
 
     def identify(self, number: int) -> bool:
@@ -84,7 +84,7 @@ class DotFleet:
         with self._talking:
             try:
                 return self.radio.run(_left(self.dots[number].sensor, _identified))
-            except (SourceLostError, DotMessageError):
+            except SourceLostError:
                 return False
 
     def stop_recordings(self, numbers: Sequence[int]) -> None:

@@ -41,7 +41,7 @@ class KnownRecording:
     rows: tuple[StoredRecording, ...]
     kept: frozenset[str]
     lacking: frozenset[str] = frozenset()
-    """Of those that are kept, sensors some of whose samples could not be had."""
+    """Of those that are kept, sensors some of whose samples could not be had, however often they were fetched."""
 
 
 class DotMemories:
@@ -122,7 +122,7 @@ def known(opened: OpenedLibrary, started_utc_s: int) -> KnownRecording:
     """What the library has of a recording that was begun in this second; its journals are read to their end."""
     rows = opened.library.recordings.begun_at(started_utc_s)
     kept: set[str] = set()
-    lacking: set[str] = set()
+    whole: set[str] = set()
     for row in rows:
         paths = [opened.journal_path(journal) for journal in row.journals]
         if not paths or not all(path.exists() for path in paths):
@@ -135,8 +135,8 @@ def known(opened: OpenedLibrary, started_utc_s: int) -> KnownRecording:
                 found = journal.sensors.get(name)
                 if file.started_utc_s == started_utc_s and found is not None and len(found.block) == file.samples > 0:
                     kept.add(name)
-                    lacking |= set() if file.is_complete else {name}
-    return KnownRecording(rows, frozenset(kept), frozenset(lacking))
+                    whole |= {name} if file.is_complete else set()
+    return KnownRecording(rows, frozenset(kept), frozenset(kept - whole))
 
 
 async def _listed(sensor: DotSensor) -> tuple[RecordedFile, ...]:

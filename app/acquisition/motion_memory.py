@@ -19,7 +19,7 @@ KEPT_S = 30.0
 WAIT_S = 1.0  # for a sensor that is behind the others; longer, and it is left out
 STEP_EVERY_S = 0.025  # of the stream, is a step of a look: the thirty of the longest take less than a second
 
-ThemeNotifier = Callable[[float], Generator[None, None, None]]
+Look = Callable[[float], Generator[None, None, None]]
 """Looks at what was measured before an instant, in steps."""
 
 
@@ -55,7 +55,7 @@ class MotionMemory:
 class Looks:
     """Looks at the memory every `every_s` of the stream, the first one `after_s` after the first sample."""
 
-    def __init__(self, memory: MotionMemory, look: ThemeNotifier, every_s: float, after_s: float = 0.0) -> None:
+    def __init__(self, memory: MotionMemory, look: Look, every_s: float, after_s: float = 0.0) -> None:
         self._memory, self._look = memory, look
         self._every_s, self._after_s = every_s, after_s
         self._next_s: float | None = None

@@ -16,7 +16,7 @@ from devices.dot.memory import Begun, OwnClockError, record, stop
 from devices.dot.source import DotGroup
 from devices.live import SourceLostError, SourceRefusedError
 
-EARLY_S = 2.0  # so much later than the first a sensor is told to begin
+EARLY_S = 2.0  # a file that is shorter by less ended when it was told to: beginnings and clocks differ so much
 
 
 class MemoryRecording:
@@ -113,11 +113,15 @@ class MemoryRecording:
         return WantedFile(sensor, self._utc_s, None, rate_hz, self._clocks[name], orders, max(about, 1))
 
     def ended_early_s(self) -> Mapping[str, float]:
-        """Which sensors ended before they were told to, by their button or a full memory, and how long before, s."""
+        """Which sensors ended before they were told to, by their button or a full memory, and how long before, s.
+
+        One whose end was not fetched may hold more than came, and is not among them.
+        """
         if self.fetching is None:
             return {}
         early_s = {
             name: (self._wanted_ns - self._begun[name].recording_ns) / 1e9 - (one.samples + one.lost) / self._rate_hz
             for name, one in self.fetching.results.items()
+            if one.is_end_known
         }
         return {name: seconds for name, seconds in early_s.items() if seconds > EARLY_S}

@@ -34,7 +34,6 @@ class DrawnLeg:
     leg_m: FloatArray
     foot_m: FloatArray
     shank_m: float
-    is_shank_measured: bool
 
 
 def height_of(session: Session) -> float:
@@ -126,7 +125,7 @@ def _drawn(
     knee, ankle, height_m = calibrated[knee_of(side)], calibrated.get(ankle_of(side)), height_of(session)
     time_s = recording.time_s[frames]
     forward, up = _thigh_directions(session, raw, knee, time_s)
-    shank_m, is_measured = _shank_length(knee, ankle, height_m)
+    shank_m = _shank_length(knee, ankle, height_m)
     bent = recording.joints[knee_of(side)].angle_rad[frames, None]
     shank_forward = np.cos(bent) * forward - np.sin(bent) * up
     shank_up = np.cos(bent) * up + np.sin(bent) * forward
@@ -138,19 +137,17 @@ def _drawn(
     knee_m = hip_m - THIGH * height_m * up
     ankle_m = knee_m - shank_m * shank_up
     toes_m = ankle_m + FOOT * height_m * foot_forward
-    return DrawnLeg(
-        time_s, np.stack([hip_m, knee_m, ankle_m], axis=1), np.stack([ankle_m, toes_m], axis=1), shank_m, is_measured
-    )
+    return DrawnLeg(time_s, np.stack([hip_m, knee_m, ankle_m], axis=1), np.stack([ankle_m, toes_m], axis=1), shank_m)
 
 
-def _shank_length(knee: JointCalibration, ankle: JointCalibration | None, height_m: float) -> tuple[float, bool]:
+def _shank_length(knee: JointCalibration, ankle: JointCalibration | None, height_m: float) -> float:
     """From the two joint centres, both at -o in the shank sensor's axes, where they can be believed; else by height."""
     expected_m = SHANK * height_m
     if ankle is not None and knee.centre_distal_m is not None and ankle.centre_proximal_m is not None:
         length_m = float(np.linalg.norm(knee.centre_distal_m - ankle.centre_proximal_m))
         if expected_m / MAX_LENGTH_RATIO < length_m < expected_m * MAX_LENGTH_RATIO:
-            return length_m, True
-    return expected_m, False
+            return length_m
+    return expected_m
 
 
 def _thigh_directions(

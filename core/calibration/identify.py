@@ -129,10 +129,9 @@ def identify_joint(
 
 @dataclass(frozen=True, slots=True)
 class Decision:
-    """The best hypothesis (one candidate), the logarithm of its cost, and its best rival's cost over its own."""
+    """The best hypothesis (one candidate), and its best rival's cost over its own."""
 
     best: Candidates
-    log_cost: float
     margin: float
     did_flexion_dominate: bool = True
 
@@ -163,8 +162,8 @@ def decide(data: Datasets, downs: Downs | None = None) -> Decision:
             prior = np.sum(elevation**2, axis=1) / (2 * ELEVATION_SD_RAD**2)
             alike = [k for k in range(len(found)) if not _is_rival(found, best, k)]
             level = min(alike, key=lambda k: float(by_rates[k] + prior[k]))
-            return Decision(found.pick(level), float(cost[level]), margin, did_flexion_dominate=False)
-    return Decision(found.pick(best), float(cost[best]), margin)
+            return Decision(found.pick(level), margin, did_flexion_dominate=False)
+    return Decision(found.pick(best), margin)
 
 
 def _elevations(axis_1: FloatArray, axis_2: FloatArray, downs: Downs) -> FloatArray:

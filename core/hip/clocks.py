@@ -32,6 +32,10 @@ class HipClocks:
         """What the right leg's stamps are to be moved back by, s."""
         return self.legs.applied_s if self.legs is not None else 0.0
 
+    def from_pelvis_s(self, side: Side) -> float:
+        """What brings the pelvis's stamps to a leg's own, the right one's moved back already; s."""
+        return -self.lag_s.get(side, 0.0) - (self.right_late_s if side is Side.RIGHT else 0.0)
+
 
 NO_CLOCKS = HipClocks(None, {})
 

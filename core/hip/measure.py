@@ -54,6 +54,11 @@ def is_trusted(found: HipFit | HipIdentification) -> bool:
     return found.margin >= MIN_MARGIN and found.disagreement < MAX_DISAGREEMENT
 
 
+def is_by_cardan_angles(fit: HipFit) -> bool:
+    """Whether its heading is sure enough for Cardan angles, and is one of neighbours at all."""
+    return fit.sd_rad <= MAX_3D_SD_RAD and is_trusted(fit)
+
+
 def fits_of(tracks: SensorTracks, recording: Recording, clocks: HipClocks, side: Side) -> list[HipFit | None]:
     """The fits of one hip's stretches in the first block.
 
@@ -149,12 +154,10 @@ def measure_hips(
         rad from standing; NaN where unknown.
     """
     worn = [side for side in frames.thighs if tracks.is_usable(recording, Site.PELVIS, hip_of(side).distal)]
-    from_pelvis_s = -clocks.lag_s.get(worn[0], 0.0) if worn else 0.0  # the first thigh gives the recording its clock
+    from_pelvis_s = clocks.from_pelvis_s(worn[0]) if worn else 0.0  # the first thigh gives the recording its clock
     hips = {}
     for side in worn:
-        angle = _hip(
-            tracks, recording, frames, side, clocks, fits.get((recording.name, side), []), time_s, from_pelvis_s
-        )
+        angle = _hip(tracks, recording, frames, side, clocks, fits.get((recording.name, side), []), time_s)
         if angle is not None:
             hips[hip_of(side)] = angle
     return HipsAndPelvis(_with_places(hips, frames), *_pelvis(tracks, recording, frames, time_s, from_pelvis_s))
@@ -168,9 +171,9 @@ def _hip(
     clocks: HipClocks,
     first_fits: list[HipFit | None],
     time_s: FloatArray,
-    from_pelvis_s: float,
 ) -> HipAngle | None:
-    lag_s = clocks.lag_s.get(side, 0.0)
+    """One hip on its own leg's clock, as its knee is: where clocks are not known to be one, only its leg's hold."""
+    lag_s, from_pelvis_s = clocks.lag_s.get(side, 0.0), clocks.from_pelvis_s(side)
     flexion, abduction = np.full(len(time_s), np.nan), np.full(len(time_s), np.nan)
     known: list[HipFit] = []
     for block in tracks.blocks(recording):
@@ -187,18 +190,14 @@ def _hip(
         return None
     unwrap_over_gaps(flexion)
     longest = max(known, key=lambda fit: fit.moving_s)
-    heard = np.isfinite(flexion)
-    median = float(np.median(flexion[heard])) if heard.any() else 0.0
-    flexion -= 2 * np.pi * np.round(median / (2 * np.pi))
-    sd = SD_RAD + SD_SHARE * np.abs(flexion - wrap(np.array(median)))
-    sd = np.where(flexion > DEEP_RAD, sd + DEEP_SD_RAD, sd)
+    flexion, sd = with_sd(flexion)
     identification = HipIdentification(
         centre_proximal_m=longest.centre_proximal_m,
         centre_distal_m=longest.centre_distal_m,
         margin=longest.margin,
         disagreement=longest.disagreement,
         heading_sd_rad=longest.sd_rad,
-        is_3d=longest.sd_rad <= MAX_3D_SD_RAD,
+        is_3d=is_by_cardan_angles(longest),
         moving_s=longest.moving_s,
         lag_s=lag_s,
         standing_from=frames.standing_from,
@@ -209,10 +208,32 @@ def _hip(
     return HipAngle(flexion, sd, abduction, identification)
 
 
+def with_sd(flexion_rad: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """The flexion whose median is within half a turn of standing, and how sure it is.
+
+    The sd is 2 deg and a tenth of the distance from the median, and 4 deg more beyond 80 deg.
+
+    Parameters
+    ----------
+    flexion_rad : (n,)
+        Up to whole turns; NaN where unknown.
+
+    Returns
+    -------
+    (n,) and (n,)
+        rad, and its sd in rad; NaN where unknown.
+    """
+    heard = flexion_rad[np.isfinite(flexion_rad)]
+    median = float(np.median(heard)) if len(heard) else 0.0
+    flexion_rad = flexion_rad - 2 * np.pi * np.round(median / (2 * np.pi))
+    sd_rad = SD_RAD + SD_SHARE * np.abs(flexion_rad - wrap(np.array(median)))
+    return flexion_rad, np.where(flexion_rad > DEEP_RAD, sd_rad + DEEP_SD_RAD, sd_rad)
+
+
 def _angles(pair: Pair, fit: HipFit, frames: HipFrames, side: Side) -> tuple[FloatArray, FloatArray]:
     """Flexion and abduction (n,) of one stretch: by Cardan angles where its heading is sure, else by the vertical."""
     pelvis, thigh = frames.pelvis, frames.thighs[side]
-    if fit.sd_rad <= MAX_3D_SD_RAD and is_trusted(fit):
+    if is_by_cardan_angles(fit):
         first, second = hip_cardan(pelvis, thigh, pair.earth_from_1, pair.earth_from_2, fit.heading(pair))
         return -first, second if side is Side.LEFT else -second
     pitch_1, pitch_2 = pitch_and_roll(pelvis, pair.earth_from_1)[0], pitch_and_roll(thigh, pair.earth_from_2)[0]

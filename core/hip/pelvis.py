@@ -1,5 +1,7 @@
 """The pelvis over a walk: how it turns against its mean, where the body turns round, and figures of each stride."""
 
+from collections.abc import Callable
+
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
@@ -14,6 +16,9 @@ TURN_RAD_S = np.deg2rad(15.0)  # about the vertical, below
 TURN_HZ = 1.0
 MIN_TURN_RAD = np.deg2rad(45.0)  # a step turns the pelvis by 12 deg
 HALF_POWER = 0.1325  # seconds of a Gaussian that halves the power at 1 Hz
+
+Figure = Callable[[FloatArray], np.floating]
+"""One figure of some samples (m,)."""
 
 
 def turns_of(time_s: FloatArray, heading_rad: FloatArray) -> tuple[PelvisTurn, ...]:
@@ -130,13 +135,12 @@ def pelvis_parameters(strides: Strides, time_s: FloatArray, pelvis: PelvisAngles
     }
 
 
-def _of_strides(strides: Strides, time_s: FloatArray, values: FloatArray, of: object) -> FloatArray:
+def _of_strides(strides: Strides, time_s: FloatArray, values: FloatArray, of: Figure) -> FloatArray:
     return _during(strides.start_s, strides.end_s, time_s, values, of)
 
 
-def _during(from_s: FloatArray, to_s: FloatArray, time_s: FloatArray, values: FloatArray, of: object) -> FloatArray:
+def _during(from_s: FloatArray, to_s: FloatArray, time_s: FloatArray, values: FloatArray, of: Figure) -> FloatArray:
     """A figure of the samples (n,) in each interval (k,); NaN where one of them is missing."""
-    assert callable(of)
     found = np.full(len(from_s), np.nan)
     for k, (start_s, end_s) in enumerate(zip(from_s, to_s, strict=True)):
         here = values[slice(*np.searchsorted(time_s, [start_s, end_s]))] if np.isfinite(start_s + end_s) else values[:0]

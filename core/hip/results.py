@@ -39,10 +39,10 @@ class HipIdentification:
     """How pelvis and thigh sit on one hip, and how sure that is; figures of the recording's longest stretch.
 
     Centres (3,) point from the joint to the sensors, m, in sensor axes. `is_3d`: the heading is sure enough for Cardan
-    angles; else flexion is that against the vertical, and there is no abduction. `centres_apart_m`: how far to the
-    left of the right hip's centre the left one's lies; None where there is one hip only. `frame_proximal` and
-    `frame_distal` (3, 3) are what the angles were measured with: rows x forward, y left, z up of pelvis and thigh, in
-    sensor axes.
+    angles, and that of neighbours; else flexion is that against the vertical, and there is no abduction.
+    `centres_apart_m`: how far to the left of the right hip's centre the left one's lies; None where there is one hip
+    only. `frame_proximal` and `frame_distal` (3, 3) are what the angles were measured with: rows x forward, y left,
+    z up of pelvis and thigh, in sensor axes.
     """
 
     centre_proximal_m: FloatArray

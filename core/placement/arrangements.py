@@ -135,8 +135,8 @@ class Stature:
 
     @property
     def uprightness(self) -> float:
-        """1 a leg that hangs straight down, -1 one whose first sensor is its lowest."""
-        return self.height_m / self.length_m
+        """1 a leg that hangs straight down, -1 one whose first sensor is its lowest; 0 where no joint has a place."""
+        return self.height_m / self.length_m if self.length_m > 0 else 0.0
 
 
 def statures(arrangement: Arrangement, neighbours: Neighbours) -> dict[Side, Stature]:

@@ -1,6 +1,7 @@
 """Labels that contradict the motion, and which sensors seem to have been exchanged."""
 
-from collections.abc import Generator, Iterable, Mapping
+from collections.abc import Generator, Mapping
+from dataclasses import dataclass
 
 from core.body import Site
 from core.findings import Finding, Severity
@@ -21,28 +22,41 @@ from core.sensors import SensorTracks
 SHARED_COST = 0.2  # two sensors that disagree on less may share a joint, though in a small motion others may as well
 
 
-def about_labels(tracks: SensorTracks) -> list[Finding]:
-    """A finding for every group of sites whose sensors seem exchanged, from the free motion, else from a walk."""
+@dataclass(frozen=True, slots=True)
+class DoubtedLabels:
+    """Groups of sites whose sensors seem exchanged, and the name of the recording that tells; often none."""
+
+    recording: str
+    groups: tuple[tuple[Site, ...], ...]
+
+    @property
+    def sites(self) -> frozenset[Site]:
+        """All sites of the groups: their sensors are of other segments, as the motion has it."""
+        return frozenset(site for group in self.groups for site in group)
+
+    @property
+    def findings(self) -> list[Finding]:
+        """One for every group."""
+        return [
+            Finding(
+                "labels_look_swapped" if len(group) == 2 else "labels_look_mixed",
+                Severity.WARNING,
+                ", ".join([self.recording, *group]),
+            )
+            for group in self.groups
+        ]
+
+
+def doubted_labels(tracks: SensorTracks) -> DoubtedLabels:
+    """The groups of sites whose sensors seem exchanged, from the free motion, else from a walk."""
     recording = _telling(tracks)
     if recording is None:
-        return []
+        return DoubtedLabels("", ())
     block = tracks.blocks(recording)[0]
     sites = _joined_sites(tracks, recording)
     by_site = {str(site): tracks.oriented(recording, site, block) for site in sites}
     standing = {str(site): force for site in sites if (force := _standing_force(tracks, site)) is not None}
-    found = []
-    for group in exchanged_sites(by_site, standing):
-        where = ", ".join([recording.name, *group])
-        found.append(
-            Finding("labels_look_swapped" if len(group) == 2 else "labels_look_mixed", Severity.WARNING, where)
-        )
-    return found
-
-
-def doubted_sites(of_labels: Iterable[Finding]) -> frozenset[Site]:
-    """The sites that `about_labels` names: their sensors are of other segments, as the motion has it."""
-    named = {part for finding in of_labels for part in finding.where.split(", ")}
-    return frozenset(site for site in Site if site in named)
+    return DoubtedLabels(recording.name, tuple(exchanged_sites(by_site, standing)))
 
 
 def _telling(tracks: SensorTracks) -> Recording | None:

@@ -93,10 +93,10 @@ def _liveliest(tracks: Tracks, start_s: float, end_s: float) -> tuple[float, flo
     energy = np.zeros(int(np.ceil(end_s - start_s)))
     for stretches in tracks.values():
         for one in stretches:
-            speed = np.minimum(np.sum(one.track.gyr_rad_s**2, axis=1), FAST_RAD_S**2)  # a jump is not a minute's worth
+            square = np.minimum(np.sum(one.track.gyr_rad_s**2, axis=1), FAST_RAD_S**2)  # a jump is not a minute's worth
             at = np.floor(one.track.time_s - start_s).astype(np.int64)
             is_inside = (at >= 0) & (at < len(energy))
-            energy += one.track.step_s * np.bincount(at[is_inside], speed[is_inside], len(energy))
+            energy += one.track.step_s * np.bincount(at[is_inside], square[is_inside], len(energy))
     total = np.concatenate([[0.0], np.cumsum(energy)])
     seconds = int(LONGEST_S)
     first = int(np.argmax(total[seconds:] - total[:-seconds]))

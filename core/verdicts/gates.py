@@ -168,7 +168,7 @@ def _worn_hips(recording: RecordingAnalysis) -> list[Joint]:
 def _heading(found: HipIdentification) -> Iterator[GateReason]:
     """Without a sure heading between pelvis and thigh there is flexion, against the vertical, but no abduction."""
     sd_deg = _known(float(np.rad2deg(found.heading_sd_rad)))
-    if not found.is_3d:
+    if sd_deg is None or sd_deg > LIMITS.hip_heading_sd_deg:
         yield GateReason("hip_heading", Verdict.WITHHELD, sd_deg, LIMITS.hip_heading_sd_deg, "deg")
 
 

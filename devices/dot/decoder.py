@@ -82,10 +82,9 @@ class DotDecoder:
     def begin(self, source: SourceInfo) -> None:
         if "file" not in source.settings:
             self._streamed.begin(source)
-        elif self._info is None or self._info.settings["file"] != source.settings["file"]:
+        elif self._file is None or self._info is None or self._info.settings["file"] != source.settings["file"]:
             self._file, self._info = FileFramer(), source
         else:
-            self._file = self._file or FileFramer()
             self._file.cut()
 
     def feed(self, data: bytes, host_time_s: float) -> None:

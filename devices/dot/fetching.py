@@ -16,7 +16,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from devices.dot.messages import Characteristic, DotAnswer, DotMessage, DotNotice, Order, RecordedFile, fetch_from
+from devices.dot.messages import (
+    RECORDING_GROUP,
+    Characteristic,
+    DotAnswer,
+    DotMessage,
+    DotNotice,
+    Order,
+    RecordedFile,
+    fetch_from,
+)
 from devices.dot.samples import CHOSEN, FileFramer
 from devices.dot.sensor import DotRefusedError, DotSensor
 from devices.live import Keep, SourceLostError
@@ -90,12 +99,12 @@ async def reached(sensor: DotSensor, within_s: float = AWAY_S) -> None:
 
 
 async def next_notice(sensor: DotSensor, kept: Callable[[bytes], None] | None = None) -> DotMessage | None:
-    """The next whole notice; None where the sensor has fallen silent."""
+    """The next whole notice of its memory; None where the sensor has fallen silent."""
     while payload := await sensor.notice(SILENCE_S):
         if kept is not None:
             kept(payload)
         message = sensor.understood(payload)
-        if message is not None and message.data:
+        if message is not None and message.data and message.group == RECORDING_GROUP:
             return message
     return None
 

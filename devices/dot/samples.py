@@ -71,11 +71,10 @@ MODES = {mode.number: mode for mode in (FULL, PLAIN)}
 
 @dataclass(frozen=True, slots=True)
 class RecordedSample:
-    """A sample of a file: its number, counted from 0, and which values met the end of their range."""
+    """A sample of a file, and its number, counted from 0."""
 
     number: int
     sample: DotSample
-    status: int
 
     @classmethod
     def parsed(cls, data: bytes) -> "RecordedSample | None":
@@ -83,9 +82,9 @@ class RecordedSample:
         if len(data) != NUMBER.size + RECORDED.size:
             return None
         (number,) = NUMBER.unpack_from(data)
-        ticks, *values, status = RECORDED.unpack_from(data, NUMBER.size)
+        ticks, *values, _status = RECORDED.unpack_from(data, NUMBER.size)
         sample = _sample(ticks, values, has_orientation=True)
-        return None if sample is None else cls(number, sample, status)
+        return None if sample is None else cls(number, sample)
 
 
 class DotFramer:

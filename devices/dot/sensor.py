@@ -8,6 +8,7 @@ import asyncio
 import threading
 from collections import deque
 from collections.abc import Callable
+from typing import TypeVar
 
 from devices.bluetooth import Announced, BluetoothLink, Radio
 from devices.dot.messages import (
@@ -35,6 +36,8 @@ from devices.dot.messages import (
 from devices.dot.samples import FULL, MODES, PLAIN, StreamMode
 from devices.live import SourceLostError, SourceRefusedError
 from devices.notifications import framed
+
+Said = TypeVar("Said")
 
 NOTICE_S = 2.0
 BUSY_S, BUSY_TRIES = 0.5, 6
@@ -100,7 +103,7 @@ class DotSensor:
         """Connect, ask who it is, and listen: before anything is started, or its beginning is missed."""
         await self._link.connect()
         if self.info is None:
-            self.info = DotInfo.parsed(await self._read(Characteristic.DEVICE_INFO))
+            self.info = await self._told(Characteristic.DEVICE_INFO, DotInfo.parsed)
             self.has_heading_reset = await self._read(Characteristic.HEADING) == HEADING_RESET
         for characteristic in (
             Characteristic.NOTICE,
@@ -138,6 +141,13 @@ class DotSensor:
     async def _read(self, characteristic: Characteristic) -> bytes:
         return await self._link.read(characteristic.uuid)
 
+    async def _told(self, characteristic: Characteristic, parsed: Callable[[bytes], Said]) -> Said:
+        """What it says there; one that says less than it has to is taken for lost, and tried again as such."""
+        try:
+            return parsed(await self._read(characteristic))
+        except DotMessageError as problem:
+            raise SourceLostError(f"{self.name} says too little") from problem
+
     async def _write(self, characteristic: Characteristic, data: bytes) -> None:
         await self._link.write(characteristic.uuid, data)
         self.sent.append(framed(characteristic, data))
@@ -153,20 +163,20 @@ class DotSensor:
             They are not.
         """
         wanted = DotSettings(rate_hz, profile)
-        if DotSettings.parsed(await self._read(Characteristic.SETTINGS)) == wanted:
+        if await self.settings() == wanted:
             return
         await self._write(Characteristic.SETTINGS, setting_rate(rate_hz))
         await self._write(Characteristic.SETTINGS, setting_profile(profile))
-        if DotSettings.parsed(await self._read(Characteristic.SETTINGS)) != wanted:
+        if await self.settings() != wanted:
             raise DotRefusedError(
                 "{sensor} did not take its rate", "Switch it off and on, then search again", sensor=self.name
             )
 
     async def settings(self) -> DotSettings:
-        return DotSettings.parsed(await self._read(Characteristic.SETTINGS))
+        return await self._told(Characteristic.SETTINGS, DotSettings.parsed)
 
     async def control(self) -> StreamControl:
-        return StreamControl.parsed(await self._read(Characteristic.CONTROL))
+        return await self._told(Characteristic.CONTROL, StreamControl.parsed)
 
     async def streaming(self) -> StreamMode | None:
         """The mode in which it streams already; None where it does not, or in one that is not read here."""

@@ -13,7 +13,7 @@ from devices.bluetooth import Radio, Tick
 from devices.channels import READ_S
 from devices.dot.fetching import reached
 from devices.dot.memory import RECORD_HZ
-from devices.dot.messages import EMULATED, DotMessageError
+from devices.dot.messages import EMULATED
 from devices.dot.samples import DRIVER, TURN_S, VERSION, DotFramer, StreamMode
 from devices.dot.sensor import DotSensor
 from devices.dot.synchronising import (
@@ -201,9 +201,9 @@ class DotGroup:
 
     def renewal_due_s(self) -> float | None:
         """How long the clocks are one still, s, negative where they may not be; None: they are not."""
-        if self._common is None:
+        if (common := self._common) is None:
             return None
-        return RENEWED_S - (self.radio.now_ns() - self._common.synchronised.at_ns) / 1e9
+        return RENEWED_S - (self.radio.now_ns() - common.synchronised.at_ns) / 1e9
 
     def clock_of(self, sensor: str) -> str:
         """The name of the clock that a sensor is on; empty: its own."""
@@ -217,9 +217,9 @@ class DotGroup:
 
     def leave(self, sensor: str) -> None:
         """A sensor that was switched off, or let go, has lost the common clock."""
-        if self._common is not None:
-            self._common.members.discard(sensor)
-            if not self._common.members:
+        if (common := self._common) is not None:
+            common.members.discard(sensor)
+            if not common.members:
                 self._common = None
 
 
@@ -281,7 +281,7 @@ class DotSource:
                 self.group.prepare()
             self.sensor.sent.clear()
             self.group.radio.run(self._opened())
-        except (SourceLostError, DotMessageError) as problem:
+        except SourceLostError as problem:
             raise SourceRefusedError(
                 "{sensor} does not answer", "Press its button, and bring it nearer", sensor=self.sensor.name
             ) from problem

@@ -24,7 +24,6 @@ from devices.dot.messages import (
     SYNC_STATUS,
     SYNC_STOPPED,
     DotAnswer,
-    DotMessageError,
     SyncResult,
     start_sync,
 )
@@ -166,7 +165,7 @@ class _Synchronising:
                     self._failed[sensor.name] = SyncFailure.STAYS
                     continue
                 await sensor.set_up(self._rate_hz, self._profile)
-            except (SourceLostError, DotMessageError):
+            except SourceLostError:
                 self._failed[sensor.name] = SyncFailure.LOST
 
     async def _start(self) -> None:
@@ -211,7 +210,7 @@ class _Synchronising:
                     return RESULTS[result]
                 await sensor.connect()
                 return None
-            except (SourceLostError, DotMessageError):
+            except SourceLostError:
                 await sensor.disconnect()
                 if loop.time() > until_s:
                     return SyncFailure.NOT_BACK
@@ -333,7 +332,7 @@ async def _given_up(sensor: DotSensor) -> None:
     """As if nothing had been begun, as far as it can be reached."""
     try:
         await sensor.connect()
-    except (SourceLostError, DotMessageError):
+    except SourceLostError:
         await sensor.disconnect()
         return
     await let_go(sensor, is_synchronised=True)
@@ -344,7 +343,7 @@ async def let_go(sensor: DotSensor, *, is_synchronised: bool) -> None:
 
     One that records is let be. Never raises; its link stays.
     """
-    with suppress(SourceLostError, SourceRefusedError, DotMessageError):
+    with suppress(SourceLostError, SourceRefusedError):
         await refuse_while_recording(sensor)
         await sensor.stop_stream()
         if is_synchronised:

@@ -1,16 +1,19 @@
-"""A Movella DOT that is not there: what it answers, streams, records and sends, and what may go wrong with it.
+"""A Movella DOT that is not there: what it answers, streams, and how its clock finds those of others.
 
-Its messages are laid out here once more, from the printed specification and not from the driver, which is held to them.
+What it records is in `dot_memory.py`, what may go wrong with it in `dot_faults.py`. Its messages are laid out there and
+here once more, from the printed specification and not from the driver, which is held to them.
 """
 
 import struct
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from bleak.assigned_numbers import CharacteristicPropertyName
 
 from devices.emulators.bluetooth import EmulatedCharacteristic, Notification
+from devices.emulators.dot_faults import DotFaults
+from devices.emulators.dot_memory import TURN_US, EmulatedMemory, Sample, message
 
 Motion = Callable[[float], Sequence[float]]
 """Orientation (4), force in m/s2 (3) and rate in deg/s (3) at an instant of the host's clock, ns."""
@@ -36,67 +39,8 @@ CHARACTERISTICS = [
 ]
 MODE_SIZES = {26: (0x2002, 63), 21: (0x2003, 40)}
 STEPS_US = {60: 16667, 30: 33333, 120: 8333}
-TURN_US = 1 << 32
 SYNC_TAKES_NS = 12_000_000_000
 TOGETHER_NS = 1_500_000_000
-IDLE, RECORDING, EXPORTING = 0x06, 0x40, 0x70
-SENT_AT_ONCE = 8  # notices of a file in one step
-MEMORY = 16_000_000  # bytes
-MOST_SAMPLES = MEMORY // 62
-
-
-@dataclass
-class DotFaults:
-    """What goes wrong. Shares are of notifications; counts are used up.
-
-    Attributes
-    ----------
-    sync_results
-        What each attempt of synchronising ends with; a good one after the last.
-    stale_s
-        So far its clock is off after synchronising, which it calls good.
-    has_26
-        Whether its firmware knows that mode.
-    again
-        Whether it sends a file from the middle on, also while it sends nothing; while it sends it does in any case.
-    """
-
-    loss: float = 0.0
-    doubles: float = 0.0
-    cut: float = 0.0
-    damaged: float = 0.0
-    silent: float = 0.0
-    sync_results: list[int] = field(default_factory=list)
-    stale_s: float = 0.0
-    has_26: bool = True
-    again: bool = True
-    busy: int = 0
-    stale_answers: int = 0
-    """So many readings of an answer give what was answered before."""
-    ends_after_s: float = 0.0
-    """So long it writes what it holds, once told to end a recording."""
-    full_by_notice: bool = False
-    """Whether only a notice says that its memory is full."""
-    echoes: bool = False
-    """Whether the result of synchronising is told with what it answers: printed both ways."""
-    drops_after: list[int] = field(default_factory=list)
-    """After so many operations each the link is lost."""
-    drops_export_after: list[int] = field(default_factory=list)
-    """After so many samples of a file each the link is lost."""
-    unreachable_until_ns: int = 0
-    unreachable_after_drop_s: float = 0.0
-    """So long it stays away once its link was lost while it sent a file."""
-
-
-@dataclass
-class EmulatedFile:
-    """A recording in its memory: ticks and values (10) of each sample, and when it was taken by the host's clock."""
-
-    utc_s: int
-    timer_s: int
-    ticks: list[int]
-    values: Sequence[Sequence[float]]
-    taken_s: list[float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,7 +91,7 @@ class EmulatedDot:
         self.settings = bytearray(struct.pack("<24xHB5x", 30, 0))
         self.is_streaming, self.mode = False, 26
         self._next = 0
-        self.sent: list[tuple[int, tuple[float, ...], float]] = []
+        self.sent: list[Sample] = []
         self.is_up = False
         self.subscribed: set[int] = set()
         self.blinked = 0
@@ -158,19 +102,8 @@ class EmulatedDot:
         self._sync_from_ns = 0
         self._peers: Sequence[EmulatedDot] = ()
         self._must_read_first = False
-        self.state = IDLE
-        self.files: list[EmulatedFile] = []
-        self.erased: list[EmulatedFile] = []
-        self.room = MOST_SAMPLES
-        self._record_utc_s = self._record_from = self._timer_s = 0
-        self._ends_ns: int | None = None
-        self._told_end_ns = 0
-        self._export: list[bytes] = []
-        self._exported: EmulatedFile | None = None
-        self.unreadable: set[int] = set()  # samples of a file that it never sends
-        self.unheard: list[int] = []  # and some that are lost on their way, once each
-        self.exported = self._sent_of_file = 0  # samples of files, ever and since it was connected
-        self.cut_recordings = 0  # by settings that were written meanwhile
+        self.memory = EmulatedMemory(self._grid, self._measured, now_ns, self.faults, self.chance)
+        self._sent_of_file = 0  # samples since it was connected
 
     @staticmethod
     def meet(dots: "Sequence[EmulatedDot]") -> None:
@@ -180,7 +113,7 @@ class EmulatedDot:
 
     def restart(self) -> None:
         """It was switched off and on: it does nothing, and its clock begins anew. What it recorded is there."""
-        self._end_recording()
+        self.memory.end_recording()
         self.is_streaming, self._common, self._sync_root = False, None, None
         self._own = replace(self._own, power_on_ns=self._now_ns())
 
@@ -239,9 +172,7 @@ class EmulatedDot:
         self.is_up = False
         self.subscribed.clear()
         self._notices.clear()
-        self._export.clear()
-        if self.state == EXPORTING:
-            self.state = IDLE
+        self.memory.break_off()
 
     def read(self, characteristic: int) -> bytes:
         if characteristic != 0x7002 and self._must_read_first:
@@ -277,21 +208,15 @@ class EmulatedDot:
         elif characteristic == 0x7001:
             if sum(data) % 256 or len(data) != data[1] + 3:
                 return
-            (self._synchronise if data[0] == 2 else self._remember)(data[2:-1])
+            if data[0] == 2:
+                self._synchronise(data[2:-1])
+            else:
+                self._tell_answer(self.memory.answered(data[2:-1], is_streaming=self.is_streaming))
 
     def notifications(self) -> list[Notification]:
         """What is due now."""
         said = self._streamed() if self.is_streaming else []
-        self._look_for_room()
-        self._look_for_end()
-        export, self._export = self._export[:SENT_AT_ONCE], self._export[SENT_AT_ONCE:]
-        if self.state == EXPORTING and not self._export:
-            self.state = IDLE
-        self.exported += len(export)
-        for notice in [*self._notices, *export]:
-            if notice in export and self.chance.random() < self.faults.silent:
-                continue
-            said.append((0x7003, notice + bytes(160 - len(notice))))
+        said += [(0x7003, notice + bytes(160 - len(notice))) for notice in [*self._notices, *self.memory.due()]]
         self._notices.clear()
         return [one for one in said if one[0] in self.subscribed] if self.is_up else []
 
@@ -299,7 +224,7 @@ class EmulatedDot:
         if data[0] & 0x01:
             self.blinked += 1
         if data[0] & 0x30:
-            self._cut_recording()
+            self.memory.cut_recording()
         if self._common is not None or self.is_streaming:
             return  # neither can be changed after that was started
         if data[0] & 0x10:
@@ -308,16 +233,11 @@ class EmulatedDot:
             self.settings[26] = data[26]
 
     def _switch(self, data: bytes) -> None:
-        self._cut_recording()
+        self.memory.cut_recording()
         if data[2] not in MODE_SIZES or (data[2] == 26 and not self.faults.has_26) or self.rate_hz == 120:
             return
         self.is_streaming, self.mode = bool(data[1]), data[2]
         self._next = self._grid(self._now_ns()) + 1
-
-    def _cut_recording(self) -> None:
-        if self.state == RECORDING:
-            self.cut_recordings += 1
-            self._end_recording()
 
     # streaming
 
@@ -328,7 +248,7 @@ class EmulatedDot:
     def _grid(self, at_ns: int) -> int:
         return int(self._clock_us(at_ns) // self.step_us)
 
-    def _measured(self, number: int) -> tuple[int, tuple[float, ...], float]:
+    def _measured(self, number: int) -> Sample:
         ticks = number * self.step_us
         taken_ns = self._taken_ns(ticks)
         return ticks, tuple(np.array(self._motion(taken_ns), dtype=np.float32).tolist()), taken_ns
@@ -356,10 +276,10 @@ class EmulatedDot:
     def _synchronise(self, data: bytes) -> None:
         match data[0]:
             case 0x08:
-                self._notices.append(_message(2, b"\x51\x04" if self._common else b"\x51\x09"))
+                self._notices.append(message(2, b"\x51\x04" if self._common else b"\x51\x09"))
             case 0x02:
                 self._common, self._sync_root = None, None
-                self._notices.append(_message(2, b"\x50\x00"))
+                self._notices.append(message(2, b"\x50\x00"))
             case 0x01:
                 self._sync_root, self._sync_from_ns = data[1:7][::-1], self._now_ns()
 
@@ -371,142 +291,20 @@ class EmulatedDot:
         result = self.faults.sync_results.pop(0) if self.faults.sync_results else 0
         if not was_together:
             result = 0x09
-        self._tell_answer(_message(2, bytes([3, result, 1, *self._sync_root] if self.faults.echoes else [3, result])))
+        self._tell_answer(message(2, bytes([3, result, 1, *self._sync_root] if self.faults.echoes else [3, result])))
         self._sync_root = None
         if result == 0 and root is not None:
             drift_us = float(self.chance.uniform(-100, 100)) + self.faults.stale_s * 1e6
             self._common = replace(root._own, drift_us=drift_us)
             self._must_read_first = True
 
+    def _tell_answer(self, answer: bytes) -> None:
+        self._answer_before, self._answer = self._answer, answer
+
     @property
     def began_ns(self) -> int:
         """When it was told to synchronise."""
         return self._sync_from_ns
-
-    # its memory
-
-    def _remember(self, data: bytes) -> None:
-        order = data[0]
-        self._look_for_room()
-        self._look_for_end()
-        if order == 0x02:
-            self._tell_answer(_message(1, bytes([1, self.state, order])))
-            return
-        if self.faults.busy:
-            self.faults.busy -= 1
-            self._tell_answer(_message(1, bytes([1, 0x03, order])))
-            return
-        result = self._done(order, data[1:])
-        self._tell_answer(_message(1, bytes([1, result, order]) + data[1:]))
-
-    def _tell_answer(self, answer: bytes) -> None:
-        self._answer_before, self._answer = self._answer, answer
-
-    def _done(self, order: int, data: bytes) -> int:
-        if self.state == RECORDING and order != 0x41:
-            return 0x03
-        match order:
-            case 0x40:
-                if self.is_streaming:
-                    return 0x03
-                if self._used() >= self.room:
-                    self._notices.append(_message(1, b"\x34"))
-                    return 0x00 if self.faults.full_by_notice else 0x34
-                self._record_utc_s, self._timer_s = struct.unpack("<IH", data)
-                self._record_from, self.state = self._grid(self._now_ns()) + 1, RECORDING
-            case 0x41 if self._ends_ns is None and self.state == RECORDING:
-                self._told_end_ns = self._now_ns()
-                self._ends_ns = self._told_end_ns + round(self.faults.ends_after_s * 1e9)
-                self._look_for_end()
-            case 0x41:
-                pass
-            case 0x50:
-                whole = self._flash()
-                self._notices += [_message(1, b"\x51" + whole[at : at + 128]) for at in range(0, len(whole), 128)]
-                self._notices.append(_message(1, b"\x52"))
-            case 0x60:
-                self._notices += self._told_of(data[0])
-            case 0x74:
-                return 0 if data == bytes([0, 1, 7, 8, 10]) else 0x03
-            case 0x70:
-                if not 0 < data[0] <= len(self.files):
-                    return 0x03
-                self._exported = self.files[data[0] - 1]
-                self._send_from(0)
-            case 0x75:
-                if self._exported is None or not (self.faults.again or self.state == EXPORTING):
-                    return 0x02
-                self._send_from(*struct.unpack("<I", data))
-            case 0x73:
-                self._export.clear()
-                self.state = IDLE
-                self._notices.append(_message(1, b"\x73"))
-            case 0x30:
-                self.erased += self.files
-                self.files, self._exported = [], None
-                self._notices.append(_message(1, b"\x33"))
-            case _:
-                return 0x03
-        return 0
-
-    def _told_of(self, number: int) -> list[bytes]:
-        if not 0 < number <= len(self.files):
-            return [_message(1, b"\x63")]
-        file = self.files[number - 1]
-        told = struct.pack("<4sIHIH112x", bytes.fromhex("6F636552"), 128, 0x0100, file.utc_s, file.timer_s)
-        return [_message(1, b"\x61" + told), _message(1, b"\x62")]
-
-    def _flash(self) -> bytes:
-        """Its header, whose bytes may look like the beginnings of files, and a byte for each piece of its memory."""
-        pieces = b"".join(b"\xee" + b"\xcc" * -(-len(file.ticks) * 62 // 228_000) for file in self.files)
-        used = len(pieces)
-        return struct.pack("<4sIHIII106x", bytes.fromhex("73616C46"), 128, 0x0200, 0x5EEEEE00, MEMORY, used) + pieces
-
-    def _send_from(self, first: int) -> None:
-        assert self._exported is not None
-        file = self._exported
-        self._export = []
-        for number in range(first, len(file.ticks)):
-            if number in self.unheard:
-                self.unheard.remove(number)
-                continue
-            if number in self.unreadable or self.chance.random() < self.faults.damaged:
-                self._export.append(_message(1, b"\x76" + struct.pack("<I", number) + bytes(46)))
-                continue
-            sample = struct.pack("<I10fH", file.ticks[number] % TURN_US, *file.values[number], 0)
-            self._export.append(_message(1, b"\x71" + struct.pack("<I", number) + sample))
-        self._export.append(_message(1, b"\x72"))
-        self.state = EXPORTING
-
-    def _look_for_room(self) -> None:
-        if self.state == RECORDING and self._recorded() > self.room:
-            self._end_recording()
-            self._notices.append(_message(1, b"\x34"))
-
-    def _used(self) -> int:
-        return sum(len(file.ticks) for file in self.files)
-
-    def _recorded(self) -> int:
-        return self._used() + self._grid(self._now_ns()) - self._record_from + 1
-
-    def _look_for_end(self) -> None:
-        if self._ends_ns is not None and self._now_ns() >= self._ends_ns:
-            self._end_recording()
-            self._notices.append(_message(1, b"\x41"))
-
-    def _end_recording(self) -> None:
-        if self.state != RECORDING:
-            return
-        end_ns = self._now_ns() if self._ends_ns is None else self._told_end_ns
-        last = min(self._grid(end_ns), self._record_from + self.room - self._used())
-        samples = [self._measured(number) for number in range(self._record_from, last + 1)]
-        ticks, values, taken_s = (
-            [one[0] for one in samples],
-            [one[1] for one in samples],
-            [one[2] / 1e9 for one in samples],
-        )
-        self.files.append(EmulatedFile(self._record_utc_s, self._timer_s, ticks, values, taken_s))
-        self.state, self._ends_ns = IDLE, None
 
     @property
     def is_synchronised(self) -> bool:
@@ -515,8 +313,3 @@ class EmulatedDot:
     def taken_ns(self, ticks: int) -> float:
         """When the sample of these ticks was taken, by the host's clock."""
         return self._taken_ns(ticks)
-
-
-def _message(group: int, data: bytes) -> bytes:
-    body = bytes([group, len(data)]) + data
-    return body + bytes([-sum(body) % 256])

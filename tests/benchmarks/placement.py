@@ -18,7 +18,7 @@ import numpy as np
 
 from core.body import LEG_SITES, Segment, Side, Site
 from core.placement.chains import Chains, find_chains
-from core.placement.labels import about_labels
+from core.placement.labels import doubted_labels
 from core.placement.smoothed_tracks import Tracks
 from core.samples import FloatArray, RateKind, RecordingKind, Session
 from core.sensors import SensorTracks
@@ -144,7 +144,7 @@ def arranged(tracks: Tracks, standing: Mapping[str, FloatArray]) -> Found:
 
 def doubted(session: Session) -> set[frozenset[str]]:
     """The groups of sites that the labels' check names."""
-    return {frozenset(finding.where.split(", ")[1:]) for finding in about_labels(tracks_of(session))}
+    return set(map(frozenset, doubted_labels(tracks_of(session)).groups))
 
 
 def swapped(session: Session, one: Site, other: Site) -> Session:

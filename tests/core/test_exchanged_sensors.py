@@ -2,14 +2,19 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from app.wording import sentence
 from core.analysis import analyse
 from core.body import Joint, Side, Site
 from core.findings import Finding
+from core.pair import OrientedTrack
+from core.placement.chains import find_chains
+from core.placement.labels import exchanged_sites
 from core.results import Analysis
 from core.samples import Session
+from core.tracks import Track
 from core.verdicts.model import Verdict
 from devices.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
 from tests.benchmarks.placement import swapped
@@ -62,6 +67,23 @@ def test_sensors_of_a_leg_in_a_circle_are_one_finding(worn: Session) -> None:
     assert finding.key == "labels_look_mixed"
 
 
-def test_what_was_swapped_twice_is_as_it_was(worn: Session) -> None:
-    twice = swapped(swapped(worn, *LEFT_LEG[:2]), *LEFT_LEG[:2])
-    assert replace(twice, findings=()) == replace(worn, findings=()) or about_labels(analyse(twice)) == []
+def test_a_recording_that_is_called_like_a_site_brings_no_doubt_on_the_sensor_there(worn: Session) -> None:
+    exchanged = swapped(worn, Site.LEFT_THIGH, Site.LEFT_SHANK)
+    standing, moving, walk = exchanged.recordings
+    called = replace(exchanged, recordings=(standing, replace(moving, name="left_foot"), walk))
+    assert analyse(called).recordings[-1].doubted_sites == {Site.LEFT_THIGH, Site.LEFT_SHANK}
+
+
+def test_sensors_that_lie_still_tell_neither_chains_nor_which_end_is_up() -> None:
+    """With rates of zero no joint has a place, and no leg a length."""
+    rng = np.random.default_rng(3)
+    upright = np.tile([1.0, 0.0, 0.0, 0.0], (300, 1))
+    tracks = {}
+    for site in LEFT_LEG:
+        acc = np.array([0.0, 0.0, 9.81]) + rng.normal(scale=0.01, size=(300, 3))
+        track = Track(0.0, 0.01, np.zeros((300, 3)), acc, None, None, np.ones(300, dtype=bool))
+        tracks[str(site)] = [OrientedTrack(track, upright)]
+    chains = find_chains(tracks)
+    assert chains is not None
+    assert not chains.is_certain
+    assert exchanged_sites(tracks, {}) == []

@@ -29,7 +29,8 @@ from core.samples import ImuBlock
 from devices.decoders import DECODERS
 from devices.dot.memory import MemoryFullError
 from devices.dot.sensor import DotRefusedError
-from devices.emulators.dot import DotFaults, EmulatedDot
+from devices.emulators.dot import EmulatedDot
+from devices.emulators.dot_faults import DotFaults
 from devices.live import SourceLostError, SourceRefusedError
 from devices.source import DecodedSensor
 from tests.devices.dot.virtual_time import VirtualRadio
@@ -185,7 +186,7 @@ def _memory(rng: random.Random, wearing: WornDots, folder: Path, seen: Counter[s
     """Record, fetch, look into the journal, erase; as often as it takes."""
     memory, radio = MemoryRecording(wearing.group), wearing.radio
     for dot in wearing.dots:
-        dot.room = rng.choice([10**6, 10**6, 10**6, 400, 0])
+        dot.memory.room = rng.choice([10**6, 10**6, 10**6, 400, 0])
     if not _made_ready(wearing, seen):
         return ["dead end: never made ready to record"]
     if rng.random() < 0.1:
@@ -200,7 +201,7 @@ def _memory(rng: random.Random, wearing: WornDots, folder: Path, seen: Counter[s
             wearing.air.drop(dot)
             dot.restart()
         if rng.random() < 0.02:
-            dot.unreadable = {rng.randrange(500)}
+            dot.memory.unreadable = {rng.randrange(500)}
     if not any(not memory.end() for _ in range(TRIES)):
         return ["dead end: a recording goes on"]
     writer = JournalWriter.create(folder, ID, KEY, room=NO_ROOM_ASKED, now_ns=radio.now_ns)
@@ -283,11 +284,11 @@ def _stamped(wearing: WornDots, sensors: Mapping[str, DecodedSensor], opened_s: 
 
 
 def _taken_s(dot: EmulatedDot) -> list[float]:
-    return [one_s for file in dot.files for one_s in file.taken_s]
+    return [one_s for file in dot.memory.files for one_s in file.taken_s]
 
 
 def _values(dot: EmulatedDot) -> list[list[float]]:
-    return [[*_rates(tuple(one)), *one[4:7]] for file in dot.files for one in file.values]
+    return [[*_rates(tuple(one)), *one[4:7]] for file in dot.memory.files for one in file.values]
 
 
 def _begun(memory: MemoryRecording, wearing: WornDots, seen: Counter[str]) -> bool:
@@ -298,7 +299,7 @@ def _begun(memory: MemoryRecording, wearing: WornDots, seen: Counter[str]) -> bo
             seen["recordings refused"] += 1
             if isinstance(refused, MemoryFullError):
                 for dot in wearing.dots:
-                    dot.room = 10**6  # fetched and erased, as the refusal says
+                    dot.memory.room = 10**6  # fetched and erased, as the refusal says
             elif "clock" in str(refused):
                 seen["synchronised again, for one was switched off"] += 1
                 _made_ready(wearing, seen)
@@ -314,8 +315,8 @@ def _held_against(
     result = fetching.results.get(name)
     if result is None:
         return []
-    file = next(one for one in dot.files if one.utc_s == result.file.started_utc_s)
-    faults = [f"{name}: its file was cut by what was written to it"] if dot.cut_recordings else []
+    file = next(one for one in dot.memory.files if one.utc_s == result.file.started_utc_s)
+    faults = [f"{name}: its file was cut by what was written to it"] if dot.memory.cut_recordings else []
     count, block = len(file.ticks), blocks.get(name)
     seen["files fetched"] += 1
     seen["files complete"] += result.is_complete
@@ -346,7 +347,7 @@ def _erased(
     faults, fetching = [], memory.fetching
     assert fetching is not None  # as above
     for dot, sensor in zip(wearing.dots, wearing.group.sensors, strict=True):
-        name, before = sensor.name, len(dot.files)
+        name, before = sensor.name, len(dot.memory.files)
         is_confirmed = rng.random() < 0.8
         for _ in range(3):
             try:
@@ -356,11 +357,11 @@ def _erased(
                 seen["erasures refused"] += 1
             except SourceLostError:
                 continue
-        if not dot.erased:
+        if not dot.memory.erased:
             continue
         seen["memories erased"] += 1
         begun_s = fetching.results[name].file.started_utc_s
-        samples = sum(len(file.ticks) for file in dot.erased if file.utc_s >= begun_s)
+        samples = sum(len(file.ticks) for file in dot.memory.erased if file.utc_s >= begun_s)
         if not is_confirmed or not kept[name] or len(blocks[name]) != samples:
             faults.append(f"{name}: {samples} samples of {before} files erased, {len(blocks[name])} kept")
     return faults

@@ -149,8 +149,8 @@ def run(
 
 def _taken(dot: EmulatedDot, site: Site) -> Mapping[str, FloatArray]:
     """What it sent live, then what it recorded."""
-    values = [one[1] for one in dot.sent] + [row for file in dot.files for row in file.values]
-    at_s = [one[2] / 1e9 for one in dot.sent] + [at for file in dot.files for at in file.taken_s]
+    values = [one[1] for one in dot.sent] + [row for file in dot.memory.files for row in file.values]
+    at_s = [one[2] / 1e9 for one in dot.sent] + [at for file in dot.memory.files for at in file.taken_s]
     every = np.array(values)
     return {
         f"sent {site}": np.hstack([np.pi / 180 * every[:, 7:], every[:, 4:7]]),

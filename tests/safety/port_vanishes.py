@@ -6,13 +6,8 @@ Six emulated x-IMU3s at 200 Hz, each at a pseudo-terminal of its own; in each ro
 again, at moments of their own.
 """
 
-import argparse
-import random
 import sys
-import tempfile
-import threading
-import time
-from dataclasses import dataclass, field
+from collections.abc import Collection
 from functools import partial
 from pathlib import Path
 
@@ -27,25 +22,10 @@ from devices.ports import PortInfo, SerialPort
 from devices.source import DecodedSensor
 from devices.stream import ByteSource
 from devices.ximu3 import Ximu3
-from tests.safety.journal_material import ID, KEY
-from tests.safety.live_material import open_journal
+from tests.safety.journal_material import KEY
+from tests.safety.vanishing import Pulling, Vanished, run
 
-SENSORS, VANISHING, RATE_HZ, LOOP = 6, 4, 200, 1900
-BACK_S, NOTICED_S, PATIENCE_S = 3.0, 1.0, 30.0
-
-
-@dataclass(slots=True)
-class Vanished:
-    """`back_ms` from a port's return to the sensor's next sample."""
-
-    back_ms: list[float] = field(default_factory=list)
-    faults: list[str] = field(default_factory=list)
-
-    def __str__(self) -> str:
-        return (
-            f"{len(self.back_ms)} ports vanished: {len(self.faults)} faults; back after "
-            f"{np.median(self.back_ms):.0f} ms (median), {max(self.back_ms):.0f} ms (max)"
-        )
+SENSORS, RATE_HZ, LOOP = 6, 200, 1900
 
 
 def motion(number: int) -> tuple[float, ...]:
@@ -54,7 +34,6 @@ def motion(number: int) -> tuple[float, ...]:
 
 
 def vanish_often(folder: Path, count: int, seed: int) -> Vanished:
-    rng, vanished = random.Random(seed), Vanished()
     names = [f"EMU{k:05d}" for k in range(SENSORS)]
     emulations = {
         name: Emulation(Ximu3Voice(name, motion, rate_hz=RATE_HZ), partial(PseudoTerminal, folder / name))
@@ -62,45 +41,20 @@ def vanish_often(folder: Path, count: int, seed: int) -> Vanished:
     }
     sources = [ByteSource(Ximu3(), SerialPort(PortInfo(emulation.place))) for emulation in emulations.values()]
     acquisition = Acquisition(sources)
+
+    def faults_in(path: Path, gone: Collection[str]) -> list[str]:
+        sensors = decode([path], KEY, DECODERS).sensors
+        missing = [f"{name} is not there" for name in names if name not in sensors]
+        heard = [name for name in names if name in sensors]
+        return missing + [fault for name in heard for fault in faults_of(name, sensors[name], gaps=int(name in gone))]
+
     acquisition.start()
     try:
-        while len(vanished.back_ms) < count:
-            number = min(VANISHING, count - len(vanished.back_ms))
-            _one_round(folder, acquisition, emulations, rng.sample(names, number), rng, vanished)
+        return Pulling(acquisition, emulations, faults_in, earliest_s=0.3, settles_s=0.5).often(folder, count, seed)
     finally:
         acquisition.close()
         for emulation in emulations.values():
             emulation.close()
-    return vanished
-
-
-def _one_round(
-    folder: Path,
-    acquisition: Acquisition,
-    emulations: dict[str, Emulation],
-    chosen: list[str],
-    rng: random.Random,
-    vanished: Vanished,
-) -> None:
-    acquisition.record(open_journal(folder, ID))
-    plans = [(name, rng.uniform(0.3, 1.0), rng.uniform(0.05, 1.5)) for name in chosen]
-    threads = [
-        threading.Thread(target=_vanish_once, args=(acquisition, emulations[name], name, after_s, away_s, vanished))
-        for name, after_s, away_s in plans
-    ]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    time.sleep(0.5)
-    summary = acquisition.stop_recording()
-    sensors = decode([summary.path], KEY, DECODERS).sensors
-    for name in emulations:
-        if name not in sensors:
-            vanished.faults.append(f"{name} is not there")
-            continue
-        vanished.faults += faults_of(name, sensors[name], gaps=int(name in chosen))
-    summary.path.unlink()
 
 
 def faults_of(name: str, decoded: DecodedSensor, gaps: int) -> list[str]:
@@ -118,35 +72,5 @@ def faults_of(name: str, decoded: DecodedSensor, gaps: int) -> list[str]:
     return faults
 
 
-def _vanish_once(
-    acquisition: Acquisition, emulation: Emulation, name: str, after_s: float, away_s: float, vanished: Vanished
-) -> None:
-    time.sleep(after_s)
-    emulation.vanish()
-    time.sleep(away_s)
-    before = acquisition.status()[name].counts.received
-    emulation.come_back()
-    back_s = time.monotonic()
-    while acquisition.status()[name].counts.received == before and time.monotonic() - back_s < PATIENCE_S:
-        time.sleep(0.005)
-    took_s = time.monotonic() - back_s
-    vanished.back_ms.append(1000 * took_s)
-    if took_s > BACK_S:
-        vanished.faults.append(f"{name}: back after {took_s:.1f} s")
-
-
-def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--count", type=int, default=200)
-    parser.add_argument("--seed", type=int, default=1)
-    wanted = parser.parse_args()
-    with tempfile.TemporaryDirectory(prefix="gaitwright-ports-") as folder:
-        vanished = vanish_often(Path(folder), wanted.count, wanted.seed)
-    for fault in vanished.faults:
-        print(fault)
-    print(vanished)
-    return 1 if vanished.faults else 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(run(__doc__, vanish_often))

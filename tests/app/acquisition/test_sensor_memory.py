@@ -16,7 +16,8 @@ from devices.decoders import DECODERS
 from devices.dot.memory import MemoryFullError
 from devices.dot.sensor import DotRefusedError, DotSensor
 from devices.dot.source import DotGroup
-from devices.emulators.dot import DotFaults, EmulatedDot
+from devices.emulators.dot import EmulatedDot
+from devices.emulators.dot_faults import DotFaults
 from devices.live import SourceLostError, SourceRefusedError
 from tests.devices.dot.virtual_time import VirtualRadio, worn
 from tests.safety.journal_material import ID, KEY, NO_ROOM_ASKED
@@ -84,7 +85,7 @@ class RecordedByDot:
     """What one sensor recorded: the oracle."""
 
     def __init__(self, dot: EmulatedDot) -> None:
-        file = (dot.files or dot.erased)[0]
+        file = (dot.memory.files or dot.memory.erased)[0]
         self.ticks = file.ticks
         values = np.array(file.values)
         self.gyr_rad_s, self.acc_m_s2, self.q = values[:, 7:] * (np.pi / 180), values[:, 4:7], values[:, :4]
@@ -132,7 +133,7 @@ def test_six_record_at_120_hz_and_are_fetched_through_lost_links_and_damage(
 def test_what_cannot_be_had_is_a_gap_that_is_said_by_number(radio: VirtualRadio, tmp_path: Path) -> None:
     session = MemorySession(radio, tmp_path, [DotFaults(), DotFaults()])
     session.record(10.0)
-    session.dots[0].unreadable = {300, 301, 302, 900}
+    session.dots[0].memory.unreadable = {300, 301, 302, 900}
     session.fetch()
     assert session.close() == {"DOT 0001": True, "DOT 0002": True}
     result = session.files.results["DOT 0001"]
@@ -144,9 +145,9 @@ def test_what_cannot_be_had_is_a_gap_that_is_said_by_number(radio: VirtualRadio,
     assert np.round(steps[[299, 896]] / np.median(steps)).tolist() == [4, 2]
     with pytest.raises(DotRefusedError, match="samples that were not fetched"):
         session.erase()
-    assert session.dots[0].files
+    assert session.dots[0].memory.files
     session.erase(may_lack=True)
-    assert not session.dots[0].files
+    assert not session.dots[0].memory.files
 
 
 def test_the_last_samples_are_asked_for_until_the_sensor_says_that_there_are_no_more(
@@ -155,7 +156,7 @@ def test_the_last_samples_are_asked_for_until_the_sensor_says_that_there_are_no_
     session = MemorySession(radio, tmp_path, [DotFaults()])
     session.record(5.0)
     last = len(session.file(0).ticks) - 1
-    session.dots[0].unheard = [last, last - 1]  # once each
+    session.dots[0].memory.unheard = [last, last - 1]  # once each
     session.fetch()
     assert session.files.results["DOT 0001"].samples == last + 1
     assert session.files.results["DOT 0001"].is_complete
@@ -165,7 +166,7 @@ def test_one_that_goes_on_only_while_it_sends_is_asked_then(radio: VirtualRadio,
     session = MemorySession(radio, tmp_path, [DotFaults(again=False)])
     session.record(5.0)
     last = len(session.file(0).ticks) - 1
-    session.dots[0].unheard = [last - 1, last]
+    session.dots[0].memory.unheard = [last - 1, last]
     session.fetch()
     assert session.close() == {"DOT 0001": True}
     assert session.files.results["DOT 0001"].is_complete
@@ -186,11 +187,11 @@ def test_a_sensor_that_goes_away_while_it_is_fetched_is_named_and_goes_on_later(
     with pytest.raises(DotRefusedError, match="not known to be kept"):
         session.erase()
     radio.pass_s(300.0)
-    sent = session.dots[0].exported
+    sent = session.dots[0].memory.exported
     session.fetch()
     assert session.close() == {"DOT 0001": True, "DOT 0002": True}
     assert session.files.results["DOT 0001"].is_complete
-    assert session.dots[0].exported - sent < len(session.file(0).ticks) - 350, "what came is not sent again"
+    assert session.dots[0].memory.exported - sent < len(session.file(0).ticks) - 350, "what came is not sent again"
 
 
 def test_nothing_is_written_to_a_sensor_that_records_but_what_asks_for_its_state(
@@ -221,10 +222,10 @@ def test_nothing_is_written_to_a_sensor_that_records_but_what_asks_for_its_state
 
 def test_a_full_memory_is_a_refusal_and_nobody_else_records(radio: VirtualRadio, tmp_path: Path) -> None:
     session = MemorySession(radio, tmp_path, [DotFaults(), DotFaults()])
-    session.dots[1].room = 0
+    session.dots[1].memory.room = 0
     with pytest.raises(MemoryFullError, match="memory of DOT 0002 is full"):
         session.memory.begin(UTC_S)
-    assert [dot.state for dot in session.dots] == [0x06, 0x06]
+    assert [dot.memory.state for dot in session.dots] == [0x06, 0x06]
     session.writer.stop()
 
 
@@ -232,7 +233,7 @@ def test_a_recording_that_ended_because_the_memory_was_full_is_fetched_to_there(
     radio: VirtualRadio, tmp_path: Path
 ) -> None:
     session = MemorySession(radio, tmp_path, [DotFaults(), DotFaults()])
-    session.dots[0].room = 600
+    session.dots[0].memory.room = 600
     session.record(10.0)
     session.fetch()
     assert all(session.close().values())
@@ -245,10 +246,23 @@ def test_a_recording_that_ended_because_the_memory_was_full_is_fetched_to_there(
     assert results["DOT 0001"].is_complete
 
 
+def test_a_sensor_whose_end_could_not_be_fetched_is_not_said_to_have_ended_early(
+    radio: VirtualRadio, tmp_path: Path
+) -> None:
+    session = MemorySession(radio, tmp_path, [DotFaults()])
+    session.record(10.0)
+    session.dots[0].memory.unreadable = set(range(600, len(session.file(0).ticks)))
+    session.fetch()
+    (lack,) = session.memory.lacks()
+    assert session.files.results["DOT 0001"].samples == 600
+    assert (lack.early_s, lack.is_end_known) == (0.0, False)
+    session.writer.stop()
+
+
 @pytest.mark.parametrize("by_notice", [False, True], ids=["answered", "noticed"])
 def test_a_full_memory_is_understood_however_it_is_told(radio: VirtualRadio, tmp_path: Path, by_notice: bool) -> None:
     session = MemorySession(radio, tmp_path, [DotFaults(full_by_notice=by_notice)])
-    session.dots[0].room = 0
+    session.dots[0].memory.room = 0
     with pytest.raises(MemoryFullError):
         session.memory.begin(UTC_S)
     session.writer.stop()
@@ -283,11 +297,11 @@ def test_fetching_that_is_left_off_goes_on_where_it_was(radio: VirtualRadio, tmp
     with pytest.raises(InterruptedError):
         session.files.fetch(session.writer, progress)
     assert (list(session.files.results), came) == (["DOT 0001"], 500)
-    assert session.dots[1].state == 0x06, "it does not go on sending"
-    sent = session.dots[1].exported
+    assert session.dots[1].memory.state == 0x06, "it does not go on sending"
+    sent = session.dots[1].memory.exported
     session.fetch()
     assert session.close() == {"DOT 0001": True, "DOT 0002": True}
-    assert session.dots[1].exported - sent < len(session.file(1).ticks) - 450
+    assert session.dots[1].memory.exported - sent < len(session.file(1).ticks) - 450
 
 
 def test_another_file_that_was_fetched_meanwhile_is_not_gone_on_with(radio: VirtualRadio, tmp_path: Path) -> None:
@@ -339,9 +353,9 @@ def test_it_is_erased_only_once_it_is_in_the_journal_and_that_is_confirmed(radio
     assert session.close() == {"DOT 0001": True}
     with pytest.raises(DotRefusedError, match="not known to be kept"):
         session.erase(is_confirmed=False)
-    assert session.dots[0].files
+    assert session.dots[0].memory.files
     session.erase()
-    assert not session.dots[0].files
+    assert not session.dots[0].memory.files
 
 
 def test_a_journal_that_lacks_what_came_keeps_the_memory(radio: VirtualRadio, tmp_path: Path) -> None:
@@ -354,7 +368,7 @@ def test_a_journal_that_lacks_what_came_keeps_the_memory(radio: VirtualRadio, tm
     assert session.files.look_into((path,), KEY) == {"DOT 0001": False}
     with pytest.raises(DotRefusedError, match="not known to be kept"):
         session.erase()
-    assert session.dots[0].files
+    assert session.dots[0].memory.files
 
 
 def test_a_memory_that_holds_more_than_was_fetched_is_not_erased(radio: VirtualRadio, tmp_path: Path) -> None:
@@ -366,16 +380,16 @@ def test_a_memory_that_holds_more_than_was_fetched_is_not_erased(radio: VirtualR
     session.record(5.0)
     session.fetch()
     assert session.close() == {"DOT 0001": True}
-    assert len(session.block(0)) == len(session.dots[0].files[1].ticks)
+    assert len(session.block(0)) == len(session.dots[0].memory.files[1].ticks)
     with pytest.raises(DotRefusedError, match="holds 1 more recordings"):
         session.erase()
-    assert len(session.dots[0].files) == 2
+    assert len(session.dots[0].memory.files) == 2
 
 
 def test_forces_and_rates_that_changed_places_are_not_taken_for_kept(radio: VirtualRadio, tmp_path: Path) -> None:
     session = MemorySession(radio, tmp_path, [DotFaults()])
     session.record(5.0)
-    file = session.dots[0].files[0]
+    file = session.dots[0].memory.files[0]
     file.values = [(*values[:4], *values[7:], *values[4:7]) for values in file.values]
     session.fetch()
     assert session.close() == {"DOT 0001": False}

@@ -25,7 +25,7 @@ from app.wizard.worn_sensors import SourceChoice
 from app.workers.library_controller import LibraryController
 from core.body import LEG_SITES, Site
 from core.samples import Patient, Session
-from devices.emulators.dot import DotFaults
+from devices.emulators.dot_faults import DotFaults
 from devices.replay import ReplaySource
 from devices.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
 from tests.app.wizard.dressed_patient import Worn, dressed_patient

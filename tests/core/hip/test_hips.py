@@ -8,6 +8,7 @@ import pytest
 from core.analysis import analyse
 from core.body import Joint, Side, Site, hip_of
 from core.gait.clocks import ClockTie
+from core.hip.measure import with_sd
 from core.hip.results import ClockStatus
 from core.samples import Recording, RecordingKind, Session
 from core.verdicts.model import Verdict
@@ -26,6 +27,14 @@ def test_a_rigid_hip_reads_what_its_bones_do(side: Side) -> None:
     centre = walk.hips[hip_of(side)].identification
     assert np.linalg.norm(centre.centre_proximal_m - known.centre_proximal_m) < 0.01
     assert np.linalg.norm(centre.centre_distal_m - known.centre_distal_m) < 0.01
+
+
+def test_flexion_is_less_sure_far_from_its_median_and_beyond_80_degrees_whatever_turns_it_counts() -> None:
+    flexion_deg = np.array([10.0, 10.0, 10.0, 0.0, 79.0, 81.0, np.nan])
+    for turns in (-1, 0, 2):
+        found_rad, sd_rad = with_sd(np.deg2rad(flexion_deg + 360.0 * turns))
+        np.testing.assert_allclose(np.rad2deg(found_rad), flexion_deg, atol=1e-9)
+        np.testing.assert_allclose(np.rad2deg(sd_rad), [2.0, 2.0, 2.0, 3.0, 8.9, 13.1, np.nan], atol=1e-9)
 
 
 @pytest.mark.endurance
@@ -81,6 +90,18 @@ def test_a_short_walk_leaves_the_clocks_unknown() -> None:
     assert walk.leg_clock.status is ClockStatus.WITHHELD
     assert walk.leg_clock.applied_s == 0.0
     assert walk.verdicts.between.verdict is Verdict.WITHHELD
+
+
+def test_where_clocks_are_unknown_each_hip_stays_on_its_own_leg_s() -> None:
+    """As its knee and its strides do: on the other leg's it would be 40 ms beside them."""
+    wanted = replace(settings(late_s=0.04), recordings=(Standing(), Walk(strides=8)))
+    made = simulate(wanted)
+    walk = analyse(made.session).recordings[-1]
+    assert walk.hips[Joint.RIGHT_HIP].identification.lag_s == pytest.approx(-0.04, abs=0.002)
+    late = truth(made, Side.RIGHT, late_s=0.04)
+    own_clock = replace(late, time_s=late.time_s + 0.04)
+    assert np.std(flexion_error_deg(walk, own_clock, Side.RIGHT)) < 0.4
+    assert np.std(flexion_error_deg(walk, truth(made, Side.LEFT), Side.LEFT)) < 0.4
 
 
 def test_the_pelvis_tells_its_obliquity_rotation_and_the_turn() -> None:
@@ -154,8 +175,9 @@ def test_a_sensor_that_is_not_on_the_pelvis_is_told() -> None:
     recordings = tuple(swapped(one, Site.PELVIS, Site.LEFT_FOOT) for one in made.session.recordings)
     walk = analyse(replace(made.session, recordings=recordings)).recordings[-1]
     for side in Side:
-        if hip_of(side) in walk.hips:
+        if (hip := walk.hips.get(hip_of(side))) is not None:
             assert walk.verdicts.joint(hip_of(side)).shape.verdict is Verdict.WITHHELD
+            assert hip.identification.is_3d == np.isfinite(hip.abduction_rad).any()
     assert walk.leg_clock is None or walk.leg_clock.status is not ClockStatus.FOUND
 
 

@@ -4,7 +4,8 @@ from collections.abc import Sequence
 from functools import partial
 
 from devices.emulators.bluetooth import MTU
-from devices.emulators.dot import DotFaults, EmulatedDot
+from devices.emulators.dot import EmulatedDot
+from devices.emulators.dot_faults import DotFaults
 from tests.devices.bumble_air import ReachedByBumble
 from tests.devices.dot.virtual_time import VirtualRadio, turning
 from tests.devices.dot.worn_dots import Through

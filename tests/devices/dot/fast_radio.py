@@ -11,7 +11,8 @@ from collections.abc import Sequence
 
 from devices.bluetooth import Radio
 from devices.emulators.bluetooth import Air
-from devices.emulators.dot import DotFaults, EmulatedDot, Motion
+from devices.emulators.dot import EmulatedDot, Motion
+from devices.emulators.dot_faults import DotFaults
 from tests.devices.dot.virtual_time import turning
 
 SPEED = 50.0

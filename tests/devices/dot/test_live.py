@@ -11,7 +11,7 @@ import pytest
 from core.samples import FloatArray
 from devices.dot.source import DotSource, NotSynchronisedError
 from devices.dot.synchronising import SyncStage
-from devices.emulators.dot import DotFaults
+from devices.emulators.dot_faults import DotFaults
 from devices.live import SourceRefusedError
 from devices.source import DecodedSensor
 from tests.devices.dot.virtual_time import VirtualRadio
@@ -325,8 +325,8 @@ def test_one_that_records_in_its_memory_is_only_asked_for_its_state(radio: Virtu
     dot.write(0x7001, bytes.fromhex("010740DF503B5BFFFFF5"))
     with pytest.raises(SourceRefusedError, match="recording in its memory"):
         wearing.open()
-    assert dot.state == 0x40
-    assert dot.files == []
+    assert dot.memory.state == 0x40
+    assert dot.memory.files == []
 
 
 # what it is to the application

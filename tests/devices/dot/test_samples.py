@@ -6,7 +6,8 @@ import struct
 import numpy as np
 import pytest
 
-from devices.dot.messages import DotMessage
+from devices.dot.decoder import DotDecoder, file_settings
+from devices.dot.messages import DotMessage, RecordedFile
 from devices.dot.samples import DotFramer, FileFramer
 from devices.notifications import framed
 from devices.source import SourceInfo
@@ -113,6 +114,17 @@ def test_a_file_is_put_together_from_what_came_in_any_order_and_twice_also_where
     assert [row[0] for row in rows] == pytest.approx([begin_s + k * 0.008333 for k in (0, 1, 2, 3, 6, 7)])
     assert rows[0][1:] == pytest.approx((math.pi / 2, -math.pi, 2 * math.pi, 1.0, -2.0, 9.75))
     assert orientations[0][1:] == (0.5, -0.5, 0.5, 0.5)
+
+
+def test_a_notification_of_a_file_that_was_cut_where_the_link_was_lost_costs_none_of_what_follows() -> None:
+    source = SourceInfo("movella-dot", "1", "", ("DOT 0001",), file_settings(RecordedFile(1, 1_600_000_000), 120.0))
+    decoder = DotDecoder()
+    decoder.begin(source)
+    decoder.feed(data(0, 0) + data(1, 8333) + data(2, 16667)[:30], 0.0)
+    decoder.begin(source)
+    decoder.feed(b"".join(data(number, round(number * 8333.3)) for number in range(2, 10)), 1.0)
+    one = decoder.finish()["DOT 0001"]
+    assert (len(one.block), one.counts.lost, one.counts.damaged) == (10, 0, 0)
 
 
 @pytest.mark.parametrize("more", [b"", b"\0\0\0\0"], ids=["as it was chosen", "with more than was chosen"])

@@ -14,7 +14,7 @@ from devices.dot.memory import list_files, record, stop
 from devices.dot.sensor import DotRefusedError, is_dot
 from devices.dot.source import NotSynchronisedError
 from devices.emulators.bluetooth import MTU
-from devices.emulators.dot import DotFaults
+from devices.emulators.dot_faults import DotFaults
 from tests.devices.dot.by_bumble import by_bumble, through
 from tests.devices.dot.virtual_time import VirtualRadio
 from tests.devices.dot.worn_dots import RAD, WornDots, not_there
@@ -115,7 +115,7 @@ def test_six_record_and_are_fetched_through_three_lost_links_each_and_damage(
     for dot, sensor in zip(wearing.dots, wearing.group.sensors, strict=True):
         assert not dot.faults.drops_export_after, "its link was lost three times"
         assert fetching.results[sensor.name].is_complete
-        values = np.array(dot.files[0].values)
+        values = np.array(dot.memory.files[0].values)
         assert np.array_equal(sensors[sensor.name].block.gyr_rad_s, values[:, 7:] * RAD)
 
 

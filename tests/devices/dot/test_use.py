@@ -4,11 +4,13 @@ from collections.abc import Iterator
 
 import pytest
 
-from devices.dot.memory import OwnClockError, record
+from devices.dot.memory import OwnClockError, list_files, record, stop
+from devices.dot.messages import SYNC_GROUP, DotMessage
 from devices.dot.sensor import DotRefusedError
 from devices.dot.source import DotUse
 from devices.dot.synchronising import SyncStage
-from devices.emulators.dot import DotFaults
+from devices.emulators.bluetooth import Notification
+from devices.emulators.dot_faults import DotFaults
 from devices.live import SourceRestartedError
 from devices.quiet import Quiet
 from tests.devices.dot.virtual_time import VirtualRadio
@@ -36,6 +38,73 @@ def test_a_rate_is_not_changed_after_synchronising_and_a_recording_at_another_is
     assert [dot.rate_hz for dot in wearing.dots] == [60, 60]
     with pytest.raises(DotRefusedError, match="does not have the rate"):
         radio.run(record(wearing.group.sensors, UTC_S, 120))
+
+
+def test_one_that_says_too_little_of_its_rate_is_a_refusal_and_nobody_records(
+    radio: VirtualRadio, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    wearing = WornDots(radio, [DotFaults(), DotFaults()])
+    wearing.group.make_ready_to_record()
+    cut = wearing.dots[1]
+    whole = cut.read
+    monkeypatch.setattr(cut, "read", lambda which: whole(which)[:4] if which == 0x1002 else whole(which))
+    with pytest.raises(DotRefusedError, match="DOT 0002 is out of reach"):
+        radio.run(record(wearing.group.sensors, UTC_S, 120))
+    assert [dot.memory.files for dot in wearing.dots] == [[], []]
+
+
+def test_a_late_notice_about_synchronising_is_no_part_of_a_list_of_files(
+    radio: VirtualRadio, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """That it is not synchronised begins with the same byte as a list."""
+    wearing = WornDots(radio, [DotFaults()])
+    wearing.group.make_ready_to_record()
+    (sensor,), (dot,) = wearing.group.sensors, wearing.dots
+    radio.run(record([sensor], UTC_S, 120))
+    radio.pass_s(1.0)
+    radio.run(stop(sensor))
+    late, due = (0x7003, DotMessage(SYNC_GROUP, b"\x51\x09").packed()), dot.notifications
+
+    def notifications() -> list[Notification]:
+        said = due()
+        is_list = any(which == 0x7003 and (notice[0], notice[2]) == (1, 0x51) for which, notice in said)
+        return [late, *said] if is_list else said
+
+    monkeypatch.setattr(dot, "notifications", notifications)
+    (file,) = radio.run(list_files(sensor))
+    assert file.started_utc_s == UTC_S
+
+
+def test_an_order_to_a_busy_sensor_is_given_again(radio: VirtualRadio) -> None:
+    wearing = WornDots(radio, [DotFaults()])
+    wearing.group.make_ready_to_record()
+    (sensor,), (dot,) = wearing.group.sensors, wearing.dots
+    radio.run(record([sensor], UTC_S, 120))
+    radio.pass_s(1.0)
+    radio.run(stop(sensor))
+    dot.faults.busy = 4  # more than a list is asked for anew
+    (file,) = radio.run(list_files(sensor))
+    assert file.started_utc_s == UTC_S
+
+
+def test_asking_how_long_clocks_hold_is_answered_while_they_are_ended(
+    radio: VirtualRadio, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The screen asks while another thread ends them."""
+    wearing = WornDots(radio, [DotFaults(), DotFaults()])
+    wearing.open()
+    now_ns = radio.now_ns()
+
+    def ended_meanwhile() -> int:
+        for sensor in wearing.group.sensors:
+            wearing.group.leave(sensor.name)
+        return now_ns
+
+    monkeypatch.setattr(radio, "now_ns", ended_meanwhile)
+    left_s = wearing.group.renewal_due_s()
+    assert left_s is not None
+    assert left_s > 0
+    assert wearing.group.renewal_due_s() is None
 
 
 def test_ready_to_record_they_are_on_one_clock_at_that_rate_and_send_nothing(radio: VirtualRadio) -> None:
@@ -94,7 +163,7 @@ def test_where_one_was_switched_off_its_own_clock_is_found_out_and_all_are_synch
     names = [sensor.name for sensor in group.sensors]
     with pytest.raises(OwnClockError, match=r"^DOT 0002 was switched off") as refused:
         radio.run(record(group.sensors, UTC_S, 120, names))
-    assert [dot.state for dot in wearing.dots] == [0x06, 0x06]
+    assert [dot.memory.state for dot in wearing.dots] == [0x06, 0x06]
     group.leave(refused.value.sensor)
     group.make_ready_to_record()
     assert all(dot.is_synchronised for dot in wearing.dots)

@@ -8,7 +8,8 @@ from typing import Any, TypeVar
 
 from devices.bluetooth import Radio, Tick
 from devices.emulators.bluetooth import Air
-from devices.emulators.dot import DotFaults, EmulatedDot, Motion
+from devices.emulators.dot import EmulatedDot, Motion
+from devices.emulators.dot_faults import DotFaults
 
 Result = TypeVar("Result")
 BEGIN_S = 5000.0

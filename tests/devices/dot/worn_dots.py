@@ -11,7 +11,8 @@ from devices.dot.decoder import DotDecoder
 from devices.dot.sensor import DotSensor
 from devices.dot.source import DotGroup, DotSource
 from devices.emulators.bluetooth import Air
-from devices.emulators.dot import DotFaults, EmulatedDot
+from devices.emulators.dot import EmulatedDot
+from devices.emulators.dot_faults import DotFaults
 from devices.live import SourceLostError, SourceRefusedError
 from devices.shared_clock import tied
 from devices.source import DecodedSensor

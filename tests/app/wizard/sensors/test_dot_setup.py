@@ -11,7 +11,7 @@ from app.wizard.visit import Visit
 from app.wizard.worn_sensors import SourceChoice
 from devices.dot.messages import SyncResult, start_recording
 from devices.dot.samples import DRIVER
-from devices.emulators.dot import RECORDING
+from devices.emulators.dot_memory import RECORDING
 from tests.app.wizard.emulated_dots import WAIT_MS, dot_choice, has_asked_all, rows_of
 from tests.devices.dot.fast_radio import FastRadio
 
@@ -131,8 +131,8 @@ def test_what_a_sensor_records_is_stopped_before_anything_is_set(
     assert "stays in their memories" in step.bar().note
     step.on_primary()
     qtbot.waitUntil(lambda: verb(step.bar())[0] == "Synchronise 2 sensors", timeout=WAIT_MS)
-    assert dot.state != RECORDING
-    assert len(dot.files) == 1
+    assert dot.memory.state != RECORDING
+    assert len(dot.memory.files) == 1
 
 
 def test_one_that_does_not_answer_says_so_and_is_asked_until_it_does(

@@ -1,11 +1,16 @@
 """What the sensors' memories hold: told, fetched where it was left, erased once it was said what is lost by that."""
 
+from dataclasses import replace
 from datetime import datetime
+from typing import Any
 
 import pytest
 from pytestqt.qtbot import QtBot
 
+from app.acquisition import dot_memories
 from app.acquisition.dot_memories import KnownRecording, known
+from app.acquisition.memory_fetching import FETCHED
+from app.storage.journal.decoding import DecodedJournal, decode
 from app.storage.opened import OpenedLibrary
 from app.wizard.sensors.step import SensorsStep
 from app.wizard.visit import Visit
@@ -96,12 +101,12 @@ def test_what_is_kept_is_erased_after_a_second_press(
     assert [other.text for other in bar.others] == ["Erase the memories"]
     assert bar.quiet == ()  # it is offered once
     opened.on_other(0)
-    assert [len(dot.files) for dot in radio.dots] == [1, 1]
+    assert [len(dot.memory.files) for dot in radio.dots] == [1, 1]
     assert "kept in this library, every sample of it" in opened.page.memories.notice.text
     assert [other.text for other in opened.bar().others] == ["Erase now"]
     opened.on_other(0)
     wait(qtbot, opened)
-    assert [len(dot.files) for dot in radio.dots] == [0, 0]
+    assert [len(dot.memory.files) for dot in radio.dots] == [0, 0]
     assert opened.page.memories.title == "The sensors' memories are empty"
     assert opened.page.focusWidget() is opened.page.memories, "Enter would press another button"
 
@@ -132,7 +137,9 @@ def test_what_a_closed_visit_left_in_the_sensors_is_fetched_where_the_session_go
     fetched = recordings.walks[1]
     assert fetched.details.condition == "Shoes"
     assert fetched.read_back is not None
-    assert [len(block) for block in fetched.read_back.imu.values()] == [len(dot.files[0].ticks) for dot in radio.dots]
+    assert [len(block) for block in fetched.read_back.imu.values()] == [
+        len(dot.memory.files[0].ticks) for dot in radio.dots
+    ]
     assert told_lines(opened) == [["2 sensors", "Kept: A Shoes."]]
 
 
@@ -154,10 +161,10 @@ def test_what_is_not_of_this_library_is_not_fetched_and_is_named_before_it_is_lo
     opened.on_other(0)
     assert "1 recording is not kept in this library, and would be lost." in opened.page.memories.notice.text
     assert [other.text for other in opened.bar().others] == ["Erase now, and lose what is not kept"]
-    assert [len(dot.files) for dot in radio.dots] == [1, 1]
+    assert [len(dot.memory.files) for dot in radio.dots] == [1, 1]
     opened.on_other(0)
     wait(qtbot, opened)
-    assert [len(dot.files) for dot in radio.dots] == [0, 0]
+    assert [len(dot.memory.files) for dot in radio.dots] == [0, 0]
 
 
 @pytest.mark.endurance
@@ -198,3 +205,25 @@ def test_a_recording_is_found_by_the_second_in_which_it_was_begun(
     assert found[0].lacking == frozenset()
     assert found[1].rows == ()
     assert found[1].kept == frozenset()
+
+
+def test_what_lacked_when_it_was_fetched_first_and_was_had_then_is_not_lacking(
+    qtbot: QtBot, opened: SensorsStep, visit: Visit, controller: LibraryController, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    walk_in_memory(qtbot, visit, is_fetched=True)
+    (walk,) = visit.recordings.walks
+    utc_s = int(datetime.fromisoformat(walk.details.started).timestamp())
+
+    def fetched_before(*journal: Any) -> DecodedJournal:
+        """The same, with a first attempt that was not told where the first sensor's file ends."""
+        whole = decode(*journal)
+        count = len(whole.sensors["DOT 0001"].block)
+        first = replace(whole.marks[0], text=f'{FETCHED}{{"DOT 0001": [{utc_s}, {count}, false]}}')
+        return replace(whole, marks=(first, *whole.marks))
+
+    monkeypatch.setattr(dot_memories, "decode", fetched_before)
+    found: list[KnownRecording] = []
+    controller.run(lambda library: found.append(known(library, utc_s)), None, None, visit)
+    qtbot.waitUntil(lambda: len(found) == 1, timeout=WAIT_MS)
+    assert found[0].kept == frozenset({"DOT 0001", "DOT 0002"})
+    assert found[0].lacking == frozenset()

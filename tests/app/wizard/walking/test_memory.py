@@ -98,9 +98,11 @@ def test_a_walk_in_memories_is_made_ready_recorded_and_fetched(
     qtbot.waitUntil(lambda: len(visit.recordings.walks) == 1, timeout=WAIT_MS)
     (fetched,) = visit.recordings.walks
     assert fetched.read_back is not None
-    assert [len(block) for block in fetched.read_back.imu.values()] == [len(dot.files[0].ticks) for dot in radio.dots]
+    assert [len(block) for block in fetched.read_back.imu.values()] == [
+        len(dot.memory.files[0].ticks) for dot in radio.dots
+    ]
     assert fetched.lacks == ()
-    assert not any(dot.cut_recordings for dot in radio.dots)
+    assert not any(dot.memory.cut_recordings for dot in radio.dots)
     assert step.page.memory.isHidden()
     assert step.cannot_leave == ""
 
@@ -127,7 +129,9 @@ def test_a_walk_may_be_fetched_later_and_a_lost_sensor_is_named_and_tried_again(
     assert "Fetch 1 walk" not in texts(step.bar())[1]
     (fetched,) = visit.recordings.walks
     assert fetched.read_back is not None
-    assert [len(block) for block in fetched.read_back.imu.values()] == [len(dot.files[0].ticks) for dot in radio.dots]
+    assert [len(block) for block in fetched.read_back.imu.values()] == [
+        len(dot.memory.files[0].ticks) for dot in radio.dots
+    ]
 
 
 @pytest.mark.endurance
