@@ -27,6 +27,7 @@ from devices.replay import ReplaySource
 from tests.app.wizard.begun_visit import begin, record
 from tests.app.wizard.free_motion.test_hints import motion, state
 from tests.app.wizard.free_motion.test_side_question import chains
+from tests.app.wizard.patient_time import PATIENCE_MS, PatientTime
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
@@ -35,16 +36,17 @@ SPACE = Intent(KeyAction.RUN)
 
 @pytest.fixture
 def step(
-    qtbot: QtBot, visit: Visit, worn: dict[str, Site], monkeypatch: pytest.MonkeyPatch
+    qtbot: QtBot, visit: Visit, worn: dict[str, Site], patient_time: PatientTime, monkeypatch: pytest.MonkeyPatch
 ) -> Iterator[FreeMotionStep]:
     monkeypatch.setattr(visit, "evaluate", lambda: None)  # a second each, and tried elsewhere
     begin(qtbot, visit, worn)
+    patient_time.is_held = lambda: visit.recordings.is_recording and not visit.recordings.has_begun
     step = FreeMotionStep(ThemeNotifier(), visit)
     qtbot.addWidget(step.page)
     step.page.show()
     yield step
     step.leave()
-    qtbot.waitUntil(lambda: not visit.recordings.is_recording, timeout=10_000)
+    qtbot.waitUntil(lambda: not visit.recordings.is_recording, timeout=PATIENCE_MS)
     visit.evaluation.finish()
 
 
@@ -53,7 +55,7 @@ def ticks(qtbot: QtBot, step: FreeMotionStep, until: Callable[[], bool]) -> None
         step.tick()
         return until()
 
-    qtbot.waitUntil(reached, timeout=20_000)
+    qtbot.waitUntil(reached, timeout=PATIENCE_MS)
 
 
 def states(page: FreeMotionPage) -> set[GaugeState]:
@@ -74,7 +76,7 @@ def test_it_records_at_once_and_goes_on_by_itself_when_all_gauges_are_closed(
     ticks(qtbot, step, lambda: knows(step))
     closed = {joint: state(0.8, 6.0, None, is_closed=True) for joint in LEG_JOINTS}
     tell(step, worn, FreeMotionState(closed))
-    with qtbot.waitSignal(step.done, timeout=10_000):
+    with qtbot.waitSignal(step.done, timeout=PATIENCE_MS):
         ticks(qtbot, step, lambda: states(step.page) == {GaugeState.ENOUGH, GaugeState.CENTRE})
         verb = step.bar().primary
         assert verb is not None
@@ -109,7 +111,7 @@ def test_stopping_early_says_its_price_and_goes_on(qtbot: QtBot, step: FreeMotio
     assert bar.primary is not None
     assert (bar.primary.text, bar.primary.is_wished) == ("Stop early", False)
     assert bar.note
-    with qtbot.waitSignal(step.done, timeout=10_000):
+    with qtbot.waitSignal(step.done, timeout=PATIENCE_MS):
         assert step.on_intent(SPACE)
     assert visit.recordings.free_motion is not None
     assert step.state is StepState.ATTENTION
@@ -144,9 +146,9 @@ def test_a_replay_without_free_motion_says_so_and_what_did_not_move_does_not_cou
         qtbot, step, lambda: step.page.band.hint.sentence == "Replay has no free motion" and bool(step._motion.joints)
     )
     assert [verb.text for verb in step.bar().others] == []
-    with qtbot.waitSignals([step.done, step.told], timeout=10_000, order="strict"):
+    with qtbot.waitSignals([step.done, step.told], timeout=PATIENCE_MS, order="strict"):
         step.on_primary()
-    qtbot.waitUntil(lambda: visit.recordings.free_motion is None, timeout=10_000)
+    qtbot.waitUntil(lambda: visit.recordings.free_motion is None, timeout=PATIENCE_MS)
     assert len(visit.recordings.every) == 1  # nothing is deleted
     assert step.state is StepState.TODO
 
@@ -163,17 +165,18 @@ def test_one_leg_begins_anew_while_the_motion_goes_on(qtbot: QtBot, step: FreeMo
 
 
 def test_a_leg_that_is_repeated_later_leaves_the_other_legs_recording_in_force(
-    qtbot: QtBot, step: FreeMotionStep, visit: Visit
+    qtbot: QtBot, step: FreeMotionStep, visit: Visit, patient_time: PatientTime
 ) -> None:
     step.enter()
     ticks(qtbot, step, lambda: knows(step))
-    with qtbot.waitSignal(step.done, timeout=10_000):
+    with qtbot.waitSignal(step.done, timeout=PATIENCE_MS):
         step.on_primary()
     left = step.page.gauges[Joint.LEFT_KNEE].face.centre
     step.on_quiet(1)
-    ticks(qtbot, step, lambda: visit.recordings.is_recording and knows(step))
+    ticks(qtbot, step, lambda: visit.recordings.has_begun and knows(step))
+    patient_time.wait(qtbot, 1.0)
     assert step.page.gauges[Joint.LEFT_KNEE].face.centre == left
-    with qtbot.waitSignal(visit.recordings.ended, timeout=10_000):
+    with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
         step.on_primary()
     repeated = visit.recordings.free_motion
     assert repeated is not None
@@ -187,10 +190,10 @@ def test_leaving_before_a_leg_has_moved_is_said_and_does_not_count(
 ) -> None:
     step.enter()
     qtbot.waitUntil(lambda: visit.recordings.is_recording)
-    with qtbot.waitSignal(step.told, timeout=10_000) as told:
+    with qtbot.waitSignal(step.told, timeout=PATIENCE_MS) as told:
         step.leave()
     assert told.args[0] == "Free motion was left before a leg had moved, so it does not count."
-    qtbot.waitUntil(lambda: visit.recordings.free_motion is None, timeout=10_000)
+    qtbot.waitUntil(lambda: visit.recordings.free_motion is None, timeout=PATIENCE_MS)
     assert len(visit.recordings.every) == 1  # nothing is deleted
     assert step.state is StepState.TODO
 
@@ -200,7 +203,7 @@ def test_leaving_before_its_end_keeps_what_has_moved_unless_another_is_in_force(
 ) -> None:
     step.enter()
     ticks(qtbot, step, lambda: knows(step))
-    with qtbot.waitSignal(step.told, timeout=10_000) as told:
+    with qtbot.waitSignal(step.told, timeout=PATIENCE_MS) as told:
         step.leave()
     assert told.args[0].startswith("Free motion was left before its end and is kept: ")
     kept, note = visit.recordings.free_motion, step.note
@@ -214,10 +217,10 @@ def test_leaving_before_its_end_keeps_what_has_moved_unless_another_is_in_force(
     assert not visit.recordings.is_recording
     step.on_other(0)
     ticks(qtbot, step, lambda: visit.recordings.is_recording and knows(step))
-    with qtbot.waitSignal(step.told, timeout=10_000) as told:
+    with qtbot.waitSignal(step.told, timeout=PATIENCE_MS) as told:
         step.leave()
     assert told.args[0] == "Free motion was left before its end: the one before it stays in force."
-    qtbot.waitUntil(lambda: not visit.recordings.every[1].details.is_kept, timeout=10_000)
+    qtbot.waitUntil(lambda: not visit.recordings.every[1].details.is_kept, timeout=PATIENCE_MS)
     assert visit.recordings.free_motion is not None
     assert visit.recordings.free_motion.id == kept.id
     assert step.note == note
@@ -239,7 +242,7 @@ def test_a_knee_that_is_no_hinge_is_not_counted_as_enough_but_named(
     assert Sound.READY in heard
     heard.clear()
     tell(step, worn, FreeMotionState(closed | {Joint.LEFT_KNEE: loose}))
-    with qtbot.waitSignal(step.done, timeout=10_000):  # more motion would not make it one
+    with qtbot.waitSignal(step.done, timeout=PATIENCE_MS):  # more motion would not make it one
         ticks(qtbot, step, lambda: GaugeState.LOOSE in states(step.page))
         assert step.page.band.hint.sentence == "Left knee: no hinge"
     assert step.note == "enough motion for 1 of 2 knees, 2 of 2 ankle centres; left knee: no hinge"
@@ -279,9 +282,9 @@ def test_what_a_recording_before_it_told_neither_ends_nor_counts_for_the_next(
     closed = {joint: state(0.8, 6.0, None, is_closed=True) for joint in LEG_JOINTS}
     tell(step, worn, FreeMotionState(closed))
     ticks(qtbot, step, lambda: step._settled.isActive())
-    with qtbot.waitSignal(visit.recordings.ended, timeout=10_000):
+    with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
         step.on_intent(SPACE)
-    qtbot.waitUntil(lambda: not visit.recordings.is_recording, timeout=10_000)
+    qtbot.waitUntil(lambda: not visit.recordings.is_recording, timeout=PATIENCE_MS)
     note = step.note
     step.on_intent(SPACE)  # another
     for _ in range(6):
@@ -296,7 +299,7 @@ def test_what_a_recording_before_it_told_neither_ends_nor_counts_for_the_next(
     for _ in range(6):
         step.tick()
     assert step.note == note  # no leg moved, so the one before it stays in force
-    with qtbot.waitSignal(visit.recordings.ended, timeout=10_000):
+    with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
         pass
 
 
@@ -321,7 +324,7 @@ def test_swapped_labels_change_places_and_what_was_recorded_is_corrected(
     step._labels.doubt(((Site.LEFT_THIGH, Site.LEFT_SHANK),))
     step.page.answered.emit(0)
     assert visit.sensors.sensor_at[Site.LEFT_THIGH] == f"DEMO-{Site.LEFT_SHANK}"
-    with qtbot.waitSignal(step.done, timeout=10_000):
+    with qtbot.waitSignal(step.done, timeout=PATIENCE_MS):
         step.on_primary()
 
     def is_corrected() -> bool:
@@ -329,7 +332,7 @@ def test_swapped_labels_change_places_and_what_was_recorded_is_corrected(
         placement = recording.stored.placement if recording is not None else None
         return placement is not None and placement.sensors[Site.LEFT_THIGH].name == f"DEMO-{Site.LEFT_SHANK}"
 
-    qtbot.waitUntil(is_corrected, timeout=10_000)
+    qtbot.waitUntil(is_corrected, timeout=PATIENCE_MS)
 
 
 def test_labels_swapped_in_a_visit_that_is_closed_amid_the_motion_are_in_the_library(
@@ -339,9 +342,9 @@ def test_labels_swapped_in_a_visit_that_is_closed_amid_the_motion_are_in_the_lib
     ticks(qtbot, step, lambda: visit.recordings.is_recording and knows(step))
     step._labels.doubt(((Site.LEFT_THIGH, Site.LEFT_SHANK),))
     step.page.answered.emit(0)
-    with qtbot.waitSignal(visit.recordings.ended, timeout=10_000):
+    with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
         visit.close()
-    qtbot.waitUntil(lambda: visit.is_idle, timeout=10_000)
+    qtbot.waitUntil(lambda: visit.is_idle, timeout=PATIENCE_MS)
     assert visit.session is not None
     assert controller.state is not None
     (stored,) = controller.state.library.library.sessions.get(visit.session.id).recordings

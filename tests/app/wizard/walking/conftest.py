@@ -1,22 +1,11 @@
 """The patient's time waits for the screen, the library and the live estimator."""
 
-from collections.abc import Iterator
-
 import pytest
-from PySide6.QtWidgets import QApplication
 
 from app.wizard.worn_sensors import SourceChoice
 from core.samples import Session
 from devices.replay import ReplaySource
 from tests.app.wizard.patient_time import PatientTime
-
-
-@pytest.fixture
-def patient_time(qapp: QApplication) -> Iterator[PatientTime]:
-    time = PatientTime()
-    time.start()
-    yield time
-    time.stop()
 
 
 @pytest.fixture
