@@ -157,12 +157,9 @@ class SensorsStep(Step):
         self.page.focus()
 
     def leave(self) -> None:
+        self._end_asking()
         self._asks = SensorsShown.NOTHING
         self._told_of = ""
-        self._replays.stop()
-        self.telling.end()
-        self.setup.end()
-        self.memories.end()
         sensors = self._visit.sensors
         sensors.sync.forget()
         if sensors.acquisition is not None:
@@ -323,7 +320,7 @@ class SensorsStep(Step):
         if self._replays.reading:
             page.show_reading(self._replays.reading)
         elif sensors.is_searching and sensors.choice is not None:
-            page.show_searching(sensors.choice.name)
+            page.show_searching("" if sensors.choice.key == SEARCH else sensors.choice.name)
         elif self.telling.is_on:
             page.show_columns()
         elif self.setup.is_on or self.setup.is_synchronising:
@@ -457,20 +454,20 @@ class SensorsStep(Step):
             self._visit.sensors.leave_to_motion(is_left)
 
     def _on_source_chosen(self, key: str) -> None:
-        if key == REPLAY:
-            self._choose_stored()
+        if self.memories.is_busy:  # what is fetched or erased is not left by accident
+            self.told.emit(self.memories.cannot_leave, "")
+            self._show_sources()
             return
         sensors = self._visit.sensors
         known = (*self._visit.choices, *([sensors.choice] if sensors.choice is not None else []))
         choice = next((one for one in known if one.key == key), None)
-        if choice is None:
+        if choice is None and key != REPLAY:
             return
-        self._end_choosing()
-        self.telling.end()
-        self.setup.end()
-        self.memories.end()
         is_told, self._told_of = key == self._told_of, ""
-        if any(choice.asks) and not is_told:
+        self._end_asking()
+        if choice is None:
+            self._choose_stored()
+        elif any(choice.asks) and not is_told:
             self._told_of = key
             sensors.close()
             self._show()
@@ -485,6 +482,14 @@ class SensorsStep(Step):
             self._set_up(choice)
         else:
             sensors.search(choice)
+
+    def _end_asking(self) -> None:
+        """Let go of all that stands in the place of the sensors, or would come there once it is read."""
+        self._end_choosing()
+        self._replays.stop()
+        self.telling.end()
+        self.setup.end()
+        self.memories.end()
 
     def _set_up(self, choice: SourceChoice) -> None:
         """Ask of Movella DOTs which are worn, and synchronise them."""

@@ -6,7 +6,7 @@ from pytestqt.qtbot import QtBot
 from app.widgets.action_bar import BarState
 from app.widgets.sensors_progress import LineState
 from app.wizard.keys import Intent, KeyAction
-from app.wizard.sensors.step import SensorsStep
+from app.wizard.sensors.step import REPLAY, SensorsStep
 from app.wizard.visit import Visit
 from app.wizard.worn_sensors import SourceChoice
 from devices.dot.messages import SyncResult, start_recording
@@ -66,6 +66,14 @@ def test_a_light_blinks_and_links_are_left_when_other_sources_are_wanted(
     assert not asked.setup.is_on
     assert asked.page.nothing.isVisible()
     qtbot.waitUntil(lambda: visit.sensors.is_idle, timeout=WAIT_MS)
+
+
+def test_a_stored_session_may_be_wanted_instead(asked: SensorsStep) -> None:
+    asked.page.source_chosen.emit(REPLAY)
+    assert asked.page.stored.isVisible()
+    assert not asked.setup.is_on
+    asked.page.stored.back.click()
+    assert asked.page.nothing.isVisible()
 
 
 def test_synchronising_is_told_step_by_step_and_gives_sensors_on_one_clock(

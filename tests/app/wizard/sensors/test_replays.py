@@ -132,6 +132,19 @@ def test_a_reading_is_stopped(qtbot: QtBot, visit: Visit, step: SensorsStep, fol
     assert visit.sensors.choice is None
 
 
+def test_whoever_chooses_other_sensors_meanwhile_has_those(
+    qtbot: QtBot, visit: Visit, step: SensorsStep, folder: Path
+) -> None:
+    step.page.source_chosen.emit(REPLAY)
+    step.replay_folder(folder)
+    with qtbot.waitSignal(visit.sensors.opened, timeout=10_000):
+        step.page.source_chosen.emit("fast")
+    assert step.page.list.isVisible()
+    qtbot.wait(300)  # longer than it takes to read the folder
+    assert visit.sensors.choice is not None
+    assert visit.sensors.choice.key == "fast"
+
+
 def test_only_demonstration_patients_are_offered_a_replay(qtbot: QtBot, visit: Visit) -> None:
     visit.patient.edit(Patient(code="P-7"))
     step = SensorsStep(ThemeNotifier(), visit)
