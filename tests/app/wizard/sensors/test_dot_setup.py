@@ -134,8 +134,8 @@ def test_what_a_sensor_records_is_stopped_before_anything_is_set(
     dot = radio.dots[0]
     dot.write(0x7001, start_recording(1_700_000_000).packed())
     step.page.source_chosen.emit(DRIVER)
-    qtbot.waitUntil(lambda: verb(step.bar())[0] == "Stop these recordings", timeout=WAIT_MS)
-    assert words_of(step, 0)[4] == "records in its memory"
+    qtbot.waitUntil(lambda: words_of(step, 0)[4] == "records in its memory", timeout=WAIT_MS)
+    assert verb(step.bar()) == ("Stop these recordings", True)
     assert "stays in their memories" in step.bar().note
     step.on_primary()
     qtbot.waitUntil(lambda: verb(step.bar())[0] == "Synchronise 2 sensors", timeout=WAIT_MS)
