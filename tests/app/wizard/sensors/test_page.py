@@ -16,6 +16,7 @@ from app.wizard.sensors.sensor_drag import DRAGGED
 from app.wizard.sensors.sensor_row import SensorRow
 from app.wizard.sensors.sensor_trace import _lines
 from app.wizard.sensors.source_pages import SourceOption
+from app.wording import use_language
 from core.body import LEG_SITES, Side, Site
 from tests.app.room import settle, words_cut
 
@@ -50,6 +51,23 @@ def page(qtbot: QtBot) -> Iterator[SensorsPage]:
     page.show()
     yield page
     page.hide()
+
+
+def test_in_german_the_demonstrations_sensors_stand_beside_the_figure(qtbot: QtBot, look: ThemeNotifier) -> None:
+    """At 1280 x 800 of the whole window."""
+    use_language("de")
+    try:
+        page = SensorsPage(look)
+        qtbot.addWidget(page)
+        page.resize(1064, 672)
+        named = zip(("DEMO-09", "DEMO-31", "DEMO-2C", "DEMO-17", "DEMO-1B", "DEMO-22"), LEG_SITES, strict=True)
+        page.show_sensors([SensorRow(name, "simulated", 100.0, None, site) for name, site in named])
+        page.show()
+        settle()
+        assert page.ways.mapTo(page, QPoint()).x() > page.places.mapTo(page, QPoint(page.places.width(), 0)).x()
+        assert next(iter(page.list.rows.values())).sensor.second_line == "simuliert"
+    finally:
+        use_language("en")
 
 
 @pytest.fixture
