@@ -300,7 +300,7 @@ TIMED: tuple[Stop, ...] = (  # ten metres, timed by the motion, then sit to stan
     *KEYBOARD[:BENCH_UP_TO],
     Stop("51-choose", offers("Barefoot"), ("press t",), lingers_s=1.0, patience_s=90.0),
     Stop("52-chosen", says("Next: 10-metre walk"), ("press space",), lingers_s=1.0),
-    Stop("53-running", is_recording, lingers_s=8.0, patience_s=60.0),
+    Stop("53-running", lambda seen: seen.is_recording and seen.has("End at the tape"), lingers_s=3.0, patience_s=60.0),
     Stop("54-over", lambda seen: not seen.is_recording, ("press k",), lingers_s=2.0, patience_s=60.0),
     Stop("55-kept", offers("Results"), (*pressed("t", 4), "press space"), lingers_s=2.0),
     Stop("56-seated", is_recording, ("press Escape",), lingers_s=4.0, patience_s=60.0),

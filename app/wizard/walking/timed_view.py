@@ -72,7 +72,7 @@ def distance_words(state: TimedViewState) -> tuple[str, str]:
     """The distance and, where it cannot be told, why."""
     found = state.readout
     if not found.has_begun:
-        return "0.0", ""
+        return figure_text(0.0, ".1f"), ""
     if found.silent:
         return NO_FIGURE, tr("silent: {sites}").format(sites=joined([name_of(one) for one in found.silent]))
     if not math.isfinite(found.distance_m):

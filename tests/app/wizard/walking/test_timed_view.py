@@ -8,6 +8,7 @@ from pytestqt.qtbot import QtBot
 
 from app.theme import ThemeNotifier
 from app.wizard.walking.timed_view import TimedView, TimedViewState, distance_words, status_words, time_text
+from app.wording import use_language
 from core.body import Side, Site
 from core.timed.found import NotMeasured
 from core.timed.live import LiveReadout
@@ -41,6 +42,10 @@ def test_a_distance_that_cannot_be_told_is_a_dash_with_its_reason() -> None:
     assert distance_words(silent) == ("\N{EN DASH}", "silent: L foot")
     lost = replace(TIMING.readout, distance_m=math.nan, reasons=(NotMeasured.NO_FEET,))
     assert distance_words(replace(TIMING, readout=lost)) == ("\N{EN DASH}", "No foot sensor was worn")
+    use_language("de")
+    before = distance_words(WAITING)
+    use_language("en")
+    assert before == ("0,0", ""), "a point in German before the test, and a comma in it"
     far = replace(TIMING, readout=replace(TIMING.readout, distance_m=362.4))
     assert distance_words(far) == ("362", "")
 
