@@ -5,7 +5,7 @@ from enum import Enum, auto
 from time import monotonic
 
 from PySide6.QtCore import QRect, QRectF, QSize, Qt
-from PySide6.QtGui import QColor, QFont, QFontMetrics, QPainter, QPalette
+from PySide6.QtGui import QColor, QFont, QFontMetrics, QPainter, QPalette, QPixmap
 from PySide6.QtWidgets import (
     QApplication,
     QFrame,
@@ -356,7 +356,7 @@ class ControlStyle(QProxyStyle):
         if span <= 0:  # how long it takes is not known: half a bar goes to and fro, or stands in the middle
             turn = 0.5
             if duration_ms(round(1000 * BUSY_S), theme):
-                super().drawControl(Control.CE_ProgressBarContents, option, painter, widget)  # asks for the next frame
+                self._ask_for_next_frame(option, widget)
                 theme.paint_box(painter, box, c.track, radius=4)
                 turn = monotonic() / BUSY_S % 2
             box.setWidth(box.width() / 2)
@@ -365,6 +365,13 @@ class ControlStyle(QProxyStyle):
             box.setWidth(box.width() * (option.progress - option.minimum) / span)
         if box.width() > 0:
             theme.paint_box(painter, box, c.ink, radius=4)
+
+    def _ask_for_next_frame(self, option: QStyleOption, widget: QWidget | None) -> None:
+        """Let Fusion move the bar on; what it paints for that is out of sight, else it would show at round corners."""
+        unseen = QPixmap(1, 1)
+        painter = QPainter(unseen)
+        super().drawControl(Control.CE_ProgressBarContents, option, painter, widget)
+        painter.end()
 
     def _scroll_bar_part(self, option: QStyleOptionSlider, part: QStyle.SubControl) -> QRect:
         """Give where handle, groove and what lies before and after the handle are; there are no arrows."""

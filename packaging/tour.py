@@ -44,7 +44,7 @@ MANUAL = {  # which stop of a tour becomes which picture
         "10b-walking": "walking",
         "13a-results": "results",
         "13e-compare": "compare",
-        "14a-report": "report",
+        "14c-saved": "report",  # its pages are there then, however slow the computer is
         "27-home-again": "home",
     },
     "bench": {"34-b-against-a": "bench"},

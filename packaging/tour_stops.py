@@ -80,6 +80,11 @@ def shows_pages(seen: Seen) -> bool:
     return at_step("ReportStep")(seen) and any(words.endswith(" pages") for words in seen.words)
 
 
+def compares(letter: str) -> Callable[[Seen], bool]:
+    """Whether the bench tells what a walk that waits to be kept is like, and not that it is being analysed."""
+    return lambda seen: seen.has(f"Keep {letter}") and seen.says(f"With {letter} the prosthetic side")
+
+
 def is_recording(seen: Seen) -> bool:
     return seen.is_recording
 
@@ -268,7 +273,7 @@ BENCH: tuple[Stop, ...] = (  # three alignments of one prosthesis, by keys
     ),
     Stop("33-b-told", offers("Walk with B"), ("press space",), lingers_s=1.0),
     Stop("33a-b-walking", has_walked(STRIDES), ("press space",), patience_s=60.0),
-    Stop("34-b-against-a", offers("Keep B"), ("press Return",), lingers_s=3.0, patience_s=60.0),
+    Stop("34-b-against-a", compares("B"), ("press Return",), lingers_s=3.0, patience_s=60.0),
     Stop(
         "35-b-kept",
         offers("B again"),
@@ -300,7 +305,7 @@ TIMED: tuple[Stop, ...] = (  # ten metres, timed by the motion, then sit to stan
     *KEYBOARD[:BENCH_UP_TO],
     Stop("51-choose", offers("Barefoot"), ("press t",), lingers_s=1.0, patience_s=90.0),
     Stop("52-chosen", says("Next: 10-metre walk"), ("press space",), lingers_s=1.0),
-    Stop("53-running", is_recording, lingers_s=8.0, patience_s=60.0),
+    Stop("53-running", lambda seen: seen.is_recording and seen.has("End at the tape"), lingers_s=3.0, patience_s=60.0),
     Stop("54-over", lambda seen: not seen.is_recording, ("press k",), lingers_s=2.0, patience_s=60.0),
     Stop("55-kept", offers("Results"), (*pressed("t", 4), "press space"), lingers_s=2.0),
     Stop("56-seated", is_recording, ("press Escape",), lingers_s=4.0, patience_s=60.0),

@@ -10,9 +10,11 @@ from functools import cache
 from pathlib import Path
 
 from babel.messages.pofile import read_po
+from PySide6.QtCore import QCoreApplication
 
 CATALOGUES = Path(__file__).resolve().parents[1] / "resources" / "locale"
 FIELD = re.compile(r"\{(\w+)(?::[^}]*)?\}")
+QT_WORDS = (("QFileDialog", "&Save"),)  # in dialogs of Qt's own, which no catalogue of ours has; with their context
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +52,7 @@ def _meant(said: str, language: str) -> Iterator[str]:
 
 @cache
 def _catalogue(language: str) -> tuple[dict[str, list[str]], tuple[FieldMessage, ...]]:
-    """Read whole messages, and those with fields that say more than these."""
+    """Read whole messages, and those with fields that say more than these; Qt's words as it speaks now."""
     whole: dict[str, list[str]] = {}
     with_fields = []
     with (CATALOGUES / language / "LC_MESSAGES" / "gaitwright.po").open("rb") as file:
@@ -65,4 +67,10 @@ def _catalogue(language: str) -> tuple[dict[str, list[str]], tuple[FieldMessage,
             if rest and re.search(r"\w{4,}", FIELD.sub(" ", other)):
                 pattern = re.escape(before) + "".join(f"(.+){re.escape(after)}" for after in rest[1::2])
                 with_fields.append(FieldMessage(re.compile(pattern), tuple(rest[::2]), english))
+    for context, word in QT_WORDS:
+        whole.setdefault(_without_key(QCoreApplication.translate(context, word)), []).append(_without_key(word))
     return whole, tuple(with_fields)
+
+
+def _without_key(word: str) -> str:
+    return word.replace("&", "")

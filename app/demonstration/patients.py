@@ -62,7 +62,7 @@ class SimulatedPatient:
     """A patient and the visits, in order of time."""
 
     details: Patient
-    visits: tuple[SimulatedVisit, ...] = field(default=())
+    visits: tuple[SimulatedVisit, ...]
 
 
 def simulated_patients(now: datetime.datetime) -> tuple[SimulatedPatient, ...]:

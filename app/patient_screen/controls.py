@@ -107,7 +107,7 @@ class ControlsCard(Card):
         return self._reasons.get(self.choice, "")
 
     def focus(self) -> None:
-        """Put the focus where the target is typed."""
+        """Put the focus on the measure, which is chosen before its target is typed."""
         self.measure.focus()
 
     def show_reasons(self, reasons: Mapping[Choice, str]) -> None:
@@ -137,13 +137,9 @@ class ControlsCard(Card):
         measure = self.choice[0]
         self.side.setVisible(measure.has_side)
         if measure.has_side:
-            sides = {one: (measure, one) in self._reasons for one in Side}
-            if not all(sides.values()):
-                for one, is_gated in sides.items():
-                    self.side.set_reason(one, tr("cannot be read") if is_gated else "")
-            else:
-                for one in Side:
-                    self.side.set_reason(one, "")
+            gated = [one for one in Side if (measure, one) in self._reasons]
+            for one in Side:  # one has to be chosen, whatever it is worth
+                self.side.set_reason(one, tr("cannot be read") if gated == [one] else "")
         self.target.low, self.target.high = measure.limits
         units = {"deg": "°", "%": "%", "steps/min": tr("/min")}
         self.target.set_unit(units[measure.unit])

@@ -22,6 +22,7 @@ SMALL_BELOW = 100  # px high: lines thin, no pelvis, no joints
 SENTENCE_ROOM = 32
 LETTER_AT = QPointF(108, 36)  # from the middle and the top, units of the drawing
 LEG_LETTER_AT = QPointF(74, 214)
+ABOVE_TILES = 196  # from the top, where something stands beside the legs: a tile that is high begins at the pelvis
 WORDS_FROM = 0.8  # px to a unit of the drawing; a smaller person has no room for words at the shoulders
 SEGMENT_SLACK = 6  # units of the drawing: a finger hits beside the outline
 
@@ -192,6 +193,8 @@ class BodyFigure(QWidget):
         """R and L beside the person they belong to, as large as the room is; inside the widget whatever its width."""
         theme = self._look.theme
         at = LEG_LETTER_AT if self._is_legs_only else LETTER_AT
+        if self._is_legs_only and self._beside:
+            at = QPointF(at.x(), ABOVE_TILES)
         is_small = self._is_legs_only or place.m22() < WORDS_FROM * theme.scale
         letter, note = theme.font(28 if is_small else 40, SEMIBOLD), theme.font(14)
         words = {Side.LEFT: tr("patient's left"), Side.RIGHT: tr("patient's right")}
@@ -202,7 +205,7 @@ class BodyFigure(QWidget):
             x = min(max(middle.x(), half / 2), self.width() - half / 2)
             painter.setPen(theme.text(side))
             painter.setFont(letter)
-            box = QRectF(x - half / 2, middle.y() - theme.px(24), half, theme.px(48))
+            box = QRectF(x - half / 2, max(middle.y() - theme.px(24), 0), half, theme.px(48))
             painter.drawText(box, Qt.AlignmentFlag.AlignCenter, LETTERS[side])
             if not is_small:
                 painter.setPen(QColor(theme.colours.ink2))

@@ -44,6 +44,7 @@ class Evaluation(QObject):
         self.analysis: Analysis | None = None
         self._asked: Session | None = None
         self._found: Analysis | None = None  # with the strides that were left out by hand
+        self.has_failed = False  # what was asked last is not known, and nobody is finding it out
         self._background = Background(self)
         self._background.done.connect(self._on_done)
         self._background.failed.connect(self._on_failed)
@@ -86,13 +87,13 @@ class Evaluation(QObject):
         if self._found is not None and self.session is not None and is_same_question(self.session, session):
             self.take_over(session, self._found)
             return
-        self._asked = session
+        self._asked, self.has_failed = session, False
         self._background.start(_analysing(session))
 
     def take_over(self, session: "Session", found: "Analysis") -> None:
         """Go on with what `computed` told of `session` before; `done` follows."""
         self._background.stop()
-        self._asked = session
+        self._asked, self.has_failed = session, False
         self._settle(found)
 
     def finish(self) -> None:
@@ -111,9 +112,13 @@ class Evaluation(QObject):
 
     def _on_failed(self, error: Exception) -> None:
         _log.error("an analysis ended early", exc_info=error)
-        self.refused.emit(
-            tr("The analysis ended before it was done."), tr("The recordings are kept; the log holds the details.")
-        )
+        self.has_failed = True
+        self.refused.emit(*failure_in_words())
+
+
+def failure_in_words() -> tuple[str, str]:
+    """That an analysis ended early, and what is left."""
+    return tr("The analysis ended before it was done."), tr("The recordings are kept; the log holds the details.")
 
 
 def calibration_of(analysis: "Analysis") -> "Mapping[Joint, JointCalibration]":

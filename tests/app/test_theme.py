@@ -19,7 +19,7 @@ from PySide6.QtWidgets import (
 from pytestqt.qtbot import QtBot
 
 from app.icons import Icon
-from app.style import IS_WRONG
+from app.style import BUSY_S, IS_WRONG
 from app.theme import ThemeNotifier, load_fonts
 from app.widgets.button import Button, ButtonKind
 from app.widgets.chips import Chips
@@ -161,6 +161,21 @@ def test_a_bar_of_unknown_length_shows_that_something_is_done(qtbot: QtBot, look
     bar.setFixedSize(100, 8)
     row = [bar.grab().toImage().pixelColor(x, 4).name() for x in range(4, 96)]
     assert {name(look.theme.colours.ink), name(look.theme.colours.track)} <= set(row)
+
+
+def test_beneath_the_round_ends_of_a_bar_of_unknown_length_nothing_else_is_painted(
+    qtbot: QtBot, look: ThemeNotifier, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("app.style.monotonic", lambda: BUSY_S / 2)  # its half bar is in the middle
+    bar = QProgressBar()
+    qtbot.addWidget(bar)
+    bar.setTextVisible(False)
+    bar.setRange(0, 0)
+    bar.setFixedSize(320, 8)
+    bar.show()
+    picture = bar.grab().toImage()
+    track = QColor(look.theme.colours.track).lightness()
+    assert min(picture.pixelColor(x, y).lightness() for x in (0, 1, 318, 319) for y in range(8)) >= track
 
 
 def test_enter_belongs_to_the_page_and_not_to_a_chip_or_segment(qtbot: QtBot, look: ThemeNotifier) -> None:

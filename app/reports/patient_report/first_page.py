@@ -239,7 +239,7 @@ def _sensors(request: ReportRequest, facts: Facts) -> str:
     models = {info.model for site, info in request.visit.session.sensors.items() if site in worn and info.model}
     count = tr_n("{count} motion sensor", "{count} motion sensors", len(worn)).format(count=len(worn))
     rate = [figure_text(rates.pop(), "g") + "\u00a0Hz"] if len(rates) == 1 else []
-    return ", ".join([count, *rate, *sorted(typed(model, 40) for model in models)])
+    return ", ".join([count, *rate, *sorted(typed(tr(model), 40) for model in models)])
 
 
 def _side_in_words(side: str, *, is_prosthetic: bool) -> str:

@@ -77,7 +77,7 @@ def _sensors(facts: Facts) -> str:
 
 def _models(told: list[SensorInfo]) -> str:
     """Which sensors, as they or their files tell: "6 × MTi, firmware 4.2"."""
-    named = Counter((_foreign(one.model), _foreign(one.firmware)) for one in told)
+    named = Counter((_foreign(tr(one.model)), _foreign(one.firmware)) for one in told)
     if len(named) > MOST_MODELS:
         return tr("{count} sensors of {kinds} models").format(count=len(told), kinds=len(named))
     each = []

@@ -99,7 +99,7 @@ class MemoriesForm(Themed):
                 count,
             ).format(count=count)
         self._title.setText(title)
-        self._lead.setText(tr("Memories are erased as a whole, once what they hold is kept.") if count else "")
+        self._lead.setText(tr("A memory is erased as a whole, with all that it holds.") if count else "")
         self._lead.setVisible(bool(count))
 
     def show_unknown(self, what: str, then: str) -> None:

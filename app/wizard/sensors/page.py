@@ -172,8 +172,9 @@ class SensorsPage(Themed):
 
     def show_sources(self, options: Sequence[SourceOption], chosen: str = "") -> None:
         """Offer what sensors can be heard through; `chosen` is the key of the one in force."""
-        if (tuple(options), chosen) == self._offered or self.sources.view().isVisible():  # from which one is chosen now
-            return
+        is_shown = self.sources.currentIndex() == self.sources.findData(chosen)
+        if (is_shown and (tuple(options), chosen) == self._offered) or self.sources.view().isVisible():
+            return  # in its view one is chosen now
         self._offered = (tuple(options), chosen)
         with QSignalBlocker(self.sources):
             self.sources.clear()
@@ -198,8 +199,9 @@ class SensorsPage(Themed):
         self._refresh()
 
     def show_searching(self, source: str) -> None:
-        """Say that sensors are looked for through `source`."""
-        self.searching.begin(tr("Looking for sensors: {source}").format(source=source))
+        """Say that sensors are looked for through `source`; "": wherever there may be some."""
+        said = tr("Looking for sensors: {source}").format(source=source) if source else tr("Looking for sensors")
+        self.searching.begin(said)
         self._show(self.searching)
 
     def show_stored(self) -> None:
@@ -287,7 +289,7 @@ class SensorsPage(Themed):
     def identify_selected(self) -> bool:
         """Light the LED of the selected sensor; returns whether it has one."""
         row = self.list.rows.get(self.list.selection)
-        if row is None or not row.sensor.can_identify:
+        if row is None or not row.sensor.can_identify or self._in_sight is not self._lists:
             return False
         self.identify_pressed.emit(row.name)
         return True

@@ -13,7 +13,7 @@ from app.widgets.painted_text import LEFT, RIGHT, PaintedText
 from app.widgets.text import MEDIUM, SEMIBOLD
 from app.widgets.themed import Themed
 from app.wizard.sensors.sensor_row import CHEVRON, CHIP, ROW, SensorRow, SensorRowView
-from app.wording import tr
+from app.wording import figure_text, tr
 from core.body import LEG_SITES, Site
 from core.samples import FloatArray
 
@@ -156,7 +156,7 @@ class SensorList(Themed):
     def _longest_second_lines(self) -> list[str]:
         """What may be said of any sensor: there is room for it from the first, so that no column moves later."""
         figures = [tr("{rate} Hz").format(rate=100), tr("{percent} %").format(percent=100)] if self._is_narrow else []
-        lost = tr("{share} % lost").format(share="10.0")
+        lost = tr("{share} % lost").format(share=figure_text(10.0, ".1f"))
         return [tr("charge soon"), tr("not heard"), lost, " · ".join(figures)]
 
     def second_line(self, sensor: SensorRow) -> str:

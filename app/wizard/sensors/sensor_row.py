@@ -84,7 +84,7 @@ class SensorRow:
             return tr("{share} % lost").format(share=figure_text(100 * self.lost_share, ".1f"))
         if self.quiet is not None:
             return quiet_words(self.quiet)
-        return self.model if self.is_loss_seen else tr("losses not seen")
+        return tr(self.model) if self.is_loss_seen else tr("losses not seen")
 
     @property
     def rate(self) -> str:

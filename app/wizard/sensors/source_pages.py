@@ -41,13 +41,13 @@ class NoSource(Themed):
         self._options: list[SourceOption] = []
         self._sentence = Text(look, tr("No sensors yet. Where should they be looked for?"), 20, SEMIBOLD, wraps=True)
         self._sentence.setAlignment(Qt.AlignmentFlag.AlignCenter)
-        self._notice = Notice(look, size=16)
+        self.notice = Notice(look, size=16)
         self._left_out = Text(look, size=14, tone="ink2", wraps=True)
         self._left_out.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self._left_out.hide()
         self._row = QVBoxLayout()
         self._column = QVBoxLayout(self)
-        self._column.addWidget(self._notice)
+        self._column.addWidget(self.notice)
         self._column.addStretch(1)
         self._column.addWidget(self._sentence)
         self._column.addLayout(self._row)
@@ -57,7 +57,7 @@ class NoSource(Themed):
 
     def tell(self, what: str, then: str) -> None:
         """Say why nothing is connected, above the sources that may be tried instead."""
-        self._notice.tell(Icon.WARNING if what else None, what, then, is_caution=bool(what))
+        self.notice.tell(Icon.WARNING if what else None, what, then, is_caution=bool(what))
 
     @property
     def left_out(self) -> str:

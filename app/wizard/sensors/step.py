@@ -1,22 +1,12 @@
 """Six sensors on, or seven, and each known: heard through a source, and told where they are worn."""
 
-import datetime
 from dataclasses import replace
-from enum import Enum, auto
-from pathlib import Path
 from typing import TYPE_CHECKING
-from uuid import UUID
 
-import numpy as np
 from PySide6.QtCore import QObject
-from PySide6.QtWidgets import QFileDialog
 
-from app.icons import Icon
-from app.pages.home_lists import PatientLine
-from app.patient_words import when
 from app.theme import ThemeNotifier
 from app.widgets.action_bar import BarAction, BarState
-from app.widgets.folder_dialog import ask_for_folder
 from app.widgets.rail_row import StepState
 from app.widgets.sensor_tile import SILENT_FROM_S
 from app.wizard.keys import Intent, KeyAction
@@ -25,33 +15,23 @@ from app.wizard.sensors.dot_setup import DotSetup
 from app.wizard.sensors.estimator import PlacingEstimator
 from app.wizard.sensors.memories_control import MemoriesControl
 from app.wizard.sensors.page import SensorsPage, Way
-from app.wizard.sensors.replays import Replays
 from app.wizard.sensors.sensor_row import SensorRow
+from app.wizard.sensors.sensors_bar import sensors_bar
 from app.wizard.sensors.source_pages import SourceOption
 from app.wizard.sensors.sources import SEARCH, WITH_PELVIS
+from app.wizard.sensors.stored_replay import StoredReplay
+from app.wizard.sensors.trace_values import TRACE_S, TraceValues
 from app.wizard.step import Step
 from app.wizard.worn_sensors import SourceChoice
-from app.wording import name_of, tr, tr_n
-from core.body import LEG_JOINTS, LEG_SITES, Site
-from core.samples import FloatArray, ImuBlock
+from app.wording import tr
+from core.body import Site
 
 if TYPE_CHECKING:
     from app.acquisition.acquisition import SensorStatus
-    from app.storage.stored import SessionSummary
     from app.wizard.visit import Visit
 
 REPLAY = "replay"
 TRACE_TICKS, ROW_TICKS = 3, 8  # of 30 a second: traces ten times a second, rows and sources four times
-TRACE_S, TRACE_POINTS = 5.0, 250
-TURNS_MORE = 2.0  # times the variance that another axis needs before the trace goes over to it
-
-
-class SensorsShown(Enum):
-    """What the step asks about, while the source it has goes on sending."""
-
-    NOTHING = auto()  # another step is in sight
-    SOURCE = auto()  # the source, and who wears which of its sensors
-    STORED = auto()  # which stored session is to be replayed
 
 
 class SensorsStep(Step):
@@ -62,28 +42,26 @@ class SensorsStep(Step):
         self._page: SensorsPage | None = None
         self._estimator: PlacingEstimator | None = None
         self._shakes = self._ticks = 0
-        self._asks = SensorsShown.NOTHING
+        self._is_in_sight = False
         self._wanted: dict[str, Site] = {}  # where sensors go that are being looked for again
         self._without_light: set[str] = set()
-        self._axis: dict[str, int] = {}  # which of a sensor's axes its trace shows
+        self._traces = TraceValues()
         self._silent_site: Site | None = None
         self._told_of = ""  # the choice of which it was said whom it asks on the network
-        self._names: dict[UUID, str] = {}  # of stored sessions
-        self.dialog: QFileDialog | None = None
         self.telling = ColumnsTelling(self)
         self.telling.changed.connect(self.changed)
         self.setup = DotSetup(visit.sensors, self)
-        self.setup.changed.connect(self._on_setup_changed)
+        self.setup.changed.connect(self._on_changed)
         self.setup.ready.connect(visit.sensors.search)
-        self.setup.left.connect(self._on_setup_left)
+        self.setup.left.connect(self._on_asking_left)
         self.memories = MemoriesControl(visit, self)
-        self.memories.changed.connect(self._on_setup_changed)
+        self.memories.changed.connect(self._on_changed)
         self.memories.left.connect(self._on_memories_left)
-        self._replays = Replays(visit.controller, self)
-        self._replays.listed.connect(self._on_listed)
-        self._replays.read.connect(self._on_replay_read)
-        self._replays.refused.connect(self._on_replay_refused)
-        visit.sensors.changed.connect(self._on_sensors_changed)
+        self.stored = StoredReplay(visit, self)
+        self.stored.changed.connect(self._on_changed)
+        self.stored.read.connect(self._on_stored_read)
+        self.stored.left.connect(self._on_asking_left)
+        visit.sensors.changed.connect(self._on_changed)
         visit.sensors.opened.connect(self._on_opened)
         visit.sensors.set_up_wanted.connect(self._on_source_chosen)
 
@@ -97,11 +75,8 @@ class SensorsStep(Step):
             page.identify_pressed.connect(self._on_identify_pressed)
             page.reconnect_pressed.connect(self._on_reconnect_pressed)
             page.stop_pressed.connect(self._on_stop_pressed)
-            page.stored.chosen.connect(self.changed)
-            page.stored.opened.connect(self._replay)
-            page.stored.folder_pressed.connect(self._choose_folder)
-            page.stored.back_pressed.connect(self._on_stored_left)
-            page.columns.back_pressed.connect(self._on_columns_left)
+            page.columns.back_pressed.connect(self._on_asking_left)
+            self.stored.show_on(page.stored)
             self.setup.show_on(page.dots, page.progress)
             self.memories.show_on(page.memories, page.progress)
         return self._page
@@ -150,19 +125,16 @@ class SensorsStep(Step):
         return "sensors-movella-dot" if self.setup.is_on else "sensors"
 
     def enter(self) -> None:
-        self._asks = SensorsShown.SOURCE
+        self._is_in_sight = True
         self._visit.record.begin()
         self._begin_estimator()
         self._show()
         self.page.focus()
 
     def leave(self) -> None:
-        self._asks = SensorsShown.NOTHING
+        self._end_asking()
+        self._is_in_sight = False
         self._told_of = ""
-        self._replays.stop()
-        self.telling.end()
-        self.setup.end()
-        self.memories.end()
         sensors = self._visit.sensors
         sensors.sync.forget()
         if sensors.acquisition is not None:
@@ -180,7 +152,7 @@ class SensorsStep(Step):
         if self._ticks % ROW_TICKS == 0:
             self._show_sources()  # a search beside the screen may have found some
             self.telling.tick()
-        if self._visit.sensors.acquisition is None or self._is_choosing or self._replays.reading or self._is_asking:
+        if self._visit.sensors.acquisition is None or self._is_asking:
             return
         if self._estimator is not None:
             state = self._estimator.state
@@ -201,17 +173,15 @@ class SensorsStep(Step):
     @property
     def _is_asking(self) -> bool:
         """Whether something stands in the place of the sensors that are open, or that are to be."""
-        return self.telling.is_on or self.setup.is_on or self.setup.is_synchronising or self.memories.is_on
+        is_of_dots = self.setup.is_on or self.setup.is_synchronising or self.memories.is_on
+        return is_of_dots or self.telling.is_on or self.stored.is_on
 
     @property
     def _may_ask_memories(self) -> bool:
         is_free = self._visit.recordings.ongoing is None and self._visit.session is not None
-        return self._visit.sensors.dots is not None and is_free and not self._is_asking and not self._is_choosing
+        return self._visit.sensors.dots is not None and is_free and not self._is_asking
 
     def _bar(self) -> BarState:
-        sensors = self._visit.sensors
-        if self._replays.reading:
-            return BarState()
         if self.telling.is_on:
             is_whole = self.telling.columns is not None
             return BarState(primary=BarAction(tr("Use these columns"), tr("Enter"), is_enabled=is_whole))
@@ -219,32 +189,9 @@ class SensorsStep(Step):
             return self.setup.bar()
         if self.memories.is_on:
             return self.memories.bar()
-        if self._is_choosing:
-            is_any = self.page.stored.session is not None
-            return BarState(primary=BarAction(tr("Replay it"), tr("Enter"), Icon.PLAY, is_enabled=is_any))
-        go_on = tr("Stand still")
-        if sensors.are_in_memory:
-            back = BarAction(tr("Set back to live"), tr("Enter"), is_wished=False)
-            return BarState(primary=back, note=tr("The sensors are ready for walks, and send nothing."))
-        if sensors.acquisition is None:
-            return BarState(note="" if sensors.is_searching else tr("Choose where sensors are looked for."))
-        if reason := self._visit.cannot_record:
-            other = BarAction(tr("Choose other sensors"), tr("Enter"), Icon.REPEAT)
-            demonstration = BarAction(tr("Begin with a demonstration patient"), is_wished=False)
-            return BarState(primary=other, others=(demonstration,), note=reason)
-        if (silent := self._silent_site) is not None:
-            again = BarAction(tr("Reconnect {site}").format(site=name_of(silent)), tr("Enter"), Icon.REPEAT)
-            joints = (*LEG_JOINTS, *sensors.hips)
-            lost = tr(" and ").join(name_of(one) for one in joints if silent in (one.proximal, one.distal))
-            without = BarAction(tr("Go on without {joints}").format(joints=lost), is_wished=False)
-            return BarState(primary=again, others=(without,) if sensors.joints else ())
-        if sensors.is_left_to_motion:
-            return BarState(primary=BarAction(go_on, tr("Enter")), note=tr("The free motion tells who wears what."))
-        if not sensors.joints:
-            note = tr("Two sensors that share a joint are needed: thigh and shank, or shank and foot.")
-            return BarState(primary=BarAction(go_on, tr("Enter"), is_enabled=False), note=note)
-        is_whole = set(LEG_SITES) <= sensors.sensor_at.keys()  # a pelvis is for whoever wants hips
-        return BarState(primary=BarAction(go_on, tr("Enter"), is_wished=is_whole), note=sensors.price_of_missing())
+        if self.stored.is_on:
+            return self.stored.bar()
+        return sensors_bar(self._visit, self._silent_site)
 
     def on_primary(self) -> None:
         if self.telling.is_on:
@@ -253,11 +200,10 @@ class SensorsStep(Step):
             self.setup.on_primary()
         elif self.memories.is_on:
             self.memories.on_primary()
+        elif self.stored.is_on:
+            self.stored.on_primary()
         elif self._visit.sensors.are_in_memory:
             self.setup.set_back()
-        elif self._is_choosing:
-            if (session := self.page.stored.session) is not None:
-                self._replay(session)
         elif self._visit.cannot_record:
             self._on_stop_pressed()
             self.page.focus()
@@ -292,18 +238,6 @@ class SensorsStep(Step):
         return False
 
     @property
-    def _is_in_sight(self) -> bool:
-        return self._asks is not SensorsShown.NOTHING
-
-    @property
-    def _is_choosing(self) -> bool:
-        return self._asks is SensorsShown.STORED
-
-    def _end_choosing(self) -> None:
-        if self._is_choosing:
-            self._asks = SensorsShown.SOURCE
-
-    @property
     def _known_places(self) -> dict[str, Site]:
         """Site by the sensor's name, as the library was told last in this session."""
         session = self._visit.session
@@ -320,17 +254,17 @@ class SensorsStep(Step):
     def _show(self) -> None:
         self._show_sources()
         sensors, page = self._visit.sensors, self.page
-        if self._replays.reading:
-            page.show_reading(self._replays.reading)
+        if self.stored.reading:
+            page.show_reading(self.stored.reading)
         elif sensors.is_searching and sensors.choice is not None:
-            page.show_searching(sensors.choice.name)
+            page.show_searching("" if sensors.choice.key == SEARCH else sensors.choice.name)
         elif self.telling.is_on:
             page.show_columns()
         elif self.setup.is_on or self.setup.is_synchronising:
             page.show_dots(self.setup.is_synchronising)
         elif self.memories.is_on:
             page.show_memories(self.memories.is_busy)
-        elif self._is_choosing:
+        elif self.stored.is_on:
             page.show_stored()
         elif sensors.acquisition is None:
             page.show_no_source()
@@ -399,26 +333,8 @@ class SensorsStep(Step):
         if acquisition is None:
             return
         now_s = acquisition.now_s
-        self.page.show_traces(
-            {name: self._trace(acquisition.latest(name, TRACE_S), now_s) for name in acquisition.sensors}
-        )
-
-    def _trace(self, block: ImuBlock, now_s: float) -> FloatArray:
-        """Give (n,) deg/s of the last seconds at even steps, about the sensor's axis that turns most; NaN if silent."""
-        time_s = np.linspace(now_s - TRACE_S, now_s, TRACE_POINTS)
-        heard = np.isfinite(block.gyr_rad_s).all(axis=1)
-        if np.count_nonzero(heard) < 2:
-            return np.full(TRACE_POINTS, np.nan)
-        rates = block.gyr_rad_s[heard]
-        variance = rates.var(axis=0)
-        most = int(np.argmax(variance))
-        axis = self._axis.setdefault(block.sensor, most)
-        if variance[most] > TURNS_MORE * variance[axis]:
-            axis = self._axis[block.sensor] = most
-        known_s = block.time_s[heard]
-        values: FloatArray = np.rad2deg(np.interp(time_s, known_s, rates[:, axis], left=np.nan))
-        values[time_s > known_s[-1] + SILENT_FROM_S / 2] = np.nan
-        return values
+        latest = (acquisition.latest(name, TRACE_S) for name in acquisition.sensors)
+        self.page.show_traces(self._traces.of(latest, now_s))
 
     def _reconnect(self) -> None:
         """Open the source anew; its sensors come back to their places."""
@@ -446,7 +362,7 @@ class SensorsStep(Step):
             self._show()
             self.page.focus()
 
-    def _on_sensors_changed(self) -> None:
+    def _on_changed(self) -> None:
         if self._is_in_sight:
             self._show()
         self.changed.emit()
@@ -457,61 +373,62 @@ class SensorsStep(Step):
             self._visit.sensors.leave_to_motion(is_left)
 
     def _on_source_chosen(self, key: str) -> None:
-        if key == REPLAY:
-            self._choose_stored()
+        if self.memories.is_busy:  # what is fetched or erased is not left by accident
+            self.told.emit(self.memories.cannot_leave, "")
+            self._show_sources()
             return
         sensors = self._visit.sensors
         known = (*self._visit.choices, *([sensors.choice] if sensors.choice is not None else []))
         choice = next((one for one in known if one.key == key), None)
-        if choice is None:
+        if choice is None and key != REPLAY:
             return
-        self._end_choosing()
-        self.telling.end()
-        self.setup.end()
-        self.memories.end()
         is_told, self._told_of = key == self._told_of, ""
-        if any(choice.asks) and not is_told:
+        self._end_asking()
+        if choice is None:
+            self.stored.begin()
+            self._show_asked()
+        elif any(choice.asks) and not is_told:
             self._told_of = key
             sensors.close()
-            self._show()
-            self.changed.emit()
+            self._on_changed()
         elif choice.lines:
             sensors.close()  # they may be at the same ports
             self.telling.begin(self.page.columns, choice.lines)
-            self._show()
-            self.page.focus()
-            self.changed.emit()
+            self._show_asked()
         elif choice.make_fleet is not None:
             self._set_up(choice)
         else:
             sensors.search(choice)
+
+    def _end_asking(self) -> None:
+        """Let go of all that stands in the place of the sensors, or would come there once it is read."""
+        self.stored.end()
+        self.telling.end()
+        self.setup.end()
+        self.memories.end()
 
     def _set_up(self, choice: SourceChoice) -> None:
         """Ask of Movella DOTs which are worn, and synchronise them."""
         self._visit.sensors.close()
         known = self._wanted or self._known_places or self._visit.placement_before
         self.setup.begin(choice, known.keys())
+        self._show_asked()
+
+    def _show_asked(self) -> None:
+        """Show what is asked now, or the sensors again, with the focus in it."""
         self._show()
         self.page.focus()
         self.changed.emit()
 
-    def _on_setup_changed(self) -> None:
-        if self._is_in_sight:
-            self._show()
-        self.changed.emit()
-
-    def _on_setup_left(self) -> None:
-        self.setup.end()
-        self._show()
-        self.page.focus()
-        self.changed.emit()
+    def _on_asking_left(self) -> None:
+        """Other sources are wanted than what is asked about."""
+        self._end_asking()
+        self._show_asked()
 
     def _on_memories_left(self, was_live: bool) -> None:
         if was_live:
             self.setup.set_back()
-        self._show()
-        self.page.focus()
-        self.changed.emit()
+        self._show_asked()
 
     def _use_columns(self) -> None:
         """Remember what is told, and search again: all that is known is heard then."""
@@ -522,79 +439,16 @@ class SensorsStep(Step):
             return
         self._on_source_chosen(SEARCH)
 
-    def _on_columns_left(self) -> None:
-        self.telling.end()
-        self._show()
-        self.page.focus()
-        self.changed.emit()
-
     def _on_stop_pressed(self) -> None:
-        if self._replays.reading:
-            self._replays.stop()
+        if self.stored.reading:
+            self.stored.stop_reading()
         else:
             self._visit.sensors.close()
-        self._show()
-        self.changed.emit()
+        self._on_changed()
 
-    # replay of a stored session
-
-    def _choose_stored(self) -> None:
-        """Ask which: what sends now goes on doing so meanwhile."""
-        self._asks = SensorsShown.STORED
-        self.page.stored.tell("")
-        session = self._visit.session
-        self._replays.list_sessions(session.id if session is not None else None)
-        self._show()
-        self.page.focus()
-        self.changed.emit()
-
-    def _on_listed(self, lines: "list[SessionSummary]") -> None:
-        now = datetime.datetime.now().astimezone()
-        shown = [_stored_line(line, now) for line in lines]
-        self._names = {line.id: tr("{code}, {when}").format(code=line.code, when=line.when) for line in shown}
-        page = self.page
-        page.stored.show_sessions(shown)
-        if self._is_choosing:
-            page.focus()
-            self.changed.emit()
-
-    def _choose_folder(self) -> None:
-        self.dialog = ask_for_folder(self.page, tr("Replay a session folder"), self._on_folder_selected)
-
-    def _on_folder_selected(self, folder: str) -> None:
-        self.replay_folder(Path(folder))
-
-    def replay_folder(self, folder: Path) -> None:
-        """Let a session folder be the sensors."""
-        self._replays.read_folder(folder)
-        self._show()
-        self.changed.emit()
-
-    def _replay(self, session_id: UUID) -> None:
-        self._replays.read_session(session_id, self._names[session_id])
-        self._show()
-        self.changed.emit()
-
-    def _on_stored_left(self) -> None:
-        self._end_choosing()
-        self._show()
-        self.page.focus()
-        self.changed.emit()
-
-    def _on_replay_read(self, choice: SourceChoice) -> None:
-        if not self._is_in_sight:
-            return
-        self._end_choosing()
-        self.page.stored.tell("")
-        self._visit.sensors.search(choice)
-
-    def _on_replay_refused(self, what: str, then: str) -> None:
-        if not self._is_in_sight:
-            return
-        self.page.stored.tell(what, then)
-        self._show()
-        self.page.focus()
-        self.changed.emit()
+    def _on_stored_read(self, choice: SourceChoice) -> None:
+        if self._is_in_sight:
+            self._visit.sensors.search(choice)
 
     def _on_identify_pressed(self, sensor: str) -> None:
         acquisition = self._visit.sensors.acquisition
@@ -605,9 +459,3 @@ class SensorsStep(Step):
 
     def _on_reconnect_pressed(self, _sensor: str) -> None:
         self._reconnect()
-
-
-def _stored_line(line: "SessionSummary", now: datetime.datetime) -> PatientLine:
-    amount = tr_n("{count} recording", "{count} recordings", line.recordings).format(count=line.recordings)
-    conditions = ", ".join(line.conditions)
-    return PatientLine(line.id, line.patient_code, conditions, when(line.started, now), amount, searched="")

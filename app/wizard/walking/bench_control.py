@@ -10,6 +10,7 @@ from app.reports.comparison import Comparison, Contrast
 from app.reports.conditions import Part, conditions_of
 from app.reports.patient_report.answer import Answer, Outcome
 from app.reports.patient_report.numbers_in_words import fixed
+from app.wizard.evaluation import failure_in_words
 from app.wizard.walking.alignment_card import AlignmentRow, RowRole
 from app.wizard.walking.bench import AlignmentChain, ChangeEntry, chain_of, next_walk
 from app.wizard.walking.bench_view import BenchState
@@ -42,7 +43,7 @@ class Bench(QObject):
         self._returned_to = ""
         self._shown = self._beside = ""  # letters; empty: the latest, and what it was changed from
         self._to_undo = ""  # in words, as long as the prosthesis is said to be put back
-        self._undone = ("", "")  # what the prosthesis was in before it was said to be put back, and that
+        self._may_undo_return = False
 
     @property
     def side(self) -> Side | None:
@@ -77,7 +78,7 @@ class Bench(QObject):
         """The next walk begins: what was told of it is its own now."""
         self.entry.load(())
         self._returned_to = self._shown = self._beside = self._to_undo = ""
-        self._undone = ("", "")
+        self._may_undo_return = False
 
     def discarded(self, change: AlignmentChange | None) -> None:
         """A walk does not count, but what was changed before it is still so: it is told again of the next."""
@@ -92,23 +93,22 @@ class Bench(QObject):
         back = chain.way_back(chain.first)
         if not back:
             return ""
-        self._undone = (chain.base, self._returned_to)
-        self._returned_to, self._to_undo = chain.first, to_do_in_words(back)
+        self._returned_to, self._to_undo, self._may_undo_return = chain.first, to_do_in_words(back), True
         self.changed.emit()
         letter = chain.letters.get(chain.first, "")
         return tr("Back to {letter}: {changes}").format(letter=letter, changes=self._to_undo)
 
     def undo_return(self) -> bool:
         """Take back that it was put back; whether it was."""
-        if not self._undone[0]:
+        if not self._may_undo_return:
             return False
-        self._returned_to, self._undone, self._to_undo = self._undone[1], ("", ""), ""
+        self._returned_to, self._to_undo, self._may_undo_return = "", "", False
         self.changed.emit()
         return True
 
     def settle_return(self) -> None:
         """Something else can be taken back now."""
-        self._undone = ("", "")
+        self._may_undo_return = False
 
     @Slot(int, bool)
     def choose(self, number: int, is_beside: bool) -> None:
@@ -137,7 +137,7 @@ class Bench(QObject):
         found = None
         if shown is not None and beside is not None and beside is not shown:
             found = Comparison(Contrast.CONDITIONS, (beside, shown), is_simulated=is_simulated)
-        drawn = [part for part in (beside, shown) if part is not None] if found else [shown] if shown else []
+        drawn = found.parts if found is not None else [shown] if shown is not None else []
         return BenchState(
             self._answer(found, side, shown),
             self._rows(parts, shown, beside if found else None),
@@ -176,6 +176,8 @@ class Bench(QObject):
 
     def _answer(self, found: Comparison | None, side: Side, shown: Part | None) -> Answer:
         if shown is None or (self._is_behind and not self._shown):
+            if self._visit.evaluation.has_failed:
+                return Answer(Outcome.OPEN, *failure_in_words())
             return Answer(Outcome.OPEN, tr("The walk is being analysed."), "")
         if found is not None:
             return bench_answer(found, side)

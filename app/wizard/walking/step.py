@@ -70,6 +70,7 @@ class WalkingStep(Step):
         visit.recordings.changed.connect(self._show)
         visit.recordings.troubled.connect(self._on_troubled)
         visit.evaluation.done.connect(self._on_evaluated)
+        visit.evaluation.refused.connect(self._show)
 
     # the frame of the wizard
 

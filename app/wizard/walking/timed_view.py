@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt
-from PySide6.QtGui import QAccessible, QBrush, QColor, QPainter, QPaintEvent, QPen, QPolygonF
+from PySide6.QtGui import QAccessible, QBrush, QColor, QFontMetrics, QPainter, QPaintEvent, QPen, QPolygonF
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QSizePolicy, QVBoxLayout
 
 from app.icons import Icon
@@ -26,6 +26,7 @@ TIME, DISTANCE = 240, 160
 NO_FIGURE = "\N{EN DASH}"
 RUN_IN_M, RUN_OUT_M = 2.0, 2.0
 SHOWN_STEPS = 24
+BEFORE_STATUS, BEHIND_STATUS = 42, 18  # its dot, and the room round it
 UP_AND_GO_M = 6.0  # there and back
 
 
@@ -62,7 +63,7 @@ def status_words(state: TimedViewState) -> str:
     if math.isfinite(state.end_s):
         return tr("Finished")
     if state.readout.has_begun:
-        return tr("Timing")
+        return tr("Clock runs")
     if DEFINITIONS[state.protocol].is_from_chair:
         return tr("Sit still")
     return tr("Ready to walk") if state.readout.is_still else tr("Stand still")
@@ -72,7 +73,7 @@ def distance_words(state: TimedViewState) -> tuple[str, str]:
     """The distance and, where it cannot be told, why."""
     found = state.readout
     if not found.has_begun:
-        return "0.0", ""
+        return figure_text(0.0, ".1f"), ""
     if found.silent:
         return NO_FIGURE, tr("silent: {sites}").format(sites=joined([name_of(one) for one in found.silent]))
     if not math.isfinite(found.distance_m):
@@ -195,10 +196,13 @@ class _Status(Themed):
         if (words, is_on) != (self._words, self._is_on):
             self._words, self._is_on = words, is_on
             self.setAccessibleName(words)
+            self.updateGeometry()
             self.update()
 
     def sizeHint(self) -> QSize:
-        return QSize(self._look.theme.px(176), self._look.theme.px(48))
+        theme = self._look.theme
+        words = QFontMetrics(theme.font(18, SEMIBOLD)).horizontalAdvance(self._words)
+        return QSize(max(theme.px(176), words + theme.px(BEFORE_STATUS + BEHIND_STATUS)), theme.px(48))
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         theme = self._look.theme
@@ -210,8 +214,13 @@ class _Status(Themed):
         painter.setPen(QPen(QColor(c.inv_ink), 2))
         painter.setBrush(QColor(c.inv_ink) if self._is_on else Qt.BrushStyle.NoBrush)
         painter.drawEllipse(dot)
-        box = QRectF(dot.right() + px(10), 0, self.width() - dot.right() - px(14), self.height())
-        PaintedText(self._words, box, theme.font(18, SEMIBOLD), "inv_ink").paint(painter, c)
+        for text in self.painted_texts():
+            text.paint(painter, c)
+
+    def painted_texts(self) -> list[PaintedText]:
+        px = self._look.theme.px
+        box = QRectF(px(BEFORE_STATUS), 0, self.width() - px(BEFORE_STATUS + BEHIND_STATUS), self.height())
+        return [PaintedText(self._words, box, self._look.theme.font(18, SEMIBOLD), "inv_ink")]
 
     def _on_look_changed(self) -> None:
         self.updateGeometry()

@@ -36,7 +36,7 @@ def lead_to_standing(qtbot: QtBot, wizard: Wizard, folder: Path) -> None:
     sensors = wizard.current
     assert isinstance(sensors, SensorsStep)
     with qtbot.waitSignal(visit.sensors.opened, timeout=WAIT_MS):
-        sensors.replay_folder(folder)
+        sensors.stored.replay_folder(folder)
     assert set(visit.sensors.sensor_at) == set(LEG_SITES)
     wizard.press_primary()
     assert wizard.step_number == STAND_STILL

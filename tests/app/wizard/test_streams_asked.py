@@ -41,7 +41,7 @@ def step(qtbot: QtBot, visit: Visit) -> Iterator[SensorsStep]:
 
 
 def said(step: SensorsStep) -> str:
-    return step.page.nothing._notice.text
+    return step.page.nothing.notice.text
 
 
 def test_it_is_said_whom_it_asks_and_asked_when_it_is_chosen_once_more(

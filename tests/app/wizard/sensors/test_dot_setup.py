@@ -6,7 +6,7 @@ from pytestqt.qtbot import QtBot
 from app.widgets.action_bar import BarState
 from app.widgets.sensors_progress import LineState
 from app.wizard.keys import Intent, KeyAction
-from app.wizard.sensors.step import SensorsStep
+from app.wizard.sensors.step import REPLAY, SensorsStep
 from app.wizard.visit import Visit
 from app.wizard.worn_sensors import SourceChoice
 from devices.dot.messages import SyncResult, start_recording
@@ -68,6 +68,14 @@ def test_a_light_blinks_and_links_are_left_when_other_sources_are_wanted(
     qtbot.waitUntil(lambda: visit.sensors.is_idle, timeout=WAIT_MS)
 
 
+def test_a_stored_session_may_be_wanted_instead(asked: SensorsStep) -> None:
+    asked.page.source_chosen.emit(REPLAY)
+    assert asked.page.stored.isVisible()
+    assert not asked.setup.is_on
+    asked.page.stored.back.click()
+    assert asked.page.nothing.isVisible()
+
+
 def test_synchronising_is_told_step_by_step_and_gives_sensors_on_one_clock(
     qtbot: QtBot, asked: SensorsStep, visit: Visit
 ) -> None:
@@ -126,8 +134,8 @@ def test_what_a_sensor_records_is_stopped_before_anything_is_set(
     dot = radio.dots[0]
     dot.write(0x7001, start_recording(1_700_000_000).packed())
     step.page.source_chosen.emit(DRIVER)
-    qtbot.waitUntil(lambda: verb(step.bar())[0] == "Stop these recordings", timeout=WAIT_MS)
-    assert words_of(step, 0)[4] == "records in its memory"
+    qtbot.waitUntil(lambda: words_of(step, 0)[4] == "records in its memory", timeout=WAIT_MS)
+    assert verb(step.bar()) == ("Stop these recordings", True)
     assert "stays in their memories" in step.bar().note
     step.on_primary()
     qtbot.waitUntil(lambda: verb(step.bar())[0] == "Synchronise 2 sensors", timeout=WAIT_MS)

@@ -12,12 +12,14 @@ from app.acquisition.dot_memories import KnownRecording, known
 from app.acquisition.memory_fetching import FETCHED
 from app.storage.journal.decoding import DecodedJournal, decode
 from app.storage.opened import OpenedLibrary
+from app.wizard.keys import Intent, KeyAction
 from app.wizard.sensors.step import SensorsStep
 from app.wizard.visit import Visit
 from app.wizard.worn_sensors import SourceChoice
 from app.workers.library_controller import LibraryController
 from core.samples import RecordingKind
 from devices.dot.messages import start_recording
+from devices.dot.samples import DRIVER
 from devices.emulators.dot import EmulatedDot
 from tests.app.wizard.emulated_dots import WAIT_MS, dot_choice, open_dots, rows_of
 from tests.devices.dot.fast_radio import FastRadio
@@ -109,6 +111,18 @@ def test_what_is_kept_is_erased_after_a_second_press(
     assert [len(dot.memory.files) for dot in radio.dots] == [0, 0]
     assert opened.page.memories.title == "The sensors' memories are empty"
     assert opened.page.focusWidget() is opened.page.memories, "Enter would press another button"
+
+
+def test_no_other_sensors_are_opened_while_these_are_asked(qtbot: QtBot, opened: SensorsStep, visit: Visit) -> None:
+    opened.on_quiet(0)
+    open_ones = visit.sensors.acquisition
+    with qtbot.waitSignal(opened.told) as told:
+        opened.page.source_chosen.emit(DRIVER)
+    assert told.args is not None
+    assert "Wait until they have answered" in told.args[0]
+    assert not opened.on_intent(Intent(KeyAction.IDENTIFY)), "a light was lit of a sensor that is not in sight"
+    wait(qtbot, opened)
+    assert visit.sensors.acquisition is open_ones
 
 
 @pytest.mark.endurance

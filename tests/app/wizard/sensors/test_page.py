@@ -16,6 +16,7 @@ from app.wizard.sensors.sensor_drag import DRAGGED
 from app.wizard.sensors.sensor_row import SensorRow
 from app.wizard.sensors.sensor_trace import _lines
 from app.wizard.sensors.source_pages import SourceOption
+from app.wording import use_language
 from core.body import LEG_SITES, Side, Site
 from tests.app.room import settle, words_cut
 
@@ -50,6 +51,50 @@ def page(qtbot: QtBot) -> Iterator[SensorsPage]:
     page.show()
     yield page
     page.hide()
+
+
+@pytest.fixture
+def german() -> Iterator[None]:
+    use_language("de")
+    yield
+    use_language("en")
+
+
+@pytest.mark.usefixtures("german")
+def test_in_german_the_demonstrations_sensors_stand_beside_the_figure(qtbot: QtBot, look: ThemeNotifier) -> None:
+    """At 1280 x 800 of the whole window."""
+    page = SensorsPage(look)
+    qtbot.addWidget(page)
+    page.resize(1064, 672)
+    named = zip(("DEMO-09", "DEMO-31", "DEMO-2C", "DEMO-17", "DEMO-1B", "DEMO-22"), LEG_SITES, strict=True)
+    page.show_sensors([SensorRow(name, "simulated", 100.0, None, site) for name, site in named])
+    page.show()
+    settle()
+    assert page.ways.mapTo(page, QPoint()).x() > page.places.mapTo(page, QPoint(page.places.width(), 0)).x()
+    assert next(iter(page.list.rows.values())).sensor.second_line == "simuliert"
+
+
+@pytest.mark.usefixtures("german")
+def test_no_tile_lies_over_the_letters_of_the_legs(qtbot: QtBot, look: ThemeNotifier) -> None:
+    """Tiles are high where names are long, and near the legs where everything is large."""
+    look.set_scale(2.0)
+    page = SensorsPage(look)
+    qtbot.addWidget(page)
+    page.set_compact(True)
+    page.resize(1790, 1006)
+    page.show_sensors([SensorRow(name, site=site) for name, site in zip(("DOT 0001", "DOT 0002"), LEG_SITES)])  # noqa: B905 - two of them
+    page.show()
+    settle()
+    figure = page.places.figure
+    picture, letters = figure.grab().toImage(), {look.theme.text(side).name() for side in Side}
+    for tile in page.places.shown_tiles.values():
+        box = tile.geometry().translated(-figure.pos())
+        under = {
+            picture.pixelColor(x, y).name()
+            for x in range(box.left(), box.right())
+            for y in range(box.top(), box.bottom())
+        }
+        assert not under & letters
 
 
 @pytest.fixture

@@ -56,7 +56,7 @@ def test_a_folder_becomes_the_sensors_with_their_places(
     step.page.nothing.buttons[-1].click()
     assert step.page.stored.isVisible()
     with qtbot.waitSignal(visit.sensors.opened, timeout=10_000):
-        step.replay_folder(folder)
+        step.stored.replay_folder(folder)
     assert visit.sensors.site_of == {f"S-{site}": site for site in LEG_SITES}, "as the folder tells it"
     assert visit.is_simulated, "it was not measured now"
     assert step.page.list.isVisible()
@@ -98,7 +98,7 @@ def test_a_session_of_the_library_is_chosen_by_code_and_date(
 def test_a_folder_is_chosen_beside_the_page(qtbot: QtBot, visit: Visit, step: SensorsStep, folder: Path) -> None:
     step.page.source_chosen.emit(REPLAY)
     step.page.stored.folder.click()
-    dialog = step.dialog
+    dialog = step.stored.dialog
     assert dialog is not None
     assert dialog.fileMode() is QFileDialog.FileMode.Directory
     with qtbot.waitSignal(visit.sensors.opened, timeout=10_000):
@@ -110,12 +110,12 @@ def test_what_cannot_be_read_is_said_in_the_page(
     qtbot: QtBot, visit: Visit, step: SensorsStep, folder: Path, tmp_path: Path
 ) -> None:
     step.page.source_chosen.emit(REPLAY)
-    step.replay_folder(tmp_path)
+    step.stored.replay_folder(tmp_path)
     qtbot.waitUntil(lambda: "is not a session folder" in step.page.stored.notice.text, timeout=5000)
     assert step.page.stored.isVisible()
     broken = shutil.copytree(folder, tmp_path / "broken")
     (broken / "walking" / "left_foot.csv").write_text("time_s,left\n1,2\n")
-    step.replay_folder(broken)
+    step.stored.replay_folder(broken)
     qtbot.waitUntil(lambda: "left_foot.csv" in step.page.stored.notice.text, timeout=5000)
     assert visit.sensors.acquisition is None
     step.page.stored.back.click()
@@ -124,12 +124,25 @@ def test_what_cannot_be_read_is_said_in_the_page(
 
 def test_a_reading_is_stopped(qtbot: QtBot, visit: Visit, step: SensorsStep, folder: Path) -> None:
     step.page.source_chosen.emit(REPLAY)
-    step.replay_folder(folder)
+    step.stored.replay_folder(folder)
     assert step.page.searching.isVisible()
     step.page.searching.stop.click()
     assert step.page.stored.isVisible()
     qtbot.wait(100)
     assert visit.sensors.choice is None
+
+
+def test_whoever_chooses_other_sensors_meanwhile_has_those(
+    qtbot: QtBot, visit: Visit, step: SensorsStep, folder: Path
+) -> None:
+    step.page.source_chosen.emit(REPLAY)
+    step.stored.replay_folder(folder)
+    with qtbot.waitSignal(visit.sensors.opened, timeout=10_000):
+        step.page.source_chosen.emit("fast")
+    assert step.page.list.isVisible()
+    qtbot.wait(300)  # longer than it takes to read the folder
+    assert visit.sensors.choice is not None
+    assert visit.sensors.choice.key == "fast"
 
 
 def test_only_demonstration_patients_are_offered_a_replay(qtbot: QtBot, visit: Visit) -> None:

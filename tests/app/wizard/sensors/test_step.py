@@ -12,7 +12,7 @@ from app.widgets.rail_row import StepState
 from app.wizard.free_motion.step import FreeMotionStep
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.sensors.page import Way
-from app.wizard.sensors.step import SensorsStep
+from app.wizard.sensors.step import REPLAY, SensorsStep
 from app.wizard.standing.step import StandStillStep
 from app.wizard.visit import Visit
 from app.wizard.walking.step import WalkingStep
@@ -184,6 +184,22 @@ def test_a_search_that_is_stopped_gives_the_sources_back(visit: Visit, step: Sen
     step.page.searching.stop.click()
     assert step.page.nothing.isVisible()
     may_end.set()
+
+
+def test_whom_a_network_asks_is_told_only_as_long_as_it_is_chosen(
+    qtbot: QtBot, visit: Visit, step: SensorsStep
+) -> None:
+    asks = SourceChoice("net", "Network", visit.known_choices[0].make, asks=("This asks every computer.", "Again."))
+    visit.known_choices = (*visit.known_choices, asks)
+    tick(step)
+    sources = step.page.sources
+    sources.setCurrentIndex(sources.findData("net"))
+    sources.activated.emit(sources.currentIndex())
+    assert "This asks every computer." in step.page.nothing.notice.text
+    assert sources.currentIndex() == -1, "nothing is asked there yet"
+    step.page.source_chosen.emit(REPLAY)
+    step.page.stored.back.click()
+    assert step.page.nothing.notice.text == ""
 
 
 @pytest.mark.usefixtures("pseudo_language")

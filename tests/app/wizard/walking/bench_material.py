@@ -34,5 +34,5 @@ def bench_visit() -> SimpleNamespace:
     return SimpleNamespace(
         prosthetic_sides=frozenset({Side.LEFT}),
         recordings=SimpleNamespace(every=every, walks=every),
-        evaluation=SimpleNamespace(analysis=analysis, session=Session(WALKED), is_busy=False),
+        evaluation=SimpleNamespace(analysis=analysis, session=Session(WALKED), is_busy=False, has_failed=False),
     )

@@ -28,6 +28,7 @@ from app.wizard.walking.walk_list import WalkRow, WalkState
 from core.alignment import AlignmentChange, NetChange, PartChange, ProsthesisPart
 from core.body import Joint, Side
 from core.results import SideGait
+from core.samples import Session
 from tests.app.room import words_cut
 from tests.app.wizard.walking.bench_material import OF_B, OF_C, PYLON, WALKED, bench_visit
 from tests.core.verdicts.built_walk import calibrations, judged_walk, leg, walk
@@ -229,6 +230,14 @@ def test_while_a_walk_is_analysed_nothing_is_said_of_the_ones_before(bench: Benc
     state = bench.state()
     assert state is not None
     assert "10.0° more than with A" in state.answer.first
+
+
+def test_a_walk_whose_analysis_ended_early_is_not_said_to_be_analysed(bench: Bench, visit: SimpleNamespace) -> None:
+    visit.evaluation.session = Session(WALKED[:2])
+    visit.evaluation.has_failed = True
+    state = bench.state()
+    assert state is not None
+    assert state.answer.first == "The analysis ended before it was done."
 
 
 @pytest.fixture

@@ -8,10 +8,12 @@ from pytestqt.qtbot import QtBot
 
 from app.theme import ThemeNotifier
 from app.wizard.walking.timed_view import TimedView, TimedViewState, distance_words, status_words, time_text
+from app.wording import use_language
 from core.body import Side, Site
 from core.timed.found import NotMeasured
 from core.timed.live import LiveReadout
 from core.timed.protocols import PlannedTest, TimedProtocol
+from tests.app.room import words_cut
 
 TEN = PlannedTest(TimedProtocol.TEN_METRES)
 WAITING = TimedViewState(LiveReadout(TEN, now_s=2.0), "Shoes, attempt 1", 2.0, math.nan)
@@ -30,7 +32,7 @@ def test_what_the_test_is_doing_is_a_word() -> None:
     assert status_words(replace(WAITING, readout=replace(WAITING.readout, is_still=True))) == "Ready to walk"
     chair = replace(WAITING, readout=LiveReadout(PlannedTest(TimedProtocol.UP_AND_GO)))
     assert status_words(chair) == "Sit still"
-    assert status_words(TIMING) == "Timing"
+    assert status_words(TIMING) == "Clock runs"
     assert status_words(replace(TIMING, end_s=12.0)) == "Finished"
 
 
@@ -41,8 +43,26 @@ def test_a_distance_that_cannot_be_told_is_a_dash_with_its_reason() -> None:
     assert distance_words(silent) == ("\N{EN DASH}", "silent: L foot")
     lost = replace(TIMING.readout, distance_m=math.nan, reasons=(NotMeasured.NO_FEET,))
     assert distance_words(replace(TIMING, readout=lost)) == ("\N{EN DASH}", "No foot sensor was worn")
+    use_language("de")
+    before = distance_words(WAITING)
+    use_language("en")
+    assert before == ("0,0", ""), "a point in German before the test, and a comma in it"
     far = replace(TIMING, readout=replace(TIMING.readout, distance_m=362.4))
     assert distance_words(far) == ("362", "")
+
+
+def test_the_status_has_its_room_in_german(qtbot: QtBot, look: ThemeNotifier) -> None:
+    use_language("de")
+    view = TimedView(look)
+    qtbot.addWidget(view)
+    view.resize(1016, 640)
+    view.show()
+    cut = []
+    for state in (WAITING, replace(WAITING, readout=replace(WAITING.readout, is_still=True)), TIMING):
+        view.show_state(state)
+        cut += words_cut(view.status)
+    use_language("en")
+    assert cut == []
 
 
 def test_every_digit_has_a_cell_of_its_own(qtbot: QtBot) -> None:
@@ -65,7 +85,7 @@ def test_who_listens_is_told_once_a_second_and_the_end(qtbot: QtBot) -> None:
     qtbot.addWidget(view)
     view.show_state(replace(TIMING, now_s=4.2))
     first = view.accessibleDescription()
-    assert first == "Timing. 1 s. 6.1 m."
+    assert first == "Clock runs. 1 s. 6.1 m."
     view.show_state(replace(TIMING, now_s=4.6, readout=replace(TIMING.readout, distance_m=6.6)))
     assert view.accessibleDescription() == first
     view.show_state(replace(TIMING, now_s=5.1, end_s=4.85, readout=replace(TIMING.readout, steps=((Side.LEFT, 0.5),))))
