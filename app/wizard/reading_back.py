@@ -26,7 +26,7 @@ READ_AGAIN_MS = 2000  # after the library did not answer
 MOST_READINGS = 15
 
 
-class Stopped(NamedTuple):
+class StoppedRecording(NamedTuple):
     """What is to be read back; `strides` as in `SessionRecording`. Not kept: it was broken off."""
 
     recorder: Recorder
@@ -40,7 +40,7 @@ class ReadingBack(QObject):
     Signals
     -------
     read
-        What was Stopped, and the SessionRecording that it is now.
+        A StoppedRecording, and the SessionRecording that it is now.
     failed
         What the matter is, where the recording is meanwhile, and whether that is news: at the first try, and where
         it is left to the next start.
@@ -52,9 +52,9 @@ class ReadingBack(QObject):
     def __init__(self, controller: LibraryController, fetches: MemoryFetches, parent: QObject) -> None:
         super().__init__(parent)
         self._controller, self._fetches = controller, fetches
-        self._waiting: list[Stopped] = []  # oldest first
+        self._waiting: list[StoppedRecording] = []  # oldest first
         self._given_up: set[str] = set()  # names that the library has still
-        self._reading: Stopped | None = None
+        self._reading: StoppedRecording | None = None
         self._readings = 0  # of the one that is tried
         self._again = QTimer(self)
         self._again.setSingleShot(True)
@@ -86,7 +86,7 @@ class ReadingBack(QObject):
         """Where the oldest is that is still tried."""
         return unread_message((self._next or self._waiting[0]).recorder.status, is_tried_again=True)
 
-    def add(self, stopped: Stopped) -> None:
+    def add(self, stopped: StoppedRecording) -> None:
         """Read it back once `begin` is said, or it has been fetched."""
         self._waiting.append(stopped)
 
@@ -103,7 +103,7 @@ class ReadingBack(QObject):
             self._controller.run(partial(_without_samples, recorder), None, None, self._controller)
 
     @property
-    def _next(self) -> Stopped | None:
+    def _next(self) -> StoppedRecording | None:
         return next((one for one in self._waiting if one.recorder.is_whole), None)
 
     @Slot()
@@ -142,7 +142,7 @@ class ReadingBack(QObject):
         if not is_tried_again:
             self._read_next()
 
-    def _taken(self) -> Stopped:
+    def _taken(self) -> StoppedRecording:
         stopped, self._reading = self._reading, None
         assert stopped is not None  # it was asked for
         return stopped

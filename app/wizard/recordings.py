@@ -24,7 +24,7 @@ from app.wizard.journal_words import (
 )
 from app.wizard.losses import NOTHING, Message
 from app.wizard.memory_fetches import MemoryFetches
-from app.wizard.reading_back import ReadingBack, Stopped
+from app.wizard.reading_back import ReadingBack, StoppedRecording
 from app.wizard.recording_edits import RecordingEdits
 from app.wizard.session_recording import Ongoing, SessionRecording, counted
 from app.wording import tr
@@ -284,7 +284,7 @@ class SessionRecordings(QObject):
             recorder.halt()
 
         self._phase = RecordingPhase.STOPPING
-        self._reading_back.add(Stopped(recorder, self.ongoing.details, strides, is_kept))
+        self._reading_back.add(StoppedRecording(recorder, self.ongoing.details, strides, is_kept))
         self._controller.record(halt, None, self._on_not_halted, self)
         if recorder.memory is not None:
             self.fetches.add(recorder)
@@ -467,7 +467,7 @@ class SessionRecordings(QObject):
         return f"{tr(what)}.", f"{tr(remedy)}.".format(shelter=place)
 
     @Slot(object, object)
-    def _on_read(self, stopped: Stopped, recording: SessionRecording) -> None:
+    def _on_read(self, stopped: StoppedRecording, recording: SessionRecording) -> None:
         if stopped.recorder is self._latest:
             self._go_on()
         self._put(recording)

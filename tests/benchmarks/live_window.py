@@ -145,7 +145,7 @@ def _session(
     yield lambda: wizard.step_number == 3
     free = wizard.steps[3]
     assert isinstance(free, FreeMotionStep)
-    yield lambda: wizard.step_number == 4 or free._labels._side.asked is not None
+    yield lambda: wizard.step_number == 4 or free.labels._side.asked is not None
     if wizard.step_number == 3:
         yield _after(PAUSE_S)
         free.page.answered.emit(0)

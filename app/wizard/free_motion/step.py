@@ -81,11 +81,11 @@ class FreeMotionStep(Step):
         self._plays_to_s = 0.0
         self._then = AfterRecording.ITSELF
         self._is_in_sight = False
-        self._labels = LabelQuestions(visit, self)
-        self._labels.changed.connect(self._show_question)
-        self._labels.relabelled.connect(self._on_relabelled)
-        self._labels.leg_named.connect(self._on_leg_named)
-        self._labels.sensors_wanted.connect(self._on_sensors_wanted)
+        self.labels = LabelQuestions(visit, self)
+        self.labels.changed.connect(self._show_question)
+        self.labels.relabelled.connect(self._on_relabelled)
+        self.labels.leg_named.connect(self._on_leg_named)
+        self.labels.sensors_wanted.connect(self._on_sensors_wanted)
         self._asked_words = SILENT
         self._ticks = 0
         self._settled = QTimer(self)
@@ -100,7 +100,7 @@ class FreeMotionStep(Step):
     def page(self) -> FreeMotionPage:
         if self._page is None:
             self._page = FreeMotionPage(self._look)
-            self._page.answered.connect(self._labels.answer)
+            self._page.answered.connect(self.labels.answer)
         return self._page
 
     @property
@@ -203,8 +203,8 @@ class FreeMotionStep(Step):
         self._repeat(self._repeatable[number])
 
     def undo(self) -> None:
-        if self._is_recording and self._labels.is_understood:
-            self._labels.answer(1)
+        if self._is_recording and self.labels.is_understood:
+            self.labels.answer(1)
 
     def on_intent(self, intent: Intent) -> bool:
         if intent.action is KeyAction.RUN:
@@ -271,7 +271,7 @@ class FreeMotionStep(Step):
         self._before = self._other_leg(side) if side is not None else FreeMotionState()
         self._repeated, self._motion, self._elapsed_s = side, self._before, None
         self._then, self._again_side = AfterRecording.ITSELF, None
-        self._labels.begin()
+        self.labels.begin()
         self._enough = self._with_enough()
         if side is not None:
             self._visit.place_sensors(only=side)
@@ -299,7 +299,7 @@ class FreeMotionStep(Step):
             self._estimator = self._unplaced = UnplacedFreeMotionEstimator(
                 live, Side.LEFT, prosthetic, without, standing
             )
-            self._unplaced.name_leg(self._labels.named)
+            self._unplaced.name_leg(self.labels.named)
         else:
             self._unplaced = None
             site_of = {
@@ -317,21 +317,19 @@ class FreeMotionStep(Step):
         if view.site_of and not sensors.site_of:  # the motion has told it
             sensors.assign_all(view.site_of)
             self._visit.worn.place_once_ended()
-            self._labels.withdraw()
+            self.labels.withdraw()
         had_joints, was_done = bool(self._motion.joints), self._is_done
         self._motion = self._joined(view.motion)
         if sensors.site_of:
-            self._labels.doubt(view.exchanged)
+            self.labels.doubt(view.exchanged)
         else:
-            self._labels.ask_for_side(view.chains if view.is_side_open else None)
+            self.labels.ask_for_side(view.chains if view.is_side_open else None)
         enough = self._with_enough() | {joint for joint, hip in self._motion.hips.items() if hip.is_sure}
         if enough - self._enough:
             sounds.play(Sound.READY)
         self._enough = enough
         is_whole = (
-            self._is_done
-            and all(one.is_closed for one in self._motion.joints.values())
-            and not self._labels.is_in_doubt
+            self._is_done and all(one.is_closed for one in self._motion.joints.values()) and not self.labels.is_in_doubt
         )
         if is_whole and not self._settled.isActive():
             self._settled.start()
@@ -406,10 +404,10 @@ class FreeMotionStep(Step):
     @Slot()
     def _show_question(self) -> None:
         """Show what is to be answered, or what was understood; the page is left alone where that stands there."""
-        words = self._labels.words if self._is_recording else SILENT
+        words = self.labels.words if self._is_recording else SILENT
         if words != self._asked_words:
             self._asked_words = words
-            self.page.ask(*words, is_understood=self._labels.is_understood)
+            self.page.ask(*words, is_understood=self.labels.is_understood)
 
     @Slot()
     def _on_relabelled(self) -> None:
@@ -419,7 +417,7 @@ class FreeMotionStep(Step):
     @Slot()
     def _on_leg_named(self) -> None:
         if self._unplaced is not None:
-            self._unplaced.name_leg(self._labels.named)
+            self._unplaced.name_leg(self.labels.named)
 
     @Slot()
     def _on_sensors_wanted(self) -> None:

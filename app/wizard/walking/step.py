@@ -25,7 +25,7 @@ from app.wizard.walking.walk_labels import label_after, labels_for
 from app.wizard.walking.walk_notice import WalkNotice, asked_walk
 from app.wizard.walking.walk_rows import facts_of, ongoing_walk, rows_of
 from app.wizard.walking.walk_start import WalkStart
-from app.wizard.walking.walking_bar import Quiet, WalkingBar
+from app.wizard.walking.walking_bar import QuietAction, WalkingBar
 from app.wording import tr
 from core.samples import RecordingKind
 from core.targets import TargetTally, with_tallies
@@ -44,7 +44,7 @@ class WalkingStep(Step):
     def __init__(self, look: ThemeNotifier, visit: "Visit", parent: QObject | None = None) -> None:
         super().__init__(look, visit, parent)
         self._page: WalkingPage | None = None
-        self._feedback: PatientFeedback | None = None  # made with the page
+        self.feedback: PatientFeedback | None = None  # made with the page
         self._tallies: dict[str, tuple[TargetTally, ...]] = {}  # of walks that are still to be read back
         self._at_stop: WalkingReadout | None = None
         self._label = ""
@@ -55,16 +55,16 @@ class WalkingStep(Step):
         self._discarded: UUID | None = None
         self._kept: UUID | None = None  # at the bench, and can be taken back
         self._must_restrap = False
-        self._bench = Bench(visit, self)
+        self.bench = Bench(visit, self)
         self._timed = TimedControl(visit, self)
-        self._memory = MemoryControl(visit, self)
-        self._memory.lives.connect(self._on_lives)
-        for part in (self._bench, self._timed, self._memory):
+        self.memory = MemoryControl(visit, self)
+        self.memory.lives.connect(self._on_lives)
+        for part in (self.bench, self._timed, self.memory):
             part.changed.connect(self._show)
         self._preview = LivePreview(visit, self)
         self._preview.renewed.connect(self._timed.watch)
-        self._next = WalkStart(visit, self._memory, self._timed)
-        self._bar = WalkingBar(visit, self._next, self._bench, self._timed, self._memory)
+        self._next = WalkStart(visit, self.memory, self._timed)
+        self._bar = WalkingBar(visit, self._next, self.bench, self._timed, self.memory)
         visit.recordings.begun.connect(self._on_begun)
         visit.recordings.ended.connect(self._on_ended)
         visit.recordings.changed.connect(self._show)
@@ -79,8 +79,8 @@ class WalkingStep(Step):
         if self._page is None:
             from app.wizard.walking.page import WalkingPage
 
-            page = self._page = WalkingPage(self._look, self._bench.entry)
-            page.bench.chosen.connect(self._bench.choose)
+            page = self._page = WalkingPage(self._look, self.bench.entry)
+            page.bench.chosen.connect(self.bench.choose)
             page.bench.told.connect(self._on_change_told)
             page.label_chosen.connect(self._on_label_chosen)
             page.next.test.chosen.connect(self._timed.on_chosen)
@@ -89,10 +89,10 @@ class WalkingStep(Step):
             page.undo_pressed.connect(self._on_keep_pressed)
             page.renamed.connect(self._on_renamed)
             page.restrapped_pressed.connect(self._on_restrapped_pressed)
-            page.memory.stop_pressed.connect(self._memory.stop)
-            self._feedback = PatientFeedback(self._look, self._visit, page.patient_controls, self)
-            self._feedback.run_wished.connect(self._run)
-            self._preview.renewed.connect(self._feedback.watch)
+            page.memory.stop_pressed.connect(self.memory.stop)
+            self.feedback = PatientFeedback(self._look, self._visit, page.patient_controls, self)
+            self.feedback.run_wished.connect(self._run)
+            self._preview.renewed.connect(self.feedback.watch)
         return self._page
 
     @property
@@ -102,7 +102,7 @@ class WalkingStep(Step):
     @property
     def note(self) -> str:
         recordings = self._visit.recordings
-        if self._memory.fetch.is_fetching:
+        if self.memory.fetch.is_fetching:
             return tr("being fetched")
         if (walk := self._ongoing) is not None:
             return tr("Recording {walk}").format(walk=recordings.called(walk.details.name))
@@ -129,7 +129,7 @@ class WalkingStep(Step):
 
     @property
     def cannot_leave(self) -> str:
-        if reason := self._memory.cannot_leave:
+        if reason := self.memory.cannot_leave:
             return reason
         if self._ongoing is None:
             return ""
@@ -139,7 +139,7 @@ class WalkingStep(Step):
 
     @property
     def folds_sensors(self) -> bool:
-        return self._timed.is_running or (self._bench.is_shown and not self._visit.recordings.is_recording)
+        return self._timed.is_running or (self.bench.is_shown and not self._visit.recordings.is_recording)
 
     @property
     def takes_clicker(self) -> bool:
@@ -158,14 +158,14 @@ class WalkingStep(Step):
         if not self._label:
             self._label = label_after(self._visit.patient.details, self._used)
         if not self._next.missing:
-            self._memory.prepare()
+            self.memory.prepare()
         self._show()
         self.page.focus()
 
     def leave(self) -> None:
         self._is_in_sight = self._must_restrap = False
-        if self._feedback is not None:
-            self._feedback.close()
+        if self.feedback is not None:
+            self.feedback.close()
         self._preview.end()
 
     def tick(self) -> None:
@@ -176,7 +176,7 @@ class WalkingStep(Step):
         if self._timed.tick():
             self._stop()
         is_live = self._ongoing is not None and not self._visit.sensors.are_in_memory
-        feedback = self._feedback if self._feedback is not None and self._feedback.is_open else None
+        feedback = self.feedback if self.feedback is not None and self.feedback.is_open else None
         view = self._preview.look() if is_live or feedback is not None else None
         if view is None:
             return
@@ -191,8 +191,8 @@ class WalkingStep(Step):
     def on_primary(self) -> None:
         is_recording = self._visit.recordings.is_recording
         if self._bar.has_memory:
-            self._memory.on_primary()
-        elif self._bench.is_shown and self._asked is not None and not is_recording:
+            self.memory.on_primary()
+        elif self.bench.is_shown and self._asked is not None and not is_recording:
             self._keep_at_bench(self._asked)
         elif self._has_kept and self._asked is None and not is_recording:
             self.done.emit()
@@ -201,12 +201,12 @@ class WalkingStep(Step):
 
     def on_other(self, number: int) -> None:
         if self._bar.has_memory:
-            if self._memory.on_other(number):
+            if self.memory.on_other(number):
                 self.done.emit()
         elif self._timed.is_running:
             self._stop()
-        elif self._bench.is_shown and number < len(self.bar().others) - 1:
-            if said := self._bench.return_to_first():
+        elif self.bench.is_shown and number < len(self.bar().others) - 1:
+            if said := self.bench.return_to_first():
                 self._kept = self._discarded = None
                 self.offered.emit(said)
         else:
@@ -214,29 +214,29 @@ class WalkingStep(Step):
 
     def on_quiet(self, number: int) -> None:
         match dict(enumerate(self._bar.quiet)).get(number):
-            case Quiet.BENCH:
-                self._bench.is_wished = not self._bench.is_wished
+            case QuietAction.BENCH:
+                self.bench.is_wished = not self.bench.is_wished
                 self._show()
-            case Quiet.DISCARD if self._asked is not None:
+            case QuietAction.DISCARD if self._asked is not None:
                 self._keep(self._asked, is_kept=False)
-            case Quiet.MEMORY:
-                self._memory.on_quiet()
-            case Quiet.PATIENT_SCREEN:
+            case QuietAction.MEMORY:
+                self.memory.on_quiet()
+            case QuietAction.PATIENT_SCREEN:
                 self._toggle_patient_screen()
 
     def _toggle_patient_screen(self) -> None:
-        if self._feedback is not None:
-            self._feedback.toggle()
+        if self.feedback is not None:
+            self.feedback.toggle()
 
     def _keep_at_bench(self, recording: "SessionRecording") -> None:
         """Keep it: what is changed next is changed from it. It can be taken back for a while."""
-        self._bench.settle_return()
+        self.bench.settle_return()
         self._discarded, self._kept = None, recording.id
         self._keep(recording, is_kept=True)
         self.offered.emit(tr("{walk} kept.").format(walk=self._visit.recordings.called(recording.details.name)))
 
     def on_intent(self, intent: Intent) -> bool:
-        feedback = self._feedback
+        feedback = self.feedback
         match intent.action:
             case KeyAction.RUN:
                 self._run()
@@ -248,10 +248,10 @@ class WalkingStep(Step):
                 self._keep(self._asked, is_kept=True)
             case KeyAction.DISCARD if self._asked is not None:
                 self._keep(self._asked, is_kept=False)
-            case KeyAction.LABEL if self._bench.is_shown and not self._visit.recordings.is_recording:
-                self._bench.choose(intent.number - 1, is_beside=False)
-            case KeyAction.SECOND_LABEL if self._bench.is_shown and not self._visit.recordings.is_recording:
-                self._bench.choose(intent.number - 1, is_beside=True)
+            case KeyAction.LABEL if self.bench.is_shown and not self._visit.recordings.is_recording:
+                self.bench.choose(intent.number - 1, is_beside=False)
+            case KeyAction.SECOND_LABEL if self.bench.is_shown and not self._visit.recordings.is_recording:
+                self.bench.choose(intent.number - 1, is_beside=True)
             case KeyAction.LABEL:
                 self.page.choose_digit(intent.number)
             case KeyAction.PATIENT_SCREEN:
@@ -265,7 +265,7 @@ class WalkingStep(Step):
         return True
 
     def undo(self) -> None:
-        if self._bench.undo_return():
+        if self.bench.undo_return():
             return
         if (kept := self._recording(self._kept)) is not None:
             self._kept = None
@@ -294,23 +294,23 @@ class WalkingStep(Step):
         self._at_stop = None
         self.page.count_anew()
         label, alignment = self._label, None
-        if self._bench.is_shown:
-            label, alignment = self._bench.next_walk()
-            acquisition.set_up(self._bench.chain.set_so(label, alignment))
+        if self.bench.is_shown:
+            label, alignment = self.bench.next_walk()
+            acquisition.set_up(self.bench.chain.set_so(label, alignment))
         acquisition.ask(RecordingKind.WALKING)
-        self._memory.fetch.begun()
+        self.memory.fetch.begun()
         recordings.begin(acquisition, RecordingKind.WALKING, label, alignment, self._timed.planned)
         if (walk := self._ongoing) is not None:
             self._preview.begin_walk(walk.began_s)
             self._timed.begin(walk.began_s)
-        if self._feedback is not None:
-            self._feedback.begin_walk()
+        if self.feedback is not None:
+            self.feedback.begin_walk()
         self.page.focus()
 
     def _stop(self) -> None:
         view = self._at_stop = self._preview.shown
-        if self._feedback is not None and (walk := self._ongoing) is not None:
-            self._tallies[walk.details.name] = self._feedback.end_walk()
+        if self.feedback is not None and (walk := self._ongoing) is not None:
+            self._tallies[walk.details.name] = self.feedback.end_walk()
         self._visit.recordings.stop(None if view is None else view.strides)
         if (acquisition := self._visit.sensors.acquisition) is not None:
             acquisition.ask(None)
@@ -321,8 +321,8 @@ class WalkingStep(Step):
         called = self._visit.recordings.called(recording.details.name)
         self._visit.recordings.keep(recording, is_kept)
         if not is_kept:
-            self._bench.settle_return()
-            self._bench.discarded(recording.details.alignment)
+            self.bench.settle_return()
+            self.bench.discarded(recording.details.alignment)
             self._kept = None
             self._discarded = recording.id
             self.offered.emit(tr("{walk} discarded.").format(walk=called))
@@ -343,8 +343,8 @@ class WalkingStep(Step):
         if not self._visit.recordings.is_recording:
             self._visit.evaluate_if_stale()  # a walk may have ended while a part of it was looked at
         self._preview.take_over()
-        if self._feedback is not None:
-            self._feedback.show_reasons()
+        if self.feedback is not None:
+            self.feedback.show_reasons()
         self._show()
 
     def _watch_sensors(self) -> None:
@@ -396,10 +396,10 @@ class WalkingStep(Step):
             cadence = self._at_stop.cadence_steps_min
         facts = facts_of(self._visit, asked, cadence) if asked is not None else ""
         self._page.show_walks(rows_of(self._visit), facts)
-        self._page.show_bench(self._bench.state() if self._bench.is_shown and ongoing is None else None)
+        self._page.show_bench(self.bench.state() if self.bench.is_shown and ongoing is None else None)
         self._page.show_labels(labels_for(self._visit.patient.details, conditions), self._label)
         self._page.show_tests(self._timed.protocol, self._timed.result(), self._timed.before(self._label))
-        self._page.show_memory(self._memory.shown)
+        self._page.show_memory(self.memory.shown)
         self.changed.emit()
 
     # what the page and the visit tell
@@ -408,7 +408,7 @@ class WalkingStep(Step):
     def _on_begun(self) -> None:
         if self._ongoing is None:
             return  # of another step, left before it had begun
-        self._bench.begun()
+        self.bench.begun()
         if self._is_in_sight and not self._visit.recordings.is_stopping:
             sounds.play(Sound.START)
 
@@ -422,8 +422,8 @@ class WalkingStep(Step):
     def _keep_tallies(self, recording: "SessionRecording") -> None:
         """Note with the walk how often its targets were reached."""
         tallies = self._tallies.pop(recording.details.name, ())
-        if self._feedback is not None and not self._visit.recordings.is_recording:
-            tallies += self._feedback.end_walk()  # of a walk that ended by itself
+        if self.feedback is not None and not self._visit.recordings.is_recording:
+            tallies += self.feedback.end_walk()  # of a walk that ended by itself
         if tallies:
             self._visit.recordings.change(recording, lambda told: replace(told, note=with_tallies(told.note, tallies)))
 
@@ -440,7 +440,7 @@ class WalkingStep(Step):
     @Slot()
     def _on_change_told(self) -> None:
         """Show what was told of the next change, without drawing anything else anew."""
-        self.page.bench.show_entry(self._bench.next_title)
+        self.page.bench.show_entry(self.bench.next_title)
         self.changed.emit()
 
     @Slot(str)
@@ -463,7 +463,7 @@ class WalkingStep(Step):
         self._visit.recordings.say_restrapped()
         self._must_restrap = self._visit.sensors.are_in_memory
         if self._must_restrap:
-            self._memory.go_live()  # standing and free motion are measured live
+            self.memory.go_live()  # standing and free motion are measured live
         else:
             self.jumped.emit(STAND_STILL)
 

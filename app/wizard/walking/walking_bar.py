@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from app.wizard.visit import Visit
 
 
-class Quiet(Enum):
+class QuietAction(Enum):
     """What one of the quiet actions does."""
 
     BENCH = auto()  # shows the bench, or all walks in its place
@@ -45,21 +45,21 @@ class WalkingBar:
         return replace(self._state(label), quiet=tuple(self.quiet.values()))
 
     @property
-    def quiet(self) -> dict[Quiet, BarAction]:
+    def quiet(self) -> dict[QuietAction, BarAction]:
         """The quiet actions in their order, by what they do."""
-        offered: dict[Quiet, BarAction] = {}
+        offered: dict[QuietAction, BarAction] = {}
         is_between = not self._visit.recordings.is_recording and not self.has_memory
         if is_between and self._bench.is_shown:
-            offered[Quiet.BENCH] = BarAction(tr("Walks"))
+            offered[QuietAction.BENCH] = BarAction(tr("Walks"))
             if asked_walk(self._visit.recordings) is not None:
-                offered[Quiet.DISCARD] = BarAction(tr("Discard"), "D")
+                offered[QuietAction.DISCARD] = BarAction(tr("Discard"), "D")
         elif is_between:
             if self._bench.is_offered:
-                offered[Quiet.BENCH] = BarAction(tr("Bench"))
+                offered[QuietAction.BENCH] = BarAction(tr("Bench"))
             if (memory := self._memory.quiet(wants_live=self._timed.planned is not None)) is not None:
-                offered[Quiet.MEMORY] = memory
+                offered[QuietAction.MEMORY] = memory
         if not self._bench.is_shown and not self._timed.is_running:  # the bench has no room for it; the key is there
-            offered[Quiet.PATIENT_SCREEN] = BarAction(tr("Patient's screen"), "F8")
+            offered[QuietAction.PATIENT_SCREEN] = BarAction(tr("Patient's screen"), "F8")
         return offered
 
     @property

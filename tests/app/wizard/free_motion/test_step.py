@@ -306,13 +306,13 @@ def test_what_a_recording_before_it_told_neither_ends_nor_counts_for_the_next(
 def test_labels_that_are_kept_are_not_asked_about_again(qtbot: QtBot, step: FreeMotionStep, visit: Visit) -> None:
     pair = (Site.LEFT_THIGH, Site.LEFT_SHANK)
     step.enter()
-    step._labels.doubt((pair,))
+    step.labels.doubt((pair,))
     assert step.page.question.notice.text == (
         "L thigh and L shank seem swapped: the legs move otherwise. Swap them, or keep as worn."
     )
     step.page.answered.emit(1)
     assert step.page.question.isHidden()
-    step._labels.doubt((pair,))
+    step.labels.doubt((pair,))
     assert step.page.question.isHidden()
 
 
@@ -321,7 +321,7 @@ def test_swapped_labels_change_places_and_what_was_recorded_is_corrected(
 ) -> None:
     step.enter()
     ticks(qtbot, step, lambda: visit.recordings.is_recording and knows(step))
-    step._labels.doubt(((Site.LEFT_THIGH, Site.LEFT_SHANK),))
+    step.labels.doubt(((Site.LEFT_THIGH, Site.LEFT_SHANK),))
     step.page.answered.emit(0)
     assert visit.sensors.sensor_at[Site.LEFT_THIGH] == f"DEMO-{Site.LEFT_SHANK}"
     with qtbot.waitSignal(step.done, timeout=PATIENCE_MS):
@@ -340,7 +340,7 @@ def test_labels_swapped_in_a_visit_that_is_closed_amid_the_motion_are_in_the_lib
 ) -> None:
     step.enter()
     ticks(qtbot, step, lambda: visit.recordings.is_recording and knows(step))
-    step._labels.doubt(((Site.LEFT_THIGH, Site.LEFT_SHANK),))
+    step.labels.doubt(((Site.LEFT_THIGH, Site.LEFT_SHANK),))
     step.page.answered.emit(0)
     with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
         visit.close()
@@ -374,19 +374,19 @@ def test_two_legs_that_begin_together_are_told_apart_by_asking(
     together = chains(*shanks)
     question, unplaced = step.page.question, step._unplaced
     assert unplaced is not None
-    step._labels.ask_for_side(together)
+    step.labels.ask_for_side(together)
     assert question.notice.text == f"Both legs moved at once. Which one wears {shanks[0]} on its shank?"
     step.page.answered.emit(1)
-    assert step._labels.named is None  # the library knows it of the left leg
+    assert step.labels.named is None  # the library knows it of the left leg
     assert question.notice.text == f"Earlier {shanks[0]} was worn on the left leg. Which leg wears it now?"
     step.page.answered.emit(1)
     assert unplaced._answer == (shanks[0], Side.RIGHT)
     for _ in range(3):
-        step._labels.ask_for_side(together)  # the estimator has not taken it yet
+        step.labels.ask_for_side(together)  # the estimator has not taken it yet
     assert question.notice.text == f"Understood: {shanks[0]} is on the right leg."
     assert [button.text() for button in question.buttons if not button.isHidden()] == ["Undo"]
     step.page.answered.emit(1)
-    assert step._labels.named is None
+    assert step.labels.named is None
     assert "Which one wears" in question.notice.text
     step.page.answered.emit(0)
     assert question.notice.text == f"Understood: {shanks[0]} is on the left leg."
@@ -399,7 +399,7 @@ def test_a_leg_that_was_named_wrongly_changes_places_when_that_is_undone(
     step.enter()
     ticks(qtbot, step, lambda: step._unplaced is not None)
     shank = f"DEMO-{Site.LEFT_SHANK}"
-    step._labels.ask_for_side(chains(shank, f"DEMO-{Site.RIGHT_SHANK}"))
+    step.labels.ask_for_side(chains(shank, f"DEMO-{Site.RIGHT_SHANK}"))
     for _ in range(2):  # the library knows it of the left leg
         step.page.answered.emit(1)
     visit.sensors.assign_all({sensor: opposite(site) for sensor, site in worn.items()})  # as the motion then tells

@@ -143,7 +143,7 @@ def test_a_walk_that_is_fetched_later_holds_up_no_live_one_and_stands_before_it(
     walk(qtbot, visit, step)
     step.page.memory.stop_pressed.emit()
     qtbot.waitUntil(lambda: visit.recordings.fetches.is_idle, timeout=WAIT_MS)
-    step._memory.send_live()
+    step.memory.send_live()
     qtbot.waitUntil(lambda: not visit.sensors.are_in_memory and visit.sensors.sync.is_idle, timeout=WAIT_MS)
     qtbot.waitUntil(lambda: not visit.sensors.are_silent, timeout=WAIT_MS)
     walk(qtbot, visit, step)

@@ -211,8 +211,8 @@ def test_space_pressed_twice_at_the_end_keeps_what_the_patient_reached(
 ) -> None:
     tally = TargetTally(Target(TargetMeasure.CADENCE, None, 100), reached=3, strides=5)
     reached = [(tally,)]
-    assert step._feedback is not None
-    monkeypatch.setattr(step._feedback, "end_walk", lambda: reached.pop() if reached else ())
+    assert step.feedback is not None
+    monkeypatch.setattr(step.feedback, "end_walk", lambda: reached.pop() if reached else ())
     with qtbot.waitSignal(visit.recordings.begun, timeout=PATIENCE_MS):
         step.on_intent(RUN)
     with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
@@ -236,7 +236,7 @@ def test_a_walk_that_is_refused_ends_its_test_and_leaves_what_was_told_of_the_pr
         step.on_intent(RUN)
         assert takes_clicker(step)
     assert not takes_clicker(step)
-    assert step._bench.entry.parts
+    assert step.bench.entry.parts
     assert step.bar().quiet
 
 
@@ -288,7 +288,7 @@ def test_who_left_before_the_sensors_were_live_again_is_not_fetched_back(
     step.page.restrapped_pressed.emit()
     step.leave()
     with qtbot.assertNotEmitted(step.jumped):
-        step._memory.lives.emit()  # as when walks are sent live on the sensors' step
+        step.memory.lives.emit()  # as when walks are sent live on the sensors' step
 
 
 def test_while_no_sensor_is_heard_the_charts_go_on_with_a_gap(

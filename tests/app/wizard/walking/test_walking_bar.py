@@ -13,7 +13,7 @@ from app.wizard.walking.bench_control import Bench
 from app.wizard.walking.memory_control import MemoryControl
 from app.wizard.walking.timed_control import TimedControl
 from app.wizard.walking.walk_start import WalkStart
-from app.wizard.walking.walking_bar import Quiet, WalkingBar
+from app.wizard.walking.walking_bar import QuietAction, WalkingBar
 from core.samples import Recording, RecordingKind
 from tests.app.wizard.walking.bench_material import bench_visit
 
@@ -52,22 +52,22 @@ def bar(visit: Any, bench: Bench) -> WalkingBar:
     )
 
 
-def told(bar: WalkingBar) -> list[tuple[Quiet, str]]:
+def told(bar: WalkingBar) -> list[tuple[QuietAction, str]]:
     assert bar.state("Shoes").quiet == tuple(bar.quiet.values())
     return [(what, action.text) for what, action in bar.quiet.items()]
 
 
 def test_at_the_bench_discard_discards_also_while_clocks_drift(visit: Any, bar: WalkingBar) -> None:
-    assert told(bar) == [(Quiet.BENCH, "Walks"), (Quiet.DISCARD, "Discard")]
+    assert told(bar) == [(QuietAction.BENCH, "Walks"), (QuietAction.DISCARD, "Discard")]
     visit.recordings.walks[-1].is_decided = True
-    assert told(bar) == [(Quiet.BENCH, "Walks")]
+    assert told(bar) == [(QuietAction.BENCH, "Walks")]
 
 
 def test_beside_the_list_of_walks_the_clocks_can_be_synchronised(visit: Any, bench: Bench, bar: WalkingBar) -> None:
     bench.is_wished = False
     visit.recordings.walks[-1].is_decided = True
-    assert list(bar.quiet) == [Quiet.BENCH, Quiet.MEMORY, Quiet.PATIENT_SCREEN]
-    assert bar.quiet[Quiet.MEMORY] is SYNCHRONISE
+    assert list(bar.quiet) == [QuietAction.BENCH, QuietAction.MEMORY, QuietAction.PATIENT_SCREEN]
+    assert bar.quiet[QuietAction.MEMORY] is SYNCHRONISE
 
 
 @pytest.mark.parametrize(
