@@ -175,7 +175,12 @@ class TimedControl(QObject):
         every = self.attempts()
         same = [one for one in every if one.protocol is every[-1].protocol]
         names = recordings.shown_names
-        return TimedResult(same, [str(names[one.name]) for one in same], *self._course(every[-1].protocol))
+        return TimedResult(
+            same,
+            [str(names[one.name]) for one in same],
+            *self._course(every[-1].protocol),
+            has_failed=self._visit.evaluation.has_failed,
+        )
 
     def _course(self, protocol: TimedProtocol) -> "tuple[tuple[CourseVisit, ...], CourseLane | None]":
         """The visits, and over them what a test is made for, under the condition of the latest walk."""

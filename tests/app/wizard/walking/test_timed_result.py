@@ -38,3 +38,14 @@ def test_the_mean_is_of_the_attempts_that_count(qtbot: QtBot) -> None:
 
 def test_one_attempt_has_no_mean(qtbot: QtBot) -> None:
     assert len(shown(qtbot, attempt(1, 9.0), attempt(2, 20.0, is_kept=False))) == 2
+
+
+def test_what_an_analysis_that_ended_early_left_open_is_not_said_to_be_analysed(qtbot: QtBot) -> None:
+    view = TimedResultView(ThemeNotifier())
+    qtbot.addWidget(view)
+    open_still = TimedResult([replace(attempt(1, 9.0), found=None)], ["A1 Shoes"])
+    view.show_state(open_still)
+    assert view.first.text() == "10-metre walk: being analysed."
+    view.show_state(replace(open_still, has_failed=True))
+    assert view.first.text() == "The analysis ended before it was done."
+    assert view.then.text() == "The recordings are kept; the log holds the details."
