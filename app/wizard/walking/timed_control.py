@@ -13,6 +13,7 @@ from app.reports.patient_report.numbers_in_words import fixed
 from app.sounds import Sound
 from app.storage.journal.payloads import key_text
 from app.timed_words import name_of_test
+from app.wizard.evaluation import failure_in_words
 from app.wizard.walking.earlier_tests import EarlierTests
 from app.wizard.walking.timed_result import TimedAttempt, TimedResult
 from app.wizard.walking.timed_view import TimedViewState
@@ -179,7 +180,7 @@ class TimedControl(QObject):
             same,
             [str(names[one.name]) for one in same],
             *self._course(every[-1].protocol),
-            has_failed=self._visit.evaluation.has_failed,
+            failure=failure_in_words() if self._visit.evaluation.has_failed else None,
         )
 
     def _course(self, protocol: TimedProtocol) -> "tuple[tuple[CourseVisit, ...], CourseLane | None]":

@@ -31,7 +31,6 @@ from app.widgets.table import CellTable, TableColumn, TableRow
 from app.widgets.table_cells import RIGHT, TextCell
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed
-from app.wizard.evaluation import failure_in_words
 from app.wording import figure_text, tr
 from core.timed.found import TimedPart, TimedTest
 from core.timed.protocols import TimedProtocol
@@ -56,14 +55,14 @@ class TimedResult:
     """The latest test, and every attempt at the same one in this session; `called`: each walk's name on the screen.
 
     `lane`: what the test is made for over the `visits` that have it, this one the last; None where it is the first.
-    `has_failed`: the analysis ended early, and nobody works on what the latest one lacks.
+    `failure`: that the analysis ended early and what is left, so that nobody works on what the latest one lacks.
     """
 
     attempts: Sequence[TimedAttempt]
     called: Sequence[str]
     visits: Sequence[CourseVisit] = ()
     lane: CourseLane | None = None
-    has_failed: bool = False
+    failure: tuple[str, str] | None = None
 
     @property
     def latest(self) -> TimedAttempt:
@@ -90,10 +89,9 @@ class TimedResultView(Themed):
 
     def show_state(self, state: TimedResult) -> None:
         found, latest = state.latest.found, state.latest
-        if found is None and state.has_failed:
-            ended, then = failure_in_words()
-            self.first.setText(ended)
-            self.then.setText(then)
+        if found is None and state.failure is not None:
+            self.first.setText(state.failure[0])
+            self.then.setText(state.failure[1])
         elif found is None:
             self.first.setText(tr("{test}: being analysed.").format(test=name_of_test(latest.protocol)))
             self.then.setText("")

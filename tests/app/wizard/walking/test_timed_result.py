@@ -7,6 +7,7 @@ from pytestqt.qtbot import QtBot
 from app.theme import ThemeNotifier
 from app.widgets.table import TableRow
 from app.widgets.table_cells import TextCell
+from app.wizard.evaluation import failure_in_words
 from app.wizard.walking.timed_result import TimedAttempt, TimedResult, TimedResultView
 from core.timed.found import TimedTest
 from core.timed.protocols import TimedProtocol
@@ -46,6 +47,6 @@ def test_what_an_analysis_that_ended_early_left_open_is_not_said_to_be_analysed(
     open_still = TimedResult([replace(attempt(1, 9.0), found=None)], ["A1 Shoes"])
     view.show_state(open_still)
     assert view.first.text() == "10-metre walk: being analysed."
-    view.show_state(replace(open_still, has_failed=True))
+    view.show_state(replace(open_still, failure=failure_in_words()))
     assert view.first.text() == "The analysis ended before it was done."
     assert view.then.text() == "The recordings are kept; the log holds the details."
