@@ -310,10 +310,10 @@ class Entry(QObject):
             self.entered.emit(state)
 
     def _on_print_wished(self, key: str) -> None:
-        self._key_sheet().print(key)
+        self._key_sheet().print(key, self._folder)
 
     def _on_save_wished(self, key: str) -> None:
-        self._key_sheet().save(key)
+        self._key_sheet().save(key, self._folder)
 
     def _key_sheet(self) -> "KeySheet":
         if self._sheet is None:

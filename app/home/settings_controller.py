@@ -126,8 +126,8 @@ class SettingsController(QObject):
         page.sound_chosen.connect(self._on_sound_chosen)
         page.passphrase_wished.connect(self._on_passphrase_wished)
         page.recovery_key_wished.connect(self._on_recovery_key_wished)
-        page.print_wished.connect(self._sheet.print)
-        page.save_wished.connect(self._sheet.save)
+        page.print_wished.connect(self._on_print_wished)
+        page.save_wished.connect(self._on_save_wished)
         page.backup_wished.connect(self._on_backup_wished)
         page.backup_folder_wished.connect(self._on_backup_folder_wished)
         page.stop_wished.connect(self._on_stop_wished)
@@ -269,6 +269,14 @@ class SettingsController(QObject):
                 for one in operators
             ]
         )
+
+    def _on_print_wished(self, key: str) -> None:
+        if self._state is not None:
+            self._sheet.print(key, self._state.library.folder)
+
+    def _on_save_wished(self, key: str) -> None:
+        if self._state is not None:
+            self._sheet.save(key, self._state.library.folder)
 
     def _on_operator_added(self, code: str, name: str, role: str, passphrase: str) -> None:
         def add(opened: "OpenedLibrary") -> None:

@@ -1,15 +1,23 @@
 """The recovery key's dialogs are Qt's own, and work under the application's fonts."""
 
+import datetime
 import sys
+from pathlib import Path
 
+import pypdf
 import pytest
 from PySide6.QtCore import QTimer
+from PySide6.QtGui import QPdfWriter
 from PySide6.QtPrintSupport import QPrintDialog
 from PySide6.QtWidgets import QAbstractButton, QApplication, QDialog, QWidget
 from pytestqt.qtbot import QtBot
 
-from app.home.key_sheet import KeySheet
+from app.dates import date
+from app.home import key_sheet
+from app.home.key_sheet import KeySheet, paint_sheet, sheet
 from app.theme import ThemeNotifier, load_fonts
+
+KEY = "1234-5678-90AB-CDEF"
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="elsewhere the system's own dialog opens, not Qt's")
@@ -19,7 +27,7 @@ def test_the_printers_properties_open_without_a_complaint_of_qt(qapp: QApplicati
     ThemeNotifier().set_scale(1.0)
     window = QWidget()
     qtbot.addWidget(window)
-    KeySheet(window).print("0000")
+    KeySheet(window).print("0000", Path("clinic"))
     dialog = window.findChild(QPrintDialog)
     assert isinstance(dialog, QPrintDialog)
     qtbot.waitUntil(dialog.isVisible)
@@ -38,3 +46,35 @@ def test_the_printers_properties_open_without_a_complaint_of_qt(qapp: QApplicati
     properties.click()
     qtbot.waitUntil(lambda: bool(seen))
     dialog.reject()
+
+
+def test_the_saved_sheet_says_whose_key_it_is_and_since_when(
+    qtbot: QtBot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    window, file = QWidget(), tmp_path / "key.txt"
+    qtbot.addWidget(window)
+    saving = KeySheet(window)
+    monkeypatch.setattr(key_sheet, "ask_for_new_file", lambda *_asked: saving.write(str(file)))
+    saving.save(KEY, tmp_path / "clinic")
+    words = file.read_text(encoding="utf-8")
+    assert KEY in words.splitlines()
+    assert f"Library: {tmp_path / 'clinic'}" in words.splitlines()
+    assert f"Written on {date(datetime.date.today())}." in words
+    saving.write(str(file))  # the key is not kept longer
+    assert KEY not in file.read_text(encoding="utf-8")
+
+
+def test_the_printed_sheet_holds_all_of_it_on_one_page(qapp: QApplication, tmp_path: Path) -> None:
+    load_fonts()
+    file = tmp_path / "key.pdf"
+    words = sheet(
+        KEY, Path("/a/long/way/to/the/folder/of/a/clinic's/library/of/recordings"), datetime.date(2026, 11, 26)
+    )
+    paint_sheet(QPdfWriter(str(file)), words)
+    (page,) = pypdf.PdfReader(file).pages
+    assert letters(page.extract_text()) == letters(words)
+
+
+def letters(words: str) -> str:
+    """Without digits and signs, which are drawn as glyphs that a PDF of Qt's does not name."""
+    return "".join(one for one in words if one.isascii() and one.isalpha())
