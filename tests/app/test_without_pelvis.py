@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 
 from devices.walker import Walk, simulate
-from tests.app.six_sensors import GOLDEN, SESSIONS, digests, machine, structure, written
+from tests.app.six_sensors import GOLDEN, SESSIONS, digests, machine, structure, vectors, written
 
 TOLD = json.loads(GOLDEN.read_text(encoding="utf-8"))
 
@@ -16,8 +16,8 @@ TOLD = json.loads(GOLDEN.read_text(encoding="utf-8"))
 def test_six_sensors_give_the_tables_that_they_gave_before(case: str) -> None:
     files = written(simulate(SESSIONS[case]).session)
     assert structure(files) == TOLD["structure"][case]
-    if machine() == TOLD["machine"]:  # other builds of NumPy round other last digits
-        assert digests(files) == TOLD["digests"][case]
+    if machine() == TOLD["machine"] and vectors() in TOLD["digests"]:  # others round other last digits
+        assert digests(files) == TOLD["digests"][vectors()][case]
 
 
 @pytest.mark.endurance
@@ -26,4 +26,4 @@ def test_another_walk_gives_other_bytes() -> None:
     walk = replace(settings.recordings[-1], speed_m_s=1.2) if isinstance(settings.recordings[-1], Walk) else Walk()
     files = written(simulate(replace(settings, recordings=(*settings.recordings[:-1], walk))).session)
     assert structure(files) == TOLD["structure"]["rigid"]
-    assert digests(files) != TOLD["digests"]["rigid"]
+    assert digests(files) not in [of_processor["rigid"] for of_processor in TOLD["digests"].values()]

@@ -117,7 +117,7 @@ def test_what_is_no_library_is_refused(tmp_path: Path, content: bytes) -> None:
 def test_what_was_said_to_be_kept_is_there_after_a_kill(tmp_path: Path) -> None:
     Library.create(tmp_path, DATA_KEY, FIRST).close()
     rng = random.Random(1)
-    for kill in range(20):
+    for kill in range(12):
         with subprocess.Popen([sys.executable, "-c", WRITE, tmp_path, str(kill)], stdout=subprocess.PIPE) as writer:
             assert writer.stdout is not None
             said = [writer.stdout.readline()]

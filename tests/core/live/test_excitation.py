@@ -322,10 +322,10 @@ def test_matrices_are_those_of_the_quaternions() -> None:
 
 @pytest.mark.endurance
 def test_nine_of_ten_calibrations_lie_within_twice_what_was_predicted() -> None:
-    told = [one for seed in range(60) for one in stopped_calibrations(seed)]
+    told = [one for seed in range(36) for one in stopped_calibrations(seed)]
     for quantity in QUANTITIES:
         mine = [one for one in told if one.quantity == quantity]
-        assert len(mine) > 50
+        assert len(mine) > 30
         assert np.mean([one.is_covered for one in mine]) >= 0.9
     assert all(one.is_covered for one in told if one.is_closed)
     # the findings hardly ever take back what the gauge has said: 2 of 120, ankles whose clocks lie apart
