@@ -51,6 +51,16 @@ class Chip(QWidget):
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
         self.setAccessibleName(leg_name(side))
 
+    @property
+    def side(self) -> Side:
+        return self._side
+
+    def set_side(self, side: Side) -> None:
+        if side is not self._side:
+            self._side = side
+            self.setAccessibleName(leg_name(side))
+            self.update()
+
     def sizeHint(self) -> QSize:
         chip = self._look.theme.px(CHIP)
         return QSize(chip, chip)

@@ -15,7 +15,6 @@ from app.widgets.card import Card
 from app.widgets.chip import Chip
 from app.widgets.choice import Choice
 from app.widgets.field import Field
-from app.widgets.heard_order import hear_as_laid_out
 from app.widgets.painted_text import CENTRE, LEFT, PaintedText, height_for
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.themed import Themed
@@ -72,7 +71,7 @@ class AlignmentCard(Card):
         self.words = Field(look, tr("In words"), has_label=False, placeholder=tr("In words, optional"), most=MOST_TEXT)
         self.written = Text(look, size=12, tone="ink2", wraps=True)
         self._grid = QGridLayout()
-        self._chip: Chip | None = None
+        self.chip = Chip(look, Side.LEFT)  # until rows are shown
         self._head_row = QWidget()
         self._head = QHBoxLayout(self._head_row)
         self._head.setContentsMargins(0, 0, 0, 0)
@@ -93,10 +92,7 @@ class AlignmentCard(Card):
         return [self.parts, *self.steppers.values(), self.words.line_edit]
 
     def show_rows(self, rows: Sequence[AlignmentRow], side: Side) -> None:
-        if self._chip is None:
-            self._chip = Chip(self._look, side)
-            self._head.insertWidget(2, self._chip)
-            hear_as_laid_out(self._head_row)
+        self.chip.set_side(side)
         while len(self._rows) > len(rows):
             self._rows.pop().deleteLater()
         while len(self._rows) < len(rows):
@@ -162,6 +158,7 @@ class AlignmentCard(Card):
     def _build(self) -> None:
         self._head.addWidget(Text(self._look, tr("Alignments"), size=16, weight=SEMIBOLD))
         self._head.addStretch(1)
+        self._head.addWidget(self.chip)
         self._head.addWidget(self._side_word)
         self._rows_column.setContentsMargins(0, 0, 0, 0)
         self._rows_column.setSpacing(4)

@@ -251,6 +251,16 @@ def page(qtbot: QtBot, look: ThemeNotifier, bench: Bench) -> WalkingPage:
     return page
 
 
+def test_the_chip_is_of_the_leg_that_is_prosthetic_also_once_that_was_corrected(
+    page: WalkingPage, bench: Bench, visit: SimpleNamespace
+) -> None:
+    chip = page.bench.alignments.chip
+    assert (chip.side, chip.accessibleName()) == (Side.LEFT, "left leg")
+    visit.prosthetic_sides = {Side.RIGHT}
+    page.show_bench(bench.state())
+    assert (chip.side, chip.accessibleName()) == (Side.RIGHT, "right leg")
+
+
 def test_the_page_shows_the_chain_the_curves_and_the_differences(page: WalkingPage, bench: Bench) -> None:
     assert page.bench.isVisible()
     assert not page.charts.isVisible()
