@@ -28,6 +28,7 @@ RUN_IN_M, RUN_OUT_M = 2.0, 2.0
 SHOWN_STEPS = 24
 BEFORE_STATUS, BEHIND_STATUS = 42, 18  # its dot, and the room round it
 UP_AND_GO_M = 6.0  # there and back
+LONG_S = 100.0  # more digits with a tenth than there is room for
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,8 +53,8 @@ class TimedViewState:
 
 
 def time_text(elapsed_s: float) -> str:
-    """Seconds with a tenth up to two minutes, from then on minutes and seconds."""
-    if elapsed_s < 100.0:
+    """Seconds with a tenth below `LONG_S`, from then on minutes and seconds."""
+    if elapsed_s < LONG_S:
         return figure_text(math.floor(10.0 * elapsed_s + 1e-6) / 10.0, ".1f")
     return f"{int(elapsed_s) // 60}:{int(elapsed_s) % 60:02d}"
 
@@ -108,7 +109,7 @@ class TimedView(Themed):
         self._note.setText(state.note)
         self.status.show_words(status_words(state), is_on=state.readout.has_begun and not math.isfinite(state.end_s))
         elapsed_s = state.elapsed_s
-        is_long = elapsed_s >= 100.0
+        is_long = elapsed_s >= LONG_S
         self.time.show_text(time_text(elapsed_s), "" if is_long else "s", "8:88" if is_long else "88.8")
         self._distance_card.setVisible(has_distance)
         metres, why = distance_words(state)
@@ -128,11 +129,14 @@ class TimedView(Themed):
 
     def _say(self, state: TimedViewState, metres: str, why: str) -> None:
         """Tell who listens, once a second and with the last figure."""
-        whole = time_text(state.elapsed_s) if math.isfinite(state.end_s) else str(int(state.elapsed_s))
+        elapsed_s = state.elapsed_s
+        whole = time_text(elapsed_s) if math.isfinite(state.end_s) else str(int(elapsed_s))
+        if not math.isfinite(state.end_s) or elapsed_s < LONG_S:
+            whole = f"{whole} s"
         distance = "" if state.protocol is TimedProtocol.SIT_TO_STAND or metres == NO_FIGURE else f"{metres} m."
-        said = " ".join(filter(None, [f"{status_words(state)}.", f"{whole} s.", distance, why]))
-        if int(state.elapsed_s) != self._said_s or math.isfinite(state.end_s):
-            self._said_s = int(state.elapsed_s)
+        said = " ".join(filter(None, [f"{status_words(state)}.", f"{whole}.", distance, why]))
+        if int(elapsed_s) != self._said_s or math.isfinite(state.end_s):
+            self._said_s = int(elapsed_s)
             if said != self.accessibleDescription():
                 self.setAccessibleDescription(said)
 

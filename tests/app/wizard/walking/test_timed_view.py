@@ -90,3 +90,5 @@ def test_who_listens_is_told_once_a_second_and_the_end(qtbot: QtBot) -> None:
     assert view.accessibleDescription() == first
     view.show_state(replace(TIMING, now_s=5.1, end_s=4.85, readout=replace(TIMING.readout, steps=((Side.LEFT, 0.5),))))
     assert view.accessibleDescription() == "Finished. 1.8 s. 6.1 m."
+    view.show_state(replace(TIMING, end_s=123.0))  # minutes are no seconds
+    assert view.accessibleDescription() == "Finished. 2:00. 6.1 m."
