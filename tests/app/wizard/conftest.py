@@ -29,7 +29,6 @@ from devices.emulators.dot_faults import DotFaults
 from devices.replay import ReplaySource
 from devices.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
 from tests.app.wizard.dressed_patient import Worn, dressed_patient
-from tests.app.wizard.patient_time import PatientTime
 from tests.devices.dot.fast_radio import FastRadio
 
 PASSPHRASE = "four short words here"
@@ -67,14 +66,6 @@ def controller(qtbot: QtBot, untouched_library: Path, tmp_path: Path) -> Iterato
 @pytest.fixture
 def source(simulated_session: Session) -> ReplaySource:
     return ReplaySource(simulated_session, speed=SPEED)
-
-
-@pytest.fixture
-def patient_time(qapp: QApplication) -> Iterator[PatientTime]:
-    time = PatientTime()
-    time.start()
-    yield time
-    time.stop()
 
 
 @pytest.fixture

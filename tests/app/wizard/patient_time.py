@@ -4,15 +4,19 @@ A replay by the machine's clock goes on while a busy machine's screen, library o
 over before its recording has begun, and strides are never seen. Here nobody misses anything, however long it takes.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 
+import pytest
 from PySide6.QtCore import QTimer
+from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.acquisition.acquisition import Acquisition, LiveEstimator
-from core.samples import ImuBlock
+from app.wizard.worn_sensors import SourceChoice
+from core.samples import ImuBlock, Session
 from devices.host_clock import host_time_ns
 from devices.live import LiveSource
+from devices.replay import ReplaySource
 
 TICK_MS = 10
 TICK_NS = 50_000_000
@@ -84,3 +88,24 @@ class _Heard:
     def update(self, blocks: Mapping[str, ImuBlock]) -> None:
         self._estimator.update(blocks)
         self.heard_s = max(float(block.time_s[-1]) for block in blocks.values())
+
+
+# fixtures: a room's conftest.py takes them over
+
+
+@pytest.fixture
+def patient_time(qapp: QApplication) -> Iterator[PatientTime]:
+    time = PatientTime()
+    time.start()
+    yield time
+    time.stop()
+
+
+@pytest.fixture
+def source(simulated_session: Session, patient_time: PatientTime) -> ReplaySource:
+    return ReplaySource(simulated_session, now_ns=patient_time.now_ns)
+
+
+@pytest.fixture
+def choice(source: ReplaySource, patient_time: PatientTime) -> SourceChoice:
+    return SourceChoice("fast", "Fast patient", lambda: patient_time.acquisition(source), is_simulated=True)
