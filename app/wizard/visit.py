@@ -307,7 +307,6 @@ class Visit(QObject):
     def close(self) -> None:
         """Let go of the sensors and wait for what runs; a recording that goes on is stopped first."""
         self.patient.commit()
-        self.worn.hold()
         acquisition = self.sensors.detach() if self.recordings.is_recording else None
         self.recordings.close()
         if acquisition is not None:

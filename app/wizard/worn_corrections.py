@@ -48,8 +48,9 @@ class WornCorrections(QObject):
     ) -> None:
         super().__init__(parent)
         self._controller, self._sensors, self._recordings = controller, sensors, recordings
-        self._is_busy = self._must_swap = self._must_place = self._is_awaited = False
-        self._held: Mapping[Site, PlacedSensor] | None = None  # what was said when the sensors were let go
+        self._is_busy = self._must_swap = False
+        self._next: Mapping[Site, PlacedSensor] | None = None  # to be placed after what is being corrected
+        self._once_ended: Mapping[Site, PlacedSensor] | None = None
         recordings.ended.connect(self._on_ended)
 
     @property
@@ -57,13 +58,8 @@ class WornCorrections(QObject):
         return self._is_busy
 
     def place_once_ended(self) -> None:
-        """Once what is being recorded has ended, do as `place_as_said_now`."""
-        self._is_awaited = True
-
-    def hold(self) -> None:
-        """Keep what is said now, where it is still to be told: the sensors are about to be let go."""
-        if self._is_awaited:
-            self._held = self._sensors.placed()
+        """As `place_as_said_now`, once what is being recorded has ended, though the sensors may be let go before."""
+        self._once_ended = self._sensors.placed()
 
     def swap_sides(self) -> None:
         """Say that left and right were worn the other way round in all recordings; they are read anew.
@@ -87,18 +83,20 @@ class WornCorrections(QObject):
 
     def place_as_said_now(self) -> None:
         """Tell the library that all since the sensors were strapped on was worn as it is said now; it is read anew."""
+        self._place(self._sensors.placed())
+
+    def _place(self, placed: Mapping[Site, PlacedSensor]) -> None:
         if self._is_busy:
-            self._must_place = True
+            self._next = placed
             return
-        placed = self._sensors.placed() if self._held is None else self._held
         strapped = [recording.id for recording in self._recordings.since_strapped]
         self._correct([(strapped, placed)] if strapped else [], self._seen(), placed)
 
     @Slot()
     def _on_ended(self) -> None:
-        if self._is_awaited:
-            self._is_awaited = False
-            self.place_as_said_now()
+        if self._once_ended is not None:
+            placed, self._once_ended = self._once_ended, None
+            self._place(placed)
 
     def _seen(self) -> dict[UUID, UUID | None]:
         """By recording the placement as the screen has it."""
@@ -129,10 +127,10 @@ class WornCorrections(QObject):
         if edited.contests:
             settle = partial(self._settle, worn, self._seen())
             self.asked.emit(EditQuestion(tr("The session"), edited.contests, settle))
-        must_swap, must_place = self._must_swap, self._must_place
-        self._must_swap = self._must_place = False
-        if must_place:
-            self.place_as_said_now()
+        must_swap, placed = self._must_swap, self._next
+        self._must_swap, self._next = False, None
+        if placed is not None:
+            self._place(placed)
         if must_swap:
             self.swap_sides()
 
@@ -141,7 +139,8 @@ class WornCorrections(QObject):
             self._correct(worn, seen)
 
     def _on_refused(self, what: str, remedy: str) -> None:
-        self._is_busy = self._must_swap = self._must_place = False
+        self._is_busy = self._must_swap = False
+        self._next = None
         self.refused.emit(what, remedy)
 
 
