@@ -73,8 +73,17 @@ class FastRadio(Radio):
             return self._loop
 
     def close(self) -> None:
-        """End the thread; who still waits for it waits for ever."""
+        """End what still goes on in the thread, then the thread."""
         if self._thread.is_alive():
+            asyncio.run_coroutine_threadsafe(_ended(), self._hurrying).result()
             self._hurrying.call_soon_threadsafe(self._hurrying.stop)
             self._thread.join()
         self._hurrying.close()
+
+
+async def _ended() -> None:
+    """Cancel all other tasks of this loop, and wait until they are."""
+    others = asyncio.all_tasks() - {asyncio.current_task()}
+    for task in others:
+        task.cancel()
+    await asyncio.gather(*others, return_exceptions=True)
