@@ -67,6 +67,14 @@ def walk(qtbot: QtBot, visit: Visit, step: WalkingStep) -> None:
     step.on_intent(RUN)
 
 
+def walk_out_of_reach(qtbot: QtBot, visit: Visit, radio: FastRadio, step: WalkingStep) -> None:
+    """A walk of which the second sensor sends a part, and is then out of reach."""
+    radio.dots[1].faults.unreachable_after_drop_s = 1e6
+    radio.dots[1].faults.drops_export_after = [20]
+    walk(qtbot, visit, step)
+    qtbot.waitUntil(lambda: visit.recordings.fetches.failure[0] != "", timeout=WAIT_MS)
+
+
 @pytest.mark.endurance
 def test_a_walk_in_memories_is_made_ready_recorded_and_fetched(
     qtbot: QtBot, visit: Visit, radio: FastRadio, walking: Callable[[int], WalkingStep]
@@ -113,10 +121,7 @@ def test_a_walk_may_be_fetched_later_and_a_lost_sensor_is_named_and_tried_again(
 ) -> None:
     step = walking(120)
     make_ready(qtbot, visit, step)
-    radio.dots[1].faults.unreachable_after_drop_s = 1e6
-    radio.dots[1].faults.drops_export_after = [20]
-    walk(qtbot, visit, step)
-    qtbot.waitUntil(lambda: visit.recordings.fetches.failure[0] != "", timeout=WAIT_MS)
+    walk_out_of_reach(qtbot, visit, radio, step)
     assert step.page.memory.shown.what == "DOT 0002 is out of reach."
     assert texts(step.bar())[:1] == ("Fetch again",)
     step.on_other(0)
@@ -161,10 +166,7 @@ def test_a_visit_that_is_left_with_a_walk_in_the_sensors_ends(
 ) -> None:
     step = walking(120)
     make_ready(qtbot, visit, step)
-    radio.dots[1].faults.unreachable_after_drop_s = 1e6
-    radio.dots[1].faults.drops_export_after = [20]
-    walk(qtbot, visit, step)
-    qtbot.waitUntil(lambda: visit.recordings.fetches.failure[0] != "", timeout=WAIT_MS)
+    walk_out_of_reach(qtbot, visit, radio, step)
     step.on_other(0)
     visit.close()
     qtbot.waitUntil(lambda: visit.is_idle, timeout=WAIT_MS)
