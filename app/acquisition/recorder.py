@@ -278,7 +278,7 @@ class _Entry:
     def add(self, writer: JournalWriter) -> None:
         """Enter the journal, once the row is there."""
         header = writer.header
-        journal = StoredJournal(header.segment, writer.path.name, header.wrapped_key or None)
+        journal = StoredJournal(header.recording_id, header.segment, header.wrapped_key or None)
         self._do(self._recordings.add_journal, self.id, journal)
 
     def withdraw(self) -> None:

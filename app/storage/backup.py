@@ -29,8 +29,8 @@ from app.storage.database.engine import Database, sqlite_engine
 from app.storage.database.models import JournalRow
 from app.storage.derived_keys import derived_keys
 from app.storage.files import replace_file, sync_folder
-from app.storage.journal.header import SUFFIX, JournalRefusedError, read_header
-from app.storage.layout import DATABASE, KEYS, RECORDINGS
+from app.storage.journal.header import JournalRefusedError, read_header
+from app.storage.layout import DATABASE, KEYS, RECORDINGS, SUFFIX
 from app.storage.library import Library, now_utc
 from app.storage.opened import OpenedLibrary, Report, made_beside
 from app.storage.stored import Action, AuditFault, Checkpoint, LibraryError
@@ -272,7 +272,7 @@ def _check(
             raise LibraryError("The database of this copy is damaged", "Choose an earlier backup, or another disk")
         with database.reading() as session:
             faults = [f"audit {fault.number} {fault.what}" for fault in _audit_faults(session, data_key, checkpoint)]
-            for row in session.scalars(select(JournalRow).order_by(JournalRow.file)):
+            for row in session.scalars(select(JournalRow).order_by(JournalRow.recording_id, JournalRow.segment)):
                 faults += _journal_faults(folder, row, data_key, hashes.get(f"{RECORDINGS}/{row.file}"))
     finally:
         database.close()

@@ -269,7 +269,7 @@ def _import_recording(
     with JournalWriter.create(opened.recordings, recording_id, opened.data_key, room=room) as writer:
         header = writer.header
         recordings.add_journal(
-            recording_id, StoredJournal(header.segment, writer.path.name, header.wrapped_key or None)
+            recording_id, StoredJournal(header.recording_id, header.segment, header.wrapped_key or None)
         )
         for done, (site, name) in enumerate(names.items()):
             block = recording.imu[site]

@@ -16,6 +16,8 @@ All of this is in the library's own folder, which `create_library` alone makes. 
 recordings then go into a shelter on this computer (`app.storage.root`) until it is back (`app.storage.bringing_home`).
 """
 
+from uuid import UUID
+
 KEYS, NEW_KEYS = "keys.json", "keys-next.json"
 DATABASE, NEW_DATABASE = "library.db", "library-next.db"
 RECORDINGS = "recordings"
@@ -23,3 +25,9 @@ IN_USE = "in-use"
 MOVING = "moving-to-server"
 STATION, CACHE = "station.json", "cache"
 DATABASE_VARIABLE, JOURNALS_VARIABLE = "GAITWRIGHT_DATABASE_URL", "GAITWRIGHT_JOURNALS"
+SUFFIX = ".journal"
+
+
+def segment_name(recording_id: UUID, segment: int) -> str:
+    """Name of a segment's file. Never read from a database, whose rows may name any file."""
+    return f"{recording_id}.{segment}{SUFFIX}"

@@ -151,15 +151,15 @@ def logged_in(folder: Path, data_key: DataKey, code: str, *, is_to_be_moved: boo
     except BaseException:
         library.close()
         raise
-    return OpenedLibrary(library, folder, data_key, _shared_journals(library, folder))
+    return OpenedLibrary(library, folder, data_key, _shared_journals(library, folder, data_key))
 
 
-def _shared_journals(library: Library, folder: Path) -> SharedJournals | None:
+def _shared_journals(library: Library, folder: Path, data_key: DataKey) -> SharedJournals | None:
     """A station's way to the journals' shared place; None where the library has none."""
     if library.station is None:
         return None
     place = library.station.journals or str(library.settings.get(JOURNALS_SETTING, ""))
-    return SharedJournals(folder, place)
+    return SharedJournals(folder, place, data_key)
 
 
 def create_library(folder: Path, operator: Operator, passphrase: str) -> tuple[OpenedLibrary, str]:

@@ -255,12 +255,12 @@ class Recordings:
     def readable_files(self) -> frozenset[str]:
         """Every journal that was not destroyed."""
         wanted = (
-            select(JournalRow.file)
+            select(JournalRow)
             .join(RecordingRow)
             .where(RecordingRow.state != RecordingState.DISCARDED, JournalRow.wrapped_key.is_not(None))
         )
         with self._unit.reading() as session:
-            return frozenset(session.scalars(wanted))
+            return frozenset(journal.file for journal in session.scalars(wanted))
 
     def undecided(self) -> tuple[UndecidedWalk, ...]:
         """Walks that were recovered, and of which nobody has said since whether they are kept; of no deleted patient.

@@ -260,7 +260,8 @@ class _Contents:
             self.reports.append(reader.report)
             self._are_whole.append(reader.report.is_whole)
             wrapped_key = reader.header.wrapped_key or None
-            self.journals.append(StoredJournal(number, path.name, wrapped_key, reader.report.sha256))
+            journal = StoredJournal(reader.header.recording_id, number, wrapped_key, reader.report.sha256)
+            self.journals.append(journal)
 
     @property
     def recorded_s(self) -> float:

@@ -10,6 +10,7 @@ from enum import StrEnum
 from typing import Self
 from uuid import UUID
 
+from app.storage.layout import segment_name
 from core.body import Joint, Side, Site
 from core.samples import Patient, Recording, RecordingKind, SensorInfo, Session
 
@@ -132,11 +133,16 @@ class StoredJournal:
     `kept_as`: its name in the place that a clinic's stations share; empty where it is in the library's folder alone.
     """
 
+    recording_id: UUID
     segment: int
-    file: str
     wrapped_key: bytes | None
     sha256: str = ""
     kept_as: str = ""
+
+    @property
+    def file(self) -> str:
+        """Its name in the library's folder."""
+        return segment_name(self.recording_id, self.segment)
 
 
 @dataclass(frozen=True, slots=True)

@@ -53,7 +53,7 @@ def make(folder: Path) -> None:
                 for k in range(2000):
                     writer.mark(f"mark {k} of journal {number}")
             header, summary = writer.header, writer.stop()
-            journal = StoredJournal(header.segment, writer.path.name, header.wrapped_key)
+            journal = StoredJournal(header.recording_id, header.segment, header.wrapped_key)
             library.recordings.add_journal(row.id, journal)
             library.recordings.close(row.id, RecordingState.CLOSED, {header.segment: summary.sha256})
 

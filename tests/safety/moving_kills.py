@@ -23,8 +23,7 @@ import sqlcipher3.dbapi2 as sqlite
 
 from app.storage.clinic.joining import new_station, prepare_server
 from app.storage.clinic.moving import bring_back, move_to_server
-from app.storage.journal.header import SUFFIX
-from app.storage.layout import DATABASE, MOVING, RECORDINGS, STATION
+from app.storage.layout import DATABASE, MOVING, RECORDINGS, STATION, SUFFIX
 from app.storage.opened import open_library
 from app.storage.stored import LibraryError
 from tests.safety.clinic_material import (

@@ -86,7 +86,7 @@ def _interrupt(opened: OpenedLibrary, session_id: UUID, number: int, rows: int) 
         if number % 5:
             told = Recording(f"walk {number}", RecordingKind.WALKING, f"walk_{number}", {})
             opened.library.recordings.start(session_id, told, True, recording_id)
-            journal = StoredJournal(writer.header.segment, writer.path.name, writer.header.wrapped_key)
+            journal = StoredJournal(recording_id, writer.header.segment, writer.header.wrapped_key)
             opened.library.recordings.add_journal(recording_id, journal)
         source = writer.source(WALKER, LAYOUT)
         for first in range(0, rows, 1000):

@@ -21,9 +21,10 @@ from uuid import UUID
 import numpy as np
 
 from app.storage.clinic.handing_over import begin_station, hand_over
-from app.storage.journal.header import SUFFIX, JournalRefusedError
+from app.storage.journal.header import JournalRefusedError
 from app.storage.journal.reader import JournalReader
 from app.storage.journal.records import Record, RecordKind
+from app.storage.layout import SUFFIX
 from app.storage.opened import held_alone, open_library
 from app.storage.stored import LibraryError, PlacedSensor
 from core.samples import IntArray, Patient, SensorInfo, Session

@@ -38,8 +38,7 @@ from app.storage.database.models import (
 from app.storage.database.values import told_patient
 from app.storage.derived_keys import derived_keys
 from app.storage.files import replace_file, sync_folder
-from app.storage.journal.header import SUFFIX
-from app.storage.layout import DATABASE, RECORDINGS
+from app.storage.layout import DATABASE, RECORDINGS, SUFFIX
 from app.storage.library import Library, now_utc
 from app.storage.opened import OpenedLibrary, held_alone
 from app.storage.root import read_id

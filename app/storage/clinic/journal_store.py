@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from app.storage.files import sync_folder
-from app.storage.journal.header import SUFFIX
+from app.storage.layout import SUFFIX
 from app.storage.stored import LibraryError, LibraryFaultError
 
 PIECE_BYTES = 1 << 20

@@ -27,8 +27,7 @@ from app.storage.database.engine import Database, sqlite_engine
 from app.storage.database.models import AuditRow, JournalRow, PatientRow, RecordingRow, SessionRow, SettingRow
 from app.storage.database.schema import bring_up_to_date
 from app.storage.files import replace_file, sync_folder
-from app.storage.journal.header import SUFFIX
-from app.storage.layout import CACHE, DATABASE, KEYS, MOVING, RECORDINGS, STATION
+from app.storage.layout import CACHE, DATABASE, KEYS, MOVING, RECORDINGS, STATION, SUFFIX
 from app.storage.opened import OpenedLibrary, Report, made_beside
 from app.storage.recovery import find_interrupted
 from app.storage.root import ID_SETTING
@@ -256,12 +255,12 @@ def _put_journals(opened: OpenedLibrary, store: JournalStore, report: Report) ->
     """What each file is kept as, and how many bytes these are; a file that is missing is not among them."""
     with opened.library.database.reading() as session:
         wanted = (
-            select(JournalRow.file)
+            select(JournalRow)
             .join(RecordingRow)
             .where(RecordingRow.state != RecordingState.DISCARDED)
-            .order_by(JournalRow.file)
+            .order_by(JournalRow.recording_id, JournalRow.segment)
         )
-        files = [opened.recordings / file for file in session.scalars(wanted)]
+        files = [opened.recordings / journal.file for journal in session.scalars(wanted)]
     here = [path for path in files if path.exists()]
     sizes = [path.stat().st_size for path in here]
     kept, done = {}, 0
@@ -275,8 +274,8 @@ def _put_journals(opened: OpenedLibrary, store: JournalStore, report: Report) ->
 def _put_rows(source: Database, server: Database, kept: Mapping[str, str], place: str, slots: bytes) -> None:
     with source.reading() as session, server.writing() as there:
         copy_rows(session.connection(), there.connection())
-        for row in there.scalars(select(JournalRow).where(JournalRow.file.in_(kept))):
-            row.kept_as = kept[row.file]
+        for row in there.scalars(select(JournalRow)):
+            row.kept_as = kept.get(row.file, "")
         there.add(SettingRow(name=JOURNALS_SETTING, value=place))
         put_slots(there, slots)
         set_state(there, ServerState.MOVING)

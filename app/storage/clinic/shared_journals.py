@@ -7,21 +7,23 @@ from functools import cached_property
 from pathlib import Path
 
 from app.storage.clinic.journal_store import JournalStore, name_in_place
-from app.storage.journal.header import SUFFIX, JournalRefusedError, destroy_key
-from app.storage.layout import CACHE
+from app.storage.data_key import KeyMaterial
+from app.storage.journal.header import RESTORE, JournalRefusedError, destroy_key, read_header
+from app.storage.layout import CACHE, SUFFIX
 from app.storage.stored import StoredJournal
 from app.wording import later
 
 CACHED_BYTES = 20_000_000_000  # of copies on a station's disk: some hundred sessions
 NOT_YET_HERE = later("this recording is still on the station that made it")
+ANOTHER = later("the file in the clinic's shared storage belongs to another recording")
 START_THERE = later("Start Gaitwright there and let it reach the clinic's server")
 
 
 class SharedJournals:
-    """`folder` is the station's, `place` the shared one."""
+    """`folder` is the station's, `place` the shared one; `data_key` proves what was fetched to be this library's."""
 
-    def __init__(self, folder: Path, place: str) -> None:
-        self.cache, self.place = folder / CACHE, place
+    def __init__(self, folder: Path, place: str, data_key: KeyMaterial | None) -> None:
+        self.cache, self.place, self._data_key = folder / CACHE, place, data_key
 
     @cached_property
     def store(self) -> JournalStore:
@@ -34,7 +36,7 @@ class SharedJournals:
         Raises
         ------
         JournalRefusedError
-            It is not in the shared place yet, nor here.
+            It is not in the shared place yet, nor here; or what is there is not this segment of this recording.
         LibraryError
             The shared place does not answer, or does not have it.
         OSError
@@ -47,7 +49,19 @@ class SharedJournals:
             raise JournalRefusedError(journal.file, NOT_YET_HERE, START_THERE)
         else:
             self.store.fetch(journal.kept_as, path)
+        try:
+            self._refuse_other(journal, path)
+        except JournalRefusedError:
+            path.unlink()
+            raise
         return path
+
+    def _refuse_other(self, journal: StoredJournal, path: Path) -> None:
+        """Check that a copy is this segment of this recording: a row on the server may name another's bytes."""
+        header = read_header(path, journal.wrapped_key)
+        if (header.recording_id, header.segment) != (journal.recording_id, journal.segment):
+            raise JournalRefusedError(journal.file, ANOTHER, RESTORE)
+        header.key(self._data_key, journal.file)
 
     def destroy(self, journal: StoredJournal) -> None:
         """Remove a journal from the shared place, and the copy of it here; other stations' go when they start.

@@ -28,9 +28,11 @@ from sqlalchemy import (
     false,
     true,
 )
+from sqlalchemy.engine.default import DefaultExecutionContext
 from sqlalchemy.orm import DeclarativeBase, Mapped, declared_attr, mapped_column, relationship, validates
 
 from app.storage.database.ids import uuid7
+from app.storage.layout import segment_name
 from app.storage.stored import RecordingState, ResultKind, Role
 from core.body import Joint, Site
 from core.samples import RateKind, RecordingKind
@@ -261,8 +263,15 @@ class RecordingRow(Versioned, Base):
     journals: Mapped[list["JournalRow"]] = relationship(order_by="JournalRow.segment")
 
 
+def _file_of(context: DefaultExecutionContext) -> str:
+    row = context.get_current_parameters()  # type: ignore[no-untyped-call]  # has no types there
+    return segment_name(row["recording_id"], row["segment"])
+
+
 class JournalRow(Base):
     """`wrapped_key` is a copy of the file's own, in case that is damaged.
+
+    `file_written` is for other programs: a row on a server may name any file, so it is never read here.
 
     `kept_as`: its name in the place that a clinic's stations share; empty until it was handed over.
     """
@@ -271,10 +280,14 @@ class JournalRow(Base):
 
     recording_id: Mapped[UUID] = mapped_column(ForeignKey("recordings.id", ondelete="CASCADE"), primary_key=True)
     segment: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
-    file: Mapped[str] = mapped_column(unique=True)
+    file_written: Mapped[str] = mapped_column("file", unique=True, default=_file_of)
     wrapped_key: Mapped[bytes | None] = mapped_column(LargeBinary)
     sha256: Mapped[str]
     kept_as: Mapped[str] = mapped_column(default="", server_default="")
+
+    @property
+    def file(self) -> str:
+        return segment_name(self.recording_id, self.segment)
 
 
 class ResultRow(Base):

@@ -88,7 +88,7 @@ def stored_recording(row: RecordingRow) -> StoredRecording:
         row.state,
         row.is_simulated,
         placement_of(row.placement) if row.placement is not None else None,
-        tuple(StoredJournal(j.segment, j.file, j.wrapped_key, j.sha256, j.kept_as) for j in row.journals),
+        tuple(StoredJournal(row.id, j.segment, j.wrapped_key, j.sha256, j.kept_as) for j in row.journals),
         row.judged_by,
         row.is_decided,
     )

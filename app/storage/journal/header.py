@@ -22,6 +22,7 @@ from cryptography.hazmat.primitives.kdf.hkdf import HKDF
 
 from app.storage.data_key import KeyMaterial, checked
 from app.storage.files import sync_folder
+from app.storage.layout import SUFFIX, segment_name
 from app.wording import later, tr
 
 MAGIC = b"\x89GWJ\r\n\x1a\n"  # what takes a journal for text, and mends its line ends, shows here first
@@ -32,7 +33,6 @@ NONCE_BYTES, KEY_BYTES, TAG_BYTES = 12, 32, 16
 WRAPPED_BYTES = NONCE_BYTES + KEY_BYTES + TAG_BYTES
 NO_KEY = bytes(WRAPPED_BYTES)
 HEADER_BYTES = IDENTITY.size + WRAPPED_BYTES + 4
-SUFFIX = ".journal"
 RESTORE = later("Restore this recording from a backup")
 
 
@@ -167,7 +167,7 @@ def read_header(path: Path, wrapped_key: bytes | None = None) -> JournalHeader:
 
 
 def segment_path(folder: Path, recording_id: UUID, segment: int) -> Path:
-    return folder / f"{recording_id}.{segment}{SUFFIX}"
+    return folder / segment_name(recording_id, segment)
 
 
 def find_segments(folder: Path) -> dict[UUID, dict[int, Path]]:

@@ -51,7 +51,7 @@ def add_visit(library: Library, patient_id: UUID, number: int, found: Course | N
     for at, condition in enumerate(conditions, start=1):
         told = Recording(f"walk {at}", RecordingKind.WALKING, f"walk_{at}", {}, condition=condition)
         recording = library.recordings.start(visit.id, told, is_simulated=False)
-        library.recordings.add_journal(recording.id, StoredJournal(0, f"{recording.id}.0.journal", None))
+        library.recordings.add_journal(recording.id, StoredJournal(recording.id, 0, None))
         library.recordings.close(recording.id, RecordingState.CLOSED, {0: ""})
     if found is not None:
         library.courses.keep(visit.id, current_course_key(library.sessions.get(visit.id)), found)

@@ -274,7 +274,7 @@ def leave_open(folder: Path, has_row: bool = True, says_session: bool = False) -
             library.recordings.start(line.id, told, False, recording_id)
         writer = JournalWriter.create(opened.recordings, recording_id, data_key, room=ANY_ROOM)
         header = writer.header
-        journal = StoredJournal(header.segment, writer.path.name, header.wrapped_key)
+        journal = StoredJournal(header.recording_id, header.segment, header.wrapped_key)
         if has_row:
             library.recordings.add_journal(recording_id, journal)
         if says_session:

@@ -91,7 +91,7 @@ def visit(library: Library, patient: StoredPatient) -> StoredSession:
 def walk(library: Library, visit: StoredSession) -> StoredRecording:
     library.sessions.place(visit.id, SENSORS)
     started = library.recordings.start(visit.id, WALK, is_simulated=False)
-    library.recordings.add_journal(started.id, StoredJournal(0, f"{started.id}.0.journal", b"wrapped"))
+    library.recordings.add_journal(started.id, StoredJournal(started.id, 0, b"wrapped"))
     return library.recordings.close(started.id, RecordingState.CLOSED, {0: "ab" * 32})
 
 
@@ -308,7 +308,7 @@ def test_a_recording_goes_from_open_to_closed_with_the_hash_of_each_journal(
     own = uuid7()
     started = library.recordings.start(visit.id, WALK, is_simulated=False, recording_id=own)
     assert (started.id, started.state, started.journals) == (own, RecordingState.OPEN, ())
-    journals = tuple(StoredJournal(k, f"{own}.{k}.journal", bytes([k]) * 60) for k in range(2))
+    journals = tuple(StoredJournal(own, k, bytes([k]) * 60) for k in range(2))
     for journal in journals:
         library.recordings.add_journal(own, journal)
     assert [recording.id for recording in library.recordings.still_open()] == [own]

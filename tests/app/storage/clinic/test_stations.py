@@ -52,7 +52,7 @@ def record(opened: OpenedLibrary, session_id: UUID, name: str, *, has_row: bool 
     writer = JournalWriter.create(opened.recordings, recording_id, opened.data_key, room=ANY_ROOM)
     header, block = writer.header, samples()
     if has_row:
-        recordings.add_journal(recording_id, StoredJournal(1, writer.path.name, header.wrapped_key))
+        recordings.add_journal(recording_id, StoredJournal(recording_id, 1, header.wrapped_key))
     else:
         writer.mark(Belonging(session_id, told).text())
     source = writer.source(SourceInfo("walker", "1", sensors=(SENSOR,), is_simulated=True), layout_of(block))
@@ -193,9 +193,45 @@ def test_a_journal_that_is_damaged_in_the_shared_place_is_not_taken(
 
 def test_a_row_cannot_lead_out_of_the_shared_place(tmp_path: Path) -> None:
     (tmp_path / "place").mkdir()
-    shared = SharedJournals(tmp_path, str(tmp_path / "place"))
+    shared = SharedJournals(tmp_path, str(tmp_path / "place"), None)
     with pytest.raises(LibraryError, match="names no journal"):
-        shared.path(StoredJournal(1, "a.journal", None, "", "../station.json"))
+        shared.path(StoredJournal(uuid7(), 1, None, "", "../station.json"))
+
+
+def test_a_row_that_names_another_file_neither_writes_nor_removes_it(
+    stations: Stations, session_id: UUID, moved: Station, tmp_path: Path
+) -> None:
+    first, second = stations
+    walk = record(first, session_id, "walk 9")
+    hand_over(first)
+    other = tmp_path / "autostart"
+    change_row(moved, f"UPDATE journals SET file = '{other}' WHERE recording_id = '{walk}'")
+    read(second, walk)
+    assert not other.exists()
+    other.write_bytes(b"somebody's")
+    destroy_recording(second, found(second, walk))
+    assert other.read_bytes() == b"somebody's"
+
+
+def test_a_row_cannot_pass_off_another_recording_as_its_own(
+    stations: Stations, session_id: UUID, moved: Station
+) -> None:
+    first, second = stations
+    walks = [record(first, session_id, name) for name in ("walk 8", "walk 9")]
+    hand_over(first)
+    other = found(first, walks[1]).journals[0].kept_as
+    change_row(moved, f"UPDATE journals SET kept_as = '{other}' WHERE recording_id = '{walks[0]}'")
+    with pytest.raises(JournalRefusedError, match="another recording"):
+        read(second, walks[0])
+    read(second, walks[1])
+
+
+def change_row(station: Station, statement: str) -> None:
+    """Do what whoever has a station's login can do on the server."""
+    server = create_engine(driver_url(station.database))
+    with server.begin() as connection:
+        connection.execute(text(statement))
+    server.dispose()
 
 
 def test_an_edit_from_an_older_state_is_refused_between_stations(stations: Stations) -> None:

@@ -88,7 +88,7 @@ def record(opened: OpenedLibrary, session_id: UUID) -> Record:
             library.recordings.start(session_id, told, False, recording_id)
         writer = JournalWriter.create(opened.recordings, recording_id, opened.data_key, room=ANY_ROOM)
         header = writer.header
-        journal = StoredJournal(header.segment, writer.path.name, header.wrapped_key)
+        journal = StoredJournal(header.recording_id, header.segment, header.wrapped_key)
         if has_row and is_told:
             library.recordings.add_journal(recording_id, journal)
         if says_session is not None:

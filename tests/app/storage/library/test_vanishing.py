@@ -74,7 +74,7 @@ class Lines:
         )
         if has_row:
             header = self.writer.header
-            journal = StoredJournal(header.segment, self.writer.path.name, header.wrapped_key)
+            journal = StoredJournal(header.recording_id, header.segment, header.wrapped_key)
             opened.library.recordings.add_journal(self.id, journal)
         elif session_id is not None:
             self.writer.mark(Belonging(session_id, told).text())
