@@ -2,6 +2,7 @@
 
 import logging
 import time
+import traceback
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -31,7 +32,11 @@ WAL_AGAIN_S = 0.02
 PG_IDLE_S = (
     20.0  # a station that is silent for so long while it holds the write lock loses it: the others wait for less
 )
-PG_WRITE_LOCK = 0x6761_6974  # any number, the same at all stations
+PG_BUILD_LOCK = 0x6761_6974  # any number, the same at all stations
+# a lock on a table needs the right to change it, which a login that only looks has not; reading goes on beside it
+PG_MAY_WRITE = "SELECT has_table_privilege(to_regclass('settings'), 'UPDATE')"
+PG_WRITE_LOCK = "LOCK TABLE settings IN SHARE ROW EXCLUSIVE MODE"
+ONLY_READS = "only_reads"  # in the `info` of a connection whose login may change nothing
 # a server that was unplugged says nothing more: after ten seconds it counts as gone
 PG_SILENT = {
     "keepalives_idle": 5,
@@ -69,6 +74,8 @@ def _nothing() -> None:
 
 class Database:
     """One library's database. Sessions of any thread; what `writing` yields holds the one write lock.
+
+    A server's login that only looks gets no lock: all it can do there is note what it looked at.
 
     `guard` raises a LibraryError where the library's folder is gone: connections that are open may still reach its
     file, under another name or as one that is deleted already, and what they wrote would be lost from sight.
@@ -223,7 +230,12 @@ def postgres_engine(url: str, try_s: float = TRY_S, *, is_kept: bool = True) -> 
         if connection.get_execution_options().get("takes_write_lock"):
             connection.exec_driver_sql(f"SET LOCAL lock_timeout = {round(try_s * 1000)}")
             connection.exec_driver_sql(f"SET LOCAL idle_in_transaction_session_timeout = {round(PG_IDLE_S * 1000)}")
-            connection.exec_driver_sql(f"SELECT pg_advisory_xact_lock({PG_WRITE_LOCK})")
+            may_write = connection.exec_driver_sql(PG_MAY_WRITE).scalar()
+            connection.info[ONLY_READS] = may_write is False
+            if may_write is None:  # no tables yet
+                connection.exec_driver_sql(f"SELECT pg_advisory_xact_lock({PG_BUILD_LOCK})")
+            elif may_write:
+                connection.exec_driver_sql(PG_WRITE_LOCK)
         else:
             connection.exec_driver_sql("SET TRANSACTION ISOLATION LEVEL REPEATABLE READ READ ONLY")
 
@@ -310,6 +322,12 @@ def _told() -> Iterator[None]:
         cause = error.orig if isinstance(error, DBAPIError) else error
         _log.warning("the database refused: %s (%s)", type(cause), getattr(cause, "sqlite_errorcode", None))
         raise _sentence(error) from None
+    except (ValueError, LookupError, TypeError, AttributeError) as error:
+        # whoever writes on a server may put anything into a row; what is said of it would quote it
+        _log.warning("a row cannot be read: %s", "".join(traceback.format_tb(error.__traceback__)))
+        raise LibraryFaultError(
+            "The library holds an entry that Gaitwright did not write", "Restore the library from a backup"
+        ) from None
 
 
 def _commit(session: OrmSession) -> None:

@@ -15,11 +15,13 @@ from uuid import UUID
 import tomli_w
 from sqlalchemy import (
     JSON,
+    BigInteger,
     CheckConstraint,
     DateTime,
     Dialect,
     Enum,
     ForeignKey,
+    Integer,
     LargeBinary,
     MetaData,
     Text,
@@ -355,11 +357,13 @@ class SettingRow(Versioned, Base):
 
 
 class AuditRow(Base):
-    """Append-only: triggers refuse updates and deletions (see the migrations)."""
+    """Append-only: triggers refuse updates and deletions, and a server's function numbers it (see the migrations)."""
 
     __tablename__ = "audit"
 
-    number: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
+    number: Mapped[int] = mapped_column(
+        BigInteger().with_variant(Integer(), "sqlite"), primary_key=True, autoincrement=False
+    )
     at: Mapped[str]
     operator: Mapped[str]
     action: Mapped[str]
@@ -367,3 +371,17 @@ class AuditRow(Base):
     details: Mapped[str]
     previous_hash: Mapped[str]
     hash: Mapped[str]
+
+
+class ReadingRow(Base):
+    """What a login that only looks has looked at, until a station adds it to the audit."""
+
+    __tablename__ = "readings"
+
+    id: Mapped[UUID] = mapped_column(primary_key=True, default=uuid7)
+    at: Mapped[str]
+    login: Mapped[str]
+    operator: Mapped[str]
+    action: Mapped[str]
+    subject: Mapped[str]
+    details: Mapped[str]

@@ -95,7 +95,7 @@ def tables(database: Database, ddl: dict[str, list[str]]) -> Database:
     said: list[str] = []
 
     def listen(connection: object, cursor: object, statement: str, *_: object) -> None:
-        if statement.lstrip().startswith(("CREATE", "ALTER", "DROP", "INSERT", "UPDATE", "DO", "GRANT")):
+        if statement.lstrip().startswith(("CREATE", "ALTER", "DROP", "INSERT", "UPDATE", "DO", "GRANT", "REVOKE")):
             said.append(statement)
 
     event.listen(database.engine, "before_cursor_execute", listen)

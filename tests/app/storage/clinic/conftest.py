@@ -11,7 +11,7 @@ from sqlalchemy import NullPool, create_engine, make_url, text
 
 from app.storage.clinic.joining import join, new_station
 from app.storage.clinic.moving import move_to_server
-from app.storage.clinic.station import Station
+from app.storage.clinic.station import Station, driver_url
 from app.storage.exchange import import_session
 from app.storage.journal.disk import Room
 from app.storage.keys import KeySlots
@@ -116,3 +116,32 @@ def stations(moved: Station, folder: Path, tmp_path: Path, open_at: OpenAt) -> t
 def session_id(stations: tuple[OpenedLibrary, OpenedLibrary]) -> UUID:
     (line,) = stations[0].library.sessions.list()
     return line.id
+
+
+def change_row(station: Station, statement: str) -> None:
+    """Do what whoever has a station's login can do on the server."""
+    server = create_engine(driver_url(station.database))
+    with server.begin() as connection:
+        connection.execute(text(statement))
+    server.dispose()
+
+
+Login = Callable[[str, str], str]
+
+
+@pytest.fixture
+def login(moved: Station, postgres_url: str) -> Login:
+    """Makes a login of its own in one of the three roles; gives the address with it."""
+    made: list[str] = []
+
+    def make(role: str, name: str) -> str:
+        server = create_engine(postgres_url, isolation_level="AUTOCOMMIT")
+        with server.connect() as connection:
+            connection.execute(text(f"DROP ROLE IF EXISTS {name}"))
+            connection.execute(text(f"CREATE ROLE {name} LOGIN PASSWORD 'secret' IN ROLE {role}"))
+        server.dispose()
+        made.append(name)
+        url = make_url(moved.database).set(username=name, password="secret")
+        return url.render_as_string(hide_password=False)
+
+    return make

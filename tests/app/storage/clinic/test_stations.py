@@ -2,14 +2,13 @@
 
 import subprocess
 import sys
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from uuid import UUID
 
 import numpy as np
 import pytest
-from sqlalchemy import create_engine, make_url, text
+from sqlalchemy import text
 
 from app.storage.clinic.handing_over import begin_station, count_waiting, hand_over
 from app.storage.clinic.joining import join, prepare_server
@@ -30,7 +29,7 @@ from app.storage.retention import destroy_recording
 from app.storage.stored import ChangedMeanwhileError, LibraryError, RecordingState, StoredJournal, StoredRecording
 from core.samples import ImuBlock, Recording, RecordingKind
 from devices.source import SourceInfo
-from tests.app.storage.clinic.conftest import ANY_ROOM, PASSPHRASE, OpenAt, silent
+from tests.app.storage.clinic.conftest import ANY_ROOM, PASSPHRASE, Login, OpenAt, change_row, silent
 
 pytestmark = pytest.mark.endurance  # each starts with an empty server
 
@@ -226,14 +225,6 @@ def test_a_row_cannot_pass_off_another_recording_as_its_own(
     read(second, walks[1])
 
 
-def change_row(station: Station, statement: str) -> None:
-    """Do what whoever has a station's login can do on the server."""
-    server = create_engine(driver_url(station.database))
-    with server.begin() as connection:
-        connection.execute(text(statement))
-    server.dispose()
-
-
 def test_an_edit_from_an_older_state_is_refused_between_stations(stations: Stations) -> None:
     first, second = stations
     seen = [one.library.patients.find("DEMO-1") for one in stations]
@@ -313,27 +304,6 @@ def test_an_empty_server_cannot_be_joined(database_url: str, tmp_path: Path) -> 
     prepare_server(database_url)
     with pytest.raises(LibraryError, match="no library on the clinic's server"):
         join(tmp_path / "station", database_url)
-
-
-Login = Callable[[str, str], str]
-
-
-@pytest.fixture
-def login(moved: Station, postgres_url: str) -> Login:
-    """Makes a login of its own in one of the three roles; gives the address with it."""
-    made: list[str] = []
-
-    def make(role: str, name: str) -> str:
-        server = create_engine(postgres_url, isolation_level="AUTOCOMMIT")
-        with server.connect() as connection:
-            connection.execute(text(f"DROP ROLE IF EXISTS {name}"))
-            connection.execute(text(f"CREATE ROLE {name} LOGIN PASSWORD 'secret' IN ROLE {role}"))
-        server.dispose()
-        made.append(name)
-        url = make_url(moved.database).set(username=name, password="secret")
-        return url.render_as_string(hide_password=False)
-
-    return make
 
 
 def test_a_stations_login_works_and_cannot_touch_tables_or_audit(
