@@ -42,6 +42,12 @@ class Audit:
         """How far it has come, as far as this program was told."""
         return self._unit.end_of_audit
 
+    def times(self) -> Iterator[datetime.datetime]:
+        """When each entry was made, from the last to the first, by the clock of the computer that made it."""
+        wanted = select(AuditRow.at).order_by(AuditRow.number.desc()).execution_options(yield_per=MANY)
+        with self._unit.reading() as session:
+            yield from map(datetime.datetime.fromisoformat, session.scalars(wanted))
+
     def entries_of_others(self) -> int:
         """How many entries this program did not add itself: more than before, and another station did something.
 

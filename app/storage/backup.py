@@ -122,7 +122,9 @@ def find_backups(into: Path) -> tuple[Backup, ...]:
 
 
 def remove_old_backups(into: Path, now: Callable[[], datetime.datetime] = now_utc) -> tuple[Backup, ...]:
-    """Remove those that are older than ninety days, but never the latest; what was destroyed is gone with them.
+    """Remove the oldest if it is older than ninety days, never the latest; what was destroyed is gone with it.
+
+    One at each start: a clock that is wrong costs one, and is noticed.
 
     What a kill left of a backup that was being made goes a day later.
 
@@ -131,7 +133,7 @@ def remove_old_backups(into: Path, now: Callable[[], datetime.datetime] = now_ut
     OSError
         A folder cannot be removed.
     """
-    old = tuple(backup for backup in find_backups(into)[:-1] if now() - backup.made_at > KEPT)
+    old = tuple(backup for backup in find_backups(into)[:-1] if now() - backup.made_at > KEPT)[:1]
     for backup in old:
         (backup.folder / LIST).unlink()  # first: half a backup is none
         shutil.rmtree(backup.folder)

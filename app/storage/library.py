@@ -68,7 +68,8 @@ class Library:
             keys = derived_keys(session, data_key)
         self.pseudonyms_key = keys.pseudonyms
         own = station.id if station is not None else ""
-        self._unit = UnitOfWork(database, keys.audit, now, is_demonstration=data_key is None, station=own)
+        self.now = now if station is None else database.clock(now)  # stations' own may differ
+        self._unit = UnitOfWork(database, keys.audit, self.now, is_demonstration=data_key is None, station=own)
         self.patients = Patients(self._unit)
         self.sessions = Sessions(self._unit)
         self.recordings = Recordings(self._unit)

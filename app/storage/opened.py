@@ -1,9 +1,11 @@
 """How is a library opened with a passphrase, and held while it is open?"""
 
+import glob
+import re
 import shutil
 import tempfile
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import TracebackType
@@ -194,9 +196,12 @@ def made_beside(folder: Path) -> Iterator[Path]:
         if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
             raise LibraryError("There is something in this folder already", "Choose an empty folder, or a new one")
         folder.parent.mkdir(parents=True, exist_ok=True)
+        _remove_unfinished(folder)
         beside = Path(tempfile.mkdtemp(prefix=f".{folder.name}-", dir=folder.parent))
         try:
-            yield beside
+            with held(beside / IN_USE):
+                yield beside
+            (beside / IN_USE).unlink()
             if folder.exists():
                 folder.rmdir()  # Windows renames onto nothing only
             beside.rename(folder)
@@ -207,6 +212,15 @@ def made_beside(folder: Path) -> Iterator[Path]:
         raise LibraryError(
             tr("This folder cannot be written ({why})").format(why=error.strerror), "Choose another folder"
         ) from error
+
+
+def _remove_unfinished(folder: Path) -> None:
+    """Remove what a kill left of a library that was being made or restored, which its own passphrases still open."""
+    drawn = re.compile(rf"\.{re.escape(folder.name)}-[a-z0-9_]{{8}}")  # as `tempfile` draws names
+    for left in folder.parent.glob(f".{glob.escape(folder.name)}-*"):
+        if drawn.fullmatch(left.name) and (left / IN_USE).exists():
+            with suppress(BlockingIOError), held(left / IN_USE):  # another program may just be making it
+                shutil.rmtree(left)
 
 
 @contextmanager
@@ -222,6 +236,7 @@ def held_alone(folder: Path) -> Iterator[None]:
     """
     try:
         with held(folder / IN_USE):
+            _remove_unfinished(folder)
             yield
     except BlockingIOError as error:
         raise LibraryError("Gaitwright is open with this library already", "Use that window, or close it") from error

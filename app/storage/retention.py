@@ -1,7 +1,12 @@
 """What was deleted thirty days ago is destroyed: the keys of its samples, its files, its rows.
 
 A journal opens with its own key only, which stands wrapped in its header and in its row. Both are overwritten, then
-the file is removed; after a kill in between the next start goes on. A disk that writes elsewhere than it is told to
+the file is removed; after a kill in between the next start goes on.
+
+A clock that is wrong destroys nothing. Stations go by their server's. A library in a folder goes by its audit: a time
+without an entry counts for a week at most, and after such a time nothing is destroyed for a day.
+
+A disk that writes elsewhere than it is told to
 (flash, snapshots) may keep the old bytes, and backups hold what was deleted until they are themselves removed, ninety
 days later (`app.storage.backup`). Whoever is asked to delete for good has to be told so.
 """
@@ -21,6 +26,9 @@ from app.storage.opened import OpenedLibrary
 from app.storage.sessions import KEPT_DELETED
 from app.storage.stored import RecordingState, StoredRecording, StoredSession
 
+UNUSED = datetime.timedelta(days=7)  # a longer time without use may be a clock that was set
+SETTLED = datetime.timedelta(days=1)  # in which somebody notices that the date is wrong
+
 
 def destroy_overdue(opened: OpenedLibrary, now: Callable[[], datetime.datetime] = now_utc) -> int:
     """Destroy what was deleted too long ago to be restored; how many sessions that were. To be done at every start.
@@ -33,15 +41,39 @@ def destroy_overdue(opened: OpenedLibrary, now: Callable[[], datetime.datetime] 
         A file cannot be overwritten or removed.
     """
     library = opened.library
-    overdue = [visit for visit in library.sessions.overdue() if not _is_at_another_station(opened, visit)]
+    before = overdue_before(opened, now())
+    if before is None:
+        return 0
+    overdue = [visit for visit in library.sessions.deleted_before(before) if not _is_at_another_station(opened, visit)]
     for visit in overdue:
         for recording in visit.recordings:
             destroy_recording(opened, recording)
         library.sessions.destroy(visit.id)
     for patient in library.patients.search(is_deleted=True):
-        if patient.deleted_at is not None and now() - patient.deleted_at >= KEPT_DELETED:
+        if patient.deleted_at is not None and patient.deleted_at <= before:
             library.patients.destroy(patient.id)
     return len(overdue)
+
+
+def overdue_before(opened: OpenedLibrary, now: datetime.datetime) -> datetime.datetime | None:
+    """Find the instant before which what was deleted is overdue; None: nothing is, as far as the clock can be trusted.
+
+    Raises
+    ------
+    LibraryError
+        The database cannot be read.
+    """
+    if opened.shared is not None:  # by the server's clock, which `now` of its library goes by
+        return opened.library.now() - KEPT_DELETED
+    left, later = KEPT_DELETED, now
+    for at in opened.library.audit.times():
+        gap = max(later - at, datetime.timedelta(0))
+        if gap > UNUSED and now - later < SETTLED:
+            return None
+        if min(gap, UNUSED) >= left:
+            return later - left
+        left, later = left - min(gap, UNUSED), min(at, later)
+    return None
 
 
 def destroy_recording(opened: OpenedLibrary, recording: StoredRecording) -> None:

@@ -197,9 +197,8 @@ class Sessions:
     def restore(self, visit: StoredSession) -> None:
         self._set_deleted(visit, None, Action.EDIT)
 
-    def overdue(self) -> tuple[StoredSession, ...]:
-        """Visits that were deleted, or their patient was, more than 30 days ago: their keys are to be destroyed."""
-        before = self._unit.now() - KEPT_DELETED
+    def deleted_before(self, before: datetime.datetime) -> tuple[StoredSession, ...]:
+        """Find the visits that were deleted, or whose patient was, before an instant."""
         with self._unit.reading() as session:
             wanted = select(SessionRow).join(PatientRow)
             rows = session.scalars(wanted.where(or_(SessionRow.deleted_at <= before, PatientRow.deleted_at <= before)))

@@ -1,5 +1,6 @@
 """How is the library's database opened, locked and closed, and what does its trouble mean?"""
 
+import datetime
 import logging
 import time
 import traceback
@@ -8,7 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import sqlcipher3.dbapi2 as sqlite
-from sqlalchemy import Connection, Engine, NullPool, QueuePool, create_engine, event, make_url, text
+from sqlalchemy import Connection, Engine, NullPool, QueuePool, create_engine, event, func, make_url, select, text
 from sqlalchemy.exc import DBAPIError, IntegrityError
 from sqlalchemy.exc import TimeoutError as PoolTimeoutError
 from sqlalchemy.orm import Session as OrmSession
@@ -147,6 +148,18 @@ class Database:
                 session.close()
                 if not _is_locked(error) or time.monotonic() >= deadline:
                     raise
+
+    def clock(self, now: Callable[[], datetime.datetime]) -> Callable[[], datetime.datetime]:
+        """Correct this computer's clock by the server's, which is read once.
+
+        Raises
+        ------
+        LibraryError
+            The server does not answer.
+        """
+        with self.reading() as session:
+            ahead: datetime.timedelta = session.scalars(select(func.now())).one() - now()
+        return lambda: now() + ahead
 
     def faults(self) -> tuple[str, ...]:
         """Read every page and check every reference; what is wrong, in the database's own words."""

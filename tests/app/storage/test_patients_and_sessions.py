@@ -14,6 +14,7 @@ from app.storage.database.engine import Database
 from app.storage.database.ids import uuid7
 from app.storage.database.models import Base
 from app.storage.library import Library
+from app.storage.sessions import KEPT_DELETED
 from app.storage.stored import (
     Action,
     AnalysisInputs,
@@ -454,13 +455,13 @@ def test_only_what_was_deleted_30_days_ago_is_destroyed_and_then_nothing_is_left
         library.patients.destroy(patient.id)
     library.patients.delete(library.patients.get(patient.id))
     clock.now += datetime.timedelta(days=29, hours=23)
-    assert library.sessions.overdue() == ()
+    assert library.sessions.deleted_before(clock.now - KEPT_DELETED) == ()
     with pytest.raises(LibraryError, match="30 days"):
         library.patients.destroy(patient.id)
     with pytest.raises(LibraryError, match="30 days"):
         library.sessions.destroy(walk.session_id)
     clock.now += datetime.timedelta(hours=1)
-    (overdue,) = library.sessions.overdue()
+    (overdue,) = library.sessions.deleted_before(clock.now - KEPT_DELETED)
     assert overdue.recordings[0].journals[0].file == f"{walk.id}.0.journal"
     library.patients.destroy(patient.id)
     with database.reading() as session:

@@ -1,5 +1,6 @@
 """A login on the clinic's server is in the wrong hands: what it can do to the others."""
 
+import datetime
 import re
 from pathlib import Path
 
@@ -9,6 +10,8 @@ from sqlalchemy import NullPool, create_engine, text
 from app.storage.clinic.joining import join
 from app.storage.clinic.station import Station, driver_url
 from app.storage.database.engine import PG_BUILD_LOCK, Database, postgres_engine
+from app.storage.library import Library, now_utc
+from app.storage.opened import OpenedLibrary
 from app.storage.stored import Action, LibraryError, Operator, Role
 from tests.app.storage.clinic.conftest import Login, OpenAt, change_row
 from tests.safety.hostile_rows import columns, run
@@ -91,3 +94,11 @@ def test_whatever_stands_in_a_row_no_file_outside_is_touched_and_every_refusal_i
     outcome = run(len(columns()), seed=3)
     assert outcome.faults == []
     assert outcome.changes - outcome.refused > 40
+
+
+def test_a_station_goes_by_the_servers_clock(moved: Station, folder: Path, untouched: OpenedLibrary) -> None:
+    def a_year_ahead() -> datetime.datetime:
+        return now_utc() + datetime.timedelta(days=365)
+
+    with Library.open(folder, untouched.data_key, a_year_ahead) as library:
+        assert abs(library.now() - now_utc()) < datetime.timedelta(minutes=1)

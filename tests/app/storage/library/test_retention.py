@@ -13,7 +13,7 @@ from app.storage.journal.reader import JournalReader
 from app.storage.library import Library
 from app.storage.opened import OpenedLibrary
 from app.storage.retention import destroy_overdue, destroy_recording
-from app.storage.stored import LibraryError, StoredRecording
+from app.storage.stored import Action, LibraryError, StoredRecording
 
 Record = Callable[..., StoredRecording]
 
@@ -33,6 +33,13 @@ def later() -> Later:
     return Later()
 
 
+def go_on(timed: OpenedLibrary, later: Later, days: float) -> None:
+    """Let time pass in which somebody looks in every five days."""
+    while later.days < days:
+        later.days = min(later.days + 5, days)
+        timed.library.audit.note(Action.VIEW, "library")
+
+
 @pytest.fixture
 def timed(opened: OpenedLibrary, later: Later) -> Iterator[OpenedLibrary]:
     """The same library under the test's time."""
@@ -47,10 +54,10 @@ def test_a_deleted_session_is_destroyed_after_thirty_days_and_not_before(
     path = timed.recordings / record("walk 1").journals[0].file
     kept = path.read_bytes()
     timed.library.sessions.delete(timed.library.sessions.get(session_id))
-    later.days = 29.9
+    go_on(timed, later, 29.9)
     assert destroy_overdue(timed, later) == 0
     assert path.read_bytes() == kept
-    later.days = 30.1
+    go_on(timed, later, 30.1)
     assert destroy_overdue(timed, later) == 1
     assert not path.exists()
     with pytest.raises(LibraryError):
@@ -64,19 +71,48 @@ def test_a_deleted_patient_goes_with_all_sessions(
     record("walk 1")
     (patient,) = timed.library.patients.search()
     timed.library.patients.delete(patient)
-    later.days = 31
+    go_on(timed, later, 31)
     assert destroy_overdue(timed, later) == 1
     assert timed.library.patients.search(is_deleted=True) == ()
     assert list(timed.recordings.iterdir()) == []
     assert timed.library.audit.verify().faults == ()
 
 
+@pytest.mark.parametrize("days", [8, 40, 365, 4000])
+def test_a_clock_that_was_set_ahead_destroys_nothing_however_often_it_is_started(
+    timed: OpenedLibrary, session_id: UUID, record: Record, later: Later, days: float
+) -> None:
+    path = timed.recordings / record("walk 1").journals[0].file
+    timed.library.sessions.delete(timed.library.sessions.get(session_id))
+    for ahead in (days, days + 0.1, days + 2):  # then it is noticed
+        later.days = ahead
+        timed.library.log_in("hk")
+        assert destroy_overdue(timed, later) == 0
+    later.days = 1
+    go_on(timed, later, 22)
+    assert destroy_overdue(timed, later) == 0
+    assert path.exists()
+    go_on(timed, later, 38)
+    assert destroy_overdue(timed, later) == 1
+
+
+def test_a_clock_that_is_a_year_back_destroys_nothing(
+    timed: OpenedLibrary, session_id: UUID, record: Record, later: Later
+) -> None:
+    record("walk 1")
+    later.days = -365
+    timed.library.sessions.delete(timed.library.sessions.get(session_id))
+    later.days = 0
+    timed.library.log_in("hk")
+    assert destroy_overdue(timed, later) == 0
+
+
 def test_a_restored_session_stays(timed: OpenedLibrary, session_id: UUID, record: Record, later: Later) -> None:
     recording = record("walk 1")
     timed.library.sessions.delete(timed.library.sessions.get(session_id))
-    later.days = 29
+    go_on(timed, later, 29)
     timed.library.sessions.restore(timed.library.sessions.get(session_id))
-    later.days = 100
+    go_on(timed, later, 100)
     assert destroy_overdue(timed, later) == 0
     assert list(JournalReader(timed.recordings / recording.journals[0].file, timed.data_key).records())
 
