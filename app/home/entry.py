@@ -183,7 +183,7 @@ class Entry(QObject):
 
     def _on_joined(self, joined: Joined) -> None:
         if joined.refusal is not None:
-            self.join.refuse(" ".join(joined.refusal), is_place=joined.is_place)
+            self.join.refuse(" ".join(joined.refusal), is_place=joined.is_place, place=joined.place)
             return
         self.join.ask()  # nothing typed is kept
         self.begin()

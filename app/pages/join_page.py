@@ -71,9 +71,11 @@ class JoinPage(EntryPage):
         self._show(is_asking=False)
         QAccessible.updateAccessibility(QAccessibleAnnouncementEvent(self.lead, sentence))
 
-    def refuse(self, sentence: str, *, is_place: bool) -> None:
-        """Say at its field why the library cannot be joined."""
+    def refuse(self, sentence: str, *, is_place: bool, place: str = "") -> None:
+        """Say at its field why the library cannot be joined; `place` is to be confirmed there."""
         self.show_busy(False)
+        if place:
+            self.server.place.set_text(place)
         self.server.refuse(sentence, is_place=is_place)
 
     def show_busy(self, is_busy: bool) -> None:

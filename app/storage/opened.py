@@ -6,11 +6,12 @@ import shutil
 import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import TracebackType
 from typing import Self
 
+from app.storage.clinic.journal_store import JournalStore
 from app.storage.clinic.key_slots import SharedKeySlots
 from app.storage.clinic.shared_journals import SharedJournals
 from app.storage.clinic.station import JOURNALS_SETTING, Station, station_of
@@ -160,7 +161,11 @@ def _shared_journals(library: Library, folder: Path, data_key: DataKey) -> Share
     """A station's way to the journals' shared place; None where the library has none."""
     if library.station is None:
         return None
-    place = library.station.journals or str(library.settings.get(JOURNALS_SETTING, ""))
+    place = library.station.journals
+    if not place:  # a station of an earlier version: from now on the place is its own, whatever the server says later
+        place = str(library.settings.get(JOURNALS_SETTING, ""))
+        JournalStore(place)  # refuses what is neither a folder nor a bucket
+        replace(library.station, journals=place).write(folder)
     return SharedJournals(folder, place, data_key)
 
 

@@ -14,7 +14,7 @@ from app.storage.bringing_home import bring_home
 from app.storage.clinic.away import bring_away_home, has_been_away, open_away, remember_operators
 from app.storage.clinic.handing_over import begin_station
 from app.storage.clinic.joining import is_station, join, new_station
-from app.storage.clinic.journal_store import PlaceMissingError
+from app.storage.clinic.journal_store import PlaceMissingError, PlaceUnconfirmedError
 from app.storage.clinic.moving import Moved, bring_back_here, give_up_early, move_to_server
 from app.storage.clinic.station import server_name, station_of, with_password
 from app.storage.data_key import DataKey
@@ -166,7 +166,8 @@ class LibraryHolder:
         try:
             join(folder, with_password(address, password), place)
         except Exception as error:  # told where the server was named
-            return Joined(refusal_of(error), isinstance(error, PlaceMissingError))
+            place = error.place if isinstance(error, PlaceUnconfirmedError) else ""
+            return Joined(refusal_of(error), isinstance(error, PlaceMissingError), place)
         return Joined(None)
 
     def _reopened_after(self, work: Callable[[], object]) -> Reopened:

@@ -104,7 +104,11 @@ class Reopened(NamedTuple):
 
 
 class Joined(NamedTuple):
-    """What came of joining; None: the folder is a station's now. `is_place`: the recordings' place is missing."""
+    """What came of joining; None: the folder is a station's now. `is_place`: the recordings' place is missing.
+
+    `place`: what the server names as it, to be confirmed.
+    """
 
     refusal: Refusal | None
     is_place: bool = False
+    place: str = ""

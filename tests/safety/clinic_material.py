@@ -130,7 +130,7 @@ def make_clinic(folder: Path, server: OwnServer) -> Clinic:
     with open_library(stations[0], PASSPHRASE, OPERATORS[0], is_to_be_moved=True) as opened:
         move_to_server(opened, station, silent)
     for other in stations[1:]:
-        join(other, address)
+        join(other, address, str(place))
     return Clinic(address, place, stations)
 
 

@@ -167,6 +167,7 @@ def _set_up(one: StationOnScreen, two: StationOnScreen, server: Server, place: P
             ("press ctrl+a", f"type {server.address}"),
         ),
         Stop("13-typed", at("JoinPage"), ("press Return",)),
+        Stop("13a-place", says("The server names this storage"), ("press Return",), patience_s=PATIENCE_S),
         Stop("14-log-in", says("The clinic's library on"), (f"type {PASSPHRASE}", "press Return")),
         Stop("15-home", offers("New patient"), patience_s=PATIENCE_S),
     )
@@ -273,7 +274,7 @@ def _lose_the_server(one: StationOnScreen, two: StationOnScreen, server: Server,
 
 def _read_walk(server: Server, folder: Path, walked_s: float) -> tuple[int, float]:
     """Read the latest session as a third station; how many samples each sensor has of its walk, and how long it is."""
-    join(folder, server.address)
+    join(folder, server.address, str(folder.with_name("recordings")))
     with open_library(folder, PASSPHRASE) as opened:
         sessions = opened.library.sessions.list()
         _expect(len(sessions) == 2, f"two sessions: {len(sessions)}")

@@ -3,12 +3,14 @@
 It works in a library of its own, in its folder's `away`, under the clinic's data key: patients and sessions that are
 begun there are begun as always. Once the server answers, the folder is renamed, so that a next outage begins another;
 all its rows go to the server in one transaction, which leaves a mark; then its journals become the station's own, which
-are handed over as any. Killed anywhere in between, the next start goes on, and nothing goes there twice.
+are handed over as any. Killed anywhere in between, the next start goes on, and nothing goes there twice. The mark holds the
+end of its audit: a station that was restored from an image brings what it recorded since, under the same mark.
 
 A patient is known again by the code. What the clinic says of a patient holds; what was said of one here fills no gaps,
 but goals that were agreed here are added to those at the clinic.
 """
 
+import hmac
 import json
 import logging
 import shutil
@@ -20,7 +22,7 @@ from uuid import UUID
 from sqlalchemy import Table, func, insert, inspect, select
 from sqlalchemy.orm import Session as OrmSession
 
-from app.storage.audit import append
+from app.storage.audit import append, end_of_audit
 from app.storage.clinic.server_state import refuse_closed
 from app.storage.clinic.station import station_of
 from app.storage.data_key import DataKey
@@ -42,13 +44,17 @@ from app.storage.layout import DATABASE, RECORDINGS, SUFFIX
 from app.storage.library import Library, now_utc
 from app.storage.opened import OpenedLibrary, held_alone
 from app.storage.root import read_id
-from app.storage.stored import Action, NotAllowedError, Operator, Role
+from app.storage.stored import BEGINNING, Action, Checkpoint, LibraryError, NotAllowedError, Operator, Role
 from core.goals import brought_together, goals_text
 
 AWAY, COMING_HOME = "away", "away-coming-home"
 OPERATORS = "operators.json"  # who works at the clinic, as the station saw it last
-MARK = "away {library}"  # the setting that says that an away library's rows are on the server
+MARK = "away {library}"  # the setting that says up to which entry of its audit an away library is on the server
+NOT_COVERED = "away-not-covered-{number}"  # a folder that is kept: what was edited in it is not on the server
 OWN_TO_EACH = {"settings", "operators", "audit", "patients", "corrections"}  # tables that are not copied row by row
+
+DERIVED = {"results", "courses", "readings"}  # tables that are computed anew from the others, or of a server alone
+SERVERS = {"kept_as", "station", "version", "patient_id"}  # columns that change at the server by themselves
 
 _log = logging.getLogger(__name__)
 
@@ -119,10 +125,23 @@ def bring_away_home(opened: OpenedLibrary) -> int:
                 away.rename(coming)
             sync_folder(opened.folder)
         if (coming / DATABASE).exists():
-            sessions += _bring_rows(opened, coming)
+            count, is_covered = _bring_rows(opened, coming)
+            sessions += count
             _bring_journals(opened, coming)
+            if not is_covered:
+                _keep(coming)
         shutil.rmtree(coming, ignore_errors=True)
     return sessions
+
+
+def _keep(coming: Path) -> None:
+    """Put a folder aside that holds other values of rows than the server: neither is thrown away."""
+    number = 1
+    while (kept := coming.with_name(NOT_COVERED.format(number=number))).exists():
+        number += 1
+    coming.rename(kept)
+    sync_folder(kept.parent)
+    _log.error("%s holds edits that are not on the server, whose values differ: it is kept", kept.name)
 
 
 def _remembered(folder: Path, code: str) -> Operator:
@@ -149,28 +168,45 @@ def _let_in(library: Library, operator: Operator) -> None:
             row.name, row.role, row.is_active = operator.name, operator.role, True
 
 
-def _bring_rows(opened: OpenedLibrary, folder: Path) -> int:
+def _bring_rows(opened: OpenedLibrary, folder: Path) -> tuple[int, bool]:
+    """Bring what the mark on the server does not cover; how many sessions, and whether the server then has it all."""
     station = opened.library.station
     assert station is not None  # the caller has asked
-    mark = MARK.format(library=read_id(folder))
+    name = MARK.format(library=read_id(folder))
     source = Database(sqlite_engine(folder / DATABASE, opened.data_key, creates=False))
     try:
         with source.reading() as here, opened.library.database.writing() as there:
-            if there.get(SettingRow, mark) is not None:
-                return 0
+            mark, end = there.get(SettingRow, name), end_of_audit(here)
+            if mark is not None and mark.value == str(end):
+                return 0, True
             refuse_closed(there)
+            covered = _covered(here, mark)
             patients = _bring_patients(here, there)
-            count = 0
+            count, is_covered = 0, True
             for table in Base.metadata.sorted_tables:
                 if table.name not in OWN_TO_EACH:
-                    added = _bring_table(here, there, table, patients, station.id)
+                    added, are_same = _bring_table(here, there, table, patients, station.id)
                     count += added if table.name == "sessions" else 0
+                    is_covered &= are_same or table.name in DERIVED
             _bring_corrections(here, there, patients)
-            _bring_audit(here, there, opened)
-            there.add(SettingRow(name=mark, value=now_utc().isoformat()))
-            return count
+            _bring_audit(here, there, opened, covered)
+            if mark is None:
+                there.add(SettingRow(name=name, value=str(end)))
+            else:
+                mark.value = str(end)
+            return count, is_covered
     finally:
         source.close()
+
+
+def _covered(here: OrmSession, mark: SettingRow | None) -> int:
+    """Find up to which entry of its own audit a library is on the server; 0 where it went another way since."""
+    try:
+        end = Checkpoint.parsed(str(mark.value)) if mark is not None else BEGINNING
+    except LibraryError:  # of an earlier version, which kept the time
+        return 0
+    row = here.get(AuditRow, end.number)
+    return end.number if row is not None and hmac.compare_digest(row.hash, end.hash) else 0
 
 
 def _bring_patients(here: OrmSession, there: OrmSession) -> dict[UUID, UUID]:
@@ -195,31 +231,43 @@ def _bring_patients(here: OrmSession, there: OrmSession) -> dict[UUID, UUID]:
     return known
 
 
-def _bring_table(here: OrmSession, there: OrmSession, table: Table, patients: dict[UUID, UUID], station: str) -> int:
+def _bring_table(
+    here: OrmSession, there: OrmSession, table: Table, patients: dict[UUID, UUID], station: str
+) -> tuple[int, bool]:
+    """Bring the rows that are not there; how many, and whether those that are there are the same."""
     rows = [dict(row) for row in here.execute(select(table)).mappings()]
     for row in rows:
         if "patient_id" in row:
             row["patient_id"] = patients[row["patient_id"]]
         if table.name == RecordingRow.__tablename__:
             row["station"] = station
-    if rows:
-        there.execute(insert(table), rows)
-    return len(rows)
+    key = table.primary_key.columns.keys()
+    known = {tuple(row[name] for name in key): row for row in there.execute(select(table)).mappings()} if rows else {}
+    seen = [(row, known.get(tuple(row[name] for name in key))) for row in rows]
+    fresh = [row for row, other in seen if other is None]
+    if fresh:
+        there.execute(insert(table), fresh)
+    columns = [name for name in (column.name for column in table.columns) if name not in SERVERS]
+    are_same = all(other is None or all(row[name] == other[name] for name in columns) for row, other in seen)
+    return len(fresh), are_same
 
 
 def _bring_corrections(here: OrmSession, there: OrmSession, patients: dict[UUID, UUID]) -> None:
     """Their numbers go on from those at the clinic, in the order in which they were made."""
     table = Base.metadata.tables[CorrectionRow.__tablename__]
     number = there.scalar(select(func.max(CorrectionRow.number))) or 0
+    known = set(there.scalars(select(CorrectionRow.id)))
     for row in here.execute(select(table).order_by(CorrectionRow.number)).mappings():
+        if row["id"] in known:
+            continue
         number += 1
         there.execute(insert(table).values(dict(row) | {"number": number, "patient_id": patients[row["patient_id"]]}))
 
 
-def _bring_audit(here: OrmSession, there: OrmSession, opened: OpenedLibrary) -> None:
+def _bring_audit(here: OrmSession, there: OrmSession, opened: OpenedLibrary, covered: int) -> None:
     """Who did what meanwhile goes on the clinic's chain, each entry with its own time among its details."""
     key = derived_keys(there, opened.data_key).audit
-    for entry in here.scalars(select(AuditRow).order_by(AuditRow.number)):
+    for entry in here.scalars(select(AuditRow).where(AuditRow.number > covered).order_by(AuditRow.number)):
         details: dict[str, Any] = json.loads(entry.details) | {"was_away_at": entry.at}
         append(there, key, now_utc(), entry.operator, Action(entry.action), entry.subject, details)
 

@@ -4,7 +4,7 @@ import os
 from pathlib import Path
 from uuid import uuid4
 
-from app.storage.clinic.journal_store import JournalStore
+from app.storage.clinic.journal_store import JournalStore, PlaceUnconfirmedError
 from app.storage.clinic.key_slots import SharedKeySlots
 from app.storage.clinic.server_state import refuse_closed
 from app.storage.clinic.station import JOURNALS_SETTING, Station, driver_url
@@ -33,16 +33,19 @@ def new_station(address: str, journals: str = "") -> Station:
 def join(folder: Path, address: str, journals: str = "") -> Station:
     """Make `folder`, which is empty or not there, that of a new station of the library at `address`.
 
-    Who works there logs in with the passphrase as always. `journals`: where the shared place has another name here.
+    Who works there logs in with the passphrase as always. `journals`: the shared place, as it is called here; whoever
+    writes on the server could name another, so it is the station's from now on.
 
     Raises
     ------
     LibraryError
         The address is none, the server does not answer or has no library, or something is in the folder.
+    PlaceUnconfirmedError
+        No place was named here; it tells which one the server names.
     PlaceMissingError
         The shared place is not there under this name.
     """
-    station = new_station(address, journals)
+    station = new_station(address, journals or os.environ.get(JOURNALS_VARIABLE, ""))
     database = station.database_once()
     if not is_up_to_date(database):
         raise LibraryError(
@@ -54,7 +57,9 @@ def join(folder: Path, address: str, journals: str = "") -> Station:
         library_id = str(session.get_one(SettingRow, ID_SETTING).value)
         place = session.get(SettingRow, JOURNALS_SETTING)
     named = str(place.value) if place is not None else ""
-    JournalStore(journals or os.environ.get(JOURNALS_VARIABLE) or named).refuse_missing()
+    if not station.journals:
+        raise PlaceUnconfirmedError(named)
+    JournalStore(station.journals).refuse_missing()
     with made_beside(folder) as beside:
         _ = SharedKeySlots(beside / KEYS, database).codes  # which copies them
         replace_file(beside / ID_FILE, library_id.encode())

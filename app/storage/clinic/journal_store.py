@@ -21,7 +21,9 @@ from typing import Any, BinaryIO
 from app.storage.files import sync_folder
 from app.storage.layout import SUFFIX
 from app.storage.stored import LibraryError, LibraryFaultError
+from app.wording import tr
 
+S3 = "s3://"
 PIECE_BYTES = 1 << 20
 NAME = re.compile(rf"[0-9a-f]{{64}}{re.escape(SUFFIX)}")
 UNFINISHED = ".putting-"
@@ -34,8 +36,17 @@ class PlaceMissingError(LibraryFaultError):
     """The shared place is not there under its name."""
 
 
+class PlaceUnconfirmedError(PlaceMissingError):
+    """The server names a place that nobody at this station has confirmed."""
+
+    def __init__(self, place: str) -> None:
+        what = tr("The server names this storage for the recordings: {place}").format(place=place)
+        super().__init__(what, "Enter the storage as this computer reaches it, to confirm it")
+        self.place = place
+
+
 class JournalStore:
-    """The journals' shared place; any thread may use it. `place` is a folder or an address such as s3://bucket/folder.
+    """The journals' shared place; any thread may use it. `place` is an absolute folder, or s3://bucket/folder.
 
     Raises
     ------
@@ -51,8 +62,11 @@ class JournalStore:
             raise LibraryError(
                 "What reads a clinic's shared journals is not installed", "Run: pip install .[clinic]"
             ) from None
+        if not (place.startswith(S3) or Path(place).is_absolute()):
+            raise LibraryError("Journals cannot be kept at this address", "Name a folder, or s3://bucket/folder")
+        self._is_local = not place.startswith(S3)
         options: dict[str, Any] = {}
-        if place.startswith("s3:"):
+        if not self._is_local:
             # a fresh look each time, since other stations write too; few tries, since the watch tries again
             options = {
                 "use_listings_cache": False,
@@ -61,11 +75,13 @@ class JournalStore:
             if address := os.environ.get("AWS_ENDPOINT_URL"):
                 options["endpoint_url"] = address
         try:
-            self._files, self._root = fsspec.core.url_to_fs(place, **options)
+            # not by its address, which may name any kind of place, or one inside of another
+            self._files = fsspec.filesystem("file" if self._is_local else "s3", **options)
         except (ImportError, ValueError) as error:
             raise LibraryError(
                 "Journals cannot be kept at this address", "Name a folder, or s3://bucket/folder"
             ) from error
+        self._root = str(Path(place)) if self._is_local else place.removeprefix(S3).rstrip("/")
 
     def refuse_missing(self) -> None:
         """See that the place is there: a folder whose disk is not mounted is not made up for by another.
@@ -174,10 +190,6 @@ class JournalStore:
         with _told(), self._files.open(self._at(name), "rb") as there:
             while piece := there.read(PIECE_BYTES):
                 yield piece
-
-    @property
-    def _is_local(self) -> bool:
-        return "file" in self._files.protocol
 
     def _at(self, name: str) -> str:
         if not NAME.fullmatch(name):  # a row may say anything

@@ -108,7 +108,7 @@ def moved(folder: Path, database_url: str, shared_place: Path, open_at: OpenAt) 
 @pytest.fixture
 def stations(moved: Station, folder: Path, tmp_path: Path, open_at: OpenAt) -> tuple[OpenedLibrary, OpenedLibrary]:
     """Two stations of one library, both opened by `hk`: where it came from, and one that joined."""
-    join(tmp_path / "second", moved.database)
+    join(tmp_path / "second", moved.database, moved.journals)
     return open_at(folder), open_at(tmp_path / "second")
 
 

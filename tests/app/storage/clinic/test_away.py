@@ -98,6 +98,42 @@ def test_a_deleted_patient_who_is_measured_is_one_again(stations: Stations) -> N
     assert second.library.patients.find("DEMO-1") is not None
 
 
+def test_a_station_that_was_restored_from_an_image_brings_what_it_recorded_since(
+    stations: Stations, tmp_path: Path
+) -> None:
+    first, second = stations
+    old, _ = visit_away(first)
+    image = Path(shutil.copytree(first.folder / AWAY, tmp_path / "image"))
+    assert bring_away_home(first) == 1
+    hand_over(first)
+    shutil.copytree(image, first.folder / AWAY)  # the same library, as it was before
+    new, walks = visit_away(first, code="DEMO-8")
+    entries = len(second.library.audit.entries())
+    assert bring_away_home(first) == 1
+    hand_over(first)
+    visit = second.library.sessions.get(new)
+    assert len(session_with_samples(second, visit, {}, silent).recordings) == len(walks)
+    assert second.library.sessions.get(old).recordings
+    assert len(second.library.audit.entries()) > entries
+    shutil.copytree(image, first.folder / AWAY)
+    assert bring_away_home(first) == 0
+    assert second.library.audit.verify().faults == ()
+
+
+def test_an_edit_that_the_server_does_not_cover_is_kept(stations: Stations, tmp_path: Path) -> None:
+    first, _ = stations
+    old, _ = visit_away(first)
+    image = Path(shutil.copytree(first.folder / AWAY, tmp_path / "image"))
+    bring_away_home(first)
+    shutil.copytree(image, first.folder / AWAY)
+    with begin_away(first) as opened:
+        visit = opened.library.sessions.get(old)
+        opened.library.sessions.change(visit, replace(visit.details, notes="written after the image"), visit.comment)
+    assert bring_away_home(first) == 0
+    (kept,) = first.folder.glob("away-not-covered-*")
+    assert (kept / "library.db").exists()
+
+
 def test_corrections_and_audit_go_on_the_clinics_own(stations: Stations) -> None:
     first, second = stations
     patient = first.library.patients.find("DEMO-1")

@@ -36,7 +36,9 @@ def test_a_library_goes_to_the_server_a_station_joins_and_it_comes_back(
     assert main(["clinic", "move", str(folder), *key, "--journals", str(shared_place)]) == 0
     said = capsys.readouterr().out
     assert "1 patient, 1 session and 3 recordings are on postgresql://" in said
-    assert main(["clinic", "join", second]) == 0
+    assert main(["clinic", "join", second]) == 2
+    assert str(shared_place) in capsys.readouterr().err
+    assert main(["clinic", "join", second, "--journals", str(shared_place)]) == 0
     assert "is a station of" in capsys.readouterr().out
     monkeypatch.delenv(DATABASE_VARIABLE)  # from here on the station's own file names the server
     assert main(["clinic", "status", second, *key]) == 0

@@ -8,6 +8,7 @@ import pytest
 from sqlalchemy import NullPool, create_engine, text
 
 from app.storage.clinic.joining import join
+from app.storage.clinic.journal_store import PlaceUnconfirmedError
 from app.storage.clinic.station import Station, driver_url
 from app.storage.database.engine import PG_BUILD_LOCK, Database, postgres_engine
 from app.storage.library import Library, now_utc
@@ -56,7 +57,7 @@ def test_nothing_that_a_login_holds_open_that_only_looks_keeps_a_station_waiting
 def test_what_a_login_that_only_looks_has_viewed_is_in_the_audit_with_its_name(
     moved: Station, login: Login, folder: Path, tmp_path: Path, open_at: OpenAt
 ) -> None:
-    join(tmp_path / "third", login("gaitwright_reader", "reader_login"))
+    join(tmp_path / "third", login("gaitwright_reader", "reader_login"), moved.journals)
     reader = open_at(tmp_path / "third")
     (line,) = reader.library.sessions.list()
     reader.library.sessions.view(line.id)
@@ -102,3 +103,15 @@ def test_a_station_goes_by_the_servers_clock(moved: Station, folder: Path, untou
 
     with Library.open(folder, untouched.data_key, a_year_ahead) as library:
         assert abs(library.now() - now_utc()) < datetime.timedelta(minutes=1)
+
+
+def test_a_server_that_names_another_place_later_is_not_followed(
+    moved: Station, tmp_path: Path, open_at: OpenAt
+) -> None:
+    with pytest.raises(PlaceUnconfirmedError, match=re.escape(moved.journals)):
+        join(tmp_path / "second", moved.database)
+    join(tmp_path / "second", moved.database, moved.journals)
+    change_row(moved, """UPDATE settings SET value = '"/elsewhere"' WHERE name = 'journals place'""")
+    shared = open_at(tmp_path / "second").shared
+    assert shared is not None
+    assert shared.place == moved.journals

@@ -122,3 +122,21 @@ def test_half_a_journal_has_no_journals_name(tmp_path: Path, journal: Path, monk
 def test_an_address_that_nothing_here_reads_is_refused(address: str) -> None:
     with pytest.raises(LibraryError, match="cannot be kept at this address"):
         JournalStore(address)
+
+
+ELSEWHERE = (
+    "http://127.0.0.1/x",
+    "ftp://host/x",
+    "github://a:b@/",
+    "memory://x",
+    "file:///tmp",
+    "recordings",
+    "../x",
+    "",
+)
+
+
+@pytest.mark.parametrize("place", [*ELSEWHERE, "zip://x::/tmp/a.zip", "s3:bucket", "simplecache::s3://bucket/x"])
+def test_a_place_is_a_folder_or_a_bucket_and_nothing_else(place: str) -> None:
+    with pytest.raises(LibraryError, match="cannot be kept at this address"):
+        JournalStore(place)

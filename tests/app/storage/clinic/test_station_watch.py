@@ -87,7 +87,7 @@ def controller(qtbot: QtBot, moved: Station, folder: Path) -> Iterator[LibraryCo
 
 @pytest.fixture
 def other(moved: Station, tmp_path: Path, open_at: OpenAt, controller: LibraryController) -> OpenedLibrary:
-    join(tmp_path / "second", moved.database)
+    join(tmp_path / "second", moved.database, moved.journals)
     return open_at(tmp_path / "second")
 
 

@@ -310,7 +310,7 @@ def test_a_stations_login_works_and_cannot_touch_tables_or_audit(
     moved: Station, login: Login, tmp_path: Path, open_at: OpenAt
 ) -> None:
     address = login("gaitwright_app", "station_login")
-    join(tmp_path / "third", address)
+    join(tmp_path / "third", address, moved.journals)
     station = open_at(tmp_path / "third")
     patient = station.library.patients.find("DEMO-1")
     assert patient is not None
@@ -326,7 +326,7 @@ def test_a_stations_login_works_and_cannot_touch_tables_or_audit(
 def test_a_readers_login_reads_is_noted_and_changes_nothing(
     moved: Station, login: Login, tmp_path: Path, open_at: OpenAt
 ) -> None:
-    join(tmp_path / "third", login("gaitwright_reader", "reader_login"))
+    join(tmp_path / "third", login("gaitwright_reader", "reader_login"), moved.journals)
     reader = open_at(tmp_path / "third")
     (line,) = reader.library.sessions.list()
     visit = reader.library.sessions.view(line.id)
