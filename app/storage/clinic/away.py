@@ -3,8 +3,8 @@
 It works in a library of its own, in its folder's `away`, under the clinic's data key: patients and sessions that are
 begun there are begun as always. Once the server answers, the folder is renamed, so that a next outage begins another;
 all its rows go to the server in one transaction, which leaves a mark; then its journals become the station's own, which
-are handed over as any. Killed anywhere in between, the next start goes on, and nothing goes there twice. The mark holds the
-end of its audit: a station that was restored from an image brings what it recorded since, under the same mark.
+are handed over as any. Killed anywhere in between, the next start goes on, and nothing goes there twice. The mark holds
+the end of its audit: a station that was restored from an image brings what it recorded since, under the same mark.
 
 A patient is known again by the code. What the clinic says of a patient holds; what was said of one here fills no gaps,
 but goals that were agreed here are added to those at the clinic.

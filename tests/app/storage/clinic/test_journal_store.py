@@ -131,7 +131,6 @@ ELSEWHERE = (
     "memory://x",
     "file:///tmp",
     "recordings",
-    "../x",
     "",
 )
 
