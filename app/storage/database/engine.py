@@ -4,9 +4,11 @@ import datetime
 import logging
 import time
 import traceback
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from contextlib import contextmanager
+from functools import cache
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import sqlcipher3.dbapi2 as sqlite
 from sqlalchemy import Connection, Engine, NullPool, QueuePool, create_engine, event, func, make_url, select, text
@@ -25,6 +27,9 @@ from app.storage.stored import (
     ServerSilentError,
 )
 from app.wording import tr
+
+if TYPE_CHECKING:
+    from psycopg import Connection as PgConnection
 
 OLDEST_SQLITE = (3, 51, 3)  # before it a reset of the write-ahead log could lose pages
 BUSY_S = 30.0  # a scanner or backup may hold the file for so long; a clinician waits no longer
@@ -45,6 +50,8 @@ PG_SILENT = {
     "keepalives_count": 3,
     "tcp_user_timeout": 10_000,
 }
+# one whose program hangs goes on being there: the longest that it may say nothing amid a statement
+PG_SILENT_S = 30.0
 HEX = b"0123456789abcdef"
 PG_LOCKED = "55P03"  # lock_not_available
 PG_NOT_ALLOWED = "42501"  # insufficient_privilege
@@ -252,8 +259,39 @@ def postgres_engine(url: str, try_s: float = TRY_S, *, is_kept: bool = True) -> 
         else:
             connection.exec_driver_sql("SET TRANSACTION ISOLATION LEVEL REPEATABLE READ READ ONLY")
 
+    def connect(_dialect: object, _record: object, args: tuple[Any, ...], options: dict[str, Any]) -> object:
+        return _impatient_connection().connect(*args, **options)
+
     event.listen(engine, "begin", begin)
+    event.listen(engine, "do_connect", connect)
     return engine
+
+
+@cache
+def _impatient_connection() -> "type[PgConnection[Any]]":
+    """A connection that is closed once the server has said nothing for `PG_SILENT_S`."""
+    import psycopg
+
+    class ImpatientConnection(psycopg.Connection[Any]):
+        def wait(self, gen: Generator[Any, Any, Any], *args: Any, **options: Any) -> Any:
+            return super().wait(self._until_silent(gen), *args, **options)
+
+        def _until_silent(self, gen: Generator[Any, Any, Any]) -> Generator[Any, Any, Any]:
+            """Pass on what the connection waits for; zero comes back several times a second while nothing happens."""
+            try:
+                asked, heard_s = next(gen), time.monotonic()
+                while True:
+                    ready = yield asked
+                    if ready:
+                        heard_s = time.monotonic()
+                    elif time.monotonic() - heard_s > PG_SILENT_S:
+                        self.pgconn.finish()
+                        raise psycopg.OperationalError("the connection was closed: the server said nothing")
+                    asked = gen.send(ready)
+            except StopIteration as done:
+                return done.value
+
+    return ImpatientConnection
 
 
 def refuse_old_sqlite(version: tuple[int, ...]) -> None:

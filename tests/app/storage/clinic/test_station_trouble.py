@@ -23,14 +23,16 @@ from app.storage.clinic.handing_over import begin_station, count_waiting, hand_o
 from app.storage.clinic.joining import new_station, prepare_server
 from app.storage.clinic.journal_store import JournalStore
 from app.storage.clinic.moving import bring_back, give_up_moving, move_to_server
-from app.storage.database.engine import Database, postgres_engine
+from app.storage.clinic.station import Station, driver_url
+from app.storage.database.engine import PG_SILENT_S, Database, postgres_engine
 from app.storage.opened import OpenedLibrary, made_beside, slots_of
 from app.storage.recovery import find_interrupted
 from app.storage.retention import destroy_recording
-from app.storage.stored import LibraryError, LibraryFaultError, StoredPatient
+from app.storage.stored import LibraryError, LibraryFaultError, ServerSilentError, StoredPatient
 from core.findings import Finding, Severity
 from core.samples import Recording, RecordingKind, Session
 from tests.app.storage.clinic.conftest import OpenAt, silent
+from tests.app.storage.clinic.silent_server import SilentServer
 from tests.app.storage.clinic.test_stations import Stations, found, read, record
 
 pytestmark = pytest.mark.endurance  # each starts with an empty server
@@ -307,3 +309,22 @@ def test_the_servers_own_trouble_in_tls_is_not_said_to_be_a_false_name() -> None
     database = Database(postgres_engine("postgresql+psycopg://nobody@/nowhere"))
     with pytest.raises(LibraryFaultError, match="does not answer"), database.reading():
         raise cause
+
+
+def test_a_server_that_falls_silent_amid_a_statement_is_given_up(
+    moved: Station, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    url = make_url(moved.database)
+    server = SilentServer(f"{url.query['host']}/.s.PGSQL.5432")
+    through = url.set(host="127.0.0.1", port=server.port, query={"sslmode": "disable"})
+    database = Database(postgres_engine(driver_url(through.render_as_string(hide_password=False))))
+    with database.reading() as session:
+        assert session.scalar(text("SELECT 1")) == 1
+    server.is_silent.set()
+    monkeypatch.setattr("app.storage.database.engine.PG_SILENT_S", 0.3)
+    began_s = time.monotonic()
+    with pytest.raises(ServerSilentError), database.reading() as session:
+        session.scalar(text("SELECT 1"))
+    database.close()
+    server.close()
+    assert time.monotonic() - began_s < PG_SILENT_S
