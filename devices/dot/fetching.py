@@ -9,7 +9,6 @@ Each notification is given to who keeps it before it is looked at.
 
 import asyncio
 import struct
-from collections import Counter
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
@@ -26,7 +25,7 @@ from devices.dot.messages import (
     RecordedFile,
     fetch_from,
 )
-from devices.dot.samples import CHOSEN, FileFramer
+from devices.dot.samples import CHOSEN, MOST_SAMPLES, FileFramer
 from devices.dot.sensor import DotRefusedError, DotSensor
 from devices.live import Keep, SourceLostError
 from devices.notifications import framed
@@ -36,6 +35,8 @@ OVERTAKEN_S = 0.1  # so long after its end something may come that the end has o
 REPAIRS = 3  # so often what is missing is asked for again
 STUCK = 6  # so often in a row nothing new came
 SILENCE_S = 3.0
+TALK_S = 10.0  # so long it may talk before it says what it was asked for
+IDLE_TALK_S = 20.0  # so long it may send notices with nothing new in them
 AWAY_S = 60.0  # so long a sensor that was lost is looked for
 AGAIN_S = 0.5
 EVER = 1 << 32  # no number is higher
@@ -98,9 +99,16 @@ async def reached(sensor: DotSensor, within_s: float = AWAY_S) -> None:
             await asyncio.sleep(AGAIN_S)
 
 
-async def next_notice(sensor: DotSensor, kept: Callable[[bytes], None] | None = None) -> DotMessage | None:
-    """The next whole notice of its memory; None where the sensor has fallen silent."""
-    while payload := await sensor.notice(SILENCE_S):
+def from_now_s(within_s: float) -> float:
+    """When `within_s` are over, by the clock of the links' thread."""
+    return asyncio.get_running_loop().time() + within_s
+
+
+async def next_notice(
+    sensor: DotSensor, until_s: float, kept: Callable[[bytes], None] | None = None
+) -> DotMessage | None:
+    """The next whole notice of its memory; None where the sensor has fallen silent, or talks on after `until_s`."""
+    while from_now_s(0.0) < until_s and (payload := await sensor.notice(SILENCE_S)):
         if kept is not None:
             kept(payload)
         message = sensor.understood(payload)
@@ -114,7 +122,8 @@ async def made_idle(sensor: DotSensor) -> None:
     state = await sensor.state()
     if state in (DotAnswer.EXPORTING_LIST, DotAnswer.EXPORTING_INFO, DotAnswer.EXPORTING):
         await sensor.order(Order.BREAK_OFF)
-        while (said := await next_notice(sensor)) is not None and said.data[0] != DotNotice.DATA_BROKEN_OFF:
+        until_s = from_now_s(TALK_S)
+        while (said := await next_notice(sensor, until_s)) is not None and said.data[0] != DotNotice.DATA_BROKEN_OFF:
             pass
 
 
@@ -133,7 +142,7 @@ class Fetching:
         self._sensor, self._file, self._keep, self._progress = sensor, file, keep, progress
         self.framer = FileFramer()
         self._about = max(about, 1)
-        self._asked: Counter[int] = Counter()  # how often each number that is missing was asked for again
+        self._asked: list[range] = []  # what was asked for again, each time
         self._ended_at, self._looks = -1, 0  # so often the end came right after this number
         self._repairs_amid = True  # until the sensor refuses it
 
@@ -149,7 +158,7 @@ class Fetching:
         """
         stuck, cut_before = 0, self._sensor.cut_notices
         while (wanted := self._wanted()) is not None and stuck <= STUCK:
-            before = len(self.framer.samples), self._looks, self._asked.total()
+            before = len(self.framer.samples), self._looks, len(self._asked)
             try:
                 await reached(self._sensor)
                 if await self._ask(wanted.start):
@@ -159,7 +168,7 @@ class Fetching:
             except BaseException:
                 await self._broken_off()
                 raise
-            now = len(self.framer.samples), self._looks, self._asked.total()
+            now = len(self.framer.samples), self._looks, len(self._asked)
             stuck = 0 if now != before else stuck + 1
         found, missing = len(self.framer.samples), self.framer.missing()
         if not found:
@@ -189,7 +198,11 @@ class Fetching:
         """What to ask for next: all up to the end, and what is behind it; then what is missing. None: nothing more."""
         if self._looks < LOOKS:
             return range(max(self.framer.next - 1, 0), EVER)
-        return next((gap for gap in self.framer.missing() if self._asked[gap.start] < REPAIRS), None)
+        return next((gap for gap in self.framer.missing() if self._tries(gap.start) < REPAIRS), None)
+
+    def _tries(self, number: int) -> int:
+        """How often a number was asked for again."""
+        return sum(number in asked for asked in self._asked)
 
     async def _ask(self, number: int) -> bool:
         """Let the sensor send from this sample on, or from the first where it takes no other order."""
@@ -216,7 +229,10 @@ class Fetching:
     async def _listen(self, wanted: range) -> None:
         """Keep what comes, to the end or to the end of what is wanted."""
         latest, asked_from = wanted.start - 1, EVER
-        while (said := await next_notice(self._sensor, self._take)) is not None:
+        known, until_s = len(self.framer.samples), from_now_s(IDLE_TALK_S)
+        while (said := await next_notice(self._sensor, until_s, self._take)) is not None:
+            if len(self.framer.samples) > known:
+                known, until_s = len(self.framer.samples), from_now_s(IDLE_TALK_S)
             kind = said.data[0]
             if kind == DotNotice.DATA_END:
                 await self._ended(latest)
@@ -224,6 +240,8 @@ class Fetching:
             if kind not in (DotNotice.DATA, DotNotice.DATA_DAMAGED) or len(said.data) < 5:
                 continue
             (number,) = struct.unpack_from("<I", said.data, 1)
+            if number >= MOST_SAMPLES:
+                continue  # no memory holds so many
             if number >= wanted.stop:
                 await made_idle(self._sensor)
                 break
@@ -231,22 +249,24 @@ class Fetching:
                 continue  # it was on its way before what was asked for again
             lacking = self._lacking(range(latest + 1, number + (kind == DotNotice.DATA_DAMAGED)))
             latest, asked_from = max(latest, number), EVER
-            if lacking and await self._again(lacking[0]):
-                latest, asked_from = lacking[0] - 1, lacking[0]
-                self._asked.update(lacking)
+            if lacking and await self._again(lacking.start):
+                latest, asked_from = lacking.start - 1, lacking.start
+                self._asked.append(lacking)
             elif lacking:
                 self._repairs_amid = False
         if wanted.stop != EVER:
-            self._asked.update(wanted)
+            self._asked.append(wanted)
 
-    def _lacking(self, gap: range) -> list[int]:
-        """What was left out of these or is damaged, and may be asked for at once."""
-        found = [number for number in gap if number not in self.framer.samples] if self._repairs_amid else []
-        return found if found and self._asked[found[0]] < REPAIRS else []
+    def _lacking(self, gap: range) -> range:
+        """From the first of these that was left out or is damaged, if it may be asked for at once; else none."""
+        lacking = (number for number in gap if number not in self.framer.samples)
+        first = next(lacking, gap.stop) if self._repairs_amid else gap.stop
+        return range(first, gap.stop) if first < gap.stop and self._tries(first) < REPAIRS else range(0)
 
     async def _ended(self, latest: int) -> None:
         """Count how often the end came right after the last sample that is known."""
-        while payload := await self._sensor.notice(OVERTAKEN_S):
+        until_s = from_now_s(TALK_S)
+        while from_now_s(0.0) < until_s and (payload := await self._sensor.notice(OVERTAKEN_S)):
             self._take(payload)
         if latest == self.framer.next - 1:
             self._looks = self._looks + 1 if latest == self._ended_at else 1

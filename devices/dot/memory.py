@@ -10,7 +10,7 @@ import asyncio
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
-from devices.dot.fetching import made_idle, next_notice, reached
+from devices.dot.fetching import TALK_S, from_now_s, made_idle, next_notice, reached
 from devices.dot.messages import (
     DotAnswer,
     DotMessageError,
@@ -213,7 +213,8 @@ async def _pieces(sensor: DotSensor) -> tuple[int, ...] | None:
     if await sensor.order(Order.LIST) is not DotAnswer.DONE:
         return None
     listed = b""
-    while (said := await next_notice(sensor)) is not None:
+    until_s = from_now_s(TALK_S)
+    while (said := await next_notice(sensor, until_s)) is not None:
         if said.data[0] == DotNotice.LIST_END:
             try:
                 return files_listed(listed)
@@ -228,7 +229,8 @@ async def _file(sensor: DotSensor, number: int, pieces: int) -> RecordedFile | N
     if await sensor.order(Order.FILE_INFO, bytes([number])) is not DotAnswer.DONE:
         return None
     file = None
-    while (said := await next_notice(sensor)) is not None:
+    until_s = from_now_s(TALK_S)
+    while (said := await next_notice(sensor, until_s)) is not None:
         match said.data[0]:
             case DotNotice.FILE_INFO:
                 try:

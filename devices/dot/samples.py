@@ -25,6 +25,7 @@ PIECES = {0: "I", 1: "4f", 7: "3f", 8: "3f", 10: "H"}  # of a recorded sample, b
 CHOSEN = tuple(PIECES)
 RECORDED = struct.Struct("<" + "".join(PIECES.values()))
 NUMBER = struct.Struct("<I")
+MOST_SAMPLES = 4_000_000  # three times what a sensor of the second kind holds: 362 min at 60 Hz (revision C)
 WORN_M_S2 = (5.0, 20.0)  # median of a leg's specific force; outside it is no force in m/s2
 
 
@@ -84,7 +85,7 @@ class RecordedSample:
         (number,) = NUMBER.unpack_from(data)
         ticks, *values, _status = RECORDED.unpack_from(data, NUMBER.size)
         sample = _sample(ticks, values, has_orientation=True)
-        return None if sample is None else cls(number, sample)
+        return None if sample is None or number >= MOST_SAMPLES else cls(number, sample)
 
 
 class DotFramer:

@@ -85,7 +85,7 @@ class DotSensor:
         self._announced = announced
         self._link = BluetoothLink(radio, announced, self._hear)
         self._frames: deque[tuple[int, bytes]] = deque(maxlen=MOST_WAITING)
-        self._notices: asyncio.Queue[bytes] = asyncio.Queue()
+        self._notices: asyncio.Queue[bytes] = asyncio.Queue(MOST_WAITING)
 
     @property
     def name(self) -> str:
@@ -133,6 +133,8 @@ class DotSensor:
             self.battery = min(payload[0], 100) / 100
         if characteristic == Characteristic.NOTICE:
             self.is_full |= payload[:1] + payload[2:3] == FULL_NOTICE
+            if self._notices.full():
+                self._notices.get_nowait()
             self._notices.put_nowait(payload)
         else:
             self._frames.append((self.radio.now_ns(), framed(characteristic, payload)))
