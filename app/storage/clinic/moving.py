@@ -20,6 +20,7 @@ from sqlalchemy.orm import Session as OrmSession
 from app.storage.clinic.handing_over import count_waiting
 from app.storage.clinic.journal_store import JournalStore
 from app.storage.clinic.key_slots import SLOTS_SETTING, put_slots
+from app.storage.clinic.logins import let_in, station_login
 from app.storage.clinic.rows import copy_rows, differing_tables, refuse_nul
 from app.storage.clinic.server_state import ServerState, close_for, set_state, state_of
 from app.storage.clinic.station import JOURNALS_SETTING, Station
@@ -60,7 +61,8 @@ def move_to_server(opened: OpenedLibrary, station: Station, report: Report) -> M
     Parameters
     ----------
     station
-        Names the server and, in `journals`, the shared place.
+        Names the server, by a login that may make tables and logins, and, in `journals`, the shared place. The folder
+        keeps a login of its own.
 
     Raises
     ------
@@ -71,6 +73,7 @@ def move_to_server(opened: OpenedLibrary, station: Station, report: Report) -> M
         A file cannot be read or written.
     """
     folder, library = opened.folder, opened.library
+    own = station_login(station)
     if opened.shared is not None or opened.data_key is None or opened.away_from is not None:
         raise LibraryError("Only a library in a folder can be moved to a server", "Open your own library")
     if any(not one.problem for one in find_interrupted(opened)):
@@ -80,6 +83,7 @@ def move_to_server(opened: OpenedLibrary, station: Station, report: Report) -> M
         refuse_nul(library.database)
         store.refuse_missing()
         bring_up_to_date(server)
+        let_in(server, own)
         state = _state_for(server, library.database)
         if state is not ServerState.OPEN:  # else all that is left is to make the folder a station's
             if not (folder / MOVING).exists():
@@ -100,7 +104,7 @@ def move_to_server(opened: OpenedLibrary, station: Station, report: Report) -> M
     finally:
         server.close()
     library.close()
-    become_station(folder, station)
+    become_station(folder, own)
     report(1.0, "")
     return moved
 

@@ -5,16 +5,17 @@ import re
 from pathlib import Path
 
 import pytest
-from sqlalchemy import NullPool, create_engine, text
+from sqlalchemy import NullPool, create_engine, make_url, text
 
-from app.storage.clinic.joining import join
+from app.storage.clinic.joining import join, new_station, prepare_server
 from app.storage.clinic.journal_store import PlaceUnconfirmedError
+from app.storage.clinic.moving import move_to_server
 from app.storage.clinic.station import Station, driver_url
 from app.storage.database.engine import PG_BUILD_LOCK, Database, postgres_engine
 from app.storage.library import Library, now_utc
 from app.storage.opened import OpenedLibrary
 from app.storage.stored import Action, LibraryError, Operator, Role
-from tests.app.storage.clinic.conftest import Login, OpenAt, change_row
+from tests.app.storage.clinic.conftest import Login, OpenAt, change_row, silent
 from tests.safety.hostile_rows import columns, run
 
 pytestmark = pytest.mark.endurance  # each starts with an empty server
@@ -115,3 +116,30 @@ def test_a_server_that_names_another_place_later_is_not_followed(
     shared = open_at(tmp_path / "second").shared
     assert shared is not None
     assert shared.place == moved.journals
+
+
+def test_after_a_move_the_folder_holds_a_login_of_its_own_and_not_the_owners(
+    folder: Path, database_url: str, shared_place: Path, open_at: OpenAt
+) -> None:
+    owner = make_url(database_url).set(password="the owners")
+    move_to_server(open_at(folder), new_station(owner.render_as_string(False), str(shared_place)), silent)
+    assert "the owners" not in (folder / "station.json").read_text(encoding="utf-8")
+    station = open_at(folder)
+    assert station.library.patients.find("DEMO-1") is not None
+    with pytest.raises(LibraryError, match="does not allow this"), station.library.database.writing() as session:
+        session.execute(text("DROP TABLE patients"))
+
+
+def test_a_login_that_may_make_no_others_moves_nothing(
+    folder: Path, database_url: str, shared_place: Path, postgres_url: str, open_at: OpenAt
+) -> None:
+    prepare_server(database_url)
+    server = create_engine(postgres_url, isolation_level="AUTOCOMMIT")
+    with server.connect() as connection:
+        connection.execute(text("DROP ROLE IF EXISTS plain_login"))
+        connection.execute(text("CREATE ROLE plain_login LOGIN IN ROLE gaitwright_owner"))
+    server.dispose()
+    address = make_url(database_url).set(username="plain_login").render_as_string(False)
+    with pytest.raises(LibraryError, match="may not make a login"):
+        move_to_server(open_at(folder), new_station(address, str(shared_place)), silent)
+    assert not (folder / "station.json").exists()

@@ -1,0 +1,58 @@
+"""Make a station a login of its own on the clinic's server: the owner's password stays with the owner."""
+
+import secrets
+from dataclasses import replace
+
+from sqlalchemy import make_url, text
+
+from app.storage.clinic.station import Station, driver_url
+from app.storage.database.engine import Database
+from app.storage.stored import LibraryError
+
+ROLE = "gaitwright_app"
+PASSWORD_BYTES = 24
+
+
+def station_login(station: Station) -> Station:
+    """Give a station an address with a login of its own, which `let_in` makes on the server.
+
+    Raises
+    ------
+    LibraryError
+        The address is none of a PostgreSQL server.
+    """
+    url = make_url(driver_url(station.database)).set(
+        drivername="postgresql",
+        username=f"gaitwright_{station.id.partition('-')[0]}",
+        password=secrets.token_urlsafe(PASSWORD_BYTES),
+    )
+    return replace(station, database=url.render_as_string(hide_password=False))
+
+
+def let_in(server: Database, own: Station) -> None:
+    """Make the login of a station; `server` is open by one that may.
+
+    Raises
+    ------
+    LibraryError
+        It may not.
+    """
+    from psycopg import sql
+
+    url = make_url(own.database)
+    with server.reading() as session:
+        query = text("SELECT rolcreaterole OR rolsuper FROM pg_roles WHERE rolname = current_user")
+        if not session.scalar(query):
+            raise LibraryError(
+                "This login may not make a login for the station",
+                "Move the library with the server's owner, or give the login CREATEROLE",
+            )
+    with server.writing() as session:
+        connection = session.connection().connection.driver_connection
+        assert connection is not None
+        name, password = str(url.username).encode(), str(url.password).encode()
+        sealed = connection.pgconn.encrypt_password(password, name, b"scram-sha-256")  # the server logs statements
+        statement = sql.SQL("CREATE ROLE {} LOGIN PASSWORD {} IN ROLE {}").format(
+            sql.Identifier(name.decode()), sql.Literal(sealed.decode()), sql.Identifier(ROLE)
+        )
+        connection.execute(statement)
