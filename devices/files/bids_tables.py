@@ -14,6 +14,7 @@ from devices.files.trial import ImportedSensor
 MOTION, CHANNELS, SETTINGS = "_motion.tsv", "_channels.tsv", "_motion.json"
 ENDINGS = (MOTION, CHANNELS, SETTINGS, "_channels.json")
 SCANS = "*_scans.tsv"
+MOST_SCANS = 10
 REQUIRED = ("name", "type", "tracked_point", "component", "units")  # columns of a table of channels
 SENSOR, RATE_KIND = "sensor", "rate_kind"  # columns of ours
 MISSING = frozenset(("n/a", "nan", ""))
@@ -56,6 +57,18 @@ def common_base(path: Path) -> Path:
         if path.name.endswith(ending):
             return path.with_name(path.name.removesuffix(ending))
     return path.with_name(path.stem)
+
+
+def tables_beside(path: Path) -> list[Path]:
+    """What is read with a file of samples, if it is there."""
+    base = common_base(path)
+    scans = [file for folder in folders_of_scans(path) for file in sorted(folder.glob(SCANS))[:MOST_SCANS]]
+    return [*(base.with_name(base.name + ending) for ending in ENDINGS), *scans]
+
+
+def folders_of_scans(path: Path) -> list[Path]:
+    """Where the table of scans may be; none for a file of another format."""
+    return [path.parent, path.parent.parent] if path.name.endswith(ENDINGS) else []
 
 
 def _beside(base: Path, ending: str) -> Path:
@@ -217,7 +230,7 @@ def _lines(path: Path) -> Iterator[tuple[int, str]]:
 def _acquired(base: Path) -> str:
     """When the recording started, as the table of scans says it; empty where none does."""
     for folder in (base.parent, base.parent.parent):
-        for scans in sorted(folder.glob(SCANS))[:10]:
+        for scans in sorted(folder.glob(SCANS))[:MOST_SCANS]:
             names: list[str] = []
             for _, text in _lines(scans):
                 cells = text.split("\t")

@@ -1,16 +1,19 @@
 """What runs in the limited process: one foreign file, or the files of one trial, at a time.
 
-It is the only process in which bytes of others are parsed, and as little trusted as they are: it is limited before it
-imports what reads them, is told what to do in JSON, and answers as `answers` says.
+It is limited before it imports what reads them, is told what to do in JSON, and answers as `answers` says. On Linux it
+reads nothing itself: each task has a copy of the process (a fork), the only one in which bytes of others are parsed,
+and as little trusted as they are. It may open the task's own files and no others, and is gone with its answer.
 """
 
+import ctypes
 import os
 import signal
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, BinaryIO
 
-from devices.files.limits import limit_processor_time, limit_this_process
+from devices.files.limits import forbid_reading, limit_processor_time, limit_this_process
+from devices.files.system_calls import refuse_system_calls
 
 if TYPE_CHECKING:
     from devices.files.answers import Array, Details
@@ -18,6 +21,8 @@ if TYPE_CHECKING:
 TOML, SITE, TRIAL, GATHER, REFERENCE = "toml", "site", "trial", "gather", "reference"
 REFERENCE_S, REFERENCE_BYTES_A_SECOND = 10.0, 1_000_000.0  # of processor time; ten times what a text takes
 WORD = "read-foreign-files"  # what a frozen program that was started as this process is told
+IS_LINUX: bool = sys.platform == "linux"
+PR_SET_PDEATHSIG = 1
 READ, REFUSED, MEMORY, UNFORESEEN = "read", "refused", "memory", "unforeseen"
 
 
@@ -37,9 +42,66 @@ def main() -> None:
         except EOFError:
             return
         os.chdir(asked["cwd"])
+        if IS_LINUX:
+            _in_a_copy(asked, asking, answering)
+        else:
+            limit_processor_time(asked["processor_s"])
+            arrays: list[Array] = []
+            send(answering, _answer(asked, arrays), arrays)
+
+
+def _in_a_copy(asked: "Details", asking: BinaryIO, answering: BinaryIO) -> None:
+    """Answer in a copy of this process that is confined to the task's files; how it ends, this one ends too."""
+    _load_for(asked["task"])
+    files, listed = _files_of(asked)
+    parent = os.getpid()
+    if (copy := os.fork()) == 0:
+        # without it the copy would go on when its parent is ended for being late
+        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL, 0, 0, 0)
+        if os.getppid() != parent:
+            os._exit(1)
+        asking.close()
         limit_processor_time(asked["processor_s"])
+        if asked["task"] == REFERENCE:
+            _limit_reference(files[0])
+        forbid_reading(files, listed)
+        refuse_system_calls()
+        from devices.files.answers import send
+
         arrays: list[Array] = []
         send(answering, _answer(asked, arrays), arrays)
+        os._exit(0)
+    _, status = os.waitpid(copy, 0)
+    if os.WIFSIGNALED(status):
+        signal.signal(os.WTERMSIG(status), signal.SIG_DFL) if os.WTERMSIG(status) != signal.SIGKILL else None
+        os.kill(os.getpid(), os.WTERMSIG(status))
+    if status != 0:
+        os._exit(1)
+
+
+def _load_for(task: str) -> None:
+    """Import what a task needs before the copy is made, which would import it each time."""
+    import pyarrow.csv
+
+    from devices.files import answers, site_files
+
+    _ = pyarrow.csv, answers, site_files
+    if task in (TRIAL, GATHER, REFERENCE):
+        from devices.files import formats
+
+        _ = formats
+
+
+def _files_of(asked: "Details") -> tuple[list[Path], list[Path]]:
+    """The files that a task may open, and the folders whose names it may list."""
+    if asked["task"] not in (TRIAL, GATHER):
+        return [Path(asked["path"])], []
+    from devices.files.bids_tables import folders_of_scans, tables_beside
+    from devices.files.ximu3_files import QUATERNION
+
+    named = list(map(Path, asked["files"]))
+    beside = [other for path in named for other in (path.with_name(QUATERNION), *tables_beside(path))]
+    return [*named, *beside], [folder for path in named for folder in folders_of_scans(path)]
 
 
 def _answer(asked: "Details", arrays: "list[Array]") -> "Details":
@@ -87,8 +149,8 @@ def _read(asked: "Details", arrays: "list[Array]") -> object:
         from devices.files.references.reading import read_reference
 
         path = Path(asked["path"])
-        # the library that reads C3D may go on for ever, and a reference is a walk or two
-        limit_processor_time(REFERENCE_S + (path.stat().st_size if path.is_file() else 0) / REFERENCE_BYTES_A_SECOND)
+        if not IS_LINUX:
+            _limit_reference(path)
         return details_of_reference(read_reference(path), arrays)
     files = list(map(Path, asked["files"]))
     if task == GATHER:
@@ -98,6 +160,11 @@ def _read(asked: "Details", arrays: "list[Array]") -> object:
     from devices.files.formats import read_trial  # here: SciPy takes longer to import than most files
 
     return details_of_trial(read_trial(asked["format"], files, asked["rate_hz"]), arrays)
+
+
+def _limit_reference(path: Path) -> None:
+    """The library that reads C3D may go on for ever, and a reference is a walk or two."""
+    limit_processor_time(REFERENCE_S + (path.stat().st_size if path.is_file() else 0) / REFERENCE_BYTES_A_SECOND)
 
 
 def _last_line(error: Exception) -> str:

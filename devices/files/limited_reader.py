@@ -44,6 +44,8 @@ MOST_FILE_BYTES = 1_000_000_000  # some twenty hours of one sensor at 100 Hz as 
 MOST_TOML_BYTES = 4_000_000  # a session of ours takes some kilobytes
 DEADLINE_S = 60.0  # for any file, with the start of the process
 BYTES_A_SECOND = 5_000_000.0  # beyond that; a busy old machine reads four times as fast
+# of the environment: of Windows, of libraries that were put elsewhere, and of compiled modules
+KEPT = frozenset({"SYSTEMROOT", "PATH", "LD_LIBRARY_PATH", "DYLD_LIBRARY_PATH", "PYTHONPYCACHEPREFIX", "PYTHONUTF8"})
 WAIT_S = 0.05  # between two looks at whether somebody still waits
 
 _log = logging.getLogger(__name__)
@@ -175,9 +177,14 @@ def start(memory_bytes: int) -> Process:
         [*_this_program(), str(memory_bytes)],
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
-        env={**os.environ, "PYTHONPATH": paths, "OPENBLAS_NUM_THREADS": "1", "PYTHONDONTWRITEBYTECODE": "1"},
+        env={**_environment(), "PYTHONPATH": paths, "OPENBLAS_NUM_THREADS": "1", "PYTHONDONTWRITEBYTECODE": "1"},
         creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
     )
+
+
+def _environment() -> dict[str, str]:
+    """What starting Python needs: the rest may hold a server's address, or keys."""
+    return {name: value for name, value in os.environ.items() if name in KEPT or name.startswith("OPENBLAS_")}
 
 
 def _this_program() -> list[str]:
