@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from core.samples import Session
-    from devices.files.limited_reader import LimitedReader, Waiting
+    from devices.files.limited_reader import Columns, LimitedReader, Waiting
     from devices.files.references.trial import ReferenceFile
     from devices.files.trial import Gathered, ImportedTrial
 
@@ -91,6 +91,19 @@ def gather_foreign(paths: Sequence[Path], waiting: "Waiting") -> "Gathered":
     from devices.files.limited_reader import LimitedReading
 
     return LimitedReading(the_reader(), waiting).gather(paths)
+
+
+def ask_foreign_parquet(path: Path, sql: str, is_typed: bool) -> "tuple[tuple[str, ...], list[Columns]]":
+    """Answer a question over a Parquet, as `devices.files.parquet_questions.answer` does.
+
+    Raises
+    ------
+    FileRefusedError
+        The Parquet cannot be read, or the question cannot be answered within the limits.
+    """
+    from devices.files.limited_reader import LimitedReading
+
+    return LimitedReading(the_reader(), _nobody_waits).ask_parquet(path, sql, is_typed)
 
 
 @cache

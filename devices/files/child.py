@@ -18,7 +18,7 @@ from devices.files.system_calls import refuse_system_calls
 if TYPE_CHECKING:
     from devices.files.answers import Array, Details
 
-TOML, SITE, TRIAL, GATHER, REFERENCE = "toml", "site", "trial", "gather", "reference"
+TOML, SITE, TRIAL, GATHER, REFERENCE, QUESTION = "toml", "site", "trial", "gather", "reference", "question"
 REFERENCE_S, REFERENCE_BYTES_A_SECOND = 10.0, 1_000_000.0  # of processor time; ten times what a text takes
 WORD = "read-foreign-files"  # what a frozen program that was started as this process is told
 IS_LINUX: bool = sys.platform == "linux"
@@ -86,6 +86,10 @@ def _load_for(task: str) -> None:
     from devices.files import answers, site_files
 
     _ = pyarrow.csv, answers, site_files
+    if task == QUESTION:
+        from devices.files import parquet_questions
+
+        _ = parquet_questions
     if task in (TRIAL, GATHER, REFERENCE):
         from devices.files import formats
 
@@ -144,6 +148,10 @@ def _read(asked: "Details", arrays: "list[Array]") -> object:
             Path(asked["path"]), asked["where"], asked["place"], asked["sensor"], asked["is_rate_derived"]
         )
         return {"block": details_of_block(block, arrays), "findings": details_of_findings(findings)}
+    if task == QUESTION:
+        from devices.files.parquet_questions import answer
+
+        return answer(Path(asked["path"]), asked["sql"], asked["is_typed"], arrays)
     if task == REFERENCE:
         from devices.files.references.answers import details_of_reference
         from devices.files.references.reading import read_reference

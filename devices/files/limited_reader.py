@@ -51,6 +51,7 @@ WAIT_S = 0.05  # between two looks at whether somebody still waits
 _log = logging.getLogger(__name__)
 T = TypeVar("T")
 
+Columns = list[list[Any]]
 Process = subprocess.Popen[bytes]
 Waiting = Callable[[], object]
 """Called while a file is being read. What it raises ends the reading."""
@@ -296,10 +297,43 @@ class LimitedReading:
         task = {"task": child.REFERENCE, "path": str(path)}
         return self._reader.ask(task, [path], path.name, reference_from, self.waiting)
 
+    def ask_parquet(self, path: Path, sql: str, is_typed: bool) -> tuple[tuple[str, ...], list[Columns]]:
+        """As `parquet_questions.answer` does; the columns' names, and the columns of each batch of rows.
+
+        Raises
+        ------
+        FileRefusedError
+            The Parquet cannot be read, the question cannot be answered, or takes more memory or time than it may.
+        """
+        task = {"task": child.QUESTION, "path": str(path), "sql": sql, "is_typed": is_typed}
+        try:
+            return self._reader.ask(task, [path], path.name, _found_rows, self.waiting)
+        except ReadingEndedError as ended:
+            what = {
+                child.MEMORY: "this takes more memory than a question is given",
+                TIME: "this takes longer than a question is given",
+            }.get(ended.cause, "this ended early, for a reason that the log names")
+            raise FileRefusedError("SQL", what, "Ask for less at a time") from ended
+
     def gather(self, paths: Sequence[Path]) -> Gathered:
         """As `gathering.gather` does."""
         task = {"task": child.GATHER, "files": [str(path) for path in paths]}
         return self._reader.ask(task, (), paths[0].name, _gathered, self.waiting)
+
+
+def _found_rows(details: Any, arrays: Sequence[Array]) -> tuple[tuple[str, ...], list[Columns]]:
+    import pyarrow as pa
+
+    try:
+        columns = tuple(map(str, details["columns"]))
+        with pa.ipc.open_stream(pa.py_buffer(arrays[0])) as stream:
+            batches = []
+            for batch in stream:
+                batch.validate(full=True)
+                batches.append([column.to_pylist() for column in batch.columns])
+    except (pa.ArrowException, LookupError, TypeError, ValueError) as problem:
+        raise BrokenAnswerError("no rows") from problem
+    return columns, batches
 
 
 def _gathered(details: Any, _arrays: Sequence[Array]) -> Gathered:

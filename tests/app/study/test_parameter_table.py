@@ -8,7 +8,8 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from app.study.parameter_table import LOCKED, ParameterTable
+from app.study.parameter_table import ParameterTable
+from devices.files import limited_reader
 from devices.files.refusal import FileRefusedError
 from tests.app.study.study_tables import MEASURE, row, write_rows
 
@@ -155,9 +156,27 @@ def test_what_cannot_be_answered_is_named_in_one_line_without_a_mark(path: Path,
     assert "!" not in said
 
 
-def test_a_question_that_is_too_large_is_called_so(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("app.study.parameter_table.LOCKED", {**LOCKED, "memory_limit": "20MB"})
-    assert "more memory than a question is given (20MB)" in refused(path, "SELECT list(range) FROM range(10000000)")
+@pytest.mark.parametrize(
+    "sql",
+    ["SELECT list(range) FROM range(1000000000)", "SELECT bit_count(bitstring('1', 2147483647) || bitstring('1', 1))"],
+)
+def test_a_question_that_takes_too_much_memory_is_refused_and_the_next_is_answered(path: Path, sql: str) -> None:
+    assert "memory" in refused(path, sql)
+    assert asked(path, "SELECT count(*) FROM parameters") == [(2,)]
+
+
+@pytest.mark.parametrize(
+    "sql",
+    [
+        "SELECT sleep_ms(600000)",
+        "WITH RECURSIVE t(n) AS (SELECT 1 UNION ALL SELECT n + 1 FROM t) SELECT count(*) FROM t",
+    ],
+)
+def test_a_question_that_never_ends_is_ended(path: Path, monkeypatch: pytest.MonkeyPatch, sql: str) -> None:
+    with ParameterTable.opened(path) as table:
+        monkeypatch.setattr(limited_reader, "DEADLINE_S", 0.2)
+        with pytest.raises(FileRefusedError, match="longer than a question is given"):
+            table.ask(sql)
 
 
 def test_what_is_no_table_of_a_batch_is_refused(tmp_path: Path) -> None:

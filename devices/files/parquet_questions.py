@@ -1,0 +1,146 @@
+"""Answer one SQL question over one Parquet, in the limited process.
+
+DuckDB answers, and is given the rows of one open Parquet instead of its path. A path that it may read it may write as
+well: `WITH x AS (COPY ... TO 'path') SELECT 1` counts as a SELECT and leaves the file empty. So it has no path at all:
+no file, no network, no extension, no other Python object, no disk for what memory cannot hold, and a locked
+configuration. What its own limit of memory misses, and what never ends, the process ends.
+"""
+
+import re
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import duckdb
+import numpy as np
+import pyarrow as pa
+import pyarrow.dataset
+import pyarrow.fs
+
+from devices.files.refusal import FileRefusedError, one_line
+
+if TYPE_CHECKING:
+    from duckdb import DuckDBPyConnection
+
+    from devices.files.answers import Array, Details
+
+VIEW = "parameters"
+NUMBERS = ("DOUBLE", "FLOAT")
+ZONED_TIME = "TIMESTAMP WITH TIME ZONE"
+KIND = re.compile(r"^[A-Z]\w*(?: \w+){0,2} Error: ")  # what DuckDB calls it, before what is wrong
+HINTS = ("Candidate bindings", "Did you mean")  # how DuckDB's second line begins where it helps
+MOST_FOUND_BYTES = 500_000_000
+ASK_FOR_LESS = "Ask for less at a time"
+LOCKED: Mapping[str, str | bool | int] = {
+    "autoinstall_known_extensions": False,
+    "autoload_known_extensions": False,
+    "allow_community_extensions": False,
+    "python_enable_replacements": False,
+    "temp_directory": "",
+    "memory_limit": "1GB",
+    "threads": 2,
+}
+
+
+def answer(path: Path, sql: str, is_typed: bool, arrays: "list[Array]") -> "Details":
+    """Answer a question; what is found goes into `arrays` as an Arrow stream.
+
+    Parameters
+    ----------
+    is_typed
+        Whether somebody typed it: it may then be one SELECT and nothing else.
+
+    Raises
+    ------
+    FileRefusedError
+        The Parquet cannot be read, or the question cannot be answered.
+    """
+    with _opened(path) as connection:
+        try:
+            if is_typed:
+                _refuse_other_than_one_select(connection, sql)
+            asked = connection.execute(sql)
+            described = [(str(name), str(kind)) for name, kind, *_ in connection.description or []]
+            for name, kind in described:
+                if kind == ZONED_TIME:
+                    what = "the column {name} is a time with its zone, which has no one text"
+                    raise FileRefusedError("SQL", what, "Write it as {name}::VARCHAR", name=name)
+            arrays.append(_stream(asked))
+        except (duckdb.Error, pa.ArrowException) as problem:
+            raise _refused(problem) from None
+    return {"columns": [name for name, _ in described]}
+
+
+def _stream(asked: "DuckDBPyConnection") -> "Array":
+    reader, sink = asked.to_arrow_reader(), pa.BufferOutputStream()
+    assert reader is not None  # there was a question
+    with pa.ipc.new_stream(sink, reader.schema) as stream:
+        for batch in reader:
+            stream.write_batch(batch)
+            if sink.tell() > MOST_FOUND_BYTES:
+                raise FileRefusedError("SQL", "this finds more than can be shown", ASK_FOR_LESS)
+    return np.frombuffer(sink.getvalue(), np.uint8)
+
+
+@contextmanager
+def _opened(file: Path) -> "Iterator[DuckDBPyConnection]":
+    with duckdb.connect(":memory:", config=dict(LOCKED)) as connection:
+        # said at the connection, it would leave files called ":memory:" in the folder of now to be written
+        connection.execute("SET enable_external_access = false")
+        try:
+            rows = pa.dataset.dataset(str(file), format="parquet", filesystem=pa.fs.LocalFileSystem())
+            connection.register("of_file", rows)
+            found = connection.execute("DESCRIBE of_file").fetchall()
+            shown = ", ".join(_shown(str(name), str(kind)) for name, kind, *_ in found)
+            connection.execute(f"CREATE TEMP VIEW {VIEW} AS SELECT {shown} FROM of_file")
+            connection.execute("SET lock_configuration = true")
+        except (duckdb.Error, pa.ArrowException, OSError) as problem:
+            raise FileRefusedError(
+                str(file),
+                "this cannot be read as Parquet ({why})",
+                "Choose the parameters.parquet that gaitwright batch writes",
+                why=_reason(problem),
+            ) from None
+        yield connection
+
+
+def _refuse_other_than_one_select(connection: "DuckDBPyConnection", sql: str) -> None:
+    statements = connection.extract_statements(sql)
+    if len(statements) != 1:
+        raise FileRefusedError("SQL", f"{len(statements)} statements", "One at a time is answered")
+    if statements[0].type != duckdb.StatementType.SELECT:
+        what = "{kind} is not answered here, since the table is only read"
+        kind = statements[0].type.name
+        said = "PIVOT without IN" if kind == "MULTI" else kind
+        raise FileRefusedError("SQL", what, "Begin with SELECT", kind=said)
+
+
+def quoted_name(name: str) -> str:
+    """A column's name as SQL takes it, whatever it holds."""
+    escaped = name.replace('"', '""')
+    return f'"{escaped}"'
+
+
+def _shown(name: str, kind: str) -> str:
+    """One column of the view: numbers that are none as empty, times with a zone as text."""
+    column = quoted_name(name)
+    if kind in NUMBERS:
+        return f"CASE WHEN isnan({column}) THEN NULL ELSE {column} END AS {column}"
+    return f"{column}::VARCHAR AS {column}" if kind == ZONED_TIME else column
+
+
+def _refused(problem: Exception) -> FileRefusedError:
+    if isinstance(problem, duckdb.OutOfMemoryException):
+        what = "this takes more memory than a question is given ({limit})"
+        return FileRefusedError("SQL", what, ASK_FOR_LESS, limit=LOCKED["memory_limit"])
+    remedy = "gaitwright query --columns lists what the table holds"
+    return FileRefusedError("SQL", "this cannot be answered: {why}", remedy, why=_reason(problem))
+
+
+def _reason(problem: Exception) -> str:
+    """What a library says, in one line and without its mark of a mistake."""
+    first, *more = str(problem).splitlines() or [type(problem).__name__]
+    said = KIND.sub("", first).rstrip("!.:")
+    hint = next((line.rstrip("?!.") for line in more if line.startswith(HINTS)), "")
+    return one_line(f"{said} ({hint})" if hint else said)
