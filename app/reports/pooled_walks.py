@@ -58,7 +58,8 @@ def pools_of(recordings: Sequence[Recording]) -> Mapping[str, Pool]:
 
 def pool_letters(recordings: Sequence[Recording]) -> Mapping[Pool, str]:
     """Give what each pool is called in comparisons: as the first of its walks is, "A", or "A2"."""
-    names, found = shown_names(recordings), {}
+    names = shown_names(recordings)
+    found: dict[Pool, str] = {}
     for name, pool in pools_of(recordings).items():
         found.setdefault(pool, names[name].letter)
     return found

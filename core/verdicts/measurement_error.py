@@ -228,8 +228,9 @@ class Judgement(StrEnum):
 class Difference:
     """One mean less another, the error it has to exceed to be real, and what that error contains.
 
-    `difference` and `error` are NaN where withheld or not known; both are, of what is never compared. `is_worth_a_sentence`: it exceeds what a sentence on
-    page one needs. `is_unverified`: the error rests on a figure whose source could not be read.
+    `difference` and `error` are NaN where withheld or not known; both are, of what is never compared.
+    `is_worth_a_sentence`: it exceeds what a sentence on page one needs. `is_unverified`: the error rests on a figure
+    whose source could not be read.
     """
 
     difference: float

@@ -28,7 +28,13 @@ def visit() -> Any:
     visit = bench_visit()
     for one in visit.recordings.walks:
         one.is_decided, one.stored = one is not visit.recordings.walks[-1], SimpleNamespace(state=RecordingState.CLOSED)
-    told = {"is_recording": False, "is_stopping": False, "ongoing": None, "must_move": False, "called": str}
+    told: dict[str, Any] = {
+        "is_recording": False,
+        "is_stopping": False,
+        "ongoing": None,
+        "must_move": False,
+        "called": str,
+    }
     told |= {"shown_names": shown_names(WALKED), "has_moved": True}
     visit.recordings = SimpleNamespace(**vars(visit.recordings), **told)
     visit.cannot_record, visit.sensors = "", SimpleNamespace(site_of={"a": "left_foot"})
