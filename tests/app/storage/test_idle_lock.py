@@ -127,7 +127,9 @@ def test_who_leaves_the_desk_locks_at_once_and_only_once() -> None:
     idle.lock_now()
     idle.lock_now()
     assert idle.is_locked
+    assert idle.is_asked_for
     assert len(locked) == 1
     idle.unlock()
+    assert not idle.is_asked_for
     idle.lock_now()
     assert len(locked) == 2
