@@ -30,6 +30,7 @@ ADDRESS = "127.0.0.1"
 NOBODY = "http://127.0.0.1:9"  # where nobody listens
 SETTINGS = "settings"
 ERRORS = ".err"  # behind the name of a log: what the viewer writes of its errors
+ENDED = (0, -9, -15)  # by its window, or by somebody who ended the program
 MOST_ERRORS, MOST_REASON = 4096, 200  # bytes, letters
 _COLOURS = re.compile(r"\x1b\[[0-9;]*m")
 _PLACE = re.compile(r"\S*[/\\]\S*")  # a path may hold somebody's name
@@ -159,7 +160,7 @@ class Viewer:
     def _forget_closed(self) -> list[str]:
         """Remove the logs whose windows were closed; gives why those ended that ended with an error."""
         codes = {log: code for log, process in self._shown.items() if (code := process.poll()) is not None}
-        reasons = [_reason(_errors_of(log)) for log, code in codes.items() if code != 0]
+        reasons = [_reason(_errors_of(log)) for log, code in codes.items() if code not in ENDED]
         for log in codes:
             del self._shown[log]
             log.unlink(missing_ok=True)
