@@ -184,6 +184,8 @@ class WalkingStep(Step):
             feedback.judge(view)
         if is_live and self._preview.follow(view) and self._preview.shown is not None:
             self.page.show_view(self._preview.shown)
+            if feedback is not None:
+                feedback.count(self._preview.shown.strides)
 
     def bar(self) -> BarState:
         return self._bar.state(self._label)
