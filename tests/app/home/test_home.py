@@ -21,7 +21,6 @@ from app.home.home import Home
 from app.pages.home_lists import PatientLine, SessionLine
 from app.settings import Scheme, Settings
 from app.storage.database.ids import uuid7
-from app.storage.database.models import RecordingRow
 from app.storage.exchange import import_session
 from app.storage.journal.disk import Room
 from app.storage.journal.payloads import Belonging, layout_of
@@ -180,7 +179,7 @@ def test_a_session_folder_is_imported_for_a_patient(qtbot: QtBot, home: Home, tm
     block = ImuBlock("LT-1", time_s, np.zeros((300, 3)), np.tile([0.0, 0.0, 9.81], (300, 1)))
     recording = Recording("walk 1", RecordingKind.WALKING, "walk_1", {Site.LEFT_THIGH: block})
     write_session(Session((recording,), Patient(code="P-0200"), started="2026-11-02T10:00:00"), tmp_path / "visit")
-    home._begin_import()
+    home.page.import_wished.emit()
     home.importing.read([tmp_path / "visit"])
     qtbot.waitUntil(lambda: home.current is home.importing.page, timeout=WAIT_MS)
     assert home.importing.page.code.text == "P-0200"
@@ -588,7 +587,7 @@ def test_under_a_patients_code_stand_no_sessions_of_another_while_theirs_are_rea
     qtbot.waitUntil(page.panel.none_yet.isVisible, timeout=WAIT_MS)
 
 
-def closed_amid(folder: Path, name: str, station: str | None = None) -> UUID:
+def closed_amid(folder: Path, name: str) -> UUID:
     """A walk of the latest session that ended with the program: nobody said whether it is kept."""
     data_key = KeySlots(folder / KEYS).open("hk", PASSPHRASE)
     with Library.open(folder, data_key) as library:
@@ -597,10 +596,7 @@ def closed_amid(folder: Path, name: str, station: str | None = None) -> UUID:
         told = Recording(name, RecordingKind.WALKING, name.replace(" ", "_"), {}, condition="Shoes")
         walk = library.recordings.start(line.id, told, False, is_decided=False)
         library.recordings.add_journal(walk.id, StoredJournal(1, f"{walk.id}.1.journal", b"key"))
-        with library.recordings._unit.writing(Role.CLINICIAN) as session:
-            row = session.get_one(RecordingRow, walk.id)
-            row.state = RecordingState.CLOSED
-            row.station = row.station if station is None else station
+        library.recordings.close(walk.id, RecordingState.CLOSED, {1: ""})
         return line.id
 
 
@@ -608,7 +604,6 @@ def test_a_walk_that_ended_with_the_program_is_asked_about_at_the_next_start(
     qtbot: QtBot, qapp: QApplication, controller: LibraryController, settings: Settings, folder: Path
 ) -> None:
     session_id = closed_amid(folder, "walk 3")
-    closed_amid(folder, "walk 4", station="room 2")  # where it may be asked about at this moment
     home = new_home(qtbot, controller, settings)
     open_library(qtbot, controller, home, folder)
     qtbot.waitUntil(home.banner.isVisible, timeout=WAIT_MS)

@@ -43,8 +43,9 @@ def analysed(recordings: tuple[Recording, ...]) -> Analysis:
     return Analysis(Method.ROBUST, is_simulated=True, calibrations=(span,), recordings=walks)
 
 
-def of(condition: str, **told: object) -> Recording:
-    return Recording("", RecordingKind.WALKING, "", {}, condition=condition, **told)  # type: ignore[arg-type]  # by name
+def of(condition: str, test: PlannedTest | None = None, note: str = "", *, is_restrapped: bool = False) -> Recording:
+    told = Recording("", RecordingKind.WALKING, "", {}, condition=condition, test=test, note=note)
+    return replace(told, is_restrapped_before=is_restrapped)
 
 
 @pytest.mark.parametrize(
@@ -74,7 +75,7 @@ def test_put_back_by_hand_and_written_down_as_a_change_it_is_no_return() -> None
 
 
 def test_sensors_strapped_on_anew_begin_another_pool() -> None:
-    told = walked(of("A"), of("A", is_restrapped_before=True), of("A"))
+    told = walked(of("A"), of("A", is_restrapped=True), of("A"))
     assert letters(told) == ["A", "B", "B"]
 
 
@@ -92,5 +93,5 @@ def test_a_condition_that_was_walked_stands_without_its_tests_and_else_by_them()
 
 
 def test_a_visit_is_compared_by_its_walks_also_where_a_test_followed_on_another_strapping() -> None:
-    told = walked(of("A"), of("A", test=TEST, is_restrapped_before=True))
+    told = walked(of("A"), of("A", test=TEST, is_restrapped=True))
     assert by_condition(analysed(told), told)["A"].walks[0].name == "walk 1"

@@ -19,7 +19,7 @@ if sys.argv[1] == "analytics":
     pathlib.Path(os.environ["XDG_CONFIG_HOME"], "analytics").write_text(sys.argv[2])
 elif {ends}:
     print("Listening", file=sys.stderr)
-    print("\\x1b[31mError: no screen at /home/jane/x.rs:78: Failed to open\\x1b[0m", file=sys.stderr)
+    print("\\x1b[31mError: no screen at /usr/jane/x.rs:78: Failed to open\\x1b[0m", file=sys.stderr)
     sys.exit(101)
 else:
     told = {{"argv": sys.argv[1:], "bytes": len(pathlib.Path(sys.argv[-1]).read_bytes())}}

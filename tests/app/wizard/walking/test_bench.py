@@ -528,3 +528,19 @@ def test_a_measure_for_fitting_is_named_where_it_changes_by_more_than_its_error(
     words = [cell.text for cell in names if isinstance(cell, TextCell)]
     assert ("Heel rise" in words) is is_named
     assert "Foot flat, % of stride" not in words  # was not measured
+
+
+@pytest.mark.usefixtures("pseudo_language")
+def test_no_word_of_what_is_not_compared_is_cut(
+    qtbot: QtBot, look: ThemeNotifier, bench: Bench, visit: SimpleNamespace
+) -> None:
+    walks = visit.evaluation.analysis.recordings
+    late = [{**one.gait, Side.LEFT: replace(one.gait[Side.LEFT], is_toe_off_biased=True)} for one in walks]
+    judged = tuple(judged_walk(replace(one, gait=gait)) for one, gait in zip(walks, late, strict=True))
+    visit.evaluation.analysis = replace(visit.evaluation.analysis, recordings=judged)
+    page = WalkingPage(look, bench.entry)
+    qtbot.addWidget(page)
+    page.resize(1240, 600)
+    page.show_bench(bench.state())
+    page.show()
+    assert words_cut(page) == []
