@@ -108,7 +108,8 @@ class PatientFeedback(QObject):
     def begin_walk(self) -> None:
         """Count from here on, and show the strides of this walk only."""
         self._counted = {}
-        self._steps = 0
+        worn = self._visit.sensors.site_of.values()
+        self._steps = 0 if any(site.segment is Segment.FOOT for site in worn) else None  # else nothing counts them
         self._last.clear()
         self._show()
 
