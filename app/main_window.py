@@ -419,7 +419,7 @@ class MainWindow(QWidget):
         self._covered = self.screens.currentWidget()
         if self._wizard is not None:
             self._wizard.asked.cover(is_covered=True)
-        self.entry.cover(state.operator.code, self._is_recording)
+        self.entry.cover(state.operator.code, self._is_recording, is_asked_for=self.idle.is_asked_for)
         if self.controller.gone_words is not None:
             self.entry.tell(*self.controller.gone_words)
         self.controller.lock()

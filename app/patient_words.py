@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from core.samples import Patient
 
 
-def patient_line(patient: "stored.StoredPatient", now: datetime.datetime, is_recovered: bool) -> PatientLine:
+def patient_line(patient: "stored.StoredPatient", now: datetime.datetime, is_undecided: bool) -> PatientLine:
     told = patient.details
     who = person(told)
     looked_into = " ".join([told.code, str(told.birth_year or ""), told.device, told.aids, who])
@@ -27,33 +27,33 @@ def patient_line(patient: "stored.StoredPatient", now: datetime.datetime, is_rec
         when(patient.last_session, now) if patient.last_session or patient.sessions else tr("no session yet"),
         tr_n("{count} session", "{count} sessions", patient.sessions).format(count=patient.sessions),
         looked_into.casefold(),
-        is_recovered,
+        is_undecided,
     )
 
 
 def session_line(
     line: "stored.SessionSummary",
     now: datetime.datetime,
-    recovered: Collection[UUID],
+    undecided: Collection[UUID],
     course: Course | None = None,
     *,
     is_reported: bool = False,
 ) -> SessionLine:
     """One session in a list; `course` where it is known, which tells how many strides there are."""
-    is_recovered, has_walk = line.id in recovered, course is not None and bool(course.conditions)
+    is_undecided, has_walk = line.id in undecided, course is not None and bool(course.conditions)
     amount = tr_n("{count} recording", "{count} recordings", line.recordings).format(count=line.recordings)
     if course is not None and has_walk:
         strides = sum(condition.strides for condition in course.conditions)
         amount = tr_n("{count} stride", "{count} strides", strides).format(count=strides)
     state, mark = (tr("simulated"), None) if line.is_simulated else ("", None)
-    if is_recovered:
-        state = tr("recovered, look at it")
+    if is_undecided:
+        state = tr("keep or discard?")
     elif is_reported:
         state, mark = tr("report written"), Icon.CHECK
     elif has_walk:
         state, mark = tr("report not written"), Icon.INFO
     conditions = "; ".join(line.conditions)  # which may hold commas
-    return SessionLine(line.id, when(line.started, now), conditions, amount, state, is_recovered, mark)
+    return SessionLine(line.id, when(line.started, now), conditions, amount, state, is_undecided, mark)
 
 
 def day_of_session(started: str, now: datetime.datetime) -> datetime.date | None:

@@ -39,6 +39,7 @@ from core.robust import robust_sd
 from core.samples import FloatArray, Patient, Recording, RecordingKind, Session
 from core.sensors import SensorTracks
 from core.strap import slips_in_walks
+from core.timed.protocols import DEFINITIONS
 from core.timed.timing import time_test
 from core.validity import Basis, basis_of, spans_of_validity
 from core.verdicts.gates import verdicts_of
@@ -146,7 +147,9 @@ def _analyse_span(
         found = _angles(tracks, recording, bases, calibrated, measured, lags, hips)
         found = _before_slips(found, slipped)
         if recording.test is not None and recording.kind is RecordingKind.WALKING:
-            found = replace(found, timed=time_test(tracks, recording, recording.test))
+            is_walked = DEFINITIONS[recording.test.protocol].is_walked
+            gait = found.gait if is_walked else {}
+            found = replace(found, timed=time_test(tracks, recording, recording.test), gait=gait)
         found = replace(found, clocks=clocks_in(tracks, recording, found.gait, _lags_in(recording, lags)))
         found = replace(found, drifting_percent={s: p for (name, s), p in drifts.items() if name == recording.name})
         found = replace(found, doubted_sites=doubted.sites)

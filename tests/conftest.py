@@ -55,6 +55,14 @@ def test_data() -> Callable[[str], Path]:
     return find
 
 
+@pytest.fixture(autouse=True, scope="session")
+def _no_data_of_the_user(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """Keep what the program keeps for its user, as the key of pseudonyms, out of the folders of whoever runs tests."""
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setenv("XDG_DATA_HOME", str(tmp_path_factory.mktemp("data")))
+        yield
+
+
 @pytest.fixture(autouse=True)
 def _garbage_on_one_thread(request: pytest.FixtureRequest) -> Iterator[None]:
     """Collect between tests only, as the application does between frames: what a thread freed of Qt would crash.

@@ -7,9 +7,10 @@ from dataclasses import replace
 from enum import StrEnum
 from importlib.util import find_spec
 from pathlib import Path
-from uuid import UUID, uuid4
+from uuid import UUID
 
-from app.exports.pseudonymised import Row, once, pseudonymised, pseudonymised_once, what_leaves
+from app.exports.folder_pseudonyms import pseudonyms_of_folder
+from app.exports.pseudonymised import Row, pseudonymised, what_leaves
 from app.storage.audit import about
 from app.storage.exchange import READ_BACK, session_with_samples
 from app.storage.journal.decoding import Decoders
@@ -74,7 +75,7 @@ def export_from_folder(
     """
     check_formats(formats)
     if not is_identified:
-        session, analysis = pseudonymised_once(session, analysis, kept)
+        session, analysis = pseudonymised(*pseudonyms_of_folder(session), session, analysis, kept)
     _write(session, analysis, formats, folder)
 
 
@@ -121,8 +122,9 @@ def export_from_library(
 
 
 def preview_from_folder(session: Session, kept: Collection[Typed] = ()) -> list[Row]:
-    """All that `export_from_folder` would tell beside the figures; the pseudonym is another each time."""
-    return what_leaves(once().session(uuid4(), session, kept))
+    """All that `export_from_folder` would tell beside the figures."""
+    pseudonyms, patient_id = pseudonyms_of_folder(session)
+    return what_leaves(pseudonyms.session(patient_id, session, kept))
 
 
 def preview_from_library(opened: OpenedLibrary, session_id: UUID, kept: Collection[Typed] = ()) -> list[Row]:

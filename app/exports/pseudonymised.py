@@ -1,13 +1,12 @@
 """What of a session and its analysis may leave without saying whose they are?
 
-A session of a library gets the pseudonym that all exports of its patient have (`app.storage.pseudonyms`). One of a
-folder has no key to make one from, so each export draws its own, and two of them cannot be put together.
+A session of a library gets the pseudonym that all exports of its patient have (`app.storage.pseudonyms`), one of a
+folder that which all exports of it on this computer have (`app.exports.folder_pseudonyms`).
 """
 
-import secrets
 from collections.abc import Collection
 from dataclasses import replace
-from uuid import UUID, uuid4
+from uuid import UUID
 
 from app.alignment_words import since_in_words
 from app.measure_names import goal_in_words
@@ -55,16 +54,6 @@ def pseudonymised(
         for r in analysis.recordings
     )
     return other, replace(analysis, calibrations=spans, recordings=recordings, findings=())
-
-
-def pseudonymised_once(session: Session, analysis: Analysis, kept: Collection[Typed] = ()) -> tuple[Session, Analysis]:
-    """As `pseudonymised`, with a pseudonym that nothing else will have."""
-    return pseudonymised(once(), uuid4(), session, analysis, kept)
-
-
-def once() -> Pseudonyms:
-    """Pseudonyms that nothing else will have."""
-    return Pseudonyms(secrets.token_bytes(32))
 
 
 def what_is_said(session: Session) -> list[Row]:

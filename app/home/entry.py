@@ -98,14 +98,14 @@ class Entry(QObject):
             self.first_start.show_missing("")
             self.begin()
 
-    def cover(self, code: str, is_recording: bool) -> None:
+    def cover(self, code: str, is_recording: bool, *, is_asked_for: bool = False) -> None:
         """Show nothing but the way back, for the operator who is logged in."""
         self._cover_of = code
         if self._delay is None:  # of a library that was just made
             from app.storage.login_delay import LoginDelay
 
             self._delay = LoginDelay(self._folder, time.monotonic)
-        self.log_in.show_cover(code, is_recording)
+        self.log_in.show_cover(code, is_recording, is_asked_for=is_asked_for)
         self._show(self.log_in)
 
     def show_recording(self, is_recording: bool) -> None:

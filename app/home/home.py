@@ -503,7 +503,7 @@ class Home(Themed):
     # what comes in
 
     def _begin_import(self) -> None:
-        self.importing.begin(self.patients.patient.details.code if self.patients.patient is not None else "")
+        self.importing.begin()
 
     def _on_import_asked(self) -> None:
         self._go_to(self.importing.page)

@@ -84,7 +84,6 @@ class Importing(QObject):
         self._shown: _Found | None = None
         self._number = self._count = 0
         self._again: tuple[Path, ...] = ()
-        self._code = ""
         self._is_importing = False
         self._dialog: QFileDialog | None = None
         self.page = ImportPage(look)
@@ -105,10 +104,9 @@ class Importing(QObject):
         others = (BarAction(tr("Leave this out")),) if self._waiting else ()
         return BarState(BarAction(words, tr("Enter"), Icon.IMPORT, is_enabled=is_ready), quiet=others)
 
-    def begin(self, code: str) -> None:
-        """Show how to begin. `code`: of the patient that files are taken to be of where they name none."""
+    def begin(self) -> None:
+        """Show how to begin."""
         self.forget()
-        self._code = code
         self.page.show_nothing(list(PROGRAMS.values()))
         self.page.show_unread((), can_try_again=False)
         self.asked.emit()
@@ -140,7 +138,7 @@ class Importing(QObject):
             assert session is not None  # it is one or the other
             return import_session(opened, session, report, code)
 
-        self._is_importing, self._code = True, code
+        self._is_importing = True
         self.working.emit(tr("Importing {folder}").format(folder=Path(shown.where).name))
         self._controller.run_long(work, self._on_imported, self._on_import_refused, self._on_progressed, self)
 
@@ -219,11 +217,11 @@ class Importing(QObject):
         where = f"{which if self._count > 1 else ''}{shown.where}"
         if (session := shown.session) is not None:
             names = [recording.name for recording in session.recordings]
-            code = session.patient.code or self._code
+            code = session.patient.code
             self.page.show_session(where, names, code, session.findings, is_simulated=session.is_simulated)
         elif shown.draft is not None:
             program = PROGRAMS[shown.draft.recordings[0].trial.format]
-            self.page.show_draft(where, program, shown.draft, self._code)
+            self.page.show_draft(where, program, shown.draft)
         self.asked.emit()
 
     def _on_placing_wished(self) -> None:

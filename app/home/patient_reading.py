@@ -11,7 +11,7 @@ from app.pages.home_lists import SessionLine
 from app.patient_words import day_of_session, session_line, time_of_session
 from app.reports.course import Course
 from app.reports.course_lanes import CourseVisit
-from app.reports.course_words import LatestVisit, NextStep, next_step, recovered_step
+from app.reports.course_words import LatestVisit, NextStep, next_step, undecided_step
 from app.reports.goals import reached_at
 from app.storage.journal.header import JournalRefusedError
 from app.storage.stored import LibraryError, SessionSummary
@@ -29,13 +29,13 @@ _log = logging.getLogger(__name__)
 class PatientReading:
     """The sessions of a patient, latest first, and by id what is known of them.
 
-    `recovered`: those with a walk that was recovered and is not decided yet. `courses`: figures that still hold.
+    `undecided`: those with a walk that nobody has kept or discarded yet. `courses`: figures that still hold.
     `reported`: those whose report was written. `goals`: all that were agreed, those that ended, too.
     """
 
     patient_id: UUID
     sessions: tuple[SessionSummary, ...]
-    recovered: frozenset[UUID]
+    undecided: frozenset[UUID]
     courses: Mapping[UUID, Course]
     reported: frozenset[UUID]
     goals: tuple[Goal, ...] = ()
@@ -51,18 +51,18 @@ class PatientReading:
 
     def lines(self, now: datetime.datetime) -> list[SessionLine]:
         return [
-            session_line(one, now, self.recovered, self.courses.get(one.id), is_reported=one.id in self.reported)
+            session_line(one, now, self.undecided, self.courses.get(one.id), is_reported=one.id in self.reported)
             for one in self.sessions
         ]
 
     def next_step(self, now: datetime.datetime) -> NextStep | None:
         """What is to be done next."""
         days = {one.id: day_of_session(one.started, now) for one in self.sessions}
-        waiting = next((one.id for one in self.sessions if one.id in self.recovered), None)
-        recovered = recovered_step(waiting, days[waiting]) if waiting is not None else None
+        waiting = next((one.id for one in self.sessions if one.id in self.undecided), None)
+        undecided = undecided_step(waiting, days[waiting]) if waiting is not None else None
         visits = self.visits(now)
         if not visits:
-            return recovered
+            return undecided
         last = visits[-1]
         conditions = last.course.conditions if last.course is not None else ()
         withheld = dict.fromkeys(joint for one in conditions for joint in one.withheld)
@@ -70,20 +70,20 @@ class PatientReading:
         before = [goal for goal in held(self.goals) if goal.is_chosen_before(last.day)]
         reached = reached_at(before, last.course) if last.course is not None else ()
         latest = LatestVisit(last.id, last.day, tuple(withheld), has_walk, last.id in self.reported, reached)
-        return next_step(recovered, latest, now.date())
+        return next_step(undecided, latest, now.date())
 
 
 def read_patient(opened: "OpenedLibrary", patient_id: UUID) -> PatientReading:
     """Read the sessions of a patient, with the figures that were kept of them as far as they still hold."""
     library = opened.library
     sessions = library.sessions.list(patient_id)
-    recovered = frozenset(
+    undecided = frozenset(
         walk.recording.session_id for walk in library.recordings.undecided() if walk.patient_id == patient_id
     )
     ids = [session.id for session in sessions]
     goals = library.patients.get(patient_id).details.goals
     reported, courses = library.audit.reported(ids), current_courses(library, ids)
-    return PatientReading(patient_id, sessions, recovered, courses, reported, goals)
+    return PatientReading(patient_id, sessions, undecided, courses, reported, goals)
 
 
 def compute_courses(opened: "OpenedLibrary", session_ids: Sequence[UUID], report: Report) -> int:

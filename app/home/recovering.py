@@ -1,6 +1,6 @@
 """What was being recorded when the library was last in use, or while it did not answer: brought back, and said.
 
-What was recovered earlier and is not decided yet is said, too, at every start: the library knows it.
+What is not decided yet, recovered earlier or closed amid a walk, is said, too, at every start: the library knows it.
 """
 
 from collections.abc import Mapping, Sequence
@@ -38,7 +38,7 @@ NO_NAMES: Mapping[UUID, str] = {}
 class _Outcome(NamedTuple):
     """What was recovered, what was put into the session it says it is of, and what is left of either.
 
-    `undecided`: what was recovered at an earlier start, and nobody has said yet whether it is kept. `names`: what all
+    `undecided`: walks of earlier starts of which nobody has said yet whether they are kept. `names`: what all
     are called in their sessions.
     """
 
@@ -270,12 +270,30 @@ def _home_messages(home: "Sequence[Recovered]") -> list[_Message]:
 
 
 def _undecided_messages(walks: "Sequence[UndecidedWalk]", names: Mapping[UUID, str]) -> list[_Message]:
+    recovered = [walk for walk in walks if walk.recording.is_unjudged]
+    closed = [walk for walk in walks if walk not in recovered]
+    return [
+        *_asked_messages(
+            recovered,
+            names,
+            tr("{name} of {code} was recovered earlier, and nobody has said yet whether it is kept."),
+            tr("{count} walks were recovered earlier, and nobody has said yet whether they are kept."),
+        ),
+        *_asked_messages(
+            closed,
+            names,
+            tr("The program was closed before {name} of {code} was kept or discarded."),
+            tr("The program was closed before {count} walks were kept or discarded."),
+        ),
+    ]
+
+
+def _asked_messages(
+    walks: "Sequence[UndecidedWalk]", names: Mapping[UUID, str], of_one: str, of_many: str
+) -> list[_Message]:
     if not walks:
         return []
-    if len(walks) == 1:
-        what = tr("{name} of {code} was recovered earlier, and nobody has said yet whether it is kept.").format(
-            name=_name(walks[0].recording, names), code=walks[0].patient_code
-        )
-        return [_Message(what, tr("Look at it, then keep or discard."))]
-    what = tr("{count} walks were recovered earlier, and nobody has said yet whether they are kept.")
-    return [_Message(what.format(count=len(walks)), tr("Look at them, then keep or discard."))]
+    if len(walks) > 1:
+        return [_Message(of_many.format(count=len(walks)), tr("Look at them, then keep or discard."))]
+    what = of_one.format(name=_name(walks[0].recording, names), code=walks[0].patient_code)
+    return [_Message(what, tr("Look at it, then keep or discard."))]

@@ -20,7 +20,7 @@ from app.pages.compared_words import (
     sentence,
     side_sentence,
     side_weight,
-    weight,
+    weight_in,
     withheld_in_words,
 )
 from app.plots.compared_chart import ComparedChart, ComparedFrame
@@ -417,7 +417,7 @@ class ComparePage(Themed):
         is_borrowed = any(found.error_kind(part) is not ComparisonKind.ATTACHED for part in found.others)
         is_borrowed &= any(joint.kind is JointKind.ANKLE for joint in found.joints)
         self.error.setText(error_in_words([row.difference for row in told], is_borrowed=is_borrowed))
-        worth = [sentence(row) for row in sorted(told, key=weight) if row.difference.is_worth_a_sentence]
+        worth = [sentence(row) for row in sorted(told, key=weight_in(found)) if row.difference.is_worth_a_sentence]
         latest = found.latest if self.kind is Contrast.VISITS else None
         said = conclusion(worth, [row.difference for row in told], latest) if found.others else []
         if visits is not None and visits.without:

@@ -1,11 +1,11 @@
 """How is a comparison told? Its parts, its figures, a sentence for what lies beyond the error, and what that holds."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from app.dates import day_in_words
 from app.gates_in_words import verdict_word
 from app.recording_names import name_in_words
-from app.reports.comparison import Compared, Reservation, SideRow
+from app.reports.comparison import Compared, Comparison, Reservation, SideRow
 from app.reports.conditions import Part
 from app.reports.error_sources import sources_in_words
 from app.reports.measures import Measure
@@ -18,7 +18,6 @@ from core.verdicts.measurement_error import Difference, Judgement
 from core.verdicts.model import Verdict
 
 MINUS = "\N{MINUS SIGN}"
-LONGEST_LETTER = 4  # of parts: "C", "12", "12A"
 BRIEF = ("knee_stance_to_swing_deg", "knee_while_loading_deg", "ankle_push_off_deg", "stance_percent")
 JUDGED = (Judgement.EXCEEDS_ERROR, Judgement.INSIDE_ERROR)
 MOST_SAID = 3  # sentences about differences; the table has all of them
@@ -76,6 +75,8 @@ def why_not_told(row: Compared | SideRow) -> str:
         return tr("no zero")
     withheld = isinstance(row, Compared) and row.reservation is Reservation.WITHHELD
     is_withheld = withheld or row.difference.judgement is Judgement.WITHHELD
+    if not is_withheld and row.difference.judgement is Judgement.NO_PUBLISHED_FIGURE:
+        return tr("not compared")
     return verdict_word(Verdict.WITHHELD) if is_withheld else tr("no value")
 
 
@@ -85,9 +86,9 @@ def withheld_in_words(part: Part, joint: Joint) -> str:
     return pattern.format(letter=part.letter, reason=reason_in_words(part.verdicts.joint(joint)))
 
 
-def weight(row: Compared) -> tuple[list[int], float]:
+def weight_in(found: Comparison) -> Callable[[Compared], tuple[int, float]]:
     """What is said first: of the latest part what lies furthest beyond the error."""
-    return [-ord(one) for one in row.part.letter.rjust(LONGEST_LETTER)], -row.difference.ratio
+    return lambda row: (-found.parts.index(row.part), -row.difference.ratio)
 
 
 def side_weight(row: SideRow) -> float:

@@ -116,11 +116,11 @@ class ImportPage(Themed):
         self._show_parts(self.draft, self._recordings_title, self._recordings)
         self.findings.setVisible(bool(findings))
 
-    def show_draft(self, folder: str, program: str, draft: "SessionDraft", code: str) -> None:
-        """Show recordings of another program, to be confirmed or changed."""
+    def show_draft(self, folder: str, program: str, draft: "SessionDraft") -> None:
+        """Show recordings of another program, to be confirmed or changed; their files do not say whose they are."""
         self._folder.setText(folder)
         self.draft.show_draft(program, draft)
-        self._show_code(code, is_simulated=False)
+        self._show_code("", is_simulated=False)
         self.day_field.set_text(draft.started[:10])
         self.day_field.set_wrong("")
         self._show_parts(self.draft, self.day_field)

@@ -37,6 +37,7 @@ class LogInPage(EntryPage):
         super().__init__(look)
         self._shortest, self._left_s = shortest, 0.0
         self._is_cover = self._is_recording = self._is_recovering = self._is_busy = self._can_remember = False
+        self._is_asked_for = False  # the cover, by whoever is logged in
         self._can_work_away = False
         self._remembered: tuple[str, ...] = ()
         self._title = Text(look, size=26, weight=SEMIBOLD, wraps=True)
@@ -107,10 +108,10 @@ class LogInPage(EntryPage):
         self.library.setText(words)
         self.library.setVisible(bool(words))
 
-    def show_cover(self, code: str, is_recording: bool) -> None:
-        """Cover the window until the passphrase of the operator who is logged in is typed."""
+    def show_cover(self, code: str, is_recording: bool, *, is_asked_for: bool = False) -> None:
+        """Cover the window until the passphrase of the operator who is logged in is typed, and say why."""
         self.show_operators((code,))
-        self._is_cover = True
+        self._is_cover, self._is_asked_for = True, is_asked_for
         self.forget_typed()
         self.show_recording(is_recording)
 
@@ -201,7 +202,9 @@ class LogInPage(EntryPage):
 
     def _show(self) -> None:
         is_recovering = self._is_recovering
-        if self._is_cover:
+        if self._is_cover and self._is_asked_for:
+            self._title.setText(tr("Locked by {user}").format(user=self.code))
+        elif self._is_cover:
             self._title.setText(tr("Locked, because nobody worked here for five minutes"))
         else:
             self._title.setText(tr("A new passphrase") if is_recovering else tr("Log in"))

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtGui import QResizeEvent
+from PySide6.QtGui import QKeyEvent, QResizeEvent
 from PySide6.QtWidgets import QBoxLayout, QSizePolicy, QWidget
 
 from app.icons import Icon
@@ -32,7 +32,7 @@ def choices() -> tuple[Choice, ...]:
 
 
 class ControlsCard(Card):
-    """No target is proposed: there is none until one is typed.
+    """No target is proposed: there is none until one is typed. It is of a measure, and stays as the side changes.
 
     Signals
     -------
@@ -50,7 +50,7 @@ class ControlsCard(Card):
     close_pressed = Signal()
 
     def __init__(self, look: ThemeNotifier) -> None:
-        self._typed: dict[Choice, int] = {}
+        self._typed: dict[TargetMeasure, int] = {}
         self._reasons: Mapping[Choice, str] = {}
         self._is_ticking = False
         words = {
@@ -62,12 +62,12 @@ class ControlsCard(Card):
         self.measure = Segmented(look, tr("Measure"), [(key, words[key], "") for key in TargetMeasure])
         self.side = Segmented(look, tr("Side"), [(Side.LEFT, tr("Left"), ""), (Side.RIGHT, tr("Right"), "")])
         low, high = TargetMeasure.KNEE_SWING_PEAK.limits
-        self.target = NumberField(look, tr("Target"), low=low, high=high, unit="°")
-        self.rate = NumberField(look, tr("Metronome"), low=LEAST, high=MOST, unit=tr("/min"))
+        self.target = NumberField(look, tr("Target"), low=low, high=high, unit="°", says_wrong=False)
+        self.rate = NumberField(look, tr("Metronome"), low=LEAST, high=MOST, unit=tr("/min"), says_wrong=False)
         self.tick = Button(look, tr("Start metronome"), ButtonKind.SECONDARY, Icon.SOUND)
         self.full = Button(look, tr("Full screen"), ButtonKind.QUIET, Icon.WHOLE, key="F11")
         self.close_screen = Button(look, tr("Close"), ButtonKind.QUIET, Icon.CLOSE, key="F8")
-        self._reason = Notice(look, size=14)
+        self._reason, self._wrong = Notice(look, size=14), Notice(look, size=14)
         self._choose, self._set = QBoxLayout(ACROSS), QBoxLayout(ACROSS)
         super().__init__(look)
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Maximum)
@@ -81,10 +81,14 @@ class ControlsCard(Card):
         self._set.insertStretch(3, 1)
         for row in (self._choose, self._set):
             self.column.addLayout(row)
+        self.column.addWidget(self._wrong)
         self.column.addWidget(self._reason)
         self.measure.chosen.connect(self._on_chosen)
         self.side.chosen.connect(self._on_chosen)
         self.target.committed.connect(self._on_target_committed)
+        for field in (self.target, self.rate):
+            field.edited.connect(self._show_wrong)
+            field.committed.connect(self._show_wrong)
         self.tick.clicked.connect(self._on_tick_clicked)
         self.full.clicked.connect(self.full_screen_pressed)
         self.close_screen.clicked.connect(self.close_pressed)
@@ -115,6 +119,8 @@ class ControlsCard(Card):
         if reasons == self._reasons:
             return
         self._reasons = dict(reasons)
+        if self.reason:  # the side that takes its place is nobody's choice
+            self._typed.pop(self.choice[0], None)
         gated = {m for m in TargetMeasure if all(choice in reasons for choice in choices() if choice[0] is m)}
         if gated != set(TargetMeasure):  # one has to be chosen, whatever it is worth
             for measure in TargetMeasure:
@@ -127,6 +133,14 @@ class ControlsCard(Card):
         self.tick.setText(tr("Stop metronome") if self._is_ticking else tr("Start metronome"))
         self.tick.setAccessibleName(self.tick.text())
         self.tick.updateGeometry()
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        """Enter sets what is typed; it is not for the verb of the page."""
+        is_enter = event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter)
+        if is_enter and self.focusWidget() in (self.target.line_edit, self.rate.line_edit):
+            event.accept()
+        else:
+            super().keyPressEvent(event)
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
@@ -143,14 +157,22 @@ class ControlsCard(Card):
         self.target.low, self.target.high = measure.limits
         units = {"deg": "°", "%": "%", "steps/min": tr("/min")}
         self.target.set_unit(units[measure.unit])
-        self.target.set_value(self._typed.get(self.choice))
+        self.target.set_value(self._typed.get(measure))
         self.target.setEnabled(not self.reason)
         self._reason.setVisible(bool(self.reason))
         self._reason.tell(Icon.WITHHELD, tr("This cannot be a target now."), self.reason)
+        self._show_wrong()
+
+    def _show_wrong(self) -> None:
+        """Say below the row what is wrong in its narrow fields."""
+        wrong = next((field for field in (self.target, self.rate) if field.is_wrong), None)
+        self._wrong.setVisible(wrong is not None)
+        if wrong is not None:
+            self._wrong.tell(Icon.WARNING, wrong.wrong, "")
 
     def _tell(self) -> None:
         measure, side = self.choice
-        value = None if self.reason else self._typed.get(self.choice)
+        value = None if self.reason else self._typed.get(measure)
         self.target_set.emit(None if value is None else Target(measure, side, value))
 
     def _on_chosen(self) -> None:
@@ -158,11 +180,11 @@ class ControlsCard(Card):
         self._tell()
 
     def _on_target_committed(self) -> None:
-        value = self.target.value
+        value, measure = self.target.value, self.choice[0]
         if value is None:
-            self._typed.pop(self.choice, None)
+            self._typed.pop(measure, None)
         else:
-            self._typed[self.choice] = round(value)
+            self._typed[measure] = round(value)
         self._tell()
 
     def _on_tick_clicked(self) -> None:
@@ -172,6 +194,7 @@ class ControlsCard(Card):
             self.metronome_pressed.emit(round(self.rate.value))
         else:
             self.rate.set_wrong(tr("Type how many steps per minute."))
+            self._show_wrong()
 
     def _on_look_changed(self) -> None:
         super()._on_look_changed()

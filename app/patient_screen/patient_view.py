@@ -15,13 +15,15 @@ NO_VALUE = "\N{EN DASH}"
 class PatientView:
     """`last` are the values of the last strides, SHOWN_STRIDES at most, the newest last.
 
-    `is_waiting`: what is aimed at cannot be measured now, so no value is shown, old ones neither.
+    `is_waiting`: what is aimed at cannot be measured now, so no value is shown, old ones neither. `steps`: of the walk
+    that goes on, as the operator sees them; None between walks.
     """
 
     target: Target | None = None
     last: tuple[int, ...] = ()
     is_waiting: bool = False
     has_sound: bool = True
+    steps: int | None = None
 
     @property
     def value(self) -> int | None:
@@ -32,7 +34,7 @@ class PatientView:
     def in_words(self) -> str:
         """All of it, for who cannot see it."""
         if self.target is None:
-            return tr("Please wait")
+            return tr("Please wait") if self.steps is None else f"{self.steps} {so_far_words(self.steps)}"
         said = [f"{title_of(self.target)}."]
         said.append(tr("Target {value}.").format(value=figure(self.target.value, self.target.measure)))
         if self.is_waiting:
@@ -69,6 +71,11 @@ def figure(value: int, measure: TargetMeasure) -> str:
     if measure in (TargetMeasure.KNEE_SWING_PEAK, TargetMeasure.FOOT_STRIKE):
         return f"{number}°"
     return f"{number}\N{NO-BREAK SPACE}%" if measure is TargetMeasure.STANCE_RATIO else number
+
+
+def so_far_words(count: int) -> str:
+    """Behind the number of steps of a walk without a target."""
+    return tr_n("step so far", "steps so far", count)
 
 
 def steps_words(count: int) -> str:

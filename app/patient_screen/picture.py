@@ -17,6 +17,7 @@ from app.patient_screen.patient_view import (
     PatientView,
     figure,
     reached_words,
+    so_far_words,
     steps_words,
     title_of,
     tone_words,
@@ -62,8 +63,11 @@ def paint_patient_view(painter: QPainter, room: QRectF, view: PatientView, look:
     painter.translate(room.center())
     painter.scale(scale, scale)
     painter.translate(-WIDTH / 2, -HEIGHT / 2)
-    if view.target is None:
+    if view.target is None and view.steps is None:
         _text(painter, theme, QRectF(0, 0, WIDTH, HEIGHT), tr("Please wait"), 96, flags=MIDDLE)
+    elif view.target is None:
+        _text(painter, theme, QRectF(0, 190, WIDTH, 300), str(view.steps), 320, flags=MIDDLE)
+        _text(painter, theme, QRectF(LEFT, 520, RIGHT - LEFT, 80), so_far_words(view.steps or 0), 64, flags=MIDDLE)
     else:
         _paint(painter, view, view.target, theme)
     painter.restore()
@@ -118,7 +122,9 @@ def _paint_target(painter: QPainter, target: Target, theme: Theme) -> None:
     _text(painter, theme, QRectF(at - 180, 248, 360, 98), shown, 96, flags=MIDDLE, fits=True)
     words = unit_words(target.measure)
     if words:
-        _text(painter, theme, QRectF(at + 130, 280, RIGHT - at - 130, 66), words, 22, "ink2", flags=AT_LEFT, fits=True)
+        half = 0.5 * min(QFontMetricsF(theme.font(96, SEMIBOLD)).horizontalAdvance(shown), 360.0)
+        left = at + max(130.0, half + 16.0)
+        _text(painter, theme, QRectF(left, 280, RIGHT - left, 66), words, 22, "ink2", flags=AT_LEFT, fits=True)
 
 
 def _paint_bar(painter: QPainter, view: PatientView, target: Target, theme: Theme, inks: _Inks) -> None:

@@ -6,7 +6,7 @@ from dataclasses import replace
 from app.charts.marks import Deviation, extreme_of
 from app.recording_names import shown_names
 from app.reports.comparison import Comparison, Contrast
-from app.reports.conditions import Part, conditions_of
+from app.reports.conditions import Part, parts_of
 from app.reports.patient_report.marks_on_curves import windows_of
 from app.reports.patient_report.numbers_in_words import fixed
 from app.reports.visits import ComparedVisits
@@ -29,7 +29,7 @@ def walks_alone(
         walk.name: replace(
             part, name=str(names.get(walk.name, walk.name)), walks=(walk,), calibrated=analysis.calibrated_for(walk)
         )
-        for part in conditions_of(analysis, recordings, agreed=agreed)
+        for part in parts_of(analysis, recordings, agreed=agreed)
         for walk in part.walks
     }
     return {walk.name: alone[walk.name] for walk in analysis.recordings if walk.name in alone}

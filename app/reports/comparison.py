@@ -79,11 +79,15 @@ class Comparison:
     def base_of(self, part: Part) -> Part:
         """What a part is told against: the condition that its alignment was changed from, else that of all.
 
-        Where sensors were strapped on anew a condition may be there twice: the latest before the part counts.
+        Where sensors were strapped on anew a condition may be there twice: the latest before the part counts. What the
+        prosthesis was put back to is told against the first walks with it.
         """
-        since = part.alignment.since if part.alignment is not None and self.kind is Contrast.CONDITIONS else ""
+        if self.kind is not Contrast.CONDITIONS:
+            return self.against
         before = self.parts[: self.parts.index(part)]
-        return next((other for other in reversed(before) if other.name == since), self.against)
+        since = part.alignment.since if part.alignment is not None else ""
+        first = (other for other in before if part.is_again(other))
+        return next(first, next((other for other in reversed(before) if other.name == since), self.against))
 
     @property
     def sides(self) -> tuple[Side, ...]:

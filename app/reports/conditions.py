@@ -1,6 +1,6 @@
 """What do the walks of one condition say together? Their strides, and how far they can be trusted.
 
-Walks of one condition and one strapping are one part of every comparison.
+Walks of one pool (`app.reports.pooled_walks`) are one part of every comparison.
 """
 
 import math
@@ -8,16 +8,16 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import date
 from functools import cached_property
-from itertools import accumulate
 from statistics import fmean
 
 import numpy as np
 
 from app.charts.cycles import is_mean_enough
 from app.charts.stride_chart import StrideCurve
-from app.recording_names import LETTERS, condition_letters
+from app.recording_names import LETTERS
 from app.reports.alignments import alignments_of
 from app.reports.measures import CADENCE, Measure
+from app.reports.pooled_walks import Pool, pool_letters, pools_of
 from app.reports.walk_figures import by_hand_in_words
 from core.alignment import AlignmentChange
 from core.body import Joint, Side
@@ -50,7 +50,7 @@ class Part:
     `attachment` numbers how often the sensors had been strapped on anew before; equal numbers of one visit share it.
     `visit` numbers the visits of a comparison of several, and `day` is when that visit was, if that is known.
     `alignment` is what was changed at the prosthesis before it, and since which condition; `agreed` are the goals by
-    its day.
+    its day. `is_apart`: it is of timed tests, or a walk towards a target, beside the walks of its condition.
     """
 
     letter: str
@@ -62,10 +62,15 @@ class Part:
     day: date | None = None
     alignment: AlignmentChange | None = None
     agreed: AgreedGoals = NO_GOALS
+    is_apart: bool = False
 
     @property
     def sides(self) -> tuple[Side, ...]:
         return tuple(side for side in Side if any(side in walk.gait for walk in self.walks))
+
+    def is_again(self, other: "Part") -> bool:
+        """Whether it is the condition of another part, which the prosthesis was put back to since."""
+        return self is not other and (self.name, self.attachment) == (other.name, other.attachment)
 
     @property
     def joints(self) -> tuple[Joint, ...]:
@@ -218,10 +223,22 @@ class Part:
 def conditions_of(
     analysis: Analysis, recordings: Sequence[Recording], prefix: str = "", agreed: AgreedGoals = NO_GOALS
 ) -> tuple[Part, ...]:
-    """The walks of one session that have strides: those of the same condition and attachment together.
+    """The parts of a session that stand for its conditions: tests and walks towards a target only where alone.
 
-    Walks without a condition stay by themselves, named as recorded. Each has the letter of its condition in the
-    session, as its walks are called everywhere: where a condition has no strides, its letter is left out.
+    Parameters as of `parts_of`.
+    """
+    parts = parts_of(analysis, recordings, prefix, agreed)
+    walked = {(part.name, part.attachment) for part in parts if not part.is_apart}
+    return tuple(part for part in parts if not part.is_apart or (part.name, part.attachment) not in walked)
+
+
+def parts_of(
+    analysis: Analysis, recordings: Sequence[Recording], prefix: str = "", agreed: AgreedGoals = NO_GOALS
+) -> tuple[Part, ...]:
+    """The walks of one session that have strides, those of a pool together.
+
+    Walks without a condition stay by themselves, named as recorded. Each part is called as its first walk is called
+    everywhere: where a condition has no strides, its letter is left out.
 
     Parameters
     ----------
@@ -232,30 +249,24 @@ def conditions_of(
     agreed
         The goals by the session's day.
     """
-    found: dict[tuple[str, int], list[RecordingAnalysis]] = {}
-    told = {
-        recording.name: (recording.condition, attachment)
-        for recording, attachment in zip(
-            recordings, accumulate(recording.is_restrapped_before for recording in recordings), strict=True
-        )
-    }
-    for walk in _walks(analysis):
-        condition, at = told.get(walk.name, ("", 0))
-        found.setdefault((condition or walk.name, at), []).append(walk)
-    letters, changed = condition_letters(recordings), alignments_of(recordings)
+    pools, letters, changed = pools_of(recordings), pool_letters(recordings), alignments_of(recordings)
     others = iter(letter for letter in LETTERS if letter not in letters.values())  # of walks nobody has told of
+    found: dict[Pool, list[RecordingAnalysis]] = {}
+    for walk in _walks(analysis):
+        found.setdefault(pools.get(walk.name, Pool(walk.name)), []).append(walk)
     parts = [
         Part(
             prefix + letter,
-            name,
+            pool.condition,
             tuple(walks),
             analysis.calibrated_for(walks[0]),
-            at,
-            alignment=changed.get(name),
+            pool.attachment,
+            alignment=changed.get(pool.condition),
             agreed=agreed,
+            is_apart=bool(pool.apart),
         )
-        for (name, at), walks in found.items()
-        if (letter := letters[walks[0].name] if walks[0].name in letters else next(others, ""))
+        for pool, walks in found.items()
+        if (letter := letters[pool] if pool in letters else next(others, ""))
     ]
     return tuple(parts)
 

@@ -23,7 +23,7 @@ from core.verdicts.model import Assessment, GateReason, Verdict, together, worst
 from core.verdicts.quantities import OF_HIPS
 from core.verdicts.stride_means import MeanOfStrides
 
-FORMAT = "gaitwright-course/3"
+FORMAT = "gaitwright-course/4"
 SPEED = "speed_m_s"
 KNEE = "knee_stance_to_swing_deg"  # what stands for the knee: an excursion, which needs no zero
 STANCE = "stance_percent"

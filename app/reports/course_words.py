@@ -206,11 +206,11 @@ def reached_in_words(reached: Sequence[GoalFigure], day: str) -> str:
     return f"{said} {tr_n('{count} more.', '{count} more.', len(others)).format(count=len(others))}"
 
 
-def recovered_step(session_id: UUID, day: datetime.date | None) -> NextStep:
-    """A walk that was recovered, and nobody has said whether it is kept."""
-    said = tr("look at the walk that was recovered.")
+def undecided_step(session_id: UUID, day: datetime.date | None) -> NextStep:
+    """A walk of which nobody has said whether it is kept."""
+    said = tr("keep or discard the last walk.")
     if day is not None:
-        said = tr("look at the walk of {day} that was recovered.").format(day=short_date(day))
+        said = tr("keep or discard the walk of {day}.").format(day=short_date(day))
     return NextStep(said, tr("Look"), session_id)
 
 

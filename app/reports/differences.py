@@ -194,10 +194,11 @@ def write_sides(parts: Sequence[Part], sides: tuple[Side, Side], path: Path) -> 
                 continue
             status = together(part.assessment(side, column) for side in sides).verdict
             is_size = CLASSES[column] is not QuantityClass.HEIGHT and column not in SIGNED
-            has_index = is_size and min(one.n, other.n) >= MIN_STRIDES_FOR_MEAN
+            difference = compare_legs(part, column, sides)
+            has_index = is_size and difference.is_told and min(one.n, other.n) >= MIN_STRIDES_FOR_MEAN
             symmetry = symmetry_index_percent(one.mean, other.mean) if has_index else math.nan
             cells = [*_named(part), column, *_mean(one), *_mean(other)]
-            judged = _judged(compare_legs(part, column, sides), status)
+            judged = _judged(difference, status)
             lines.append([*cells, *judged, figure_cell(symmetry), *left_out])
     if lines:
         write_table([*OF_PART, "parameter", *each, *JUDGED, "symmetry_index_percent", *by_hand], lines, path)

@@ -50,8 +50,12 @@ def by_condition(
 ) -> Mapping[str, Part]:
     """Each condition of a visit as it was walked last: of several strappings the last, and so of walks without one."""
     stated = {recording.name: recording.condition for recording in recordings}
-    parts = conditions_of(analysis, recordings, prefix, agreed)
-    return {stated.get(part.walks[0].name, ""): part for part in parts}
+    found: dict[str, Part] = {}
+    for part in conditions_of(analysis, recordings, prefix, agreed):
+        condition = stated.get(part.walks[0].name, "")
+        if not part.is_apart or found.get(condition, part).is_apart:
+            found[condition] = part
+    return found
 
 
 def visits_by_condition(visits: Sequence[WalkedVisit]) -> tuple[ComparedVisits, ...]:

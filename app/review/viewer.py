@@ -9,6 +9,7 @@ It listens on this computer only.
 import importlib.util
 import logging
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -28,6 +29,11 @@ END_S = 5.0  # then it is ended by force
 ADDRESS = "127.0.0.1"
 NOBODY = "http://127.0.0.1:9"  # where nobody listens
 SETTINGS = "settings"
+ERRORS = ".err"  # behind the name of a log: what the viewer writes of its errors
+ENDED = (0, -9, -15)  # by its window, or by somebody who ended the program
+MOST_ERRORS, MOST_REASON = 4096, 200  # bytes, letters
+_COLOURS = re.compile(r"\x1b\[[0-9;]*m")
+_PLACE = re.compile(r"\S*[/\\]\S*")  # a path may hold somebody's name
 LOCK = ".lock"
 
 _log = logging.getLogger(__name__)
@@ -102,6 +108,7 @@ class Viewer:
                     *("--memory-limit", MEMORY_LIMIT, "--hide-welcome-screen", log),
                 ],
                 folder / SETTINGS,
+                _errors_of(Path(log)),
             )
         except (OSError, subprocess.TimeoutExpired) as problem:
             _log.warning("Rerun was not started", exc_info=True)
@@ -114,10 +121,9 @@ class Viewer:
         """Whether a window is open that nobody has closed."""
         return any(process.poll() is None for process in self._shown.values())
 
-    def failures(self) -> int:
-        """How many viewers ended with an error since this was asked last, as without usable graphics."""
-        ended = self._forget_closed()
-        return sum(code != 0 for code in ended)
+    def failures(self) -> list[str]:
+        """Why viewers ended with an error since this was asked last, as without usable graphics; empty: no reason."""
+        return self._forget_closed()
 
     def close(self) -> None:
         """End every viewer and remove what it showed."""
@@ -151,17 +157,36 @@ class Viewer:
             raise OSError("analytics could not be switched off")
         return folder
 
-    def _forget_closed(self) -> list[int]:
-        """Remove the logs whose windows were closed; gives how each ended."""
+    def _forget_closed(self) -> list[str]:
+        """Remove the logs whose windows were closed; gives why those ended that ended with an error."""
         codes = {log: code for log, process in self._shown.items() if (code := process.poll()) is not None}
+        reasons = [_reason(_errors_of(log)) for log, code in codes.items() if code not in ENDED]
         for log in codes:
             del self._shown[log]
             log.unlink(missing_ok=True)
-        return list(codes.values())
+            _errors_of(log).unlink(missing_ok=True)
+        return reasons
 
 
-def _start(command: list[str], settings: Path) -> "subprocess.Popen[bytes]":
-    """Start the viewer with its settings, and all else that it keeps, in a folder of ours."""
+def _errors_of(log: Path) -> Path:
+    return log.with_name(log.name + ERRORS)
+
+
+def _reason(errors: Path) -> str:
+    """The last line of what a viewer wrote of its errors, without places of this computer."""
+    try:
+        with errors.open("rb") as file:
+            file.seek(max(errors.stat().st_size - MOST_ERRORS, 0))
+            written = file.read().decode("utf-8", "replace")
+    except OSError:
+        return ""
+    lines = [line.strip() for line in _COLOURS.sub("", written).splitlines() if line.strip()]
+    said = _PLACE.sub("\N{HORIZONTAL ELLIPSIS}", lines[-1].removeprefix("Error: ")) if lines else ""
+    return said[:MOST_REASON].rstrip(". ")
+
+
+def _start(command: list[str], settings: Path, errors: Path | None = None) -> "subprocess.Popen[bytes]":
+    """Start the viewer with its settings, and all else that it keeps, in a folder of ours; `errors`: its stderr."""
     # in turn where Linux, Windows and macOS look
     own = dict.fromkeys(
         ("XDG_CONFIG_HOME", "XDG_DATA_HOME", "XDG_CACHE_HOME", "APPDATA", "LOCALAPPDATA"), str(settings)
@@ -171,7 +196,9 @@ def _start(command: list[str], settings: Path) -> "subprocess.Popen[bytes]":
     # at every start it asks the internet for a newer one of itself, and no setting forbids it
     own |= dict.fromkeys(("HTTPS_PROXY", "HTTP_PROXY", "ALL_PROXY", "https_proxy", "http_proxy", "all_proxy"), NOBODY)
     nowhere = subprocess.DEVNULL
-    return subprocess.Popen(command, env=os.environ | own, stdin=nowhere, stdout=nowhere, stderr=nowhere)
+    with ExitStack() as ends:
+        into = ends.enter_context(errors.open("wb")) if errors is not None else nowhere
+        return subprocess.Popen(command, env=os.environ | own, stdin=nowhere, stdout=nowhere, stderr=into)
 
 
 def _lock_of(folder: Path) -> Path:

@@ -20,6 +20,8 @@ class IdleLock:
     def __init__(self, now_s: Callable[[], float], lock: Callable[[], None], after_s: float = LOCK_AFTER_S) -> None:
         self._now_s, self._lock, self._after_s = now_s, lock, after_s
         self._is_locked = False
+        self.is_asked_for = False
+        """Whether somebody asked for the lock, instead of nobody being there."""
         self._idle_s = 0.0
         self._seen_s = now_s()
 
@@ -39,7 +41,7 @@ class IdleLock:
     def lock_now(self) -> None:
         """Lock without waiting, as somebody who leaves the desk asks for it."""
         if not self._is_locked:
-            self._is_locked = True
+            self._is_locked = self.is_asked_for = True
             self._lock()
 
     def note_activity(self) -> None:
@@ -49,6 +51,6 @@ class IdleLock:
 
     def unlock(self) -> None:
         """The passphrase was right: count anew."""
-        self._is_locked = False
+        self._is_locked = self.is_asked_for = False
         self._idle_s = 0.0
         self._seen_s = self._now_s()

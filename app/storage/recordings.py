@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import asdict
 from uuid import UUID
 
-from sqlalchemy import select, update
+from sqlalchemy import and_, or_, select, update
 from sqlalchemy.orm import Session as OrmSession
 
 from app.storage.audit import about, note
@@ -263,15 +263,21 @@ class Recordings:
             return frozenset(journal.file for journal in session.scalars(wanted))
 
     def undecided(self) -> tuple[UndecidedWalk, ...]:
-        """Walks that were recovered, and of which nobody has said since whether they are kept; of no deleted patient.
+        """Walks of which nobody has said whether they are kept: recovered, or closed here before it was said.
 
-        In order of time.
+        Of no deleted patient, in order of time.
         """
+        is_recovered = and_(RecordingRow.state == RecordingState.RECOVERED, RecordingRow.judged_by == "")
+        is_closed = and_(
+            RecordingRow.state == RecordingState.CLOSED,
+            RecordingRow.is_decided.is_(False),
+            RecordingRow.station == self._unit.station,  # at another it may be asked at this moment
+        )
         wanted = (
             select(RecordingRow, PatientRow.id, PatientRow.code)
             .join(SessionRow, RecordingRow.session_id == SessionRow.id)
             .join(PatientRow, SessionRow.patient_id == PatientRow.id)
-            .where(RecordingRow.state == RecordingState.RECOVERED, RecordingRow.judged_by == "", RecordingRow.is_kept)
+            .where(or_(is_recovered, is_closed), RecordingRow.is_kept)
             .where(RecordingRow.kind == RecordingKind.WALKING, RecordingRow.journals.any())
             .where(SessionRow.deleted_at.is_(None), PatientRow.deleted_at.is_(None))
             .order_by(RecordingRow.id)

@@ -171,7 +171,7 @@ class StoredRecording:
 
 @dataclass(frozen=True, slots=True)
 class UndecidedWalk:
-    """A walk that was recovered, of which nobody has said yet whether it is kept, and whose it is."""
+    """A walk of which nobody has said yet whether it is kept, recovered or closed before that, and whose it is."""
 
     recording: StoredRecording
     patient_id: UUID

@@ -49,6 +49,8 @@ class Field(Themed):
         Tells 0 from O.
     most
         Characters, so that what is typed has its room where it is shown.
+    says_wrong
+        Without, what is wrong is said by whoever has more room than a narrow field: see `wrong`.
     """
 
     edited = Signal(str)  # by the user
@@ -67,9 +69,11 @@ class Field(Themed):
         placeholder: str = "",
         has_label: bool = True,
         most: int | None = None,
+        says_wrong: bool = True,
     ) -> None:
         super().__init__()
         self._look, self._label, self._side, self._is_optional = look, label, side, is_optional
+        self._says_wrong = says_wrong
         self._most, self._is_secret, self._is_too_long = most, is_secret, False
         self._is_pending = False  # edited, not yet committed
         self._caption = Text(look, label, size=14, weight=MEDIUM)
@@ -114,7 +118,12 @@ class Field(Themed):
 
     @property
     def is_wrong(self) -> bool:
-        return bool(self._wrong.text())
+        return bool(self.wrong)
+
+    @property
+    def wrong(self) -> str:
+        """What is wrong and what to do; empty where nothing is."""
+        return self._wrong.text()
 
     def set_text(self, text: str) -> None:
         if text != self._box.text():  # else the cursor would jump
@@ -134,8 +143,8 @@ class Field(Themed):
         """Say what is wrong and what to do; an empty sentence takes it back. What was typed stays."""
         is_news = sentence != self._wrong.text()
         self._wrong.setText(sentence)
-        self._wrong.setVisible(bool(sentence))
-        self._wrong_mark.setVisible(bool(sentence))
+        self._wrong.setVisible(bool(sentence) and self._says_wrong)
+        self._wrong_mark.setVisible(bool(sentence) and self._says_wrong)
         self._box.set_wrong(bool(sentence))
         self._name()
         if sentence and is_news:
@@ -209,6 +218,7 @@ class NumberField(Field):
         side: Side | None = None,
         placeholder: str = "",
         has_label: bool = True,
+        says_wrong: bool = True,
     ) -> None:
         super().__init__(
             look,
@@ -218,6 +228,7 @@ class NumberField(Field):
             side=side,
             placeholder=placeholder,
             has_label=has_label,
+            says_wrong=says_wrong,
         )
         self.low, self.high, self.decimals = low, high, decimals
         self._box.setInputMethodHints(Qt.InputMethodHint.ImhFormattedNumbersOnly)

@@ -77,6 +77,11 @@ class PatientRecord(QObject):
         return self._phase not in (RecordPhase.SETTLED, RecordPhase.UNREAD)
 
     @property
+    def is_saving(self) -> bool:
+        """Whether the library is still to answer, or to be told what was typed meanwhile."""
+        return self.is_busy or self._pause.isActive()
+
+    @property
     def _may_be_old(self) -> bool:
         return self._phase in (RecordPhase.READING, RecordPhase.UNREAD)
 

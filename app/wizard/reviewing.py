@@ -3,7 +3,7 @@
 import logging
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QObject, Signal
+from PySide6.QtCore import QObject, QTimer, Signal
 
 from app.review.viewer import Viewer, ViewerRefusedError, default_root, viewer_program, why_not
 from app.wording import tr
@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from core.results import Analysis
     from core.samples import Session
 
+LOOK_EVERY_MS = 500
 _log = logging.getLogger(__name__)
 
 
@@ -26,6 +27,10 @@ class Reviewing(QObject):
         self._viewer: Viewer | None = None
         self._background = Background(self)
         self._background.failed.connect(self._on_failed)
+        self._background.done.connect(self._on_opened)
+        self._look = QTimer(self)
+        self._look.setInterval(LOOK_EVERY_MS)
+        self._look.timeout.connect(self._on_look)
 
     @property
     def is_idle(self) -> bool:
@@ -50,8 +55,24 @@ class Reviewing(QObject):
     def finish(self) -> None:
         """Wait for what is being made ready, and close all windows."""
         self._background.finish()
+        self._look.stop()
         if self._viewer is not None:
             self._viewer.close()
+
+    def _on_opened(self, _nothing: object) -> None:
+        self._look.start()
+
+    def _on_look(self) -> None:
+        """Say of a viewer that ended with an error, which has shown nothing, what its reason was."""
+        if self._viewer is None or not self._background.is_idle:  # else it is used by its thread
+            return
+        if not self._viewer.is_showing:
+            self._look.stop()
+        for reason in self._viewer.failures():
+            _log.warning("Rerun ended with an error: %s", reason)
+            what = tr("Rerun closed with an error: {reason}.") if reason else tr("Rerun closed with an error.")
+            then = tr("Open the file session.rrd of the results on another computer.")
+            self.refused.emit(what.format(reason=reason), then)
 
     def _on_failed(self, error: Exception) -> None:
         if isinstance(error, ViewerRefusedError):

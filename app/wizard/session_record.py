@@ -129,9 +129,13 @@ class SessionRecord(QObject):
             self._change(self.told)
 
     def set_comment(self, comment: str, shown: str) -> None:
-        """Take the clinician's words, which were typed where `shown` stood."""
+        """Take the clinician's words, which were typed where `shown` stood.
+
+        Words that stood here still to be saved, or were refused, are nobody else's.
+        """
+        upon = {"comment": shown} if shown != self.comment else None
         self.comment = comment
-        self._change(self.told, {"comment": shown})
+        self._change(self.told, upon)
 
     def set_turned(self, joint: Joint, sign: int | None) -> None:
         """Turn (-1) or confirm (1) the sign that was found of a joint; None: as found. `held` follows."""

@@ -325,7 +325,12 @@ class Visit(QObject):
         idle = self.sensors.is_idle and self.evaluation.is_idle and self.reviewing.is_idle and self.preview.is_idle
         idle = idle and self.looking.is_idle and self.comparing.is_idle and self.recordings.is_idle
         idle = idle and self.recordings.fetches.is_idle
-        return idle and not (self.is_asking or self.record.is_busy or self.worn.is_busy or self.patient.is_busy)
+        return idle and not (self.is_asking or self.is_saving)
+
+    @property
+    def is_saving(self) -> bool:
+        """Whether the library is still to be told, or to answer, what was said of the session and its patient."""
+        return self.record.is_busy or self.worn.is_busy or self.patient.is_saving
 
     def finish(self) -> None:
         """Wait for all threads: for the end of the program."""

@@ -69,6 +69,7 @@ class Wizard(QWidget):
         self._steps: list[Step] = []
         self._current = PATIENT
         self._ticks = 0
+        self._to_resume: UUID | None = None  # a session that waits for what visits before still save
         self._deaf_until_s = 0.0
         self._told_of_recording: Message = NOTHING
         self.shell = WizardShell(look)
@@ -121,7 +122,15 @@ class Wizard(QWidget):
 
     def show_session(self, session_id: UUID) -> None:
         """Look at what came of a session, or go on with it where nothing has come of it yet."""
-        self._begin_visit().resume(session_id)
+        self._begin_visit()
+        self._to_resume = session_id
+        self._on_resume_due()
+
+    def _on_resume_due(self) -> None:
+        """Take up the session once what was said in visits before is saved, else that would seem to be another's."""
+        if self._to_resume is not None and self._visit is not None and not any(one.is_saving for one in self._closing):
+            session_id, self._to_resume = self._to_resume, None
+            self._visit.resume(session_id)
 
     def look_for_changes(self) -> None:
         """Find out whether another station changed the session that is in sight, and say so."""
@@ -132,6 +141,7 @@ class Wizard(QWidget):
         """Let go of sensors and visit; what was recorded is in the library."""
         self._timer.stop()
         self._preparing.stop()
+        self._to_resume = None
         self._forget_closed()
         if self._visit is not None:
             if self._steps:
@@ -173,6 +183,7 @@ class Wizard(QWidget):
         shell.room_changed.connect(self._on_room_changed)
         self._keys.pressed.connect(self.act_on)
         self._timer.timeout.connect(self._on_tick)
+        self._timer.timeout.connect(self._on_resume_due)
         self._preparing.timeout.connect(self._on_prepare)
         self._settings.changed.connect(self._on_settings_changed)
         self._on_settings_changed()

@@ -129,6 +129,8 @@ class Definition:
         Where a set distance begins and ends, from where the patient stands first.
     rises
         How often the patient rises.
+    is_walked
+        Whether there are strides in it: a patient who rises and sits makes none.
     """
 
     starts: str
@@ -136,6 +138,7 @@ class Definition:
     duration_s: float | None = None
     tape_m: tuple[float, float] | None = None
     rises: int = 0
+    is_walked: bool = True
     errors: tuple[KnownError, ...] = ()
 
     @property
@@ -188,6 +191,7 @@ DEFINITIONS: Mapping[TimedProtocol, Definition] = {
         _LEFT_SEAT,
         "the thighs have come nine tenths of the way up for the fifth time",
         rises=5,
+        is_walked=False,
         errors=(_worst("time_s", 0.08, 40),),
     ),
 }

@@ -228,8 +228,9 @@ class Judgement(StrEnum):
 class Difference:
     """One mean less another, the error it has to exceed to be real, and what that error contains.
 
-    `difference` and `error` are NaN where withheld or not known. `is_worth_a_sentence`: it exceeds what a sentence on
-    page one needs. `is_unverified`: the error rests on a figure whose source could not be read.
+    `difference` and `error` are NaN where withheld or not known; both are, of what is never compared.
+    `is_worth_a_sentence`: it exceeds what a sentence on page one needs. `is_unverified`: the error rests on a figure
+    whose source could not be read.
     """
 
     difference: float
@@ -294,12 +295,12 @@ def compare(
         return Difference(nothing, nothing, Judgement.WITHHELD)
     if min(one.n, other.n) < MIN_STRIDES_FOR_MEAN:
         return Difference(nothing, nothing, Judgement.TOO_FEW_STRIDES)
+    if KINDS.get(name) is QuantityKind.STANCE and any(found.is_toe_off_biased for found in assessments):
+        return Difference(nothing, nothing, Judgement.NO_PUBLISHED_FIGURE)  # how late may change with the alignment
     difference = one.mean - other.mean
     if min(one.n, other.n) < MIN_STRIDES_FOR_SD:
         return Difference(difference, nothing, Judgement.TOO_FEW_STRIDES)
-    is_stance_of_legs = kind is ComparisonKind.LEGS and KINDS.get(name) is QuantityKind.STANCE
-    is_biased = is_stance_of_legs and any(found.is_toe_off_biased for found in assessments)
-    sigma = None if is_biased else sigma_of(name, kind)
+    sigma = sigma_of(name, kind)
     if sigma is None:
         return Difference(difference, nothing, Judgement.NO_PUBLISHED_FIGURE)
     between = sigma.value * (0.01 * 0.5 * abs(one.mean + other.mean) if sigma.is_relative else 1.0)

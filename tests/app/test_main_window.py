@@ -355,6 +355,7 @@ def test_who_leaves_the_desk_locks_the_library_at_once(qtbot: QtBot, open_window
     row.click()
     assert window.is_covered
     assert window.idle.is_locked
+    assert "Locked by hk" in words_in_sight(window)
     assert SECRET_CODE not in words_in_sight(window)
 
 
@@ -365,6 +366,7 @@ def test_five_minutes_without_anybody_cover_the_library(qtbot: QtBot, open_windo
     window.lock()
     assert window.is_covered
     assert SECRET_CODE not in words_in_sight(window)
+    assert "nobody worked here for five minutes" in words_in_sight(window)
     for key in (Qt.Key.Key_O, Qt.Key.Key_D):
         QTest.keyClick(window, key, Qt.KeyboardModifier.ControlModifier)
     assert window.is_covered

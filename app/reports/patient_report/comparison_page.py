@@ -12,7 +12,7 @@ from app.charts.stride_chart import NOT_KNOWN, StrideChart
 from app.gates_in_words import verdict_word
 from app.reports.agreed import agreed_with
 from app.reports.comparison import Compared, Comparison, Contrast, Reservation
-from app.reports.conditions import Part, conditions_of, left_out_of_parts
+from app.reports.conditions import Part, left_out_of_parts, parts_of
 from app.reports.error_sources import sources_in_words
 from app.reports.measures import MEASURES, Measure
 from app.reports.patient_report import panels
@@ -36,7 +36,7 @@ from app.reports.patient_report.what_stands_out import measure_in_words
 from app.reports.visits import by_condition, condition_in_words
 from app.wording import capitalised, joined, tr
 from core.body import JointKind, Side
-from core.verdicts.measurement_error import ComparisonKind, sigma_of
+from core.verdicts.measurement_error import ComparisonKind, Judgement, sigma_of
 from core.verdicts.model import Verdict, worst
 from core.verdicts.quantities import EXCURSIONS_BY_COLUMN, OF_HIPS
 
@@ -96,7 +96,7 @@ def _condition_typed(condition: str) -> str:
 def _condition(visit: AnalysedVisit, name: str, chosen: Sequence[str]) -> Part:
     """All walks of this one's condition; this one alone where several of them are chosen."""
     shown = visit.shown_names[name]
-    for part in conditions_of(visit.analysis, visit.session.recordings, agreed=agreed_with(visit.session)):
+    for part in parts_of(visit.analysis, visit.session.recordings, agreed=agreed_with(visit.session)):
         names = {walk.name for walk in part.walks}
         if name in names:
             is_only = len(names.intersection(chosen)) == 1
@@ -329,6 +329,8 @@ def _what_else_changed(comparison: Comparison) -> str:
 
 
 def _why_not(compared: Compared) -> Cell | str:
+    if compared.reservation is Reservation.NONE and compared.difference.judgement is Judgement.NO_PUBLISHED_FIGURE:
+        return tr("not compared")
     return tr("withheld") if compared.reservation in (Reservation.WITHHELD, Reservation.OTHER_ZERO) else NOTHING
 
 

@@ -181,9 +181,8 @@ class ReportPage(Themed):
         return next((key for key in self.added.chosen if key in ("en", "de")), "")
 
     def _go_to(self, number: int) -> None:
-        with QSignalBlocker(self.reading.verticalScrollBar()):
-            self.reading.verticalScrollBar().setValue(round(self.sheets.top_of(number)))
-        self.sheets.update()
+        self.reading.verticalScrollBar().setValue(round(self.sheets.top_of(number)))
+        self.small.mark(number)  # also of the last, which may not come to stand at the top
 
     def _on_scrolled(self, value: int) -> None:
         """Mark the page that stands at the upper third of what is seen."""

@@ -7,7 +7,7 @@ from PySide6.QtCore import QObject, Signal, Slot
 from app.alignment_words import change_lines, to_do_in_words
 from app.reports.agreed import agreed_with
 from app.reports.comparison import Comparison, Contrast
-from app.reports.conditions import Part, conditions_of
+from app.reports.conditions import Part, parts_of
 from app.reports.patient_report.answer import Answer, Outcome
 from app.reports.patient_report.numbers_in_words import fixed
 from app.wizard.evaluation import failure_in_words
@@ -19,6 +19,7 @@ from app.wizard.walking.walk_labels import is_alignment, new_alignment
 from app.wording import tr
 from core.alignment import AlignmentChange
 from core.body import Side
+from core.samples import Recording
 
 if TYPE_CHECKING:
     from app.wizard.visit import Visit
@@ -43,6 +44,7 @@ class Bench(QObject):
         self._returned_to = ""
         self._shown = self._beside = ""  # letters; empty: the latest, and what it was changed from
         self._to_undo = ""  # in words, as long as the prosthesis is said to be put back
+        self._discarded = ""  # the name of the latest walk, if it was discarded and the next is as it was
         self._may_undo_return = False
 
     @property
@@ -77,14 +79,28 @@ class Bench(QObject):
     def begun(self) -> None:
         """The next walk begins: what was told of it is its own now."""
         self.entry.load(())
-        self._returned_to = self._shown = self._beside = self._to_undo = ""
+        self._returned_to = self._shown = self._beside = self._to_undo = self._discarded = ""
         self._may_undo_return = False
 
-    def discarded(self, change: AlignmentChange | None) -> None:
-        """A walk does not count, but what was changed before it is still so: it is told again of the next."""
-        if change is not None and not self.entry.parts and change.since == self.chain.base:
+    def discarded(self, walk: Recording) -> None:
+        """A walk does not count, but the prosthesis is still as it was then: what was changed is told of the next."""
+        known, change, walks = self.chain.changes, walk.alignment, self._visit.recordings.walks
+        is_latest = bool(walks) and walks[-1].details.name == walk.name
+        if is_latest and walk.condition in known:
+            self._returned_to, self._discarded = walk.condition, walk.name
+        elif is_latest and change is not None and not self.entry.parts and change.since in known:
+            self._returned_to, self._discarded = change.since, walk.name
             self.entry.load(change.parts)
         self._shown = self._beside = ""
+        self.changed.emit()
+
+    def counts_again(self, walk: Recording) -> None:
+        """A walk counts that was discarded: what was told of the next for its sake is its own again."""
+        if walk.name != self._discarded:
+            return
+        self._returned_to = self._discarded = ""
+        if walk.alignment is not None and walk.alignment.parts == self.entry.parts:
+            self.entry.load(())
         self.changed.emit()
 
     def return_to_first(self) -> str:
@@ -109,6 +125,11 @@ class Bench(QObject):
     def settle_return(self) -> None:
         """Something else can be taken back now."""
         self._may_undo_return = False
+
+    @property
+    def returned_to(self) -> str:
+        """The condition that the prosthesis was put back to since the latest walk; empty where it was not."""
+        return self._returned_to
 
     @Slot(int, bool)
     def choose(self, number: int, is_beside: bool) -> None:
@@ -140,7 +161,7 @@ class Bench(QObject):
         drawn = found.parts if found is not None else [shown] if shown is not None else []
         return BenchState(
             self._answer(found, side, shown),
-            self._rows(parts, shown, beside if found else None),
+            self._rows(every, shown, beside if found else None) if every is not None else [],
             self.next_title,
             side,
             drawn,
@@ -172,24 +193,33 @@ class Bench(QObject):
         if evaluation.analysis is None or evaluation.session is None:
             return ()
         session = evaluation.session
-        return conditions_of(evaluation.analysis, session.recordings, agreed=agreed_with(session))
+        parts = parts_of(evaluation.analysis, session.recordings, agreed=agreed_with(session))
+        return tuple(part for part in parts if not part.is_apart)
 
     def _answer(self, found: Comparison | None, side: Side, shown: Part | None) -> Answer:
-        if shown is None or (self._is_behind and not self._shown):
+        if self._is_behind and (shown is None or not self._shown):
             if self._visit.evaluation.has_failed:
                 return Answer(Outcome.OPEN, *failure_in_words())
             return Answer(Outcome.OPEN, tr("The walk is being analysed."), "")
+        if shown is None:
+            return Answer(
+                Outcome.OPEN,
+                tr("There is no walk to compare yet."),
+                tr("Walk without a timed test, and without a target on the patient's screen."),
+            )
         if found is not None:
             return bench_answer(found, side)
         first = tr("{letter} is the starting point. Change one thing, write it down, then walk.")
         return Answer(Outcome.OPEN, first.format(letter=shown.letter), tr("The change is written before its walk."))
 
-    def _rows(self, parts: tuple[Part, ...], shown: Part | None, beside: Part | None) -> list[AlignmentRow]:
-        side, rows = self.side, []
+    def _rows(self, every: Comparison, shown: Part | None, beside: Part | None) -> list[AlignmentRow]:
+        side, parts, rows = self.side, every.parts, []
         for part in parts:
-            since = ""
-            if part.alignment is not None:
-                of_since = next((one.letter for one in parts if one.name == part.alignment.since), part.alignment.since)
+            since, base = "", every.base_of(part)
+            if part.is_again(base):
+                since = tr("{letter} again").format(letter=base.letter)
+            elif part.alignment is not None:
+                of_since = base.letter if base.name == part.alignment.since else part.alignment.since
                 since = tr("{base}, changed").format(base=of_since)
             speed = part.of_both(SPEED)
             strides = part.strides(side) if side is not None else 0

@@ -6,7 +6,7 @@ from app.pages.compared_words import error_in_sentence, is_judged, unit_behind
 from app.reports.comparison import Compared, Comparison
 from app.reports.conditions import Part
 from app.reports.patient_report.answer import Answer, Outcome
-from app.reports.patient_report.numbers_in_words import fixed
+from app.reports.patient_report.numbers_in_words import fixed, signed
 from app.reports.patient_report.what_stands_out import FAMILIES
 from app.wording import tr, within_sentence
 from core.body import Side
@@ -16,7 +16,7 @@ SPEED = "speed_m_s"
 
 
 def bench_answer(found: Comparison, prosthetic: Side) -> Answer:
-    """Tell what of the prosthetic side changed most errors from the other alignment, or that nothing did."""
+    """Tell what of the prosthetic side changed most errors from the other alignment, with its error."""
     shown, other = found.parts[1], found.against
     few = [part for part in (shown, other) if part.strides(prosthetic) < MIN_STRIDES_FOR_SD]
     if few:
@@ -30,17 +30,14 @@ def bench_answer(found: Comparison, prosthetic: Side) -> Answer:
     if not own:
         first = tr("Nothing of the prosthetic side can be compared between {one} and {other}.")
         return Answer(Outcome.OPEN, first.format(one=shown.letter, other=other.letter), _beside(found, prosthetic))
-    worth = _without_family([row for row in own if row.difference.is_worth_a_sentence])
-    if worth:
-        most = max(worth, key=lambda row: row.difference.ratio)
-        error = tr("Larger than its error ({error}).").format(error=error_in_sentence(most))
+    worth = [row for row in own if row.difference.is_worth_a_sentence]
+    beyond = [row for row in own if row.exceeds]  # as the table marks them
+    most = max(_without_family(worth or beyond or own), key=lambda row: row.difference.ratio)
+    if beyond:
+        error = tr("Larger than its error ({error}).") if worth else tr("Just larger than its error ({error}).")
+        error = error.format(error=error_in_sentence(most))
         return Answer(Outcome.DIFFERS, _sentence(most), f"{error} {_beside(found, prosthetic)}")
-    said = tr("No change of the prosthetic side from {other} to {one} is larger than its error.")
-    outcome = Outcome.NOTHING
-    if any(row.exceeds for row in own):
-        said = tr("No change of the prosthetic side from {other} to {one} is far larger than its error.")
-        outcome = Outcome.OPEN
-    return Answer(outcome, said.format(one=shown.letter, other=other.letter), _beside(found, prosthetic))
+    return Answer(Outcome.NOTHING, _similar(most), f"{_what_fits(most)} {_beside(found, prosthetic)}")
 
 
 def speeds_in_words(shown: Part, other: Part) -> str:
@@ -63,30 +60,61 @@ def _without_family(rows: list[Compared]) -> list[Compared]:
 
 
 def _sentence(row: Compared) -> str:
-    """Subtracted before rounding; where rounded figures disagree with that, all have a decimal more."""
-    measure, change = row.measure, row.difference.difference
-    decimals = measure.decimals
-    value, other = row.value.mean, row.other.mean
-    if round(round(value, decimals) - round(other, decimals), decimals) != round(change, decimals):
-        decimals += 1
-    name = tr(measure.name)
-    name = name.rpartition(",")[0] if not measure.kind else name  # the unit is with the figure
+    name, unit, decimals = _name(row), _unit(row), _decimals(row)
     pattern = (
         tr("With {letter} the prosthetic side has {size} less than with {other}: {measure}, {value} against {before}.")
-        if change < 0
+        if row.difference.difference < 0
         else tr(
             "With {letter} the prosthetic side has {size} more than with {other}: {measure}, {value} against {before}."
         )
     )
-    unit = unit_behind(measure) or "\N{NO-BREAK SPACE}%"
     return pattern.format(
         letter=row.part.letter,
         other=row.against.letter,
-        size=fixed(abs(change), decimals) + unit,
+        size=fixed(abs(row.difference.difference), decimals) + unit,
         measure=within_sentence(name),
-        value=fixed(value, decimals) + unit,
-        before=fixed(other, decimals) + unit,
+        value=fixed(row.value.mean, decimals) + unit,
+        before=fixed(row.other.mean, decimals) + unit,
     )
+
+
+def _similar(row: Compared) -> str:
+    """What changed most, where it may be error."""
+    unit, decimals = _unit(row), _decimals(row)
+    said = tr("The prosthetic side is similar with {other} and {one}: {measure} {before} and {value}.")
+    return said.format(
+        one=row.part.letter,
+        other=row.against.letter,
+        measure=within_sentence(_name(row)),
+        value=fixed(row.value.mean, decimals) + unit,
+        before=fixed(row.other.mean, decimals) + unit,
+    )
+
+
+def _what_fits(row: Compared) -> str:
+    found, unit, decimals = row.difference, _unit(row), _decimals(row)
+    said = tr("The change of {size} may be measurement error: anything from {low} to {high} fits.")
+    edges = (found.difference, found.difference - found.error, found.difference + found.error)
+    size, low, high = (signed(edge, decimals) + unit for edge in edges)
+    return said.format(size=size, low=low, high=high)
+
+
+def _name(row: Compared) -> str:
+    """Of the measure; the unit is with the figure."""
+    name = tr(row.measure.name)
+    return name if row.measure.kind else name.rpartition(",")[0]
+
+
+def _unit(row: Compared) -> str:
+    return unit_behind(row.measure) or "\N{NO-BREAK SPACE}%"
+
+
+def _decimals(row: Compared) -> int:
+    """Subtracted before rounding; where rounded figures disagree with that, all have a decimal more."""
+    decimals, value, other = row.measure.decimals, row.value.mean, row.other.mean
+    difference = row.difference.difference
+    disagree = round(round(value, decimals) - round(other, decimals), decimals) != round(difference, decimals)
+    return decimals + disagree
 
 
 def _beside(found: Comparison, prosthetic: Side) -> str:

@@ -48,6 +48,7 @@ class PatientFeedback(QObject):
         self._seen = 0  # of the estimator's values
         self._last: deque[int] = deque(maxlen=SHOWN_STRIDES)
         self._is_waiting = False
+        self._steps: int | None = None  # of the walk that goes on
         self._counted: dict[Target, TargetTally] | None = None  # while a walk is recorded
         self._news.connect(self._on_news, Qt.ConnectionType.QueuedConnection)
         controls.target_set.connect(self._on_target_set)
@@ -64,7 +65,7 @@ class PatientFeedback(QObject):
     @property
     def view(self) -> PatientView:
         """What the patient is shown."""
-        return PatientView(self.target, tuple(self._last), self._is_waiting, sounds.is_on())
+        return PatientView(self.target, tuple(self._last), self._is_waiting, sounds.is_on(), self._steps)
 
     def toggle(self) -> None:
         """Open the patient's screen, with its controls on the page; or close both."""
@@ -107,13 +108,23 @@ class PatientFeedback(QObject):
     def begin_walk(self) -> None:
         """Count from here on, and show the strides of this walk only."""
         self._counted = {}
+        worn = self._visit.sensors.site_of.values()
+        self._steps = 0 if any(site.segment is Segment.FOOT for site in worn) else None  # else nothing counts them
         self._last.clear()
         self._show()
 
     def end_walk(self) -> tuple[TargetTally, ...]:
         """How often each target of this walk was reached; none where no walk was begun."""
         counted, self._counted = self._counted or {}, None
+        self._steps = None
+        self._show()
         return tuple(counted.values())
+
+    def count(self, strides: Mapping[Side, int]) -> None:
+        """Show how many steps were counted of the walk that goes on, as the operator sees them."""
+        if self._steps is not None and strides:
+            self._steps = max(strides.values())
+            self._show()
 
     def show_reasons(self) -> None:
         """Judge anew what can be a target; what no longer can is none from here on."""

@@ -184,6 +184,8 @@ class WalkingStep(Step):
             feedback.judge(view)
         if is_live and self._preview.follow(view) and self._preview.shown is not None:
             self.page.show_view(self._preview.shown)
+            if feedback is not None:
+                feedback.count(self._preview.shown.strides)
 
     def bar(self) -> BarState:
         return self._bar.state(self._label)
@@ -208,6 +210,8 @@ class WalkingStep(Step):
         elif self.bench.is_shown and number < len(self.bar().others) - 1:
             if said := self.bench.return_to_first():
                 self._kept = self._discarded = None
+                self._label = self.bench.returned_to
+                self._show()
                 self.offered.emit(said)
         else:
             self._run()
@@ -266,6 +270,8 @@ class WalkingStep(Step):
 
     def undo(self) -> None:
         if self.bench.undo_return():
+            self._label = label_after(self._visit.patient.details, self._used)
+            self._show()
             return
         if (kept := self._recording(self._kept)) is not None:
             self._kept = None
@@ -320,9 +326,11 @@ class WalkingStep(Step):
     def _keep(self, recording: "SessionRecording", is_kept: bool) -> None:
         called = self._visit.recordings.called(recording.details.name)
         self._visit.recordings.keep(recording, is_kept)
-        if not is_kept:
+        if is_kept:
+            self.bench.counts_again(recording.details)
+        else:
             self.bench.settle_return()
-            self.bench.discarded(recording.details.alignment)
+            self.bench.discarded(recording.details)
             self._kept = None
             self._discarded = recording.id
             self.offered.emit(tr("{walk} discarded.").format(walk=called))

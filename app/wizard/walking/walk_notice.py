@@ -2,6 +2,7 @@
 
 from typing import TYPE_CHECKING
 
+from app.reports.pooled_walks import pools_of
 from app.storage.stored import RecordingState
 from app.wizard.losses import NOTHING, Losses, Message
 from app.wizard.walk_messages import (
@@ -70,12 +71,13 @@ class WalkNotice:
     def _few_strides(self) -> Message:
         """Say what is short of a spread for the last walk's condition, if its walks are all too short together."""
         walks = [recording for recording in self._visit.recordings.walks if recording.details.is_kept]
-        if not walks:
+        if not walks or walks[-1].details.test is not None:  # a test is as long as it is
             return NOTHING
-        condition = walks[-1].details.condition
+        pools = pools_of([recording.details for recording in self._visit.recordings.every])
+        last = pools[walks[-1].details.name]
         counts: dict[Side, int] = {}
         for recording in walks:
-            if recording.details.condition == condition:
+            if pools[recording.details.name] == last:
                 for side, count in strides_of(self._visit, recording).items():
                     counts[side] = counts.get(side, 0) + count
         return few_strides_message(counts)

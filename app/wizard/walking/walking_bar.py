@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from app import sounds
 from app.icons import Icon
+from app.timed_words import name_of_test
 from app.widgets.action_bar import BarAction, BarState, RecordingNote
 from app.wizard.walking.bench_bar import bench_bar
 from app.wizard.walking.bench_control import Bench
@@ -15,7 +16,7 @@ from app.wizard.walking.timed_control import TimedControl
 from app.wizard.walking.walk_notice import asked_walk
 from app.wizard.walking.walk_rows import ongoing_walk
 from app.wizard.walking.walk_start import WalkStart
-from app.wording import capitalised, tr
+from app.wording import capitalised, tr, within_sentence
 
 if TYPE_CHECKING:
     from app.wizard.session_recording import Ongoing
@@ -84,8 +85,9 @@ class WalkingBar:
             return BarState(primary=self._start_action, note=said)
         if self._bench.is_shown:
             asked = asked_walk(recordings)
-            condition = None if asked is None else asked.details.condition
-            return bench_bar(self._bench, condition, self._start.missing_now, self._start.is_possible)
+            letter = None if asked is None else recordings.shown_names[asked.details.name].letter
+            note = self._start.missing_now or self._armed(self._bench.next_walk()[0])
+            return bench_bar(self._bench, letter, self._test_words, note, self._start.is_possible)
         return self._between_walks(label)
 
     def _of_walk(self, walk: "Ongoing") -> BarState:
@@ -108,11 +110,15 @@ class WalkingBar:
         """Where there is no bench."""
         recordings, start, missing = self._visit.recordings, self._start_action, self._start.missing_now
         if asked_walk(recordings) is not None:
-            both = replace(start, text=tr("Keep, start next"), is_wished=False)
+            words = tr("Keep, start next")
+            if test := self._timed.planned:
+                words = tr("Keep, start {test}").format(test=within_sentence(name_of_test(test.protocol)))
+            both = replace(start, text=words, is_wished=False)
             return BarState(primary=both, note=missing or self._timed.next_words(label))
         if any(recording.details.is_kept for recording in recordings.walks):
             results = BarAction(tr("Results"), "", Icon.NEXT)
-            return BarState(primary=results, others=(replace(start, is_wished=False),), note=missing)
+            note = missing or self._armed(label)
+            return BarState(primary=results, others=(replace(start, is_wished=False),), note=note)
         note = self._timed.next_words(label)
         if not recordings.has_moved:
             note = tr("Without a free motion, angles are poor or missing.")
@@ -120,7 +126,18 @@ class WalkingBar:
 
     @property
     def _start_action(self) -> BarAction:
-        return BarAction(tr("Start walk"), tr("Space"), Icon.PLAY, is_enabled=self._start.is_possible)
+        words = self._test_words or tr("Start walk")
+        return BarAction(words, tr("Space"), Icon.PLAY, is_enabled=self._start.is_possible)
+
+    @property
+    def _test_words(self) -> str:
+        """What the key starts where a timed test is chosen; empty where none is."""
+        test = self._timed.planned
+        return "" if test is None else tr("Start {test}").format(test=within_sentence(name_of_test(test.protocol)))
+
+    def _armed(self, label: str) -> str:
+        """What the next walk is, where it is a timed test: T chooses one also where no chooser is in sight."""
+        return "" if self._timed.planned is None else self._timed.next_words(label)
 
     def _saved(self) -> str:
         """Say that what comes in is saved, only while the journal has it so."""

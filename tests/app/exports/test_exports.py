@@ -3,6 +3,8 @@
 import datetime
 import io
 import json
+import os
+import stat
 import zipfile
 from dataclasses import replace
 from pathlib import Path
@@ -10,7 +12,7 @@ from uuid import uuid4
 
 import pytest
 
-from app.exports import exports
+from app.exports import exports, folder_pseudonyms
 from app.exports.exports import (
     Format,
     export_from_folder,
@@ -208,16 +210,37 @@ def test_conditions_without_their_words_are_numbered(planted: tuple[Session, Ana
     assert [one.condition for one in told.recordings] == ["condition 1", "", "condition 1", "condition 2"]
 
 
-def test_a_session_of_no_library_gets_another_pseudonym_each_time(
-    visit: tuple[Session, Analysis], tmp_path: Path
+def code_of(session: Session) -> object:
+    (code,) = (value for name, value in preview_from_folder(session) if name == "patient")
+    return code
+
+
+def test_a_session_of_no_library_gets_the_same_pseudonym_in_every_export_of_this_computer(
+    visit: tuple[Session, Analysis], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    codes = set()
+    session, analysis = visit
+    said = []
     for name in ("one", "other"):
         (tmp_path / name).mkdir()
-        export_from_folder(*visit, [Format.FHIR], tmp_path / name)
-        bundle = json.loads((tmp_path / name / "fhir_bundle.json").read_text())
-        codes.add(bundle["entry"][0]["resource"]["identifier"][0]["value"])
-    assert len(codes) == 2
+        export_from_folder(session, analysis, [Format.FHIR, Format.BIDS], tmp_path / name)
+        said.append(everything_in(tmp_path / name))
+    assert said[0] == said[1]
+    assert str(code_of(session)) in said[0]
+    # it is of what was measured, and of this computer
+    assert code_of(replace(session, patient=replace(session.patient, code="DEMO-7"))) == code_of(session)
+    assert code_of(replace(session, recordings=session.recordings[1:])) != code_of(session)
+    here = code_of(session)
+    monkeypatch.setattr(folder_pseudonyms, "key_file", lambda: tmp_path / "another" / "pseudonyms.key")
+    assert code_of(session) != here
+    assert stat.S_IMODE((tmp_path / "another" / "pseudonyms.key").stat().st_mode) & 0o077 == 0 or os.name == "nt"
+
+
+def test_where_no_key_can_be_kept_an_export_is_made_all_the_same(
+    visit: tuple[Session, Analysis], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "file").write_text("")
+    monkeypatch.setattr(folder_pseudonyms, "key_file", lambda: tmp_path / "file" / "pseudonyms.key")
+    assert code_of(visit[0]) != code_of(visit[0])
 
 
 def test_a_library_notes_what_left_it_and_gives_the_same_pseudonym(

@@ -31,7 +31,7 @@ from app.storage.library import Library
 from app.storage.opened import OpenedLibrary
 from app.storage.recovery import adopt_home, find_interrupted, recover
 from app.storage.rollback import Rollback
-from app.storage.stored import LibraryError, PlacedSensor, Role, StoredJournal, StoredPatient
+from app.storage.stored import LibraryError, PlacedSensor, RecordingState, Role, StoredJournal, StoredPatient
 from app.theme import ThemeNotifier, load_fonts
 from app.widgets.button import Button
 from app.workers.library_controller import LibraryController
@@ -179,6 +179,7 @@ def test_a_session_folder_is_imported_for_a_patient(qtbot: QtBot, home: Home, tm
     block = ImuBlock("LT-1", time_s, np.zeros((300, 3)), np.tile([0.0, 0.0, 9.81], (300, 1)))
     recording = Recording("walk 1", RecordingKind.WALKING, "walk_1", {Site.LEFT_THIGH: block})
     write_session(Session((recording,), Patient(code="P-0200"), started="2026-11-02T10:00:00"), tmp_path / "visit")
+    home.page.import_wished.emit()
     home.importing.read([tmp_path / "visit"])
     qtbot.waitUntil(lambda: home.current is home.importing.page, timeout=WAIT_MS)
     assert home.importing.page.code.text == "P-0200"
@@ -301,7 +302,7 @@ def test_what_was_being_recorded_is_recovered_and_marked(
     assert "of walk 3 was recovered" in home.banner.text
     qtbot.waitUntil(lambda: any(line.needs_look for line in sessions(home)), timeout=WAIT_MS)
     (marked,) = (line for line in sessions(home) if line.needs_look)
-    assert (marked.id, marked.state) == (session_id, "recovered, look at it")
+    assert (marked.id, marked.state) == (session_id, "keep or discard?")
     qtbot.waitUntil(lambda: [one.needs_look for one in lines(home)] == [True, False], timeout=WAIT_MS)
 
 
@@ -584,3 +585,30 @@ def test_under_a_patients_code_stand_no_sessions_of_another_while_theirs_are_rea
     assert sessions(home) == []
     assert not page.panel.none_yet.isVisible()
     qtbot.waitUntil(page.panel.none_yet.isVisible, timeout=WAIT_MS)
+
+
+def closed_amid(folder: Path, name: str) -> UUID:
+    """A walk of the latest session that ended with the program: nobody said whether it is kept."""
+    data_key = KeySlots(folder / KEYS).open("hk", PASSPHRASE)
+    with Library.open(folder, data_key) as library:
+        library.log_in("hk")
+        line = library.sessions.list()[0]
+        told = Recording(name, RecordingKind.WALKING, name.replace(" ", "_"), {}, condition="Shoes")
+        walk = library.recordings.start(line.id, told, False, is_decided=False)
+        library.recordings.add_journal(walk.id, StoredJournal(1, f"{walk.id}.1.journal", b"key"))
+        library.recordings.close(walk.id, RecordingState.CLOSED, {1: ""})
+        return line.id
+
+
+def test_a_walk_that_ended_with_the_program_is_asked_about_at_the_next_start(
+    qtbot: QtBot, qapp: QApplication, controller: LibraryController, settings: Settings, folder: Path
+) -> None:
+    session_id = closed_amid(folder, "walk 3")
+    home = new_home(qtbot, controller, settings)
+    open_library(qtbot, controller, home, folder)
+    qtbot.waitUntil(home.banner.isVisible, timeout=WAIT_MS)
+    asked = "The program was closed before A Shoes of P-0163 was kept or discarded."
+    assert home.banner.text.replace("B Shoes", "A Shoes") == f"{asked} Look at it, then keep or discard."
+    qtbot.waitUntil(lambda: [one.id for one in sessions(home) if one.needs_look] == [session_id], timeout=WAIT_MS)
+    (marked,) = (line for line in sessions(home) if line.needs_look)
+    assert marked.state == "keep or discard?"

@@ -199,3 +199,12 @@ def test_import_begins_with_a_choice_of_files_or_a_folder(qtbot: QtBot, home: Ho
     assert page.choose_files.hasFocus()
     home.escape()
     assert home.page.isVisible()
+
+
+def test_nothing_is_filled_in_but_what_the_files_say(qtbot: QtBot, home: Home, tmp_path: Path) -> None:
+    """Not the code of the patient who is in sight."""
+    home.page.patients.choose_line(home.page.patients.lines[0].id)
+    qtbot.waitUntil(lambda: home.patients.patient is not None, timeout=WAIT_MS)
+    home.page.import_wished.emit()
+    page = read(qtbot, home, monitors(tmp_path / "walk.csv", ("Left Thigh", "Left Shank")))
+    assert (page.code.text, home.bar.primary.isEnabled()) == ("", False)

@@ -134,7 +134,8 @@ def importing_files(look: ThemeNotifier) -> QWidget:
     names = ("Left Foot", "Left Thigh", "00B4227C", "00B4227D", "00B421EF", "00B42279")
     sensors = tuple(ImportedSensor(name, (), "walk.csv", block, SensorInfo(rate_hz=100.0)) for name in names)
     (draft,) = drafts_of([("walk_1", ImportedTrial("apdm", sensors))])
-    page.show_draft("session_2026", "APDM Moveo, Mobility Lab or Motion Studio", draft, "P-0300")
+    page.show_draft("session_2026", "APDM Moveo, Mobility Lab or Motion Studio", draft)
+    page.code.set_text("P-0300")
     page.show_unread([tr("This was stopped.")], can_try_again=True)
     return page
 

@@ -2,13 +2,16 @@
 
 import pytest
 from PySide6.QtCore import Qt
+from PySide6.QtGui import QKeyEvent
 from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
 from app.patient_screen.controls import Choice, ControlsCard, choices
 from app.theme import ThemeNotifier
 from core.body import Side
 from core.targets import Target, TargetMeasure
+from tests.app.room import words_cut
 
 
 @pytest.fixture
@@ -33,8 +36,8 @@ def test_a_target_is_what_was_typed_for_a_measure_of_a_leg(qtbot: QtBot, card: C
     assert told.args == [Target(TargetMeasure.KNEE_SWING_PEAK, Side.LEFT, 55)]
     with qtbot.waitSignal(card.target_set) as told:
         card.side.choose(Side.RIGHT)
-    assert told.args == [None]  # of the other leg none was typed
-    assert card.target.text == ""
+    assert told.args == [Target(TargetMeasure.KNEE_SWING_PEAK, Side.RIGHT, 55)]  # it stays as the side changes
+    assert card.target.text == "55"
     card.measure.choose(TargetMeasure.CADENCE)
     assert not card.side.isVisible()
     with qtbot.waitSignal(card.target_set) as told:
@@ -44,6 +47,44 @@ def test_a_target_is_what_was_typed_for_a_measure_of_a_leg(qtbot: QtBot, card: C
     with qtbot.waitSignal(card.target_set) as told:
         card.side.choose(Side.LEFT)
     assert told.args == [Target(TargetMeasure.KNEE_SWING_PEAK, Side.LEFT, 55)]
+
+
+def test_enter_in_a_field_sets_what_is_typed_and_is_for_no_other(qtbot: QtBot, card: ControlsCard) -> None:
+    heard: list[int] = []
+
+    class Page(QWidget):
+        def keyPressEvent(self, event: QKeyEvent) -> None:
+            heard.append(event.key())
+
+    page = Page()
+    qtbot.addWidget(page)
+    card.setParent(page)
+    page.show()
+    for field in (card.target, card.rate):
+        field.line_edit.setFocus()
+        QTest.keyClicks(field.line_edit, "55")
+        QTest.keyClick(field.line_edit, Qt.Key.Key_Return)
+    assert heard == []
+    card.measure.segments[0].setFocus()
+    QTest.keyClick(card.measure.segments[0], Qt.Key.Key_Return)
+    assert heard == [Qt.Key.Key_Return]  # a choice has no use for it
+    card.setParent(None)
+
+
+@pytest.mark.usefixtures("pseudo_language")
+@pytest.mark.parametrize("width", [640, 1016])
+def test_no_word_of_the_card_is_cut_when_what_is_typed_is_wrong(qtbot: QtBot, look: ThemeNotifier, width: int) -> None:
+    card = ControlsCard(look)
+    qtbot.addWidget(card)
+    card.show()
+    card.resize(width, card.sizeHint().height())
+    typed(card, "555")
+    card.resize(card.width(), card.sizeHint().height())
+    assert words_cut(card) == []
+    typed(card, "")
+    card.tick.click()
+    card.resize(card.width(), card.sizeHint().height())
+    assert words_cut(card) == []
 
 
 def test_a_figure_that_makes_no_sense_sets_no_target(qtbot: QtBot, card: ControlsCard) -> None:

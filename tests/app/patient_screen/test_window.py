@@ -71,6 +71,16 @@ def test_before_the_first_step_nothing_is_counted() -> None:
     assert PatientView().in_words == "Please wait"
 
 
+def test_without_a_target_the_steps_of_a_walk_are_shown_and_nobody_is_to_wait(window: PatientWindow) -> None:
+    window.show_view(PatientView(steps=13))
+    assert window.accessibleName() == "13 steps so far"
+    shown = picture(window)
+    window.show_view(PatientView(steps=14))
+    assert picture(window) != shown
+    window.show_view(PatientView(steps=None))
+    assert window.accessibleName() == "Please wait"
+
+
 @pytest.mark.parametrize("side", Side)
 @pytest.mark.parametrize("measure", [measure for measure in TargetMeasure if measure.has_side])
 def test_each_title_names_its_leg(measure: TargetMeasure, side: Side) -> None:

@@ -31,8 +31,8 @@ from app.reports.course_words import (
     last_in_words,
     next_step,
     nothing_between,
-    recovered_step,
     since_last_in_words,
+    undecided_step,
     visit_in_words,
 )
 from app.reports.goals import reached_at
@@ -205,12 +205,12 @@ def latest(days_ago: int = 1, *withheld: Joint, has_walk: bool = True, has_repor
 
 
 def test_what_is_next_is_the_first_that_holds() -> None:
-    recovered = recovered_step(UUID(int=7), datetime.date(2026, 11, 2))
+    recovered = undecided_step(UUID(int=7), datetime.date(2026, 11, 2))
     gated_and_unwritten = latest(90, Joint.LEFT_KNEE, has_report=False)
     assert next_step(recovered, gated_and_unwritten, TODAY) == NextStep(
-        "look at the walk of 2 Nov that was recovered.", "Look", UUID(int=7)
+        "keep or discard the walk of 2 Nov.", "Look", UUID(int=7)
     )
-    assert recovered_step(UUID(int=7), None).sentence == "look at the walk that was recovered."
+    assert undecided_step(UUID(int=7), None).sentence == "keep or discard the last walk."
     assert next_step(None, latest(1, Joint.LEFT_KNEE, Joint.LEFT_ANKLE, has_report=False), TODAY) == NextStep(
         "left knee and left ankle could not be read on 22 Nov: see why.", "Look", UUID(int=1)
     )

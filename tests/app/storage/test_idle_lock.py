@@ -3,6 +3,8 @@
 from collections.abc import Callable
 from pathlib import Path
 
+import pytest
+
 from app.storage.idle_lock import IdleLock
 from app.storage.journal.records import RecordKind
 from app.storage.journal.writer import JournalWriter, State
@@ -131,3 +133,14 @@ def test_who_leaves_the_desk_locks_at_once_and_only_once() -> None:
     idle.unlock()
     idle.lock_now()
     assert len(locked) == 2
+
+
+@pytest.mark.parametrize("is_asked_for", [True, False])
+def test_a_lock_knows_whether_somebody_asked_for_it(is_asked_for: bool) -> None:
+    now_s = [0.0]
+    idle = IdleLock(lambda: now_s[0], lambda: None)
+    now_s[0] = 301.0
+    (idle.lock_now if is_asked_for else idle.poll)()
+    assert (idle.is_locked, idle.is_asked_for) == (True, is_asked_for)
+    idle.unlock()
+    assert idle.is_asked_for is False

@@ -160,3 +160,20 @@ def test_what_was_broken_off_does_not_count(qtbot: QtBot, visit: Visit, worn: di
     assert recordings.standing is None
     record(qtbot, visit, RecordingKind.STANDING, 2.0)
     assert recordings.standing is not None
+
+
+def test_a_walk_that_ends_with_the_window_waits_to_be_kept_or_discarded(
+    qtbot: QtBot, controller: LibraryController, visit: Visit, worn: dict[str, Site]
+) -> None:
+    begin(qtbot, visit, worn)
+    recordings, acquisition = visit.recordings, visit.sensors.acquisition
+    assert acquisition is not None
+    with qtbot.waitSignal(recordings.begun, timeout=WAIT_MS):
+        recordings.begin(acquisition, RecordingKind.WALKING)
+    with qtbot.waitSignal(recordings.ended, timeout=WAIT_MS):
+        visit.close()
+    assert controller.state is not None
+    (walk,) = controller.state.library.library.recordings.undecided()
+    assert walk.recording.details.name == "walk 1"
+    controller.state.library.library.recordings.decide(walk.recording, is_kept=False)
+    assert controller.state.library.library.recordings.undecided() == ()

@@ -13,7 +13,8 @@ from pytestqt.qtbot import QtBot
 from app.storage.edited_fields import patient_fields, recording_fields, session_fields
 from app.storage.library import Library
 from app.storage.opened import open_library
-from app.storage.stored import BEGINNING, Limits, PlacedSensor
+from app.storage.shared_edits import SharedEdits
+from app.storage.stored import BEGINNING, LibraryError, Limits, PlacedSensor
 from app.storage.three_way import Value
 from app.wizard.edit_dialog import EditDialog
 from app.wizard.report.step import ReportStep
@@ -336,3 +337,53 @@ def test_what_is_refused_by_another_station_after_the_visit_was_left_is_still_as
     wizard.leave()  # which saves
     answer(dialog_of(qtbot, wizard), Qt.Key.Key_Left, Qt.Key.Key_Return)
     qtbot.waitUntil(lambda: other.told.height_m == 1.82, timeout=WAIT_MS)
+
+
+def report_of(wizard: Wizard) -> ReportStep:
+    """The last step, in sight."""
+    step = wizard.steps[-1]
+    assert isinstance(step, ReportStep)
+    wizard.shell.add_page(wizard.steps.index(step), step.page)
+    wizard.go_to(len(wizard.steps) - 1)
+    return step
+
+
+def test_words_of_the_report_saved_as_the_session_is_left_are_there_when_it_is_opened_again(
+    qtbot: QtBot, wizard: Wizard, ours: Visit, other: OtherStation
+) -> None:
+    """Typed on while the first were being saved, they are saved after the session was left: nobody else's words."""
+    report = report_of(wizard).page.report
+    for words in ("Keep", "Keep alignment C."):
+        report.comment.setPlainText(words)
+        report.flush()
+    wizard.show_session(other.session_id)
+    visit = wizard.visit
+    assert visit is not None
+    assert visit is not ours
+    ear = Ear(visit)
+    qtbot.waitUntil(lambda: visit.session is not None, timeout=WAIT_MS)
+    assert visit.record.comment == "Keep alignment C."
+    visit.record.set_turned(Joint.LEFT_KNEE, -1)
+    sessions, session_id = other.library.sessions, other.session_id
+    settle(qtbot, visit, other, lambda: bool(sessions.get(session_id).details.turned_sign) and not visit.is_saving)
+    assert (ear.heard, wizard.asked.dialog) == ([], None)
+
+
+def test_words_typed_after_a_refusal_are_nobody_elses(
+    qtbot: QtBot, wizard: Wizard, ours: Visit, other: OtherStation, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    report = report_of(wizard).page.report
+    with monkeypatch.context() as patched:
+        patched.setattr(SharedEdits, "session", _refuse)
+        with qtbot.waitSignal(ours.record.refused, timeout=WAIT_MS):
+            report.comment.setPlainText("Keep")
+            report.flush()
+    report.comment.setPlainText("Keep alignment C.")
+    report.flush()
+    sessions, session_id = other.library.sessions, other.session_id
+    settle(qtbot, ours, other, lambda: sessions.get(session_id).comment == "Keep alignment C.")
+    assert wizard.asked.dialog is None
+
+
+def _refuse(*_anything: object) -> None:
+    raise LibraryError("The library is busy", "Try again")

@@ -142,6 +142,22 @@ def test_five_rises_are_timed_to_the_fifth(seed: int) -> None:
     assert timed(shorter, TimedProtocol.SIT_TO_STAND).missing == (NotMeasured.NOT_FINISHED,)
 
 
+def test_rises_from_a_chair_are_no_walk_without_strides(up_and_go: SimulatedCourse) -> None:
+    """In no test of theirs is a stride looked for, where one that is walked has them."""
+
+    def findings_of(made: SimulatedCourse, protocol: TimedProtocol | None) -> tuple[set[str], int]:
+        test = PlannedTest(protocol) if protocol is not None else None
+        found = analyse(with_course(made.session, replace(made.session.recordings[1], test=test)))
+        walk = found.recordings[-1]
+        about = {"no_strides", "side_without_strides", "no_mean", "no_spread", "no_spread_of_side"}
+        return {one.key for one in found.findings} & about, sum(len(gait.strides) for gait in walk.gait.values())
+
+    made = simulate_course(draw_course(CourseKind.SIT_TO_STAND, 0))
+    assert findings_of(made, TimedProtocol.SIT_TO_STAND) == (set(), 0)
+    assert findings_of(made, None)[0] == {"no_strides"}
+    assert findings_of(up_and_go, TimedProtocol.UP_AND_GO)[1] > 0
+
+
 def test_what_is_missing_is_named(ten_metres: SimulatedCourse, up_and_go: SimulatedCourse) -> None:
     # no still second: the recording begins in the middle of the walk
     late = cut(ten_metres.session, float(ten_metres.truth.contacts_s[4]), np.inf)

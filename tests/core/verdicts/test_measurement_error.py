@@ -68,12 +68,21 @@ def test_stance_is_not_judged_between_legs_of_which_one_rolls_over_its_toe_off()
     for name, kind, expected in (
         ("stance_percent", LEGS, Judgement.NO_PUBLISHED_FIGURE),
         ("swing_percent", LEGS, Judgement.NO_PUBLISHED_FIGURE),
-        ("stance_percent", ATTACHED, Judgement.EXCEEDS_ERROR),  # as late in both walks
         ("step_time_s", LEGS, Judgement.EXCEEDS_ERROR),
     ):
         for assessments in ((rolls_on, READ), (READ, rolls_on)):
             assert compare(name, kind, sure(70.0), sure(50.0), assessments).judgement is expected, name
         assert compare(name, kind, sure(70.0), sure(50.0), TOLD).judgement is Judgement.EXCEEDS_ERROR, name
+
+
+@pytest.mark.parametrize("kind", ComparisonKind)
+def test_stance_of_a_leg_that_rolls_over_its_toe_off_is_compared_with_nothing(kind: ComparisonKind) -> None:
+    rolls_on = assess([GateReason("toe_off", Verdict.CARE)])
+    for name in ("stance_percent", "swing_percent"):
+        found = compare(name, kind, sure(70.0), sure(50.0), (rolls_on, rolls_on))
+        assert (found.is_told, found.judgement) == (False, Judgement.NO_PUBLISHED_FIGURE)
+        assert compare(name, kind, sure(70.0), sure(50.0), TOLD).is_told
+    assert compare("knee_range_deg", kind, sure(70.0), sure(50.0), (rolls_on, rolls_on)).is_told
 
 
 def test_strides_that_are_not_known_do_not_count_and_one_has_no_spread() -> None:

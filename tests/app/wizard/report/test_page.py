@@ -1,8 +1,9 @@
 """The report's page: pictures of the pages are as fine as there is room for them."""
 
 import pytest
-from PySide6.QtCore import QBuffer, QByteArray
+from PySide6.QtCore import QBuffer, QByteArray, Qt
 from PySide6.QtGui import QImage
+from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
 from app.theme import ThemeNotifier
@@ -47,3 +48,17 @@ def test_more_room_asks_for_finer_pictures_and_less_for_none(qtbot: QtBot, page:
     page.show_pages([png(page.pages_ppi)])
     with qtbot.assertNotEmitted(page.sharper_wanted, wait=2 * REBUILT_AFTER_MS):
         page.resize(1000, 600)
+
+
+@pytest.mark.parametrize("number", [0, 1, 3])
+def test_a_small_page_that_is_pressed_brings_that_page_into_sight(qtbot: QtBot, page: ReportPage, number: int) -> None:
+    page.show_pages([png(40.0)] * 4)
+    qtbot.waitUntil(lambda: page.reading.verticalScrollBar().maximum() > 0, timeout=5000)
+    page.small.mark(2)
+    at = page.small.place_of(number).center().toPoint()
+    QTest.mouseClick(page.small, Qt.MouseButton.LeftButton, pos=at)
+    assert page.small.number == number
+    seen = page.sheets.visibleRegion().boundingRect()
+    top, bottom = page.sheets.top_of(number), page.sheets.top_of(number + 1)
+    assert seen.top() <= top + 1
+    assert min(seen.bottom(), bottom) - max(seen.top(), top) >= 0.5 * min(seen.height(), bottom - top)

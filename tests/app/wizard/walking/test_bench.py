@@ -11,7 +11,7 @@ from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
 from app.reports.comparison import Comparison, Contrast
-from app.reports.conditions import Part
+from app.reports.conditions import Part, parts_of
 from app.reports.patient_report.answer import Outcome
 from app.theme import ThemeNotifier
 from app.widgets.table_cells import TextCell
@@ -28,9 +28,10 @@ from app.wizard.walking.walk_list import WalkRow, WalkState
 from core.alignment import AlignmentChange, NetChange, PartChange, ProsthesisPart
 from core.body import Joint, Side
 from core.results import SideGait
-from core.samples import Session
+from core.samples import Recording, Session
+from core.timed.protocols import PlannedTest, TimedProtocol
 from tests.app.room import words_cut
-from tests.app.wizard.walking.bench_material import OF_B, OF_C, PYLON, WALKED, bench_visit
+from tests.app.wizard.walking.bench_material import OF_B, OF_C, PYLON, WALKED, bench_visit, recording
 from tests.core.verdicts.built_walk import calibrations, judged_walk, leg, walk
 
 
@@ -118,7 +119,8 @@ def test_of_a_range_and_the_excursion_that_makes_it_the_excursion_is_told(swing_
 def test_where_only_the_sound_side_changes_no_sentence_is_of_the_prosthetic_one() -> None:
     outcome, first, then = told_of(part("B", right=leg(Side.RIGHT, knee_range_deg=70.0)), part("A"))
     assert outcome is Outcome.NOTHING
-    assert first == "No change of the prosthetic side from A to B is larger than its error."
+    assert first == "The prosthetic side is similar with A and B: knee range 60.0° and 60.0°."
+    assert then.startswith("The change of 0.0° may be measurement error: anything from \N{MINUS SIGN}")
     assert "The sound side changes beyond error, too." in then
 
 
@@ -130,6 +132,47 @@ def test_strapped_on_anew_between_the_error_is_the_larger_and_said_so() -> None:
     outcome, _, then = told_of(replace(changed, attachment=1), other)
     assert outcome is Outcome.NOTHING
     assert "Sensors were strapped on anew between." in then
+
+
+def test_a_change_that_the_table_marks_is_told_with_its_error_however_little_it_is_beyond() -> None:
+    """63.5 against 60 is beyond the error of 2.8, and by less than a sentence on paper needs."""
+    one, other = part("B", left=leg(Side.LEFT, knee_range_deg=63.5)), part("A")
+    (row,) = (
+        row
+        for row in Comparison(Contrast.CONDITIONS, (other, one)).rows
+        if (row.measure.column, row.side) == ("knee_range_deg", Side.LEFT)
+    )
+    assert row.exceeds
+    assert not row.difference.is_worth_a_sentence
+    outcome, first, then = told_of(one, other)
+    assert outcome is Outcome.DIFFERS
+    assert first.startswith("With B the prosthetic side has 3.5° more than with A: knee range, 63.5° against 60.0°.")
+    assert then.startswith("Just larger than its error (")
+
+
+def test_what_may_be_error_is_told_with_what_fits() -> None:
+    outcome, first, then = told_of(part("B", left=leg(Side.LEFT, knee_range_deg=61.0)), part("A"))
+    assert outcome is Outcome.NOTHING
+    assert first == "The prosthetic side is similar with A and B: knee range 60.0° and 61.0°."
+    assert then.startswith("The change of +1.0° may be measurement error: anything from \N{MINUS SIGN}1.")
+
+
+@pytest.mark.parametrize("is_biased", [True, False])
+def test_stance_of_a_prosthetic_foot_is_compared_at_the_bench_nowhere(
+    qtbot: QtBot, look: ThemeNotifier, is_biased: bool
+) -> None:
+    def of(stance_percent: float) -> SideGait:
+        return leg(Side.LEFT, stance_percent=stance_percent, is_toe_off_biased=is_biased)
+
+    one, other = part("B", left=of(70.0)), part("A", left=of(60.0))
+    outcome, *_ = told_of(one, other)
+    assert outcome is (Outcome.NOTHING if is_biased else Outcome.DIFFERS)
+    differences = BenchDifferences(look)
+    qtbot.addWidget(differences)
+    differences.show_pair(Comparison(Contrast.CONDITIONS, (other, one)), Side.LEFT, "")
+    said = [[cell.text for cell in row.cells if isinstance(cell, TextCell)] for row in differences.table.cells.rows]
+    (stance, *_) = (row for row in said if row[0].startswith("Stance"))
+    assert ("not compared" in stance) is is_biased
 
 
 def test_under_ten_strides_nothing_is_judged() -> None:
@@ -185,19 +228,99 @@ def test_to_return_it_says_what_to_undo_and_can_be_taken_back(bench: Bench) -> N
     assert bench.chain.base == "Alignment A"
 
 
-def test_a_discarded_walks_change_is_told_again_of_the_next(bench: Bench) -> None:
+def walked_again(visit: SimpleNamespace, **told: Any) -> Recording:
+    """A walk more with the first alignment, which is one as before."""
+    again = recording(4, "A", **told)
+    every = [*visit.recordings.every, SimpleNamespace(details=again)]
+    visit.recordings.every = visit.recordings.walks = every
+    evaluation = visit.evaluation
+    one = judged_walk(walk(left=leg(Side.LEFT, knee_range_deg=66.0), name="walk 4", folder="walk 4"))
+    evaluation.analysis = replace(evaluation.analysis, recordings=(*evaluation.analysis.recordings, one))
+    evaluation.session = Session((*evaluation.session.recordings, again))
+    return again
+
+
+def sentence_of(bench: Bench, number: int) -> str:
+    bench.choose(number, is_beside=False)
+    state = bench.state()
+    assert state is not None
+    return state.answer.first
+
+
+def test_a_walk_after_the_return_stands_beside_the_first_and_changes_nothing_that_was_shown(
+    bench: Bench, visit: SimpleNamespace
+) -> None:
+    before = sentence_of(bench, 1)
+    assert "10.0° more than with A" in before
+    assert bench.return_to_first()
+    assert bench.next_walk() == ("Alignment A", None)
+    walked_again(visit)
+    bench.begun()
+    state = bench.state()
+    assert state is not None
+    assert [(row.letter, row.title) for row in state.rows][-1] == ("A2", "A again")
+    assert shown(bench) == ("A2", "A")
+    assert state.answer.first.startswith("With A2 the prosthetic side has 6.0° more than with A:")
+    assert sentence_of(bench, 1) == before
+    assert bench.chain.next_letter == "D"
+
+
+@pytest.mark.parametrize(
+    "told",
+    [
+        {"test": PlannedTest(TimedProtocol.TEN_METRES)},
+        {"note": "target knee_swing_peak left 60 deg: 5 of 12 strides"},
+    ],
+)
+def test_a_timed_test_and_a_walk_towards_a_target_are_none_of_an_alignment(
+    bench: Bench, visit: SimpleNamespace, told: dict[str, Any]
+) -> None:
+    before = sentence_of(bench, 1)
+    walked_again(visit, **told)
+    state = bench.state()
+    assert state is not None
+    assert [row.letter for row in state.rows] == ["A", "B", "C"]
+    assert sentence_of(bench, 1) == before
+    every = parts_of(visit.evaluation.analysis, visit.evaluation.session.recordings)
+    assert [(part.letter, part.is_apart) for part in every][-1] == ("A2", True)
+
+
+def test_where_only_tests_were_walked_the_bench_says_what_to_do(bench: Bench, visit: SimpleNamespace) -> None:
+    tests = tuple(replace(one, test=PlannedTest(TimedProtocol.TEN_METRES)) for one in WALKED)
+    visit.evaluation.session = Session(tests)
+    state = bench.state()
+    assert state is not None
+    assert state.answer.first == "There is no walk to compare yet."
+
+
+def test_a_discarded_walk_after_the_return_leaves_the_prosthesis_as_it_is(bench: Bench, visit: SimpleNamespace) -> None:
+    assert bench.return_to_first()
+    bench.begun()
+    bench.discarded(walked_again(visit, is_kept=False))
+    assert (bench.chain.base, bench.next_title) == ("Alignment A", "Next change, from A")
+    bench.entry.step("turns", 1)
+    bench.begun()
+    assert bench.chain.base == "Alignment C"
+
+
+def test_a_discarded_walks_change_is_told_again_of_the_next(bench: Bench, visit: SimpleNamespace) -> None:
     change = AlignmentChange("Alignment C", (PartChange(PYLON, turns=1.0),))
-    bench.discarded(change)
+    walk = recording(4, "D", change, is_kept=False)
+    visit.recordings.walks = visit.recordings.every = [*visit.recordings.every, SimpleNamespace(details=walk)]
+    bench.discarded(walk)
     assert bench.entry.parts == change.parts
     bench.begun()
+    assert bench.entry.parts == ()
+    bench.discarded(walk)
+    bench.counts_again(walk)
     assert bench.entry.parts == ()
 
 
 def test_the_bar_says_what_the_next_walk_is_walked_with(bench: Bench) -> None:
-    again = bench_bar(bench, None, "", can_start=True)
+    again = bench_bar(bench, None, "", "", can_start=True)
     assert [one.text for one in again.others] == ["Return to A", "C again"]
     bench.entry.step("turns", 1)
-    asked = bench_bar(bench, "Alignment C", "", can_start=True)
+    asked = bench_bar(bench, "C", "", "", can_start=True)
     assert [one.text for one in asked.others] == ["Return to A", "Walk with D"]
     assert asked.primary is not None
     assert (asked.primary.text, asked.note) == ("Keep C", "")
@@ -405,3 +528,19 @@ def test_a_measure_for_fitting_is_named_where_it_changes_by_more_than_its_error(
     words = [cell.text for cell in names if isinstance(cell, TextCell)]
     assert ("Heel rise" in words) is is_named
     assert "Foot flat, % of stride" not in words  # was not measured
+
+
+@pytest.mark.usefixtures("pseudo_language")
+def test_no_word_of_what_is_not_compared_is_cut(
+    qtbot: QtBot, look: ThemeNotifier, bench: Bench, visit: SimpleNamespace
+) -> None:
+    walks = visit.evaluation.analysis.recordings
+    late = [{**one.gait, Side.LEFT: replace(one.gait[Side.LEFT], is_toe_off_biased=True)} for one in walks]
+    judged = tuple(judged_walk(replace(one, gait=gait)) for one, gait in zip(walks, late, strict=True))
+    visit.evaluation.analysis = replace(visit.evaluation.analysis, recordings=judged)
+    page = WalkingPage(look, bench.entry)
+    qtbot.addWidget(page)
+    page.resize(1240, 600)
+    page.show_bench(bench.state())
+    page.show()
+    assert words_cut(page) == []

@@ -212,3 +212,16 @@ def test_reasons_are_said_in_words_of_what_is_gated_only() -> None:
     assert reasons_against(LEG_SITES, ALL, {}, frozenset())[TargetMeasure.KNEE_SWING_PEAK, Side.LEFT].startswith(
         "The knee's"
     )
+
+
+def test_a_walk_without_a_target_shows_the_steps_that_the_operator_sees(feedback: PatientFeedback) -> None:
+    card_of(feedback).target_set.emit(None)
+    feedback.count({Side.LEFT: 13, Side.RIGHT: 12})
+    assert feedback.view.in_words == "Please wait"  # nothing is recorded
+    feedback.begin_walk()
+    assert feedback.view.in_words == "0 steps so far"
+    feedback.count({Side.LEFT: 13, Side.RIGHT: 12})
+    assert feedback.window is not None
+    assert feedback.window.view.in_words == "13 steps so far"
+    feedback.end_walk()
+    assert feedback.window.view.in_words == "Please wait"

@@ -126,7 +126,20 @@ def test_space_starts_and_stops_and_keeps(
     turned = AlignmentChange("Alignment A", (PartChange(ProsthesisPart.FOOT_FRONT_SCREW, turns=0.25),))
     assert [one.stored.details.alignment for one in visit.recordings.walks] == [None, turned]
     assert not bar_says_change(step)
+    assert next_label(step) == "Next: Alignment C"
+    step.on_other(0)  # return to A
+    assert next_label(step) == "Next: Alignment A"
+    step.undo()
+    assert next_label(step) == "Next: Alignment C"
     qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=PATIENCE_MS)
+
+
+def next_label(step: WalkingStep) -> str:
+    """What the bar beside the list of walks says of the next walk."""
+    step.bench.is_wished = False
+    note = step.bar().note
+    step.bench.is_wished = True
+    return note
 
 
 def test_what_the_patient_reached_is_shown_and_kept_with_the_walk(

@@ -5,6 +5,7 @@ from typing import Any, cast
 
 import pytest
 
+from app.recording_names import shown_names
 from app.storage.stored import RecordingState
 from app.widgets.action_bar import BarAction
 from app.wizard.session_recording import Ongoing
@@ -15,7 +16,8 @@ from app.wizard.walking.timed_control import TimedControl
 from app.wizard.walking.walk_start import WalkStart
 from app.wizard.walking.walking_bar import QuietAction, WalkingBar
 from core.samples import Recording, RecordingKind
-from tests.app.wizard.walking.bench_material import bench_visit
+from core.timed.protocols import PlannedTest, TimedProtocol
+from tests.app.wizard.walking.bench_material import WALKED, bench_visit
 
 SYNCHRONISE = BarAction("Synchronise again")
 
@@ -26,7 +28,14 @@ def visit() -> Any:
     visit = bench_visit()
     for one in visit.recordings.walks:
         one.is_decided, one.stored = one is not visit.recordings.walks[-1], SimpleNamespace(state=RecordingState.CLOSED)
-    told = {"is_recording": False, "is_stopping": False, "ongoing": None, "must_move": False, "called": str}
+    told: dict[str, Any] = {
+        "is_recording": False,
+        "is_stopping": False,
+        "ongoing": None,
+        "must_move": False,
+        "called": str,
+    }
+    told |= {"shown_names": shown_names(WALKED), "has_moved": True}
     visit.recordings = SimpleNamespace(**vars(visit.recordings), **told)
     visit.cannot_record, visit.sensors = "", SimpleNamespace(site_of={"a": "left_foot"})
     return visit
@@ -38,10 +47,14 @@ def bench(visit: Any) -> Bench:
 
 
 @pytest.fixture
-def bar(visit: Any, bench: Bench) -> WalkingBar:
+def timed() -> SimpleNamespace:
+    return SimpleNamespace(planned=None, is_running=False, next_words=lambda label: f"Next: test, {label}")
+
+
+@pytest.fixture
+def bar(visit: Any, bench: Bench, timed: SimpleNamespace) -> WalkingBar:
     """Of sensors whose clocks have drifted apart."""
     memory = SimpleNamespace(bar=lambda: None, quiet=lambda *, wants_live: SYNCHRONISE)
-    timed = SimpleNamespace(planned=None, is_running=False)
     start = SimpleNamespace(is_possible=False, missing_now="")
     return WalkingBar(
         visit,
@@ -88,3 +101,24 @@ def test_what_another_step_recorded_is_not_called_a_walk(
     assert state.primary is not None
     assert (state.primary.text, state.primary.is_enabled, state.note) == (primary, False, note)
     assert state.recording is None
+
+
+@pytest.mark.parametrize("is_bench", [True, False])
+@pytest.mark.parametrize("is_asked", [True, False])
+def test_a_timed_test_that_the_next_walk_is_stands_on_the_bar(
+    visit: Any, bench: Bench, bar: WalkingBar, timed: SimpleNamespace, is_bench: bool, is_asked: bool
+) -> None:
+    """T chooses one also where the chooser is not in sight."""
+
+    def words() -> tuple[str, str]:
+        state = bar.state("Alignment D")
+        assert state.primary is not None
+        key = [action.text for action in (state.primary, *state.others) if action.key == "Space"]
+        return key[0], state.note
+
+    bench.is_wished, visit.recordings.walks[-1].is_decided = is_bench, not is_asked
+    assert "10-metre" not in words()[0]
+    timed.planned = PlannedTest(TimedProtocol.TEN_METRES)
+    label = "Alignment C" if is_bench else "Alignment D"
+    start = "Keep, start 10-metre walk" if is_asked and not is_bench else "Start 10-metre walk"
+    assert words() == (start, f"Next: test, {label}")
