@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.samples import FloatArray, ImuBlock, SensorInfo
-from devices.files.doubled_stamps import doubled, is_later
+from devices.files.clock_repair import FileClock, repaired, without_turns
 from devices.files.magnitudes import check_magnitudes
 from devices.files.refusal import FileRefusedError
 from devices.files.trial import ImportedSensor
@@ -123,17 +123,17 @@ def read_card(files: Sequence[Path]) -> ImportedSensor:
     if any(part.period != first.period or part.is_synced != first.is_synced for part in parts):
         raise FileRefusedError(name, "its parts were not recorded with one setting", "Import each recording by itself")
     ticks = np.concatenate([part.ticks for part in parts])
-    is_new = is_later(ticks)
+    clock = repaired(ticks / TICK_HZ, FileClock(name, lambda row: f"sample {row + 1}", "its clock"))
+    is_new = clock.is_new
     block = ImuBlock(
         sensor=name,
-        time_s=ticks[is_new] / TICK_HZ,
+        time_s=clock.stamps[is_new],
         gyr_rad_s=np.concatenate([part.rate for part in parts])[is_new],
         acc_m_s2=np.concatenate([part.force for part in parts])[is_new],
     )
     check_magnitudes(block.acc_m_s2, block.gyr_rad_s, name, name, is_export=False)
     info = SensorInfo(serial=name, model="Shimmer3", rate_hz=round(TICK_HZ / first.period, 3))
-    told = tuple(doubled(int(np.sum(~is_new))))
-    return ImportedSensor(name, tuple(path.name for path in files), str(files[0]), block, info, told)
+    return ImportedSensor(name, tuple(path.name for path in files), str(files[0]), block, info, clock.findings)
 
 
 def is_synchronised(path: Path) -> bool:
@@ -168,9 +168,8 @@ def _part(path: Path) -> CardPart:
         raise FileRefusedError(path.name, "it holds no sample", "Choose another recording of the card")
     times = samples[:, :TIME_SIZE].astype(np.int64)
     raw: Ticks = times[:, 0] | times[:, 1] << 8 | times[:, 2] << 16
-    since = np.concatenate([[0], np.cumsum(np.diff(raw) % TURN)])
     begun = int.from_bytes(head[START + 1 : START + 5] + head[START : START + 1], "little")
-    ticks: Ticks = begun + since
+    ticks: Ticks = begun + _since(raw, begun, period)
     if len(offsets):  # how far it was ahead, at the samples that followed; between them its clock runs evenly
         at_sample, ahead = np.array(offsets, dtype=float).T
         slope = np.polyfit(at_sample, ahead, 1) if len(offsets) > 1 else [0.0, ahead[0]]
@@ -183,6 +182,15 @@ def _part(path: Path) -> CardPart:
         period,
         is_synced,
     )
+
+
+def _since(raw: Ticks, begun: int, period: int) -> Ticks:
+    """(n,) ticks since the recording began, by its samples' times; the first of these may be wrong itself."""
+    since = without_turns(raw, TURN) - raw[0]
+    later = without_turns(np.array([begun % TURN, *raw[1:2]]), TURN)
+    if len(raw) > 1 and 0 < later[1] - later[0] < 2 * period:
+        since += later[1] - later[0] - since[1]
+    return since
 
 
 def _samples(body: Bytes, size: int, is_synced: bool) -> tuple[Bytes, list[tuple[int, int]]]:
