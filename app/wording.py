@@ -128,8 +128,8 @@ SENTENCES = {
         "sensors, then record again."
     ),
     "clock_jumps": (
-        "the clock jumps forward by {jump_s:.1f} s, {after_s:.1f} s after it began; no sample was lost. Its joints are "
-        "left out. Split the recording there, then import it again."
+        "the clock jumps forward by {jump_s:.1f} s, {after_s:.1f} s after it began, so its joints are left out. Split "
+        "the recording there, then import it again."
     ),
     "impossible_values": (
         "samples larger than any sensor measures: {count}. They count as missing; check the sensor and its file."

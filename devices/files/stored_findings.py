@@ -36,8 +36,8 @@ def findings_of_tables(tables: object) -> tuple[Finding, ...] | None:
 def _finding(table: object) -> Finding | None:
     if not isinstance(table, dict) or not set(table) <= {"key", "severity", "where", "numbers"}:
         return None
-    key, severity, where, numbers = (table.get(name) for name in ("key", "severity", "where", "numbers"))
-    numbers = {} if numbers is None else numbers
+    key, where, numbers = table.get("key"), table.get("where"), table.get("numbers", {})
+    severity = table.get("severity")
     if not (_is_text(key) and _is_text(where) and isinstance(numbers, dict) and severity in list(Severity)):
         return None
     if not all(_is_text(value) or _is_figure(value) for value in numbers.values()):

@@ -208,7 +208,15 @@ def _straightened(stamp_s: FloatArray, rate_hz: float, clock: FileClock) -> Stra
 
 
 def lasting_step_back(stamp_s: FloatArray, rate_hz: float) -> int | None:
-    """The first sample from which on stamps of packets are earlier than those before tell, and stay so."""
+    """Find the first sample from which on stamps of packets are earlier than those before tell, and stay so.
+
+    Parameters
+    ----------
+    stamp_s : (n,)
+        Finite.
+    rate_hz
+        As the sender tells it.
+    """
     window = max(round(LATE_S * rate_hz), 4)
     delay_s = stamp_s - np.arange(len(stamp_s)) / rate_hz
     for at in np.flatnonzero(np.diff(stamp_s) < -max(1.5 / rate_hz, LEAST_LOSS_S)) + 1:
