@@ -35,6 +35,8 @@ SYNCHRONISED, SHIMMER3 = 0x04, 3
 MOST_TICKS = 1 << 53  # 8000 years; what is more, was not set
 PERIODS = (16, 32768)  # ticks: 2048 Hz to 1 Hz
 LEAST_SAMPLES = 3
+MOST_AHEAD_OFF = 0.05 * TICK_HZ  # what the radio tells is that far off its line only where it is wrong
+MOST_OFF_RATE = 0.02
 GYR_SCALE = 100.0 * np.pi / 180  # what its sensitivities are stored in multiples of, per rad/s
 TIME_SIZE = 3
 # what is measured in the order in which it stands in a sample: bit of its switch, bytes
@@ -171,9 +173,7 @@ def _part(path: Path) -> CardPart:
     begun = int.from_bytes(head[START + 1 : START + 5] + head[START : START + 1], "little")
     ticks: Ticks = begun + _since(raw, begun, period)
     if len(offsets):  # how far it was ahead, at the samples that followed; between them its clock runs evenly
-        at_sample, ahead = np.array(offsets, dtype=float).T
-        slope = np.polyfit(at_sample, ahead, 1) if len(offsets) > 1 else [0.0, ahead[0]]
-        ticks = ticks - np.rint(np.polyval(slope, np.arange(len(ticks)))).astype(np.int64)
+        ticks = ticks - np.rint(_ahead(path.name, offsets, len(ticks), period)).astype(np.int64)
     real = int.from_bytes(head[REAL_TIME : REAL_TIME + 8], "big")
     return CardPart(
         ticks + (real if real < MOST_TICKS else 0),
@@ -191,6 +191,29 @@ def _since(raw: Ticks, begun: int, period: int) -> Ticks:
     if len(raw) > 1 and 0 < later[1] - later[0] < 2 * period:
         since += later[1] - later[0] - since[1]
     return since
+
+
+def _ahead(name: str, offsets: Sequence[tuple[int, int]], count: int, period: int) -> FloatArray:
+    """(count,) ticks by which the clock is ahead, on a line through what the radio told; a few of it may be wrong."""
+    at_sample, ahead = np.array(offsets, dtype=float).T
+    if len(offsets) < 2:
+        return np.full(count, ahead[0])
+    half = len(offsets) // 2
+    first, later = slice(len(offsets) - half), slice(half, None)
+    slope = np.median((ahead[later] - ahead[first]) / (at_sample[later] - at_sample[first]))
+    off = ahead - slope * at_sample
+    is_right = np.abs(off - np.median(off)) < MOST_AHEAD_OFF
+    line = np.polyfit(at_sample[is_right], ahead[is_right], 1 if is_right.sum() > 1 else 0)
+    slope = line[0] if len(line) > 1 else 0.0
+    if abs(slope) > MOST_OFF_RATE * period:
+        raise FileRefusedError(
+            name,
+            "its times make {found} samples per second, {told} are expected",
+            "Synchronise the sensors again in Consensys, and record again",
+            found=f"{TICK_HZ / (period - slope):.4g}",
+            told=f"{TICK_HZ / period:.4g}",
+        )
+    return np.asarray(np.polyval(line, np.arange(count)))
 
 
 def _samples(body: Bytes, size: int, is_synced: bool) -> tuple[Bytes, list[tuple[int, int]]]:

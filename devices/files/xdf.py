@@ -217,13 +217,20 @@ def lasting_step_back(stamp_s: FloatArray, rate_hz: float) -> int | None:
     rate_hz
         As the sender tells it.
     """
-    window = max(round(LATE_S * rate_hz), 4)
-    delay_s = stamp_s - np.arange(len(stamp_s)) / rate_hz
-    for at in np.flatnonzero(np.diff(stamp_s) < -max(1.5 / rate_hz, LEAST_LOSS_S)) + 1:
-        earlier_s = delay_s[max(at - window, 0) : at].min() - delay_s[at : at + window].min()
-        if earlier_s > max(1.5 / rate_hz, LEAST_LOSS_S):
+    window, least_s = max(round(LATE_S * rate_hz), 4), max(1.5 / rate_hz, LEAST_LOSS_S)
+    back = np.flatnonzero(np.diff(stamp_s) < -least_s) + 1
+    if not len(back):
+        return None
+    step_s = _usual_step_s(stamp_s, window) if len(stamp_s) > 2 * window else 1.0 / rate_hz
+    delay_s = stamp_s - np.arange(len(stamp_s)) * step_s
+    for at in back:
+        if delay_s[max(at - window, 0) : at].min() - delay_s[at : at + window].min() > least_s:
             return int(at)
     return None
+
+
+def _usual_step_s(stamp_s: FloatArray, window: int) -> float:
+    return float(np.median(stamp_s[window:] - stamp_s[:-window])) / window
 
 
 def straight_times(stamp_s: FloatArray, rate_hz: float) -> StraightTimes | None:
@@ -251,7 +258,7 @@ def straight_times(stamp_s: FloatArray, rate_hz: float) -> StraightTimes | None:
     whole = np.maximum(np.round(steps), 1.0)
     if (steps > 0).all() and np.mean(np.abs(steps - whole) > EVEN) <= MOST_UNEVEN:
         return None
-    step_s = float(np.median(stamp_s[window:] - stamp_s[:-window])) / window
+    step_s = _usual_step_s(stamp_s, window)
     if not step_s > 0.0:
         return None
     count = np.arange(len(stamp_s), dtype=np.float64)

@@ -191,3 +191,17 @@ def test_a_card_whose_clock_restarts_is_refused(tmp_path: Path) -> None:
     restarted = with_stamps(tmp_path / "a.bin", {k: 1000 + PERIOD * (k - 150) for k in range(150, COUNT)})
     with pytest.raises(FileRefusedError, match="sample 151: its clock steps back from"):
         shimmer_trial([restarted])
+
+
+def test_a_wrong_offset_from_the_radio_bends_no_clock_and_a_wrong_rate_is_refused(tmp_path: Path) -> None:
+    path = written(tmp_path / "A" / "000", ahead=(5000, 0.0192), count=3000)
+    (right,) = shimmer_trial([path]).sensors
+    data = bytearray(path.read_bytes())
+    in_block = (512 - 9) // 15
+    at = 256 + 40 * (9 + 15 * in_block)
+    data[at : at + 9] = struct.pack("<BQ", 0, 1 << 40)
+    path.write_bytes(bytes(data))
+    (sensor,) = shimmer_trial([path]).sensors
+    assert sensor.block.time_s == pytest.approx(right.block.time_s, abs=1e-4)
+    with pytest.raises(FileRefusedError, match=r"its times make 106.* samples per second, 102.4 are expected"):
+        shimmer_trial([written(tmp_path / "B" / "000", ahead=(0, 12.0))])

@@ -304,8 +304,10 @@ def test_stamps_of_packets_that_step_back_for_good_are_refused_and_make_no_other
 
 def test_a_line_through_stamps_of_packets_has_the_rate_that_the_sender_tells(tmp_path: Path) -> None:
     packets = np.repeat(TIME_S[9::10], 10)
+    late_s = np.repeat(np.random.default_rng(3).exponential(0.008, size=ROWS // 10), 10)
+    late_s[1000:1050] += 0.4  # five packets wait and come at once
     for factor in (0.985, 1.015):
-        sensor = only(recorded(tmp_path / "a.xdf", SentStream("a", stamp_s=START_S + packets * factor)))
+        sensor = only(recorded(tmp_path / "a.xdf", SentStream("a", stamp_s=START_S + packets * factor + late_s)))
         assert finding(sensor, "times_straightened") is not None
     for factor in (0.96, 1.04):
         with pytest.raises(FileRefusedError, match=r"a.xdf, a: its times make .* samples per second, 100 are expected"):
