@@ -5,6 +5,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from core.samples import FloatArray, IntArray
 from devices.files.clock_repair import FileClock, RepairedClock, repaired, without_turns
@@ -166,3 +168,28 @@ def test_no_real_recording_is_refused_or_mended_for_its_clock(test_data: Callabl
         for path in files:
             said = about(path)
             assert not [one for one in said if "steps back" in one or one == "stamps_mended"], path
+
+
+@given(
+    st.lists(st.tuples(st.integers(0, COUNT - 1), st.floats(-1e9, 1e9) | st.just(np.nan)), max_size=30),
+    st.sampled_from([5, 40, COUNT]),
+    st.sampled_from([0.0, 1.0]),
+)
+def test_whatever_stamps_hold_they_ascend_or_the_file_is_refused(
+    wrong: list[tuple[int, float]], count: int, slack: float
+) -> None:
+    stamps_s = EVEN_S[:count].copy()
+    for row, value in wrong:
+        stamps_s[row % count] = value
+    try:
+        clock = repaired(stamps_s, CLOCK, slack=slack)
+    except FileRefusedError:
+        return
+    kept_s = clock.stamps[clock.is_new]
+    assert np.isfinite(kept_s).all()
+    assert (np.diff(kept_s) > 0).all()
+    assert not clock.is_new[np.isnan(stamps_s)].any()
+    if count == COUNT and len(wrong) == 1:
+        right = np.flatnonzero(stamps_s == EVEN_S)
+        np.testing.assert_array_equal(clock.stamps[right], EVEN_S[right])
+        assert clock.is_new[right].all()
