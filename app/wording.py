@@ -33,6 +33,10 @@ SENTENCES = {
         "“{name}” was left out, because nothing says which site it belongs to. Name it in the map to take it in."
     ),
     "doubled_stamps": "rows that repeat the time before them: {count}. The first of each was kept.",
+    "stamps_mended": (
+        "wrong time stamps: {count}, the first at sample {first}, off by {off_s:.6g} s. Times were interpolated "
+        "between the samples around them; samples left out: {left_out}."
+    ),
     "damaged_stretches": "stretches that are damaged: {count}. They were passed over; what lay in them is missing.",
     "slower_kept": "angular rate and acceleration came at unequal rates: the {kept} samples with both were kept, "
     "{count} others left out. Set one rate for both in MT Manager.",
@@ -62,8 +66,8 @@ SENTENCES = {
         "it stays so, they are lost."
     ),
     "clock_not_measured": (
-        "the clock of “{host}”, which sent this sensor, was not measured against the others', so its samples may be "
-        "off in time. Record again with all computers in one network."
+        "the clock of “{host}”, which sent this sensor, was not measured, so its recording was set to start with the "
+        "others'. Record again with all computers in one network."
     ),
     "orientation_left_out": (
         "the orientation ({names}) does not turn gravity upwards, so it is not earth from sensor. It was left out."
@@ -122,6 +126,10 @@ SENTENCES = {
     "clock_offset": (
         "the clock is {offset_s:.1f} s away from the others', more than can be mended. Use one receiver for all "
         "sensors, then record again."
+    ),
+    "clock_jumps": (
+        "the clock jumps forward by {jump_s:.1f} s, {after_s:.1f} s after it began, so its joints are left out. Split "
+        "the recording there, then import it again."
     ),
     "impossible_values": (
         "samples larger than any sensor measures: {count}. They count as missing; check the sensor and its file."

@@ -6,6 +6,7 @@ import numpy as np
 
 from core.body import LEG_JOINTS, Site
 from core.calibration.rest import rest_of
+from core.clock_jumps import jump_of, spans_of
 from core.findings import Finding, Severity
 from core.handedness import Turn, reversed_sites, turn_about_vertical
 from core.pair import moving_mean
@@ -77,7 +78,7 @@ def look_at(session: Session) -> Quality:
                 unusable.add((recording.name, site))
             elif recording.kind is not RecordingKind.STANDING:
                 turns[site] = turn_about_vertical(block)
-        for sites, found in [*_same_data(recording), *_clock_offsets(recording)]:
+        for sites, found in [*_same_data(recording), *_clock_offsets(recording), *_clock_jumps(recording)]:
             findings.append(found)
             unusable.update((recording.name, site) for site in sites)
         for sites in reversed_sites(turns):
@@ -290,6 +291,17 @@ def _clock_offsets(recording: Recording) -> list[tuple[tuple[Site, ...], Finding
             numbers = {"offset_s": round(offset_s, 1)}
             where = f"{recording.name}, {site}"
             found.append(((site,), Finding("clock_offset", Severity.GRAVE, where, numbers)))
+    return found
+
+
+def _clock_jumps(recording: Recording) -> list[tuple[tuple[Site, ...], Finding]]:
+    spans = {site: spans_of(recording.imu[site].time_s) for site in recording.imu}
+    found: list[tuple[tuple[Site, ...], Finding]] = []
+    for site, own in spans.items():
+        jump = jump_of(own, [other for at, other in spans.items() if at is not site and other])
+        if jump is not None:
+            numbers = {"jump_s": round(jump.by_s, 2), "after_s": round(jump.after_s, 2)}
+            found.append(((site,), Finding("clock_jumps", Severity.GRAVE, f"{recording.name}, {site}", numbers)))
     return found
 
 

@@ -166,11 +166,23 @@ def read_file(path: Path) -> DecodedSensor:
     OSError
         The file cannot be read.
     """
+    heard = heard_in(path)
+    return decoded(path.stem, heard, [row[0] for row in heard.rows])
+
+
+def heard_in(path: Path) -> Heard:
+    """All messages of such a file, in its order.
+
+    Raises
+    ------
+    OSError
+        The file cannot be read.
+    """
     framer = Ximu3Framer()
     with path.open("rb") as file:
         while data := file.read(PIECE):
             framer.feed(data, 0.0)
-    return decoded(path.stem, framer.heard, [row[0] for row in framer.heard.rows])
+    return framer.heard
 
 
 class Ximu3:

@@ -8,19 +8,23 @@ names that we give, sensors and their clocks are numbered. In place of the year 
 for, each by itself; without their words conditions are numbered, so that equal ones are still equal. What was changed
 at a prosthesis stays, part by part with its figures; what was typed of it leaves only where it is asked for. Goals
 stay, without who agreed on them and what was typed of them. Sex, height, mass and sides stay. This is pseudonymous, not
-anonymous: gait itself can be recognised.
+anonymous: gait itself can be recognised. What limits the results stays, without the names in it.
 """
 
 import base64
 import datetime
 import hmac
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from enum import StrEnum
+from string import Formatter
 from uuid import UUID
 
 from app.storage.unit_of_work import DEMO
+from app.wording import SENTENCES
 from core.alignment import FIGURES, AlignmentChange, PartChange
+from core.body import Site
+from core.findings import Finding, Severity
 from core.goals import Goal
 from core.samples import Patient, Recording, SensorInfo, Session
 from core.targets import tallies_of, with_tallies
@@ -82,6 +86,7 @@ class Pseudonyms:
             findings=(),
             unknown={},
         )
+        names = {}
         for recording in session.recordings:
             own = self._recording(patient_id, recording, free_name(pseudonymised, recording.kind), sensors)
             own = replace(
@@ -89,8 +94,9 @@ class Pseudonyms:
                 condition=conditions.get(recording.condition, ""),
                 alignment=_alignment(recording.alignment, conditions, is_kept=Typed.CHANGES in kept),
             )
+            names[recording.name] = own.name
             pseudonymised = replace(pseudonymised, recordings=(*pseudonymised.recordings, own))
-        return pseudonymised
+        return replace(pseudonymised, findings=tuple(_findings(session.findings, names)))
 
     def _patient(self, patient_id: UUID, session: Session, kept: Collection[Typed]) -> Patient:
         told, age = session.patient, age_in_words(session)
@@ -131,6 +137,22 @@ class Pseudonyms:
 
     def _drawn(self, what: str, patient_id: UUID) -> bytes:
         return hmac.digest(self._key, what.encode() + patient_id.bytes, "sha256")
+
+
+def _findings(findings: Sequence[Finding], names: Mapping[str, str]) -> Iterator[Finding]:
+    """What limits the results, as far as we have words for it, without names of files, columns and computers."""
+    for one in findings:
+        name, *sites = one.where.split(", ")
+        if (
+            one.severity is Severity.INFO
+            or one.key not in SENTENCES
+            or name not in names
+            or not set(sites) <= set(Site)
+        ):
+            continue
+        wanted = {part[1] for part in Formatter().parse(SENTENCES[one.key])}
+        numbers = {key: "?" if isinstance(value, str) else value for key, value in one.numbers.items() if key in wanted}
+        yield replace(one, where=", ".join([names[name], *sites]), numbers=numbers)
 
 
 def age_in_words(session: Session) -> str:

@@ -16,9 +16,10 @@ from pathlib import Path
 
 import numpy as np
 
+from core.findings import Finding
 from core.samples import FloatArray, ImuBlock, RateKind, SensorInfo
 from devices.files.apdm_hdf5 import TICK_S, is_apdm_hdf5, read_apdm_hdf5
-from devices.files.doubled_stamps import doubled
+from devices.files.clock_repair import FileClock, RepairedClock, repaired
 from devices.files.hdf5 import is_hdf5
 from devices.files.magnitudes import check_magnitudes
 from devices.files.refusal import FileRefusedError, quoted
@@ -39,7 +40,7 @@ Columns = tuple[tuple[int, ...], ...]
 class ApdmFile:
     """One CSV: `rows` (n, m) as numbers, NaN where a cell is empty; `columns` of each sensor by its name.
 
-    `ids`: by what else a sensor may be called.
+    `ids`: by what else a sensor may be called. `of_clock`: what was found about its times.
     """
 
     path: Path
@@ -48,6 +49,7 @@ class ApdmFile:
     columns: Mapping[str, Columns]
     ids: Mapping[str, str]
     rate_hz: float | None
+    of_clock: tuple[Finding, ...]
 
 
 def is_apdm(path: Path, head: bytes) -> bool:
@@ -97,8 +99,10 @@ def read_apdm(path: Path) -> ApdmFile:
     last = max((place for found in columns.values() for places in found for place in places), default=0)
     if last >= rows.shape[1]:
         raise FileRefusedError(where, "its lines of heads are not of one length", EXPORT_AGAIN)
-    time_s = _times(rows[:, 0], tick_s, first_row, where)
-    found = ApdmFile(path, time_s, rows, columns, ids, rate_hz)
+    clock = _clock(rows[:, 0], tick_s, first_row, where)
+    stamps = clock.stamps[clock.is_new]
+    time_s = (stamps - stamps[:1]) * tick_s
+    found = ApdmFile(path, time_s, rows[clock.is_new], columns, ids, rate_hz, clock.findings)
     _check_units(found)
     return found
 
@@ -129,7 +133,7 @@ def _of_csv(path: Path) -> Iterator[ImportedSensor]:
         called = file.ids.get(name, name)
         info = SensorInfo(serial=called, rate_hz=rate_hz, rate_kind=RateKind.INSTANTANEOUS)
         ids = tuple(filter(None, [file.ids.get(name)]))
-        yield ImportedSensor(name, ids, str(path), _block(file, name), info)
+        yield ImportedSensor(name, ids, str(path), _block(file, name), info, file.of_clock)
 
 
 def _of_hdf5(path: Path) -> Iterator[ImportedSensor]:
@@ -147,7 +151,7 @@ def _of_hdf5(path: Path) -> Iterator[ImportedSensor]:
         )
         rate_hz = opal.rate_hz or _rate_of(block.time_s)
         info = SensorInfo(serial=opal.ids[-1], rate_hz=rate_hz, rate_kind=RateKind.INSTANTANEOUS)
-        yield ImportedSensor(opal.name, opal.ids, str(path), block, info, tuple(doubled(opal.doubled)))
+        yield ImportedSensor(opal.name, opal.ids, str(path), block, info, opal.of_clock)
 
 
 def _monitors(head: list[list[str]], where: str) -> tuple[dict[str, Columns], dict[str, str]]:
@@ -242,17 +246,13 @@ def _numbers(lines: list[list[str]], width: int, first_row: int, where: str) -> 
         raise
 
 
-def _times(stamps: FloatArray, tick_s: float, first_row: int, where: str) -> FloatArray:
-    """Seconds since the first stamp (n,), ascending."""
-    is_wrong = ~np.isfinite(stamps)
-    is_wrong[1:] |= ~(np.diff(stamps) > 0)
-    if is_wrong.any():
-        raise FileRefusedError(
-            f"{where}, line {int(np.argmax(is_wrong)) + first_row + 1}",
-            "its time does not come after that of the line before",
-            EXPORT_AGAIN,
-        )
-    return (stamps - stamps[:1]) * tick_s
+def _clock(stamps: FloatArray, tick_s: float, first_row: int, where: str) -> RepairedClock:
+    """(n,) stamps in ticks, all of which have to be there."""
+    is_there = np.isfinite(stamps)
+    if not is_there.all():
+        line = int(np.argmin(is_there)) + first_row + 1
+        raise FileRefusedError(f"{where}, line {line}", "a sample has no time", EXPORT_AGAIN)
+    return repaired(stamps, FileClock(where, lambda row: f"line {row + first_row + 1}", TIME, tick_s))
 
 
 def _block(file: ApdmFile, name: str) -> ImuBlock:

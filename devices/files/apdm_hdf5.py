@@ -16,8 +16,9 @@ from pathlib import Path
 
 import numpy as np
 
+from core.findings import Finding
 from core.samples import FloatArray
-from devices.files.doubled_stamps import is_later
+from devices.files.clock_repair import FileClock, RepairedClock, repaired
 from devices.files.hdf5 import Hdf5File
 from devices.files.refusal import FileRefusedError, quoted
 
@@ -36,7 +37,7 @@ MOST_SENSORS = 100
 class RecordedOpal:
     """One sensor's samples as the file holds them, `stamps` in microseconds since 1970, ascending.
 
-    `doubled`: how many samples were left out because they repeat the stamp before them.
+    `of_clock`: what was found about its stamps.
     """
 
     name: str
@@ -47,7 +48,7 @@ class RecordedOpal:
     q_earth_from_sensor: FloatArray | None
     mag: FloatArray | None
     rate_hz: float | None
-    doubled: int
+    of_clock: tuple[Finding, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,19 +150,20 @@ def _read(file: Hdf5File, layout: _Layout) -> RecordedOpal:
     for place, quantity in ((layout.acc, "acceleration"), (layout.gyr, "angular rate")):
         _check_unit(file, place, quantity)
     orientation, mag = _matrix(file, layout.orientation, (n, 4)), _matrix(file, layout.mag, (n, 3))
-    is_new = _later(stamps, file.where, layout.name)
+    clock = _clock(stamps, file.where, layout.name)
+    is_new = clock.is_new
     rate_hz = _number(file, *layout.rate)
     number = layout.case.rpartition("-")[2].lstrip("0")
     return RecordedOpal(
         name=layout.name,
         ids=tuple(dict.fromkeys(filter(None, (layout.case, number)))),
-        stamps=stamps[is_new],
+        stamps=clock.stamps[is_new],
         acc_m_s2=acc[is_new],
         gyr_rad_s=gyr[is_new],
         q_earth_from_sensor=None if orientation is None else _rotations(orientation[is_new]),
         mag=None if mag is None else mag[is_new],
         rate_hz=rate_hz if rate_hz is not None and 0 < rate_hz < np.inf else None,
-        doubled=int(np.sum(~is_new)),
+        of_clock=clock.findings,
     )
 
 
@@ -189,16 +191,13 @@ def _rotations(q: FloatArray) -> FloatArray:
         return np.where(np.abs(length - 1.0) < 0.01, q / length, np.nan)
 
 
-def _later(stamps: FloatArray, where: str, sensor: str) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
-    """(n,) which samples are later than the one before them."""
-    step = np.diff(stamps)
-    wrong = np.flatnonzero(~(step >= 0))
-    if len(wrong) or not np.isfinite(stamps).all():
-        number = int(wrong[0]) + 2 if len(wrong) else 1
-        raise FileRefusedError(
-            f"{where}, {sensor}, sample {number}", "its time does not come after that of the sample before", SAVE_AGAIN
-        )
-    return is_later(stamps)
+def _clock(stamps: FloatArray, where: str, sensor: str) -> RepairedClock:
+    """(n,) stamps, all of which have to be there."""
+    is_there = np.isfinite(stamps)
+    if not is_there.all():
+        number = int(np.argmin(is_there)) + 1
+        raise FileRefusedError(f"{where}, {sensor}, sample {number}", "a sample has no time", SAVE_AGAIN)
+    return repaired(stamps, FileClock(f"{where}, {sensor}", lambda row: f"sample {row + 1}", "Time", TICK_S))
 
 
 def _check_unit(file: Hdf5File, place: str, quantity: str) -> None:

@@ -19,7 +19,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from core.findings import Finding, Severity
-from core.samples import BoolArray, FloatArray, ImuBlock, RateKind, SensorInfo
+from core.samples import FloatArray, ImuBlock, RateKind, SensorInfo
 from devices.files.bids_tables import (
     CHANNELS,
     ENDINGS,
@@ -31,7 +31,7 @@ from devices.files.bids_tables import (
     is_channels,
     read_system,
 )
-from devices.files.doubled_stamps import doubled, is_later
+from devices.files.clock_repair import FileClock, RepairedClock, repaired
 from devices.files.magnitudes import check_magnitudes
 from devices.files.refusal import FileRefusedError, quoted
 from devices.files.trial import ImportedSensor, ImportedTrial, UnreadFile
@@ -131,9 +131,9 @@ def _sensor(system: MotionSystem, point: str, asked_hz: float | None) -> Importe
     assert gyr is not None
     acc = acc * _scale(system, of_point, "ACCEL", ACC_UNITS, point)
     gyr = gyr * _scale(system, of_point, "GYRO", RATE_UNITS, point)
-    time_s, rate_hz, is_new = _times(system, of_point, asked_hz, where)
-    is_kept = is_new & (np.isfinite(acc).any(axis=1) | np.isfinite(gyr).any(axis=1))  # what is missing is a gap
-    acc, gyr, time_s = acc[is_kept], gyr[is_kept], time_s[is_kept]
+    clock, rate_hz = _times(system, of_point, asked_hz, where)
+    is_kept = clock.is_new & (np.isfinite(acc).any(axis=1) | np.isfinite(gyr).any(axis=1))  # what is missing is a gap
+    acc, gyr, time_s = acc[is_kept], gyr[is_kept], clock.stamps[is_kept]
     first = system.channels[of_point["GYRO", "x"]]
     check_magnitudes(acc, gyr, point, where)
     if first.frame.casefold() == "global" and rate_hz is not None:
@@ -153,12 +153,11 @@ def _sensor(system: MotionSystem, point: str, asked_hz: float | None) -> Importe
     kind = RateKind.INSTANTANEOUS if first.rate_kind == DERIVED else None
     kind = RateKind(first.rate_kind) if first.rate_kind in set(RateKind) else kind
     info = SensorInfo(serial=first.sensor or point, model=system.maker, rate_hz=rate_hz, rate_kind=kind)
-    findings = []
+    findings = list(clock.findings)
     if block.is_rate_derived:
         findings.append(Finding("rate_from_orientation", Severity.INFO, ""))
     if q is not None and not is_up:
         findings.append(Finding("orientation_left_out", Severity.INFO, "", {"names": "ORNT"}))
-    findings += doubled(int(np.sum(~is_new)))
     ids = (first.sensor,) if first.sensor else ()
     return ImportedSensor(point, ids, f"{system.base}{MOTION}", block, info, tuple(findings))
 
@@ -188,8 +187,8 @@ def _scale(
 
 def _times(
     system: MotionSystem, of_point: Mapping[tuple[str, str], int], asked_hz: float | None, where: str
-) -> tuple[FloatArray, float | None, BoolArray]:
-    """Seconds (n,), samples per second, and which rows do not repeat the time before."""
+) -> tuple[RepairedClock, float | None]:
+    """Seconds of the rows, and samples per second."""
     n = len(system.rows)
     own = [place for (kind, _), place in of_point.items() if kind == "LATENCY"]
     common = [place for place, one in enumerate(system.channels) if one.type == "LATENCY"]
@@ -197,18 +196,12 @@ def _times(
     if not common:
         if rate_hz is None:
             raise FileRefusedError(where, "its sampling frequency is not told", "Give it in Hz (--rate)")
-        return np.arange(n) / rate_hz, rate_hz, np.ones(n, dtype=bool)
+        return RepairedClock(np.arange(n) / rate_hz, np.ones(n, dtype=bool), ()), rate_hz
     time_s = system.rows[:, (own or common)[0]]
     steps_s = np.diff(time_s)
-    is_wrong = np.isnan(time_s)
-    is_wrong[1:] |= ~(steps_s >= 0)
-    if is_wrong.any():
-        raise FileRefusedError(
-            f"{where}, line {int(np.argmax(is_wrong)) + 1}",
-            "its latency does not come after that of the line before",
-            EXPORT_AGAIN,
-        )
-    is_new = is_later(time_s)
+    is_empty = np.isnan(time_s)
+    if is_empty.any():
+        raise FileRefusedError(f"{where}, line {int(np.argmax(is_empty)) + 1}", "a sample has no time", EXPORT_AGAIN)
     step_s = float(np.median(steps_s)) if len(steps_s) else np.nan
     if rate_hz is not None and np.isfinite(step_s) and not 0.5 < step_s * rate_hz < 2.0:
         raise FileRefusedError(
@@ -220,7 +213,7 @@ def _times(
         )
     if rate_hz is None and step_s > 0:
         rate_hz = round(1.0 / step_s, 2)
-    return time_s, rate_hz, is_new
+    return repaired(time_s, FileClock(where, lambda row: f"line {row + 1}", "latency")), rate_hz
 
 
 def _check_axes(acc_m_s2: FloatArray, gyr_rad_s: FloatArray, rate_hz: float, point: str, where: str) -> None:

@@ -6,8 +6,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from core.body import Site
+from core.clock_jumps import jump_of, spans_of
 from core.findings import Finding, Severity
 from core.samples import ImuBlock, Recording, RecordingKind, SensorInfo, Session
+from devices.files.clock_repair import SPLIT_IT
 from devices.files.refusal import FileRefusedError, quoted
 from devices.files.site_files import sensor_changes
 from devices.files.trial import ImportedSensor, ImportedTrial
@@ -62,7 +64,7 @@ def place_trial(trial: ImportedTrial, placement: Mapping[Site, str], recording: 
     ------
     FileRefusedError
         A site whose sensor is none or several of the trial's or is in a file that could not be read, a sensor at two
-        sites, sensors that share no stretch of time.
+        sites, sensors that share no stretch of time, a clock that jumps forward.
     """
     return place_sensors(
         trial, [(site, _sensor_of(trial, site, value)) for site, value in placement.items()], recording
@@ -78,6 +80,7 @@ def place_sensors(trial: ImportedTrial, placed: Sequence[tuple[Site, ImportedSen
             raise FileRefusedError(recording, "{site} is there twice", "Name each site once", site=site)
     sensors = [sensor for _, sensor in placed]
     _refuse_apart(sensors)
+    _refuse_jumps(sensors)
     start_s = min((sensor.block.time_s[0] for sensor in sensors if len(sensor.block)), default=0.0)
     imu = {
         site: replace(sensor.block, time_s=sensor.block.time_s - start_s) if start_s else sensor.block
@@ -135,6 +138,21 @@ def _refuse_apart(sensors: Sequence[ImportedSensor]) -> None:
             "Import the files of one trial at a time",
             other=first.name,
         )
+
+
+def _refuse_jumps(sensors: Sequence[ImportedSensor]) -> None:
+    """How much time passed between two stamps, each sensor's clock tells alone; the others show where it is wrong."""
+    spans = [spans_of(sensor.block.time_s) for sensor in sensors]
+    for number, sensor in enumerate(sensors):
+        jump = jump_of(spans[number], [*spans[:number], *spans[number + 1 :]])
+        if jump is not None:
+            raise FileRefusedError(
+                sensor.name,
+                "its clock jumps forward by {jump} s, {after} s after it began, while no other sensor measured so long",
+                SPLIT_IT,
+                jump=f"{jump.by_s:.6g}",
+                after=f"{jump.after_s:.6g}",
+            )
 
 
 def add_recording(

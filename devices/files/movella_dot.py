@@ -20,7 +20,7 @@ from scipy.spatial.transform import Rotation
 
 from core.findings import Finding, Severity
 from core.samples import BoolArray, FloatArray, ImuBlock, RateKind, SensorInfo
-from devices.files.doubled_stamps import doubled, is_later, unwrapped
+from devices.files.clock_repair import FileClock, repaired, unwrapped
 from devices.files.magnitudes import check_magnitudes, times_the_turning
 from devices.files.orientation_rates import Numbers, derive_rates, rate_kind_by, with_gravity
 from devices.files.refusal import FileRefusedError
@@ -82,7 +82,7 @@ class DotFile:
     mag: FloatArray | None
     is_rate_derived: bool
     is_gravity_added: bool
-    doubled: int
+    of_clock: tuple[Finding, ...]
 
 
 def is_movella_dot(path: Path, head: bytes) -> bool:
@@ -123,10 +123,13 @@ def read_dot(path: Path, asked_hz: float | None = None) -> DotFile:
     where = path.name
     settings, table = _read(path, where)
     ticks = unwrapped(table, TIME, TICKS_TURN_AT, where)
-    is_new = is_later(ticks)
     told_hz = _told_rate(settings) or asked_hz
-    tick_s, rate_hz = _clock(np.diff(ticks[is_new]), told_hz, where)
-    counter = _counter(ticks[is_new], tick_s, rate_hz)
+    steps: Numbers = np.diff(ticks)
+    tick_s, rate_hz = _clock(steps[steps > 0], told_hz, where)
+    clock = repaired(ticks, FileClock(where, table.place, TIME, tick_s))
+    is_new = clock.is_new
+    ticks = np.rint(clock.stamps[is_new]).astype(np.int64)
+    counter = _counter(ticks, tick_s, rate_hz)
     q = _orientation(table, where)
     q = None if q is None else q[is_new]
     gyr, rate_kind = _rates(table, is_new, q, counter, rate_hz, where)
@@ -149,7 +152,7 @@ def read_dot(path: Path, asked_hz: float | None = None) -> DotFile:
         ),
         started=settings.get("StartTime", ""),
         is_synced=settings["SyncStatus"].casefold() == "synced" if settings.get("SyncStatus") else None,
-        ticks=ticks[is_new],
+        ticks=ticks,
         tick_s=tick_s,
         counter=counter,
         acc_m_s2=acc,
@@ -158,7 +161,7 @@ def read_dot(path: Path, asked_hz: float | None = None) -> DotFile:
         mag=table.matrix(MAG)[is_new] if set(MAG) <= set(table.numbers) else None,
         is_rate_derived=is_rate_derived,
         is_gravity_added=is_gravity_added,
-        doubled=int(np.sum(~is_new)),
+        of_clock=clock.findings,
     )
 
 
@@ -371,6 +374,6 @@ def _findings(file: DotFile, is_shared: bool) -> Iterator[Finding]:
         yield Finding("rate_from_orientation", Severity.INFO, "")
     if file.is_gravity_added:
         yield Finding("gravity_from_orientation", Severity.INFO, "")
-    yield from doubled(file.doubled)
+    yield from file.of_clock
     if not is_shared:
         yield Finding("not_synchronised", Severity.WARNING, "")

@@ -15,7 +15,7 @@ from scipy.spatial.transform import Rotation
 
 from core.findings import Finding, Severity
 from core.samples import BoolArray, FloatArray, ImuBlock, RateKind, SensorInfo
-from devices.files.doubled_stamps import doubled, is_later
+from devices.files.clock_repair import FileClock, RepairedClock, repaired
 from devices.files.magnitudes import check_magnitudes
 from devices.files.orientation_rates import Numbers, derive_rates, with_gravity
 from devices.files.own_clocks import with_own_clocks
@@ -186,7 +186,8 @@ def _of_matrix(matrix: Sequence[float]) -> tuple[float, ...]:
 
 def _sensor(path: Path, asked_hz: float | None) -> ImportedSensor:
     stream = read_mti_stream(path)
-    time_s, is_new, repeated = _times(stream, asked_hz, path.name)
+    clock = _times(stream, asked_hz, path.name)
+    is_new, time_s = clock.is_new, clock.stamps[clock.is_new]
     step_s = np.diff(time_s)
     usual_s = float(np.median(step_s)) if len(step_s) else 0.01
     rate_hz = asked_hz or round(1.0 / usual_s, 3)
@@ -195,7 +196,7 @@ def _sensor(path: Path, asked_hz: float | None) -> ImportedSensor:
     gyr, is_derived = _rates(stream, is_new, q, counter, rate_hz)
     acc, is_added = _forces(stream, is_new, q, usual_s, path.name)
     check_magnitudes(acc, None if is_derived else gyr, stream.serial or path.stem, path.name, is_export=False)
-    findings = _findings(stream, repeated, is_derived=is_derived, is_added=is_added)
+    findings = [*clock.findings, *_findings(stream, is_derived=is_derived, is_added=is_added)]
     name = stream.serial or path.stem
     block = ImuBlock(
         sensor=name,
@@ -211,13 +212,13 @@ def _sensor(path: Path, asked_hz: float | None) -> ImportedSensor:
     return ImportedSensor(path.name, tuple({path.stem, name}), str(path), block, info, tuple(findings))
 
 
-def _times(stream: MtiStream, asked_hz: float | None, where: str) -> tuple[FloatArray, BoolArray, int]:
-    """(m,) ascending seconds; of all rows (n,) which they are of, and how many repeat one before or step back.
+def _times(stream: MtiStream, asked_hz: float | None, where: str) -> RepairedClock:
+    """Seconds of all rows.
 
     Raises
     ------
     FileRefusedError
-        Some message tells neither.
+        Some message tells neither, or the clock steps back for good.
     """
     if np.isfinite(stream.ticks).all():
         time_s = np.unwrap(stream.ticks, period=2.0**FINE_BITS) / FINE_HZ
@@ -231,8 +232,7 @@ def _times(stream: MtiStream, asked_hz: float | None, where: str) -> tuple[Float
         time_s = np.unwrap(stream.counter, period=2.0**COUNTER_BITS) / asked_hz
     else:
         raise FileRefusedError(where, "its messages tell neither time nor packet counter", SET_OUTPUT)
-    is_new = is_later(time_s)
-    return time_s[is_new], is_new, int(np.sum(~is_new))
+    return repaired(time_s, FileClock(where, lambda row: f"sample {row + 1}", "its clock"))
 
 
 def _rates(
@@ -274,12 +274,11 @@ def _forces(
     return with_gravity(stream.free[is_new], q), True
 
 
-def _findings(stream: MtiStream, repeated: int, *, is_derived: bool, is_added: bool) -> Iterator[Finding]:
+def _findings(stream: MtiStream, *, is_derived: bool, is_added: bool) -> Iterator[Finding]:
     if is_derived:
         yield Finding("rate_from_orientation", Severity.INFO, "")
     if is_added:
         yield Finding("gravity_from_orientation", Severity.INFO, "")
-    yield from doubled(repeated)
     if stream.lone > MOST_LONE * len(stream.ticks):
         yield Finding("slower_kept", Severity.WARNING, "", {"kept": len(stream.ticks), "count": stream.lone})
     if stream.damaged:

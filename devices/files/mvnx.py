@@ -18,7 +18,7 @@ import numpy as np
 
 from core.findings import Finding, Severity
 from core.samples import BoolArray, FloatArray, ImuBlock, RateKind, SensorInfo
-from devices.files.doubled_stamps import doubled, is_later
+from devices.files.clock_repair import FileClock, repaired
 from devices.files.magnitudes import check_magnitudes
 from devices.files.orientation_rates import Numbers, derive_rates, rate_kind_by, with_gravity
 from devices.files.refusal import FileRefusedError, quoted
@@ -59,7 +59,7 @@ def read_mvnx(path: Path) -> MvnxFile:
     Raises
     ------
     FileRefusedError
-        No XML, several people, no sensors, frames whose numbers are none or step back, values that are none or too few.
+        No XML, several people, no sensors, frames whose numbers are none, values that are none or too few.
     """
     found = MvnxFile(path.name)
     subjects = 0
@@ -101,7 +101,8 @@ def mvnx_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedT
     Raises
     ------
     FileRefusedError
-        What `read_mvnx` refuses, several files, no orientation or acceleration, other units, an unknown frame rate.
+        What `read_mvnx` refuses, several files, no orientation or acceleration, other units, an unknown frame rate,
+        frames whose numbers step back.
     """
     if len(files) != 1:
         raise FileRefusedError(
@@ -113,15 +114,16 @@ def mvnx_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedT
     rate_hz = file.rate_hz or rate_hz
     if rate_hz is None:
         raise FileRefusedError(file.where, "its frame rate is not told", "Give it in Hz (--rate)")
-    index: Numbers = np.array(file.index, dtype=np.int64)
+    frames = np.array(file.index, dtype=np.int64)
+    clock = repaired(frames, FileClock(file.where, lambda row: f"frame {row + 1}", "index", 1.0 / rate_hz), step=1.0)
+    is_new = clock.is_new
+    index: Numbers = np.rint(clock.stamps[is_new]).astype(np.int64)
     _check_stamps(file, index, rate_hz)
-    is_new = is_later(index)
     values = {name: _by_sensor(file, name, is_new) for name in WIDTHS}
-    index = index[is_new]
     is_gravity_added, is_rate_derived = values[ACC] is None, values[GYR] is None
     acc, gyr, rate_kinds = _motion(file, values, index, rate_hz)
     q, mag = values[ORIENTATION], values[MAG]
-    findings = tuple(_findings(is_rate_derived, is_gravity_added, int(np.sum(~is_new))))
+    findings = (*_findings(is_rate_derived, is_gravity_added), *clock.findings)
     sensors = []
     for k, name in enumerate(file.sensors):
         block = ImuBlock(
@@ -166,14 +168,6 @@ def _note_frame(found: MvnxFile, frame: ET.Element) -> None:
     number = frame.get("index", str(len(found.index)))
     if re.fullmatch(r"\d{1,13}", number, re.ASCII) is None or int(number) > LARGEST_FRAME:
         raise FileRefusedError(found.where, "{number} is no frame's number", EXPORT_AGAIN, number=quoted(number))
-    if found.index and int(number) < found.index[-1]:
-        raise FileRefusedError(
-            found.where,
-            "after frame {before} comes frame {after}",
-            EXPORT_AGAIN,
-            before=found.index[-1],
-            after=number,
-        )
     found.index.append(int(number))
     try:
         found.stamps_ms.append(float(frame.get("time", "nan")))
@@ -262,9 +256,8 @@ def _motion(
     return acc, derived, [RateKind.INSTANTANEOUS for _ in sensors]
 
 
-def _findings(is_rate_derived: bool, is_gravity_added: bool, repeated: int) -> Iterator[Finding]:
+def _findings(is_rate_derived: bool, is_gravity_added: bool) -> Iterator[Finding]:
     if is_rate_derived:
         yield Finding("rate_from_orientation", Severity.INFO, "")
     if is_gravity_added:
         yield Finding("gravity_from_orientation", Severity.INFO, "")
-    yield from doubled(repeated)

@@ -24,7 +24,6 @@ from devices.files.column_names import (
     unit_of,
     without_brackets,
 )
-from devices.files.doubled_stamps import doubled
 from devices.files.magnitudes import FELT_M_S2, FEW, MOST_RAD_S, middle_size
 from devices.files.named_table import NamedTable
 from devices.files.named_times import stamps_of
@@ -113,7 +112,6 @@ def _sensor(table: NamedTable, named: SensorColumns, asked_hz: float | None, oth
     q = _orientation(_matrix(table, named.quat)[kept], acc[kept]) if named.quat else None
     if named.quat and q is None:
         findings.append(Finding("orientation_left_out", Severity.INFO, "", {"names": listed(named.quat)}))
-    findings += doubled(stamps.doubled)
     understood = {
         "acc": listed(named.acc),
         "acc_unit": acc_unit,

@@ -9,8 +9,8 @@ import numpy as np
 
 from core.findings import Finding, Severity
 from core.samples import BoolArray, FloatArray
+from devices.files.clock_repair import FileClock, repaired
 from devices.files.column_names import SECONDS, SensorColumns, meaning_of
-from devices.files.doubled_stamps import is_later
 from devices.files.named_table import NamedTable
 from devices.files.refusal import FileRefusedError, quoted
 
@@ -22,11 +22,10 @@ MOST_DOUBLED = 0.2  # of the samples: beyond, the stamps are too coarse to go by
 
 @dataclass(frozen=True, slots=True)
 class Stamps:
-    """Seconds of the samples that are new; of all samples which are; how many are not; by what they are told."""
+    """Seconds of the samples that are new; of all samples which are; by what they are told."""
 
     time_s: FloatArray
     is_new: BoolArray
-    doubled: int
     rate_hz: float | None
     told: str
 
@@ -53,9 +52,9 @@ def stamps_of(
     told_hz = _one_rate(table, asked_hz)
     rows = np.flatnonzero(is_there)
     if table.time_s is not None:
-        values, scale, told = _ascending(table, table.time_s[rows], rows, "time"), 1.0, "time [s]"
+        values, scale, told = _unwrapped(table, table.time_s[rows], rows, "time"), 1.0, "time [s]"
     elif named.time and len(table.columns[named.time]) == len(is_there):
-        values = _ascending(table, table.columns[named.time][rows], rows, named.time)
+        values = _unwrapped(table, table.columns[named.time][rows], rows, named.time)
         meaning = meaning_of(named.time, table.units.get(named.time, ""))
         unit = _time_unit(table, named.time, meaning.unit if meaning else "", values, told_hz, findings)
         scale, told = (
@@ -69,25 +68,26 @@ def stamps_of(
         )
     elif named.counter and len(table.columns[named.counter]) == len(is_there):
         values, scale, told = (
-            _ascending(table, table.columns[named.counter][rows], rows, named.counter),
+            _unwrapped(table, table.columns[named.counter][rows], rows, named.counter),
             1.0 / told_hz,
             f"{named.counter} / {told_hz:g} Hz",
         )
     else:
         values, scale, told = rows.astype(float), 1.0 / told_hz, f"{told_hz:g} Hz"
         findings.append(Finding("time_from_rate", Severity.WARNING, "", {"rate_hz": told_hz}))
-    is_new = is_later(values)
-    doubled = int(np.sum(~is_new))
-    if doubled > MOST_DOUBLED * len(values):
+    name = quoted(named.time or named.counter) if table.time_s is None else '"time"'
+    clock = repaired(values, FileClock(table.where, lambda row: table.place(int(rows[row])), name, scale))
+    if clock.doubled > MOST_DOUBLED * len(values):
         raise FileRefusedError(
             table.where,
             "of {count} samples {doubled} have the time of the one before",
             "Export the times with more digits",
             count=len(values),
-            doubled=doubled,
+            doubled=clock.doubled,
         )
-    time_s = values[is_new] * scale
-    return Stamps(time_s, is_new, doubled, _checked_rate(table, time_s, told_hz), told)
+    findings += clock.findings
+    time_s = clock.stamps[clock.is_new] * scale
+    return Stamps(time_s, clock.is_new, _checked_rate(table, time_s, told_hz), told)
 
 
 def _one_rate(table: NamedTable, asked_hz: float | None) -> float | None:
@@ -121,7 +121,7 @@ def _checked_rate(table: NamedTable, time_s: FloatArray, told_hz: float | None) 
     return round(found_hz, 1)
 
 
-def _ascending(
+def _unwrapped(
     table: NamedTable, values: FloatArray, rows: np.ndarray[tuple[int], np.dtype[np.intp]], name: str
 ) -> FloatArray:
     """(n,) stamps or counts without their turns.
@@ -129,7 +129,7 @@ def _ascending(
     Raises
     ------
     FileRefusedError
-        One is missing or lies before its predecessor.
+        One is missing.
     """
     missing = np.flatnonzero(~np.isfinite(values))
     if len(missing):
@@ -148,15 +148,6 @@ def _ascending(
             is_turn = (values[1:][back] < 0.1 * turn) & (values[:-1][back] > 0.9 * turn)
             if values.max() < turn and is_turn.all() and (turned[back] <= max(100.0 * usual, 1.0)).all():
                 return np.concatenate([values[:1], values[0] + np.cumsum(np.where(back, turned, step))])
-        row = int(np.flatnonzero(back)[0]) + 1
-        raise FileRefusedError(
-            f"{table.where}, {table.place(int(rows[row]))}",
-            "{name} steps back from {before} to {after}",
-            "Split the recording there or export it again",
-            name=quoted(name),
-            before=f"{values[row - 1]:.12g}",
-            after=f"{values[row]:.12g}",
-        )
     return values
 
 

@@ -16,6 +16,7 @@ import numpy as np
 
 from core.findings import Finding, Severity
 from core.samples import FloatArray, ImuBlock, RateKind, SensorInfo
+from devices.files.clock_repair import FileClock, repaired
 from devices.files.orientation_rates import Numbers, derive_rates, with_gravity
 from devices.files.refusal import FileRefusedError, quoted
 from devices.files.trial import ImportedSensor, ImportedTrial
@@ -32,11 +33,12 @@ EXPORT_AGAIN = "Export it again from OpenSim"
 
 @dataclass(frozen=True, slots=True)
 class OrientationTable:
-    """Times (n,) and earth from sensor (n, sensors, 4), NaN where a cell is empty."""
+    """Times (n,) and earth from sensor (n, sensors, 4), NaN where a cell is empty; what was found about times."""
 
     time_s: FloatArray
     sensors: tuple[str, ...]
     q_earth_from_sensor: FloatArray
+    of_clock: tuple[Finding, ...]
 
 
 def is_opensim_orientations(_path: Path, head: bytes) -> bool:
@@ -81,18 +83,16 @@ def read_opensim_orientations(path: Path) -> OrientationTable:
     values = np.array(rows, dtype=np.float64).reshape(len(rows), 1 + 4 * (len(names) - 1))
     values[~np.isfinite(values)] = np.nan
     time_s, q = values[:, 0], values[:, 1:].reshape(len(rows), len(names) - 1, 4)
-    is_wrong = np.isnan(time_s)
-    is_wrong[1:] |= ~(np.diff(time_s) > 0)
-    if is_wrong.any():
-        line = lines[int(np.argmax(is_wrong))]
-        raise FileRefusedError(
-            f"{where}, line {line}", "its time does not come after that of the line before", EXPORT_AGAIN
-        )
+    is_empty = np.isnan(time_s)
+    if is_empty.any():
+        raise FileRefusedError(f"{where}, line {lines[int(np.argmax(is_empty))]}", "a sample has no time", EXPORT_AGAIN)
+    clock = repaired(time_s, FileClock(where, lambda row: f"line {lines[row]}", TIME))
     is_wrong = (np.abs(np.linalg.norm(q, axis=2) - 1.0) > ROTATION_ERROR).any(axis=1)
     if is_wrong.any():
         line = lines[int(np.argmax(is_wrong))]
         raise FileRefusedError(f"{where}, line {line}", "the orientation is no rotation", EXPORT_AGAIN)
-    return OrientationTable(time_s - time_s[:1], tuple(names[1:]), q)
+    stamps_s = clock.stamps[clock.is_new]
+    return OrientationTable(stamps_s - stamps_s[:1], tuple(names[1:]), q[clock.is_new], clock.findings)
 
 
 def opensim_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedTrial:
@@ -119,6 +119,7 @@ def opensim_trial(files: Sequence[Path], rate_hz: float | None = None) -> Import
     rate_hz = round(1.0 / float(np.median(steps_s)), 2) if len(steps_s) else rate_hz
     counter = _counter(table.time_s, rate_hz or 1.0, files[0].name)
     findings = [
+        *table.of_clock,
         Finding("rate_from_orientation", Severity.INFO, ""),
         Finding("gravity_for_acceleration", Severity.WARNING, ""),
     ]

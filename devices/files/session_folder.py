@@ -162,7 +162,8 @@ def _read(folder: Path, reader: SessionReader) -> Session:
         findings += [*_folder_findings(folder, plan), *noticed]
     session = replace(session, recordings=tuple(recordings))
     changes = sensor_changes([(name, {site: f.sensor for site, f in sites.items()}) for name, sites in files.items()])
-    return replace(session, findings=(*unknown_keys(session), *findings, *changes))
+    again = [one for one in (*unknown_keys(session), *findings, *changes) if one not in session.findings]
+    return replace(session, findings=(*session.findings, *again))
 
 
 def _read_toml(folder: Path, reader: SessionReader) -> Mapping[str, object]:

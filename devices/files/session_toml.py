@@ -22,6 +22,7 @@ from core.goals import goal_table, goals_of_tables
 from core.samples import Patient, RateKind, Recording, RecordingKind, SensorInfo, Session
 from core.timed.protocols import TABLE_KEYS, planned_of_table, planned_table
 from devices.files.refusal import FileRefusedError, quoted
+from devices.files.stored_findings import finding_tables, findings_of_tables
 
 FORMAT = "gaitwright-session/1"
 FILE_NAME = "session.toml"
@@ -226,13 +227,16 @@ def parse_document(document: Table) -> tuple[Session, tuple[Plan, ...]]:
         "zero": zero_unknown,
         "sign": sign_unknown,
     }
-    top = {key: value for key, value in document.items() if key not in ("format", "recordings", *TABLES)}
+    findings = findings_of_tables(document.get("findings"))
+    known = ("format", "recordings", *TABLES, *(["findings"] if findings is not None else []))
+    top = {key: value for key, value in document.items() if key not in known}
     session = Session(
         recordings=(),
         patient=Patient(**patient_values, goals=goals or (), unknown=patient_unknown),
         sensors=sensors,
         zero_rad={Joint(key): math.radians(value) for key, value in zero_deg.items()},
         turned_sign={Joint(key): value for key, value in signs.items()},
+        findings=findings or (),
         unknown=top | {key: value for key, value in nested.items() if value},
         **session_values,
     )
@@ -261,6 +265,8 @@ def render(session: Session, plans: Sequence[Plan]) -> str:
     document = {key: value for key, value in document.items() if value != {}}
     document |= {key: value for key, value in session.unknown.items() if key not in document and key not in TABLES}
     document["recordings"] = [_render_plan(plan) for plan in plans]
+    if found := finding_tables(session.findings):
+        document["findings"] = found
     text = tomli_w.dumps(document)
     parse(text)
     return text

@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.samples import FloatArray, ImuBlock, SensorInfo
-from devices.files.doubled_stamps import doubled, is_later
+from devices.files.clock_repair import FileClock, repaired, without_turns
 from devices.files.magnitudes import check_magnitudes
 from devices.files.refusal import FileRefusedError
 from devices.files.trial import ImportedSensor
@@ -35,6 +35,8 @@ SYNCHRONISED, SHIMMER3 = 0x04, 3
 MOST_TICKS = 1 << 53  # 8000 years; what is more, was not set
 PERIODS = (16, 32768)  # ticks: 2048 Hz to 1 Hz
 LEAST_SAMPLES = 3
+MOST_AHEAD_OFF = 0.05 * TICK_HZ  # what the radio tells is that far off its line only where it is wrong
+MOST_OFF_RATE = 0.02
 GYR_SCALE = 100.0 * np.pi / 180  # what its sensitivities are stored in multiples of, per rad/s
 TIME_SIZE = 3
 # what is measured in the order in which it stands in a sample: bit of its switch, bytes
@@ -123,17 +125,17 @@ def read_card(files: Sequence[Path]) -> ImportedSensor:
     if any(part.period != first.period or part.is_synced != first.is_synced for part in parts):
         raise FileRefusedError(name, "its parts were not recorded with one setting", "Import each recording by itself")
     ticks = np.concatenate([part.ticks for part in parts])
-    is_new = is_later(ticks)
+    clock = repaired(ticks / TICK_HZ, FileClock(name, lambda row: f"sample {row + 1}", "its clock"))
+    is_new = clock.is_new
     block = ImuBlock(
         sensor=name,
-        time_s=ticks[is_new] / TICK_HZ,
+        time_s=clock.stamps[is_new],
         gyr_rad_s=np.concatenate([part.rate for part in parts])[is_new],
         acc_m_s2=np.concatenate([part.force for part in parts])[is_new],
     )
     check_magnitudes(block.acc_m_s2, block.gyr_rad_s, name, name, is_export=False)
     info = SensorInfo(serial=name, model="Shimmer3", rate_hz=round(TICK_HZ / first.period, 3))
-    told = tuple(doubled(int(np.sum(~is_new))))
-    return ImportedSensor(name, tuple(path.name for path in files), str(files[0]), block, info, told)
+    return ImportedSensor(name, tuple(path.name for path in files), str(files[0]), block, info, clock.findings)
 
 
 def is_synchronised(path: Path) -> bool:
@@ -168,13 +170,10 @@ def _part(path: Path) -> CardPart:
         raise FileRefusedError(path.name, "it holds no sample", "Choose another recording of the card")
     times = samples[:, :TIME_SIZE].astype(np.int64)
     raw: Ticks = times[:, 0] | times[:, 1] << 8 | times[:, 2] << 16
-    since = np.concatenate([[0], np.cumsum(np.diff(raw) % TURN)])
     begun = int.from_bytes(head[START + 1 : START + 5] + head[START : START + 1], "little")
-    ticks: Ticks = begun + since
+    ticks: Ticks = begun + _since(raw, begun, period)
     if len(offsets):  # how far it was ahead, at the samples that followed; between them its clock runs evenly
-        at_sample, ahead = np.array(offsets, dtype=float).T
-        slope = np.polyfit(at_sample, ahead, 1) if len(offsets) > 1 else [0.0, ahead[0]]
-        ticks = ticks - np.rint(np.polyval(slope, np.arange(len(ticks)))).astype(np.int64)
+        ticks = ticks - np.rint(_ahead(path.name, offsets, len(ticks), period)).astype(np.int64)
     real = int.from_bytes(head[REAL_TIME : REAL_TIME + 8], "big")
     return CardPart(
         ticks + (real if real < MOST_TICKS else 0),
@@ -183,6 +182,38 @@ def _part(path: Path) -> CardPart:
         period,
         is_synced,
     )
+
+
+def _since(raw: Ticks, begun: int, period: int) -> Ticks:
+    """(n,) ticks since the recording began, by its samples' times; the first of these may be wrong itself."""
+    since = without_turns(raw, TURN) - raw[0]
+    later = without_turns(np.array([begun % TURN, *raw[1:2]]), TURN)
+    if len(raw) > 1 and 0 < later[1] - later[0] < 2 * period:
+        since += later[1] - later[0] - since[1]
+    return since
+
+
+def _ahead(name: str, offsets: Sequence[tuple[int, int]], count: int, period: int) -> FloatArray:
+    """(count,) ticks by which the clock is ahead, on a line through what the radio told; a few of it may be wrong."""
+    at_sample, ahead = np.array(offsets, dtype=float).T
+    if len(offsets) < 2:
+        return np.full(count, ahead[0])
+    half = len(offsets) // 2
+    first, later = slice(len(offsets) - half), slice(half, None)
+    slope = np.median((ahead[later] - ahead[first]) / (at_sample[later] - at_sample[first]))
+    off = ahead - slope * at_sample
+    is_right = np.abs(off - np.median(off)) < MOST_AHEAD_OFF
+    line = np.polyfit(at_sample[is_right], ahead[is_right], 1 if is_right.sum() > 1 else 0)
+    slope = line[0] if len(line) > 1 else 0.0
+    if abs(slope) > MOST_OFF_RATE * period:
+        raise FileRefusedError(
+            name,
+            "its times make {found} samples per second, {told} are expected",
+            "Synchronise the sensors again in Consensys, and record again",
+            found=f"{TICK_HZ / (period - slope):.4g}",
+            told=f"{TICK_HZ / period:.4g}",
+        )
+    return np.asarray(np.polyval(line, np.arange(count)))
 
 
 def _samples(body: Bytes, size: int, is_synced: bool) -> tuple[Bytes, list[tuple[int, int]]]:

@@ -18,8 +18,8 @@ import numpy as np
 
 from core.samples import ImuBlock, SensorInfo
 from devices.csv_serial import FORCE_UNITS, RATE_UNITS
+from devices.files.clock_repair import FileClock, repaired
 from devices.files.column_names import Quantity, unit_of
-from devices.files.doubled_stamps import doubled, is_later
 from devices.files.magnitudes import check_magnitudes
 from devices.files.own_clocks import from_zero, with_own_clocks
 from devices.files.refusal import FileRefusedError, quoted
@@ -144,15 +144,14 @@ def _sensors(path: Path) -> list[ImportedSensor]:
 
 def _sensor(path: Path, table: Table, units: Mapping[str, str], name: str, columns: ShimmerColumns) -> ImportedSensor:
     force, (time, is_synced) = columns.axes(WIDE) or columns.axes(NARROW), columns.time()
-    time_s = table.numbers[time] / MS_PER_S
     if units.get(time, "ms") != "ms":
         raise FileRefusedError(
             path.name, "{name} is in {unit}, expected ms", EXPORT_AGAIN, name=quoted(time), unit=quoted(units[time])
         )
-    is_new = is_later(time_s)
+    clock = repaired(table.numbers[time], FileClock(path.name, table.place, time, 1.0 / MS_PER_S))
+    time_s, is_new = clock.stamps / MS_PER_S, clock.is_new
     if not is_new.any():
         raise FileRefusedError(path.name, "no sample in it has a time", EXPORT_AGAIN)
-    told = doubled(int(np.sum(np.isfinite(time_s) & ~is_new)))
     mag = columns.axes(MAG)
     block = ImuBlock(
         sensor=name,
@@ -166,7 +165,7 @@ def _sensor(path: Path, table: Table, units: Mapping[str, str], name: str, colum
     hz = round(1.0 / float(np.median(step_s)), 1) if len(step_s) else None
     info = SensorInfo(serial=name, model="Shimmer3", rate_hz=hz, clock=CLOCK if is_synced else "")
     ids = (name.rpartition("_")[2],)
-    return ImportedSensor(name, ids, str(path), block, info, tuple(told))
+    return ImportedSensor(name, ids, str(path), block, info, clock.findings)
 
 
 def _scale(path: Path, units: Mapping[str, str], names: Sequence[str], quantity: Quantity) -> float:

@@ -7,7 +7,7 @@ on one straight line through the stamps, and samples that are missing for good r
 Not held against a recording of LabRecorder: against files that are laid out here as the format's description says.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -16,15 +16,18 @@ import numpy as np
 
 from core.findings import Finding, Severity
 from core.samples import FloatArray
+from devices.files.clock_repair import FileClock, repaired, steps_back
 from devices.files.column_names import XYZ, listed, sensor_columns
 from devices.files.named_columns import trial_of_tables
 from devices.files.named_table import NamedTable
+from devices.files.own_clocks import from_zero
 from devices.files.refusal import FileRefusedError
-from devices.files.trial import ImportedTrial
+from devices.files.trial import ImportedSensor, ImportedTrial
 from devices.files.xdf_streams import SIGNATURE, XdfStream, read_xdf
 from devices.live import SourceRefusedError
 from devices.lsl import sensors_of
 
+NOT_MEASURED = "clock_not_measured"
 LABEL_THEM = (
     "Label the channels acc_x to acc_z and gyr_x to gyr_z with their units where they are sent, both in one stream"
 )
@@ -32,6 +35,8 @@ EVEN = 0.25  # of a step: stamps nearer to whole steps were made by the sensor's
 MOST_UNEVEN = 0.02  # of the samples
 LATE_S = 2.0  # so long a packet may be late; what is missing for longer was lost
 LEAST_LOSS_S = 0.03  # packets are not more punctual
+MOST_OFF_RATE = 0.02  # of what the sender tells; clocks of sensors are off by a thousandth of that
+SEND_RATE = "Let the sender tell the rate it sends at, or send samples with the sensor's own times"
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,6 +46,7 @@ class StraightTimes:
     time_s: FloatArray
     away_s: float
     least_loss_s: float
+    rate_hz: float
 
 
 def is_xdf(_path: Path, head: bytes) -> bool:
@@ -63,7 +69,26 @@ def xdf_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedTr
     """
     started: list[str] = []
     trial = trial_of_tables("xdf", files, lambda path: _tables(path, started), rate_hz)
-    return replace(trial, started=min(filter(None, started), default=""))
+    sensors = tuple(_on_own_clocks(trial.sensors))
+    return replace(trial, sensors=sensors, started=min(filter(None, started), default=""))
+
+
+def _on_own_clocks(sensors: Sequence[ImportedSensor]) -> Iterator[ImportedSensor]:
+    """Sensors of computers whose clocks were not measured begin with the others, each computer's on its own clock."""
+    host = {
+        one.name: str(finding.numbers["host"])
+        for one in sensors
+        for finding in one.findings
+        if finding.key == NOT_MEASURED
+    }
+    zeroed = {
+        one.name: one
+        for clock in {host.get(one.name) for one in sensors}
+        for one in from_zero([one for one in sensors if host.get(one.name) == clock])
+    }
+    for one in sensors:
+        info = replace(one.info, clock=host.get(one.name, one.info.clock))
+        yield replace(zeroed[one.name], info=info)
 
 
 def _tables(path: Path, started: list[str]) -> Sequence[NamedTable]:
@@ -80,41 +105,61 @@ def _tables(path: Path, started: list[str]) -> Sequence[NamedTable]:
         )
     start_s = min(float(np.min(one.stamp_s)) for one in found)
     is_of_several = len({one.host for one in found}) > 1
-    names = [one.name for one in found]
+    called = _called(found)
     return [
         _table(
             path,
             one,
-            one.name if names.count(one.name) == 1 and one.name else f"{one.name} {one.source or number}".strip(),
+            name,
             others,
             start_s,
             is_of_several and not one.has_clock,
         )
-        for number, one in enumerate(found, start=1)
+        for one, name in zip(found, called, strict=True)
+    ]
+
+
+def _called(streams: Sequence[XdfStream]) -> list[str]:
+    """A name for each stream, of its own: with its source, or its number where that is another's, too."""
+    names = [one.name for one in streams]
+    is_known = [one.name != "" and names.count(one.name) == 1 for one in streams]
+    called = [
+        one.name if known else f"{one.name} {one.source}".strip() for one, known in zip(streams, is_known, strict=True)
+    ]
+    return [
+        name if name and called.count(name) == 1 else f"{one.name} {number}".strip()
+        for number, (one, name) in enumerate(zip(streams, called, strict=True), start=1)
     ]
 
 
 def _table(
     path: Path, stream: XdfStream, called: str, others: Sequence[str], start_s: float, is_clock_missing: bool
 ) -> NamedTable:
-    columns, units, left_out = _columns(stream)
-    time_s = stream.stamp_s - start_s
     findings = []
     if not stream.is_whole:
         findings.append(Finding("stream_not_ended", Severity.WARNING, ""))
     if is_clock_missing:
-        findings.append(Finding("clock_not_measured", Severity.WARNING, "", {"host": stream.host or "?"}))
-    straight = straight_times(time_s, stream.rate_hz) if stream.rate_hz is not None else None
-    if straight is not None:
-        time_s = straight.time_s
-        numbers = {"away_ms": 1e3 * straight.away_s, "loss_ms": 1e3 * straight.least_loss_s}
-        findings.append(Finding("times_straightened", Severity.WARNING, "", numbers))
+        findings.append(Finding(NOT_MEASURED, Severity.WARNING, "", {"host": stream.host or "?"}))
+    clock = FileClock(path.name, lambda row: f"{called}, sample {row + 1}", '"time"')
+    time_s = stream.stamp_s - start_s
+    if stream.rate_hz is not None:
+        step_s = 1.0 / stream.rate_hz
+        mended = repaired(time_s, clock, slack=LATE_S, step=step_s)
+        is_there = np.isfinite(mended.stamps)
+        time_s, stream = mended.stamps[is_there], replace(stream, samples=stream.samples[is_there])
+        findings += mended.findings
+        straight = _straightened(time_s, 1.0 / step_s, clock)
+        if straight is not None:
+            time_s = straight.time_s
+            numbers = {"away_ms": 1e3 * straight.away_s, "loss_ms": 1e3 * straight.least_loss_s}
+            findings.append(Finding("times_straightened", Severity.WARNING, "", numbers))
+    columns, units, left_out = _columns(stream)
     return NamedTable(
         columns=columns,
         where=path.name,
         file=str(path),
         called=called,
-        place=lambda row: f"{called}, sample {row + 1}",
+        place=clock.place,
         units=units,
         time_s=time_s,
         left_out=[*left_out, *others],
@@ -145,6 +190,49 @@ def _columns(stream: XdfStream) -> tuple[dict[str, FloatArray], dict[str, str], 
     return columns, units, list(dict.fromkeys(left_out))
 
 
+def _straightened(stamp_s: FloatArray, rate_hz: float, clock: FileClock) -> StraightTimes | None:
+    """Straight times, where the stamps need them and the line has the rate that the sender tells."""
+    back = lasting_step_back(stamp_s, rate_hz)
+    if back is not None:
+        raise steps_back(clock, back, float(stamp_s[back - 1]), float(stamp_s[back]))
+    straight = straight_times(stamp_s, rate_hz)
+    if straight is not None and abs(straight.rate_hz / rate_hz - 1.0) > MOST_OFF_RATE:
+        raise FileRefusedError(
+            f"{clock.where}, {clock.place(0).partition(',')[0]}",
+            "its times make {found} samples per second, {told} are expected",
+            SEND_RATE,
+            found=f"{straight.rate_hz:.4g}",
+            told=f"{rate_hz:g}",
+        )
+    return straight
+
+
+def lasting_step_back(stamp_s: FloatArray, rate_hz: float) -> int | None:
+    """Find the first sample from which on stamps of packets are earlier than those before tell, and stay so.
+
+    Parameters
+    ----------
+    stamp_s : (n,)
+        Finite.
+    rate_hz
+        As the sender tells it.
+    """
+    window, least_s = max(round(LATE_S * rate_hz), 4), max(1.5 / rate_hz, LEAST_LOSS_S)
+    back = np.flatnonzero(np.diff(stamp_s) < -least_s) + 1
+    if not len(back):
+        return None
+    step_s = _usual_step_s(stamp_s, window) if len(stamp_s) > 2 * window else 1.0 / rate_hz
+    delay_s = stamp_s - np.arange(len(stamp_s)) * step_s
+    for at in back:
+        if delay_s[max(at - window, 0) : at].min() - delay_s[at : at + window].min() > least_s:
+            return int(at)
+    return None
+
+
+def _usual_step_s(stamp_s: FloatArray, window: int) -> float:
+    return float(np.median(stamp_s[window:] - stamp_s[:-window])) / window
+
+
 def straight_times(stamp_s: FloatArray, rate_hz: float) -> StraightTimes | None:
     """Times on a straight line through stamps that came with packets, with gaps where samples were lost.
 
@@ -170,7 +258,7 @@ def straight_times(stamp_s: FloatArray, rate_hz: float) -> StraightTimes | None:
     whole = np.maximum(np.round(steps), 1.0)
     if (steps > 0).all() and np.mean(np.abs(steps - whole) > EVEN) <= MOST_UNEVEN:
         return None
-    step_s = float(np.median(stamp_s[window:] - stamp_s[:-window])) / window
+    step_s = _usual_step_s(stamp_s, window)
     if not step_s > 0.0:
         return None
     count = np.arange(len(stamp_s), dtype=np.float64)
@@ -187,4 +275,4 @@ def straight_times(stamp_s: FloatArray, rate_hz: float) -> StraightTimes | None:
     if not slope_s > 0.0:
         return None
     time_s = first_s + slope_s * (count - count.mean())
-    return StraightTimes(time_s, float(np.quantile(np.abs(stamp_s - time_s), 0.9)), least_loss_s)
+    return StraightTimes(time_s, float(np.quantile(np.abs(stamp_s - time_s), 0.9)), least_loss_s, 1.0 / slope_s)

@@ -40,7 +40,7 @@ DAMAGES = (
 )
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class XdfStream:
     """One stream of numbers.
 

@@ -6,19 +6,22 @@ clock of its own, of microseconds.
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from core.findings import Finding, Severity
 from core.samples import FloatArray, ImuBlock, SensorInfo
-from devices.files.doubled_stamps import doubled, is_later
+from devices.clock import BACK_S
+from devices.files.clock_repair import FileClock, repaired
 from devices.files.magnitudes import check_magnitudes
 from devices.files.own_clocks import with_own_clocks
 from devices.files.refusal import FileRefusedError
 from devices.files.tables import read_csv
 from devices.files.trial import ImportedSensor, ImportedTrial, read_each
-from devices.ximu3 import DRIVER, MODEL, G, Ximu3Framer, read_file
+from devices.stream import decoded
+from devices.ximu3 import DRIVER, MODEL, G, Ximu3Framer, heard_in
 
 INERTIAL, QUATERNION = "Inertial.csv", "Quaternion.csv"
 TIME = "Timestamp (us)"
@@ -80,10 +83,14 @@ def _begins(path: Path) -> str:
 
 
 def _of_bytes(path: Path) -> tuple[ImuBlock, list[Finding]]:
-    found = read_file(path)
+    heard = heard_in(path)
+    name = FileClock(path.name, lambda row: f"sample {row + 1}", "its clock")
+    clock = repaired(np.array([row[0] for row in heard.rows]), name, slack=BACK_S)  # messages overtake each other
+    timed = [(float(time_s), *row[1:]) for time_s, row in zip(clock.stamps, heard.rows, strict=True) if time_s >= 0]
+    found = decoded(path.stem, replace(heard, rows=timed), [row[0] for row in timed])
     damaged = found.counts.damaged
     told = [Finding("damaged_stretches", Severity.WARNING, "", {"count": damaged})] if damaged else []
-    return found.block, told
+    return found.block, [*clock.findings, *told]
 
 
 def _of_table(path: Path) -> tuple[ImuBlock, list[Finding]]:
@@ -92,11 +99,12 @@ def _of_table(path: Path) -> tuple[ImuBlock, list[Finding]]:
     missing = [name for name in (TIME, *GYR, *ACC) if name not in table.numbers]
     if missing:
         raise FileRefusedError(where, "there is no column {name}", CONVERT_AGAIN, name=missing[0])
-    time_s = table.numbers[TIME] / US_PER_S
-    if not np.isfinite(time_s).all():
-        row = int(np.argmin(np.isfinite(time_s)))
+    is_there = np.isfinite(table.numbers[TIME])
+    if not is_there.all():
+        row = int(np.argmin(is_there))
         raise FileRefusedError(f"{where}, {table.place(row)}", "a sample has no time", CONVERT_AGAIN)
-    is_new = is_later(time_s)
+    clock = repaired(table.numbers[TIME], FileClock(where, table.place, TIME, 1.0 / US_PER_S))
+    time_s, is_new = clock.stamps / US_PER_S, clock.is_new
     name = path.parent.name if path.name == INERTIAL else path.stem
     block = ImuBlock(
         sensor=name,
@@ -105,7 +113,7 @@ def _of_table(path: Path) -> tuple[ImuBlock, list[Finding]]:
         acc_m_s2=table.matrix(ACC)[is_new] * G,
         q_earth_from_sensor=_orientation(path.with_name(QUATERNION), time_s[is_new]),
     )
-    return block, doubled(int(np.sum(~is_new)))
+    return block, list(clock.findings)
 
 
 def _orientation(path: Path, time_s: FloatArray) -> FloatArray | None:

@@ -15,7 +15,7 @@ from scipy.spatial.transform import Rotation
 
 from core.findings import Finding, Severity
 from core.samples import BoolArray, FloatArray, ImuBlock, RateKind, SensorInfo
-from devices.files.doubled_stamps import doubled, is_later, unwrapped
+from devices.files.clock_repair import FileClock, repaired, unwrapped, without_turns
 from devices.files.magnitudes import middle_size, times_the_turning
 from devices.files.orientation_rates import Numbers, derive_rates, rate_kind_by
 from devices.files.refusal import FileRefusedError
@@ -27,6 +27,7 @@ FINE_TIME = "SampleTimeFine"
 ACC = ("Acc_X", "Acc_Y", "Acc_Z")
 GYR = ("Gyr_X", "Gyr_Y", "Gyr_Z")
 MAG = ("Mag_X", "Mag_Y", "Mag_Z")
+USUAL_HZ = 100.0
 QUAT = ("Quat_q0", "Quat_q1", "Quat_q2", "Quat_q3")
 EULER = ("Yaw", "Pitch", "Roll")
 MATRIX = tuple(f"Mat[{row}][{column}]" for row in (1, 2, 3) for column in (1, 2, 3))
@@ -56,7 +57,7 @@ class MtFile:
     gyr_rad_s: FloatArray | None
     q_earth_from_sensor: FloatArray | None
     mag: FloatArray | None
-    doubled: int
+    of_clock: tuple[Finding, ...]
     rate_hz: float | None
 
 
@@ -84,10 +85,8 @@ def read_mtmanager(path: Path) -> MtFile:
         raise FileRefusedError(where, "there is no acceleration (Acc_X, Acc_Y, Acc_Z)", WITH_IT)
     table = read_csv(path, where, NUMERIC, comment="//", delimiters=DELIMITERS, keep_others=False)
     counter = unwrapped(table, COUNTER, COUNTER_TURNS_AT, where)
-    is_new = is_later(counter)
     q = _orientation(table, where)
-    gyr = table.matrix(GYR)[is_new] if set(GYR) <= set(names) else None
-    if gyr is None and q is None:
+    if not set(GYR) <= set(names) and q is None:
         raise FileRefusedError(
             where,
             "there are neither angular rates (Gyr_X) nor an orientation to derive them from",
@@ -95,6 +94,9 @@ def read_mtmanager(path: Path) -> MtFile:
         )
     settings = dict(line.split(":", 1) for line in comments if ":" in line)
     rate_hz = _header_rate(settings) or _fine_rate(table, counter)
+    name = FileClock(where, table.place, COUNTER, 1.0 / (rate_hz or USUAL_HZ))
+    clock = repaired(counter, name, step=1.0)
+    is_new = clock.is_new
     file = MtFile(
         path=path,
         info=SensorInfo(
@@ -102,12 +104,12 @@ def read_mtmanager(path: Path) -> MtFile:
             model=settings.get("ProductCode", "").strip(),
             firmware=settings.get("Firmware Version", "").strip(),
         ),
-        counter=counter[is_new],
+        counter=np.rint(clock.stamps[is_new]).astype(np.int64),
         acc_m_s2=table.matrix(ACC)[is_new],
-        gyr_rad_s=gyr,
+        gyr_rad_s=table.matrix(GYR)[is_new] if set(GYR) <= set(names) else None,
         q_earth_from_sensor=None if q is None else q[is_new],
         mag=table.matrix(MAG)[is_new] if set(MAG) <= set(names) else None,
-        doubled=int(np.sum(~is_new)),
+        of_clock=clock.findings,
         rate_hz=rate_hz,
     )
     _check_units(file)
@@ -199,7 +201,8 @@ def _fine_rate(table: Table, counter: Numbers) -> float | None:
     ticks = table.numbers.get(FINE_TIME, np.empty(0))
     if len(ticks) < 2 or not np.isfinite(ticks).all():
         return None
-    elapsed = float(np.sum(np.diff(ticks) % FINE_TURNS_AT))
+    turned = without_turns(ticks.astype(np.int64), int(FINE_TURNS_AT))
+    elapsed = float(turned[-1] - turned[0])
     return FINE_TICKS_PER_S * float(counter[-1] - counter[0]) / elapsed if elapsed > 0 else None
 
 
@@ -296,4 +299,4 @@ def _check_units(file: MtFile) -> None:
 def _findings(file: MtFile, block: ImuBlock) -> Iterator[Finding]:
     if block.is_rate_derived:
         yield Finding("rate_from_orientation", Severity.INFO, "")
-    yield from doubled(file.doubled)
+    yield from file.of_clock

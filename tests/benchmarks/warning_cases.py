@@ -277,6 +277,7 @@ CASES: dict[str, Case] = {
     "low_rate": of_samples(lambda b: part(b, slice(None, None, 5))),
     "clipped": of_samples(clipped),
     "moved_while_standing": of_samples(shaken, recording="standing"),
+    "clock_jumps": of_samples(lambda b: replace(b, time_s=b.time_s + 3600.0 * (b.time_s > np.median(b.time_s)))),
     "clock_offset": of_samples(on_after_stop(30.0)),
     "same_data": Case(copied, is_of_samples=True),
     "missing_site": Case(lambda: walked(sites=(THIGH,)), is_of_samples=True),

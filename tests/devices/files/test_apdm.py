@@ -149,8 +149,9 @@ def test_what_is_damaged_is_refused_where_it_is(tmp_path: Path) -> None:
     row = ["0.1", "0", "0", "9.81", "0", "0", "0"]
     assert "a.csv, line 6: it has 3 cells, the heads 7" in refusal(moveo(tmp_path / "a.csv", [row, row[:3]]))
     assert 'b.csv, line 5: "moved" is no number' in refusal(moveo(tmp_path / "b.csv", [["0.1", "moved", *row[2:]]]))
-    assert "c.csv, line 6: its time does not come after" in refusal(moveo(tmp_path / "c.csv", [row, row]))
-    assert "d.csv, line 5: its time does not come after" in refusal(moveo(tmp_path / "d.csv", [["", *row[1:]]]))
+    back = ["0.05", *row[1:]]
+    assert "c.csv, line 6: Time steps back from 0.1 to 0.05" in refusal(moveo(tmp_path / "c.csv", [row, back]))
+    assert "d.csv, line 5: a sample has no time" in refusal(moveo(tmp_path / "d.csv", [["", *row[1:]]]))
     cells = cells_of(moveo(tmp_path / "e.csv"))
     assert '"Thigh" has no angular rates' in refusal(written(tmp_path / "e.csv", [line[:4] for line in cells]))
     assert "no line of columns that begins with Time" in refusal(written(tmp_path / "f.csv", cells[:2]))

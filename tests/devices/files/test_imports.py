@@ -117,12 +117,11 @@ def test_a_second_import_adds_a_recording(tmp_path: Path) -> None:
     assert session.findings == (told,)
     write_session(session, tmp_path / "s")
     session = add_recording(read_session(tmp_path / "s"), walk("walk 2"), info)
-    assert session.findings == ()
     write_session(session, tmp_path / "s")
     session = read_session(tmp_path / "s")
+    assert session.findings == (told,)
     assert [recording.name for recording in session.recordings] == ["walk 1", "walk 2"]
     assert session.sensors == info
-    assert session.findings == ()
 
 
 def test_a_sensor_that_changes_is_told(tmp_path: Path) -> None:

@@ -173,7 +173,7 @@ def test_units_are_held_to_their_size_and_asked_for(tmp_path: Path) -> None:
     assert "nothing tells whether the angular rates" in refusal({"time_s": TIME_S, "acc": ACC, "gyr": GYR})
     assert "nothing tells the times of its samples" in refusal(sensor())
     back = TIME_S.copy()
-    back[50] = 0.0
+    back[50:] -= 0.5
     assert 'a.mat, sample 51: "time_s" steps back from 0.49 to 0' in refusal({"time_s": back, **sensor()})
     quat = {"time_s": TIME_S, **sensor(), "quat": np.tile((1.0, 0.0, 0.0, 0.0), (ROWS, 1))}
     trial = matlab_trial([written(tmp_path / "b.mat", quat)])  # whose order nothing tells

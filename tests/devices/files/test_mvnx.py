@@ -118,7 +118,7 @@ def test_missing_frames_are_a_gap_and_a_repeated_one_is_told(tmp_path: Path) -> 
     trial = mvnx_trial([mvnx(tmp_path / "b.mvnx", held, index=[*range(100), *range(99, 299)])])
     assert len(trial.sensors[0].block) == 299
     assert trial.sensors[0].findings[-1].numbers == {"count": 1}
-    assert "b.mvnx: after frame 99 comes frame 5" in refusal(
+    assert "b.mvnx, frame 101: index steps back from 99 to 5" in refusal(
         mvnx(tmp_path / "b.mvnx", held, index=[*range(100), *range(5, 205)])
     )
 

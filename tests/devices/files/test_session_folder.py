@@ -13,8 +13,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as npst
 
+from core.analysis import analyse
 from core.body import LEG_JOINTS, LEG_SITES, Side, Site
-from core.findings import Severity
+from core.findings import Finding, Severity
 from core.samples import ImuBlock, Patient, RateKind, Recording, RecordingKind, SensorInfo, Session
 from devices.files import session_folder, site_files
 from devices.files.refusal import FileRefusedError
@@ -618,3 +619,60 @@ def test_spoilt_files_are_refused_or_read(
         assert said.isprintable()
         return
     assert session.recordings
+
+
+# --- findings of an import
+
+
+def found_by_import() -> tuple[Finding, ...]:
+    return (
+        Finding("stamps_mended", Severity.WARNING, PLACE, {"count": 1, "left_out": 0, "first": 11, "off_s": 3.5}),
+        Finding("not_synchronised", Severity.WARNING, PLACE),
+        Finding("columns_left_out", Severity.INFO, PLACE, {"names": 'é, "x"'}),
+    )
+
+
+def test_what_an_import_found_is_kept_however_often_the_folder_is_written(tmp_path: Path) -> None:
+    session = Session((walk({Site.LEFT_THIGH: simple_block()}),), findings=found_by_import(), unknown={"odd": {"a": 1}})
+    for _ in range(3):
+        write_session(session, tmp_path / "s")
+        session = read_session(tmp_path / "s")
+        assert session.findings[:3] == found_by_import()
+        assert keys(session)[3:] == [("unknown_key", "session.toml", "odd")]
+        assert session.unknown == {"odd": {"a": 1}}
+
+
+def test_what_reading_finds_again_is_not_kept(make_session: MakeSession, tmp_path: Path) -> None:
+    folder = make_session({"left_thigh.csv": table("0,1,1,1,1,1,1,5", "1,3,3,3,3,3,3,5", columns=f"{COLUMNS},odd")})
+    write_session(read_session(folder), tmp_path / "s")
+    assert "findings" not in (tmp_path / "s" / "session.toml").read_text()
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        "findings = 1",
+        'findings = ["a"]',
+        '[[findings]]\nkey = "a"\nseverity = "bad"\nwhere = ""',
+        '[[findings]]\nkey = "a"\nseverity = "info"\nwhere = ""\nnumbers = [1]',
+        '[[findings]]\nkey = "a"\nseverity = "info"\nwhere = ""\nnumbers = {x = inf}',
+        f'[[findings]]\nkey = "a"\nseverity = "info"\nwhere = ""\nnumbers = {{x = 1{"0" * 400}}}',
+        '[[findings]]\nkey = "a"\nseverity = "info"\nwhere = ""\nmore = 1',
+    ],
+)
+def test_findings_that_are_none_of_ours_are_an_unknown_key_and_stay(tmp_path: Path, other: str) -> None:
+    write_session(Session((walk({Site.LEFT_THIGH: simple_block()}),)), tmp_path / "s")
+    path = tmp_path / "s" / "session.toml"
+    head, rest = path.read_text().split("\n", 1)
+    path.write_text(f"{head}\n{other}\n{rest}" if other.startswith("findings") else f"{head}\n{rest}\n{other}\n")
+    for _ in range(2):
+        session = read_session(tmp_path / "s")
+        assert keys(session) == [("unknown_key", "session.toml", "findings")]
+        write_session(session, tmp_path / "s")
+
+
+def test_an_analysis_knows_what_the_import_found(tmp_path: Path) -> None:
+    session = Session((walk({Site.LEFT_THIGH: simple_block(600)}),), findings=found_by_import())
+    write_session(session, tmp_path / "s")
+    found = analyse(read_session(tmp_path / "s")).findings
+    assert all(one in found for one in found_by_import())

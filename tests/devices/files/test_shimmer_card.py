@@ -154,3 +154,54 @@ def test_other_bytes_are_none(tmp_path: Path, data: bytes) -> None:
     path = tmp_path / "other.bin"
     path.write_bytes(data)
     assert format_of(path) != "shimmer"
+
+
+def with_stamps(path: Path, changes: dict[int, int]) -> Path:
+    """The card with other times at some of its samples: 3 bytes at the begin of each, 15 bytes with both sensors."""
+    data = bytearray(written(path).read_bytes())
+    for k, ticks in changes.items():
+        block, row = divmod(k, 512 // 15)
+        at = 256 + block * (512 // 15) * 15 + row * 15
+        data[at : at + 3] = (ticks % (1 << 24)).to_bytes(3, "little")
+    path.write_bytes(bytes(data))
+    return path
+
+
+@pytest.mark.parametrize("k", [0, 1, 150, COUNT - 1])
+@pytest.mark.parametrize("ticks", [0, 8_000_000, 123_456_789 + PERIOD * 200])
+def test_one_wrong_time_harms_nothing_after_it(tmp_path: Path, k: int, ticks: int) -> None:
+    (sensor,) = shimmer_trial([with_stamps(tmp_path / "a.bin", {k: ticks})]).sensors
+    (right,) = shimmer_trial([written(tmp_path / "b.bin")]).sensors
+    left_out = [k] if len(sensor.block) < COUNT else []
+    expected_s = np.delete(right.block.time_s, left_out)
+    assert len(left_out) <= int(k in (0, COUNT - 1))
+    assert sensor.block.time_s == pytest.approx(expected_s - expected_s[0], abs=1e-6)
+    assert [one.key for one in sensor.findings] == ["stamps_mended"]
+
+
+def test_two_times_that_changed_places_harm_nothing_after_them(tmp_path: Path) -> None:
+    begun = 123_456_789
+    changes = {150: begun + PERIOD * 151, 151: begun + PERIOD * 150}
+    (sensor,) = shimmer_trial([with_stamps(tmp_path / "a.bin", changes)]).sensors
+    assert sensor.block.time_s == pytest.approx(np.arange(COUNT) * PERIOD / 32768)
+    assert [one.numbers["count"] for one in sensor.findings] == [2]
+
+
+def test_a_card_whose_clock_restarts_is_refused(tmp_path: Path) -> None:
+    restarted = with_stamps(tmp_path / "a.bin", {k: 1000 + PERIOD * (k - 150) for k in range(150, COUNT)})
+    with pytest.raises(FileRefusedError, match="sample 151: its clock steps back from"):
+        shimmer_trial([restarted])
+
+
+def test_a_wrong_offset_from_the_radio_bends_no_clock_and_a_wrong_rate_is_refused(tmp_path: Path) -> None:
+    path = written(tmp_path / "A" / "000", ahead=(5000, 0.0192), count=3000)
+    (right,) = shimmer_trial([path]).sensors
+    data = bytearray(path.read_bytes())
+    in_block = (512 - 9) // 15
+    at = 256 + 40 * (9 + 15 * in_block)
+    data[at : at + 9] = struct.pack("<BQ", 0, 1 << 40)
+    path.write_bytes(bytes(data))
+    (sensor,) = shimmer_trial([path]).sensors
+    assert sensor.block.time_s == pytest.approx(right.block.time_s, abs=1e-4)
+    with pytest.raises(FileRefusedError, match=r"its times make 106.* samples per second, 102.4 are expected"):
+        shimmer_trial([written(tmp_path / "B" / "000", ahead=(0, 12.0))])

@@ -52,16 +52,18 @@ class SentStream:
     offset_s: float | None = 0.0  # from the sender's clock to the recorder's
     is_deduced: bool = False  # stamps are told of the first of ten samples only
     footer: bool = True
+    source: str | None = None
 
     def header(self, kind: str = "float32") -> str:
         channels = "".join(
             f"<channel><label>{label}</label><unit>{unit}</unit><type>IMU</type></channel>"
             for label, unit in zip(self.labels, self.units, strict=True)
         )
+        source = f"id-{self.name}" if self.source is None else self.source
         return (
             f"<?xml version='1.0'?><info><name>{self.name}</name><type>IMU</type>"
             f"<channel_count>{len(self.labels)}</channel_count><nominal_srate>{self.rate_hz}</nominal_srate>"
-            f"<channel_format>{kind}</channel_format><source_id>id-{self.name}</source_id>"
+            f"<channel_format>{kind}</channel_format><source_id>{source}</source_id>"
             f"<hostname>{self.host}</hostname><desc><channels>{channels}</channels></desc></info>"
         )
 
@@ -284,3 +286,64 @@ def test_without_its_library_it_says_what_to_install(tmp_path: Path, monkeypatch
     monkeypatch.setattr(xdf_streams, "find_spec", lambda _: None)
     with pytest.raises(FileRefusedError, match=r"pyxdf, which is not installed. Install gaitwright\[imports\]"):
         xdf_trial([path])
+
+
+def test_stamps_of_packets_that_step_back_for_good_are_refused_and_make_no_other_rate(tmp_path: Path) -> None:
+    chance = np.random.default_rng(3)
+    late_s = np.repeat(chance.exponential(0.008, size=ROWS // 10), 10)
+    stamps = START_S + np.repeat((TIME_S[9::10]), 10) + late_s
+    assert (
+        finding(only(recorded(tmp_path / "a.xdf", SentStream("a", stamp_s=stamps))), "times_straightened") is not None
+    )
+    for by_s in (0.3, 0.5, 3.0):
+        back = stamps.copy()
+        back[1000:] -= by_s
+        with pytest.raises(FileRefusedError, match=r'a.xdf, a, sample 1001: "time" steps back from'):
+            only(recorded(tmp_path / "a.xdf", SentStream("a", stamp_s=back)))
+
+
+def test_a_line_through_stamps_of_packets_has_the_rate_that_the_sender_tells(tmp_path: Path) -> None:
+    packets = np.repeat(TIME_S[9::10], 10)
+    late_s = np.repeat(np.random.default_rng(3).exponential(0.008, size=ROWS // 10), 10)
+    late_s[1000:1050] += 0.4  # five packets wait and come at once
+    for factor in (0.985, 1.015):
+        sensor = only(recorded(tmp_path / "a.xdf", SentStream("a", stamp_s=START_S + packets * factor + late_s)))
+        assert finding(sensor, "times_straightened") is not None
+    for factor in (0.96, 1.04):
+        with pytest.raises(FileRefusedError, match=r"a.xdf, a: its times make .* samples per second, 100 are expected"):
+            only(recorded(tmp_path / "a.xdf", SentStream("a", stamp_s=START_S + packets * factor)))
+
+
+def test_a_block_that_jumps_away_and_returns_is_put_back_and_told(tmp_path: Path) -> None:
+    stamps = START_S + TIME_S
+    stamps[800:900] += 200_000.0
+    sensor = only(recorded(tmp_path / "a.xdf", SentStream("a", stamp_s=stamps)))
+    np.testing.assert_allclose(sensor.block.time_s, TIME_S, atol=1e-6)
+    told = finding(sensor, "stamps_mended")
+    assert told is not None
+    assert told.numbers == {"count": 100, "left_out": 0, "first": 801, "off_s": 200_000.0}
+
+
+def test_streams_of_one_name_are_told_apart_by_their_source_or_their_number(tmp_path: Path) -> None:
+    def names(*sources: str) -> list[str]:
+        streams = [SentStream("imu", motion(seed), source=source) for seed, source in enumerate(sources)]
+        return [one.name for one in xdf_trial([recorded(tmp_path / "a.xdf", *streams)]).sensors]
+
+    assert names("x") == ["imu"]
+    assert names("x", "y") == ["imu x", "imu y"]
+    assert names("x", "x") == ["imu 1", "imu 2"]
+    assert names("", "") == ["imu 1", "imu 2"]
+
+
+def test_computers_whose_clocks_were_not_measured_start_together_on_clocks_of_their_own(tmp_path: Path) -> None:
+    streams = [
+        SentStream("a", motion(1), START_S + TIME_S, host="one", offset_s=None),
+        SentStream("b", motion(2), START_S + TIME_S + 0.25, host="one", offset_s=None),
+        SentStream("c", motion(3), START_S + TIME_S + 5000.0, host="two", offset_s=None),
+    ]
+    sensors = xdf_trial([recorded(tmp_path / "a.xdf", *streams)]).sensors
+    assert [round(float(one.block.time_s[0]), 6) for one in sensors] == [0.0, 0.25, 0.0]
+    assert [one.info.clock for one in sensors] == ["one", "one", "two"]
+    assert all(finding(one, "clock_not_measured") is not None for one in sensors)
+    measured = xdf_trial([recorded(tmp_path / "a.xdf", SentStream("a"), SentStream("b", host="phone"))]).sensors
+    assert {one.info.clock for one in measured} == {""}

@@ -133,3 +133,18 @@ def test_other_files_are_none(tmp_path: Path, data: bytes) -> None:
     path = tmp_path / "other"
     path.write_bytes(data)
     assert format_of(path) != "ximu3"
+
+
+@pytest.mark.parametrize("is_binary", [True, False])
+def test_bytes_of_a_sensor_that_restarted_are_refused_and_one_wrong_time_is_mended(
+    tmp_path: Path, is_binary: bool
+) -> None:
+    voice = Ximu3Voice("0123ABCD", lambda number: motion(number % COUNT), rate_hz=HZ, is_binary=is_binary)
+    path = tmp_path / "a.ximu3"
+    path.write_bytes(b"\n" + b"".join(voice.sample(k) for k in [*range(150, 300), *range(150)]))
+    with pytest.raises(FileRefusedError, match=r"a.ximu3, sample 151: its clock steps back from"):
+        ximu3_trial([path])
+    path.write_bytes(b"\n" + b"".join(voice.sample(50_000 if k == 80 else k) for k in range(COUNT)))
+    (sensor,) = ximu3_trial([path]).sensors
+    assert sensor.block.time_s == pytest.approx(np.arange(COUNT) / HZ, abs=1e-4)
+    assert [one.key for one in sensor.findings] == ["stamps_mended"]

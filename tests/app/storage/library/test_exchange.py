@@ -412,3 +412,31 @@ def test_a_session_with_a_pelvis_goes_in_and_out(opened: OpenedLibrary) -> None:
     for one, other in zip(again.recordings, session.recordings, strict=True):
         assert set(one.imu) == {*LEG_SITES, Site.PELVIS}
         assert same_bits(one.imu[Site.PELVIS].acc_m_s2, other.imu[Site.PELVIS].acc_m_s2)
+
+
+def test_what_an_import_found_is_in_the_library_and_in_every_export_without_names(
+    opened: OpenedLibrary, walked: Session, tmp_path: Path
+) -> None:
+    name = walked.recordings[-1].name
+    mended = {"count": 2, "left_out": 0, "first": 11, "off_s": 3.5}
+    found = (
+        Finding("stamps_mended", Severity.WARNING, f"{name}, left_shank", mended),
+        Finding("clock_not_measured", Severity.WARNING, f"{name}, left_thigh", {"host": "Kowalczyks laptop"}),
+        Finding("columns_left_out", Severity.INFO, f"{name}, left_thigh", {"names": "Kowalczyk"}),
+        Finding("Kowalczyk", Severity.GRAVE, f"{name}, left_thigh", {"Kowalczyk": 1}),
+        Finding("stamps_mended", Severity.WARNING, "Kowalczyk", {"Kowalczyk": 1}),
+    )
+    write_session(replace(small(walked), findings=found), tmp_path / "in")
+    imported = import_session(opened, read_session(tmp_path / "in"), silent, room=ANY_ROOM)
+    stored = session_with_samples(opened, opened.library.sessions.get(imported.session_id), {}, silent)
+    assert all(one in stored.findings for one in found)
+    export_session(opened, imported.session_id, tmp_path / "whole", {}, silent, is_identified=True)
+    assert all(one in read_session(tmp_path / "whole").findings for one in found)
+    export_session(opened, imported.session_id, tmp_path / "out", {}, silent)
+    assert "Kowalczyk" not in (tmp_path / "out" / "session.toml").read_text()
+    exported = read_session(tmp_path / "out")
+    walk = exported.recordings[-1].name
+    kept = {(one.key, one.where): one.numbers for one in exported.findings if one.severity is not Severity.INFO}
+    assert kept["stamps_mended", f"{walk}, left_shank"] == mended
+    assert kept["clock_not_measured", f"{walk}, left_thigh"] == {"host": "?"}
+    assert {key for key, _ in kept} <= {"stamps_mended", "clock_not_measured", "sensor_changed"}
