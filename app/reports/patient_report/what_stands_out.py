@@ -20,7 +20,7 @@ from core.results import ZeroKind
 from core.timed.measures import PROTOCOLS
 from core.verdicts.measurement_error import Z95, ComparisonKind, Difference, sigma_of
 from core.verdicts.model import Verdict
-from core.verdicts.quantities import QUANTITIES, QuantityClass
+from core.verdicts.quantities import CLASSES, QuantityClass
 from core.verdicts.quantities import joint_of as joint_of_column
 
 MAX_FINDINGS = 3
@@ -167,7 +167,7 @@ def _changes(facts: Facts, comparison: Comparison | None) -> Iterator[Candidate]
         )
         if row.is_told and row.difference.is_worth_a_sentence and not is_height:
             topic = _topic(row.side, row.measure.column, row.difference.difference > 0)
-            rank = _RANKS[QUANTITIES[row.measure.column]]
+            rank = _RANKS[CLASSES[row.measure.column]]
             said = _changed(facts, comparison, row)
             yield Candidate(rank, row.difference.ratio, (topic,), said, column=row.measure.column)
 
@@ -179,14 +179,14 @@ def _between_legs(facts: Facts) -> Iterator[Candidate]:
     first, second = facts.first_and_second
     for column in BETWEEN_LEGS:
         found = compare_legs(facts.alone, column, (first, second))
-        if not (found.is_told and found.is_worth_a_sentence) or QUANTITIES[column] is QuantityClass.HEIGHT:
+        if not (found.is_told and found.is_worth_a_sentence) or CLASSES[column] is QuantityClass.HEIGHT:
             continue
         is_more = found.difference > 0
         topics = (_topic(first, column, is_more), _topic(second, column, not is_more))
         unit, decimals = unit_and_decimals(column)
         evidence = tr("Measurement error between the legs: {error}.").format(error=fixed(found.error, decimals) + unit)
         said = _leg_beside_leg(facts, column, found)
-        yield Candidate(_RANKS[QUANTITIES[column]], found.ratio, topics, said, evidence, column)
+        yield Candidate(_RANKS[CLASSES[column]], found.ratio, topics, said, evidence, column)
 
 
 def _leg_beside_leg(facts: Facts, column: str, found: Difference) -> str:
@@ -234,9 +234,14 @@ def _leg_beside_leg(facts: Facts, column: str, found: Difference) -> str:
                 else tr("The step takes {size} more {first} than {second}: {value} against {other}.")
             )
         case _:
-            raise ValueError(f"{column} has no sentence between the legs")
+            pattern = (
+                tr("{measure} is {size} less {first} than {second}: {value} against {other}.")
+                if is_less
+                else tr("{measure} is {size} more {first} than {second}: {value} against {other}.")
+            )
     joint = joint_of_column(column, first)
     return pattern.format(
+        measure=capitalised(measure_in_words(column)),
         joint=tr("{side} {joint}").format(side=role(facts, first), joint=tr("knee") if joint.is_knee else tr("ankle"))
         if joint
         else "",
@@ -290,7 +295,7 @@ def _beyond_band(facts: Facts, bands: tuple[str, str]) -> Iterator[Candidate]:
                     value=fixed(value.mean, decimals) + unit,
                     band=band_in_figures(figure.band, decimals) + unit,
                 )
-                rank = _RANKS[QUANTITIES[column]]
+                rank = _RANKS[CLASSES[column]]
                 yield Candidate(rank, abs(away) / MAX_AWAY_SD, (_topic(side, column, away > 0),), said)
 
 
@@ -375,7 +380,7 @@ def _peaks(facts: Facts) -> Iterable[tuple[Side, str]]:
 
 def _topic(side: Side, column: str, is_more: bool) -> Topic:
     joint = joint_of_column(column, side)
-    return (joint, None, is_more) if joint is not None else (side, _RANKS[QUANTITIES[column]], is_more)
+    return (joint, None, is_more) if joint is not None else (side, _RANKS[CLASSES[column]], is_more)
 
 
 def unit_and_decimals(column: str) -> tuple[str, int]:

@@ -6,8 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.reports.comparison import Comparison
-from app.reports.measures import MEASURES
+from app.pages.beside_words import answer_beside
+from app.reports import comparison
+from app.reports.comparison import Comparison, Contrast
+from app.reports.measures import MEASURES, Measure
+from app.reports.patient_report.answer import Outcome
 from app.reports.patient_report.comparison_page import comparison_of
 from app.reports.patient_report.document import facts_of
 from app.reports.patient_report.facts import Facts
@@ -24,8 +27,10 @@ from core.body import Joint, Side
 from core.goals import Goal, GoalOf
 from core.results import Analysis, ZeroKind
 from core.verdicts.gates import judged
+from core.verdicts.measurement_error import Difference, Judgement
 from core.verdicts.quantities import CLASSES, QUANTITIES, QuantityClass
 from tests.app.changed_analysis import recalibrated, rewalked, walk_of, with_few_strides
+from tests.app.hip_visits import hip_facts
 
 NO_DIFFERENCE = "No difference is larger than its error."
 ALL_INSIDE = "Every peak that could be judged lies within 2 SD of the band"
@@ -352,6 +357,41 @@ def test_of_excursions_as_large_against_their_errors_the_swing_is_told_first(
     told = lines(request_of_demonstration, analysis)
     assert "from stance to swing" in told[0]
     assert "while loading" in told[1]
+
+
+def forged(monkeypatch: pytest.MonkeyPatch, wanted: str) -> None:
+    """Let one column differ by five times its error in every comparison, and no other by anything."""
+
+    def compared(column: str, *_: object, **__: object) -> Difference:
+        size = -5.0 if column == wanted else 0.0
+        judgement = Judgement.EXCEEDS_ERROR if size else Judgement.INSIDE_ERROR
+        return Difference(size, 1.0, judgement, is_worth_a_sentence=bool(size))
+
+    monkeypatch.setattr(comparison, "compare", compared)
+
+
+@pytest.mark.parametrize("contrast", [one for one in Contrast if one is not Contrast.SIDES])
+@pytest.mark.parametrize("measure", MEASURES, ids=lambda measure: measure.column)
+def test_every_compared_column_has_a_sentence_on_paper_and_screen_in_every_comparison(
+    monkeypatch: pytest.MonkeyPatch, measure: Measure, contrast: Contrast
+) -> None:
+    forged(monkeypatch, measure.column)
+    facts = hip_facts()
+    pair = tuple(replace(facts.alone, letter=letter, name=letter) for letter in "AB")
+    found = Comparison(contrast, pair)
+    told = printed_findings(facts, found)
+    assert answer_beside(found).outcome is Outcome.DIFFERS
+    has_other_zero = measure.needs_height and contrast is Contrast.VISITS
+    assert any(one.column == measure.column and one.said for one in told) is not has_other_zero
+
+
+@pytest.mark.parametrize("column", BETWEEN_LEGS)
+def test_every_column_that_is_compared_between_the_legs_has_a_sentence(
+    monkeypatch: pytest.MonkeyPatch, column: str
+) -> None:
+    forged(monkeypatch, column)
+    (told,) = [one for one in printed_findings(hip_facts(), None) if one.column == column]
+    assert "less" in told.said or "shorter" in told.said
 
 
 def test_between_the_legs_no_height_is_compared() -> None:
