@@ -43,7 +43,14 @@ class Figure:
     unknown_both: str = ""
     with_care: frozenset[Side] = frozenset()
 
+    @property
+    def judged_band(self) -> tuple[float, float] | None:
+        """The band, where words may say how far from it a figure lies."""
+        return None if self.column in WITHOUT_BAND_WORDS else self.band
 
+
+# its band's SD holds no error of ours: with the source's alone half of healthy walks lay beyond 2 SD
+WITHOUT_BAND_WORDS = frozenset({"stance_percent"})
 PEAKS = (  # name of the column in strides.csv, name for the reader, window of the band's peak
     ("at_initial_contact_deg", later("At initial contact"), None),
     ("loading_peak_deg", later("Loading peak"), "knee_loading_peak"),

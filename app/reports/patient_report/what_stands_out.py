@@ -254,7 +254,7 @@ def _leg_beside_leg(facts: Facts, column: str, found: Difference) -> str:
 
 
 def _beyond_band(facts: Facts, bands: tuple[str, str]) -> Iterator[Candidate]:
-    """Peaks more than 2 SD from band [1] laid at their curve's height; stance and stride length, from band [2]."""
+    """Peaks more than 2 SD from band [1] laid at their curve's height; time and distance, from band [2]."""
     for side, column in _peaks(facts):
         away, band, kind = facts.away_sd(side, column), facts.band(column), column.split("_")[0]
         if not abs(away) > MAX_AWAY_SD or band is None:
@@ -277,9 +277,9 @@ def _beyond_band(facts: Facts, bands: tuple[str, str]) -> Iterator[Candidate]:
         figure = facts.time_distance[column]
         for side in facts.sides_with_band.intersection(figure.sides):
             value = facts.value(side, column)
-            if figure.band is None or not math.isfinite(value.mean):
+            if figure.judged_band is None or not math.isfinite(value.mean):
                 continue
-            low, high = figure.band
+            low, high = figure.judged_band
             away = (value.mean - (low + high) / 2) / ((high - low) / 2)
             if abs(away) > MAX_AWAY_SD:
                 unit, decimals = unit_and_decimals(column)
@@ -293,7 +293,7 @@ def _beyond_band(facts: Facts, bands: tuple[str, str]) -> Iterator[Candidate]:
                     side=role(facts, side),
                     group=tr(bands[1]),
                     value=fixed(value.mean, decimals) + unit,
-                    band=band_in_figures(figure.band, decimals) + unit,
+                    band=band_in_figures(figure.judged_band, decimals) + unit,
                 )
                 rank = _RANKS[CLASSES[column]]
                 yield Candidate(rank, abs(away) / MAX_AWAY_SD, (_topic(side, column, away > 0),), said)

@@ -2,6 +2,7 @@
 
 import datetime
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,12 +11,14 @@ from app.pages.beside_words import answer_beside
 from app.reports import comparison
 from app.reports.comparison import Comparison, Contrast
 from app.reports.measures import MEASURES, Measure
-from app.reports.patient_report.answer import Outcome
+from app.reports.patient_report.answer import Outcome, answer_of
 from app.reports.patient_report.comparison_page import comparison_of
 from app.reports.patient_report.document import facts_of
 from app.reports.patient_report.facts import Facts
 from app.reports.patient_report.first_page import answer
+from app.reports.patient_report.numbers_in_words import NOTHING
 from app.reports.patient_report.request import AnalysedVisit, ReportRequest
+from app.reports.patient_report.time_page import time_distance_table
 from app.reports.patient_report.what_stands_out import (
     BETWEEN_LEGS,
     MAX_FINDINGS,
@@ -164,15 +167,36 @@ def test_a_measure_chosen_before_the_walk_is_told_from_one_error_on_and_never_on
     assert not is_told(with_goal_of(of_a_child(request_of_demonstration, less), "2026-11-19"))
 
 
-@pytest.mark.parametrize(("more", "is_told"), [(1.0, False), (4.0, True)])
-def test_stance_beyond_two_sd_of_its_band(request_of_demonstration: ReportRequest, more: float, is_told: bool) -> None:
-    analysis = with_more(request_of_demonstration.visit.analysis, Side.LEFT, "stance_percent", more)
-    told = [
-        one for one in said(request_of_demonstration, analysis) if one.startswith("Stance, share of the stride, left")
-    ]
+@pytest.mark.parametrize(("more_m", "is_told"), [(0.0, False), (0.5, True)])
+def test_a_stride_length_beyond_two_sd_of_its_band(
+    request_of_demonstration: ReportRequest, more_m: float, is_told: bool
+) -> None:
+    analysis = request_of_demonstration.visit.analysis
+    for side in Side:
+        analysis = with_more(analysis, side, "stride_length_m", more_m)
+    told = [one for one in said(request_of_demonstration, analysis) if one.startswith("Stride length, ")]
     assert bool(told) is is_told
     if is_told:
-        assert told[0].endswith("band [2] 60.3 ± 1.1 %: more than 2 SD above.")
+        assert "band [2]" in told[0]
+        assert told[0].endswith("more than 2 SD above.")
+
+
+@pytest.mark.parametrize("more", [-8.0, 4.0, 8.0])
+def test_of_stance_no_word_says_how_far_from_the_band_it_lies(
+    request_of_demonstration: ReportRequest, more: float
+) -> None:
+    """Neither on page one, nor on the screen, nor in the table of time and distance, whose other rows have words."""
+    analysis = request_of_demonstration.visit.analysis
+    for side in Side:
+        analysis = with_more(analysis, side, "stance_percent", more)
+    facts = Facts(AnalysedVisit(request_of_demonstration.visit.session, analysis), walk_of(analysis))
+    told = [*findings(facts, None), answer_of(facts).first, answer_of(facts).then]
+    assert not any("tance" in one and "SD" in one for one in told)
+    table: Any = time_distance_table(facts)[0]
+    rows = [[cell["said"] for cell in row["cells"]] for row in table["rows"]]
+    words = {row[0]: row[-1] for row in rows}
+    assert words["Stance, % of stride"] == NOTHING
+    assert "SD" in words["Stride length, m"]
 
 
 def test_stance_of_a_foot_that_rolls_on_is_told_in_no_sentence(request_of_demonstration: ReportRequest) -> None:
