@@ -89,14 +89,15 @@ class DataQuality:
 def data_quality(facts: Facts) -> DataQuality:
     """Look at the verdicts of a walk and at what was noticed about it."""
     found = quality.causes(facts)
-    findings = _noticed(facts.visit, facts.walk.name, {cause.gate for cause in found})
+    names = {walk.name for walk in facts.part.walks}
+    findings = _noticed(facts.visit, names, {cause.gate for cause in found})
     first, then = _in_words(facts)
     return _quality(first, then, [*map(_of_cause, found), *map(_of_finding, findings)], _in_order(facts))
 
 
 def quality_without_walk(visit: AnalysedVisit, recording: str) -> DataQuality:
     """What was noticed about a recording of which nothing is judged; empty: about the whole session."""
-    lines = [_of_finding(finding) for finding in _noticed(visit, recording, set())]
+    lines = [_of_finding(finding) for finding in _noticed(visit, {recording} - {""}, set())]
     first = tr("Nothing stands out.") if not lines else tr("This was noticed.")
     return _quality(first, "", lines, "")
 
@@ -121,12 +122,12 @@ def _of_finding(finding: Finding) -> QualityLine:
     return QualityLine(Verdict.CARE, where, capitalised(why + "." if stop else why), to_do)
 
 
-def _noticed(visit: AnalysedVisit, recording: str, gates: set[str]) -> list[Finding]:
-    """What was noticed of this recording or of the session that no verdict says already, the gravest first.
+def _noticed(visit: AnalysedVisit, names: set[str], gates: set[str]) -> list[Finding]:
+    """What was noticed of these recordings or of the session that no verdict says already, the gravest first.
 
     Where it was found is told as the reader knows it.
     """
-    others = {one.name for one in visit.session.recordings} - {recording} if recording else set()
+    others = {one.name for one in visit.session.recordings} - names if names else set()
     found = [
         finding
         for finding in visit.analysis.findings
@@ -134,9 +135,9 @@ def _noticed(visit: AnalysedVisit, recording: str, gates: set[str]) -> list[Find
         and gates.isdisjoint(GATES_OF_FINDINGS.get(finding.key, ()))
         and others.isdisjoint(finding.where.split(", "))
     ]
-    names = visit.shown_names
+    shown = visit.shown_names
     return [
-        with_shown_names(finding, names)
+        with_shown_names(finding, shown)
         for finding in sorted(found, key=lambda finding: finding.severity is not Severity.GRAVE)
     ]
 
@@ -196,7 +197,7 @@ def _in_order(facts: Facts) -> str:
     said = []
     if not quality.slipped_straps(facts):
         said.append(tr("no strap slipped"))
-    if max(facts.walk.lost_percent.values(), default=0.0) < MIN_LOSS_PERCENT:
+    if max((lost for walk in facts.part.walks for lost in walk.lost_percent.values()), default=0.0) < MIN_LOSS_PERCENT:
         said.append(tr("no samples lost"))
     if facts.verdicts.between.verdict is Verdict.READ:
         said.append(one_time_in_words(facts.walk))

@@ -272,8 +272,8 @@ def thirds_apart(values: FloatArray) -> float:
 
 def _ranges_deg(facts: Facts, joint: Joint) -> FloatArray:
     """Of every stride used, as evidence: whatever may be said of the joint."""
-    gait = facts.gait[joint.side]
-    found = raw_values(gait, f"{joint.kind}_range_deg")[gait.strides.is_used]
+    walks = [walk.gait[joint.side] for walk in facts.part.walks if joint.side in walk.gait]
+    found = np.concatenate([raw_values(gait, f"{joint.kind}_range_deg")[gait.strides.is_used] for gait in walks])
     return found[np.isfinite(found)]
 
 

@@ -64,8 +64,9 @@ def who(request: ReportRequest) -> str:
 def what(request: ReportRequest, facts: Facts, comparison: Comparison | None) -> str:
     """What this report is of: joints and legs, the walk and when, by whom; and what is compared with what."""
     recording = request.visit.recording(facts.walk.name)
-    walk = typed(str(request.visit.shown_names[facts.walk.name]), CONDITION_LENGTH)
-    speed = facts.feet.speed_m_s
+    shown = request.visit.shown_names
+    walk = ", ".join(typed(str(shown[one.name]), CONDITION_LENGTH) for one in facts.part.walks)
+    speed = facts.speed_m_s
     started = recording.started or request.visit.session.started
     operator, clinic = request.operator or request.visit.session.operator, request.clinic
     parts = [
@@ -166,7 +167,7 @@ def curves(facts: Facts, comparison: Comparison | None) -> dict[str, object]:
         if counts
         else "",
         band_in_words(facts, is_at_height=True),
-        by_hand_in_words(facts.walk),
+        by_hand_in_words(*facts.part.walks),
     ]
     shown = [joint_of(kind, side) for kind in facts.kinds for side in Side if facts.is_measured(joint_of(kind, side))]
     legs, has_hips = {joint.side for joint in shown}, JointKind.HIP in facts.kinds

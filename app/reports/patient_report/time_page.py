@@ -148,7 +148,7 @@ def _between(facts: Facts, column: str) -> Difference | None:
     """What the legs differ by in a column of strides.csv; None where that is not told of both."""
     if not all(facts.value(side, column).n for side in Side):
         return None
-    found = compare_legs(facts.alone, column, facts.first_and_second)
+    found = compare_legs(facts.part, column, facts.first_and_second)
     return found if found.is_told else None
 
 
@@ -244,7 +244,7 @@ def _every_stride(facts: Facts) -> list[Block]:
     said = [
         tr("In order of time. Lines: means of the first and of the second half of the walk."),
         reasons_in_words(facts),
-        by_hand_in_words(facts.walk),
+        by_hand_in_words(*facts.part.walks),
     ]
     columns, width = (4, PLOT_WIDTH) if rails else (2, ALONE_WIDTH)
     if rails and JointKind.HIP in kinds:

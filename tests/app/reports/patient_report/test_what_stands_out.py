@@ -16,16 +16,11 @@ from app.reports.patient_report.comparison_page import comparison_of
 from app.reports.patient_report.document import facts_of
 from app.reports.patient_report.facts import Facts
 from app.reports.patient_report.first_page import answer
+from app.reports.patient_report.measure_sentences import measure_in_words, unit_and_decimals
 from app.reports.patient_report.numbers_in_words import NOTHING
 from app.reports.patient_report.request import AnalysedVisit, ReportRequest
 from app.reports.patient_report.time_page import time_distance_table
-from app.reports.patient_report.what_stands_out import (
-    BETWEEN_LEGS,
-    MAX_FINDINGS,
-    measure_in_words,
-    printed_findings,
-    unit_and_decimals,
-)
+from app.reports.patient_report.what_stands_out import BETWEEN_LEGS, MAX_FINDINGS, printed_findings
 from core.body import Joint, Side
 from core.goals import Goal, GoalOf
 from core.results import Analysis, ZeroKind
@@ -401,7 +396,7 @@ def test_every_compared_column_has_a_sentence_on_paper_and_screen_in_every_compa
 ) -> None:
     forged(monkeypatch, measure.column)
     facts = hip_facts()
-    pair = tuple(replace(facts.alone, letter=letter, name=letter) for letter in "AB")
+    pair = tuple(replace(facts.part, letter=letter, name=letter) for letter in "AB")
     found = Comparison(contrast, pair)
     told = printed_findings(facts, found)
     assert answer_beside(found).outcome is Outcome.DIFFERS
