@@ -103,8 +103,9 @@ class CyclePage(QWidget):
         self.hips.show_figures(of_hips, strides, " ".join([*pelvis_in_words(part), *_care_in_words(of_hips)]))
         self.hips.setVisible(bool(of_hips))
         figures = time_distance_figures(part, values, sides_of_band)
-        by_hand = by_hand_in_words(*part.walks)
-        self.by_hand.setText(by_hand)
+        by_hand, count = by_hand_in_words(*part.walks), len(part.walks)
+        of_walks = tr("Mean over {count} walks of this condition.").format(count=count) if count > 1 else ""
+        self.by_hand.setText(" ".join(filter(None, [of_walks, by_hand])))
         only = _only_for(sides_of_band, part)
         group = _group_in_words(values, bands.why_no_values if sides_of_band else None)
         said = [by_hand, group, only, *_care_in_words(figures)]

@@ -18,6 +18,7 @@ from app.reports.agreed import agreed_with
 from app.reports.beside import changes_on_curves
 from app.reports.comparison import Comparison
 from app.reports.conditions import Part, conditions_of
+from app.reports.course_lanes import CourseVisit
 from app.reports.patient_report.answer import Outcome, answer_of
 from app.reports.patient_report.data_quality import data_quality, quality_without_walk
 from app.reports.patient_report.facts import Facts
@@ -82,6 +83,7 @@ class ResultPage(Themed):
         self._facts: Facts | None = None  # of the walk on the screen
         self._found: Comparison | None = None  # with what it stands beside
         self._can_choose = self._is_live = False
+        self._course: tuple[CourseVisit, ...] = ()
         self._stride: Mapping[Joint, FloatArray] = {}  # in force
         self._room = PageRoom()
         self._width = self._height = 0.0
@@ -118,7 +120,14 @@ class ResultPage(Themed):
         self._build()
         self._connect()
 
-    def show_visit(self, visit: AnalysedVisit, *, can_choose: bool = False, is_live: bool = False) -> None:
+    def show_visit(
+        self,
+        visit: AnalysedVisit,
+        *,
+        can_choose: bool = False,
+        is_live: bool = False,
+        course: tuple[CourseVisit, ...] = (),
+    ) -> None:
         """Show the recording that was on the screen, if `visit` has it, else the walk of a report or the first.
 
         Parameters
@@ -127,8 +136,10 @@ class ResultPage(Themed):
             Whether somebody keeps which strides are left out: see `strides`.
         is_live
             Whether the sensors are still worn, so that a free motion can be repeated.
+        course
+            The patient's visits in order of time, this one the last: the answer tells the changes since.
         """
-        self._visit, self._can_choose, self._is_live = visit, can_choose, is_live
+        self._visit, self._can_choose, self._is_live, self._course = visit, can_choose, is_live, course
         session, analysis = visit.session, visit.analysis
         shown, called = self.recordings.currentData(), visit.shown_names
         is_prosthetic = session.patient.prosthetic_side in set(Side)
@@ -470,7 +481,7 @@ class ResultPage(Themed):
         chosen = self.beside.currentData()
         if chosen is Beside.LAST_VISIT:
             self.compare.wish_visits()
-        facts = self._facts = Facts(visit, recording, self.beside.walks)
+        facts = self._facts = Facts(visit, recording, self.beside.walks, self._course)
         found, words = self.beside.compared(facts, self.compare.visits)
         self._found = found
         self.cycles.show_walk(facts.part, recording, facts.is_simulated, age_and_height(visit.session))

@@ -16,9 +16,8 @@ from PySide6.QtWidgets import QFileDialog, QStackedWidget
 from app.icons import Icon
 from app.logs import version_of
 from app.pages.sentence_page import SentencePage
-from app.reports.course import course_of
 from app.reports.course_lanes import CourseVisit
-from app.reports.patient_report.dates import date_of, day
+from app.reports.patient_report.dates import day
 from app.reports.patient_report.request import AnalysedVisit, ReportRequest, default_walks
 from app.reports.proposed_names import free_name, session_name
 from app.storage.audit import REPORT_FORMAT, about
@@ -33,7 +32,7 @@ from app.wizard.keys import Intent, KeyAction
 from app.wizard.report.leaving_dialog import LeavingDialog
 from app.wizard.report.page import ReportPage
 from app.wizard.report.printing import PRINTED_PPI, ReportPrinter
-from app.wizard.resuming import current_courses, read_analysed
+from app.wizard.resuming import course_to, courses_before, read_analysed
 from app.wizard.step import Step
 from app.wording import capitalised, filled, tr
 from app.workers.background import Report, Work
@@ -243,10 +242,8 @@ class ReportStep(Step):
 
     def _course(self, visit: AnalysedVisit) -> tuple[CourseVisit, ...]:
         """The patient's visits up to this one, as far as their figures are known."""
-        stored, day = self._visit.session, date_of(visit.session.started)
-        if stored is None or day is None or not self._before:
-            return ()
-        return (*self._before, CourseVisit(stored.id, day, course_of(visit.analysis, visit.session.recordings)))
+        stored = self._visit.session
+        return course_to(self._before, stored, visit.session, visit.analysis) if stored is not None else ()
 
     def _draw(self) -> None:
         """Set the pages anew, beside the screen."""
@@ -311,13 +308,7 @@ class ReportStep(Step):
         def read(opened: "OpenedLibrary") -> "tuple[str, list[SessionSummary], tuple[CourseVisit, ...]]":
             lines = opened.library.sessions.list(current.patient_id)  # latest first
             before = [line for line in lines if line.id != current.id and line.started < current.details.started]
-            found = current_courses(opened.library, [line.id for line in before])
-            visits = [
-                CourseVisit(line.id, day_of, found.get(line.id))
-                for line in reversed(before)
-                if (day_of := date_of(line.started)) is not None
-            ]
-            return str(opened.library.settings.get(CLINIC, "")), before, tuple(visits)
+            return str(opened.library.settings.get(CLINIC, "")), before, courses_before(opened, current)
 
         self._controller.run(read, self._on_choices, self._on_refused, self)
 
