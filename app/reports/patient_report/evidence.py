@@ -92,13 +92,13 @@ def evidence_table(facts: Facts) -> list[Block]:
         (
             "halves",
             tr("Range, second half less first"),
-            lambda joint, _: _degrees(halves_apart(_ranges_deg(facts, joint)), is_signed=True),
+            lambda joint, _: _degrees(_farthest(halves_apart, facts, joint), is_signed=True),
             tr("at most {limit}°").format(limit=fixed(LIMITS.halves_deg, 0)),
         ),
         (
             "drift",
             tr("Range, last third less first"),
-            lambda joint, _: _degrees(thirds_apart(_ranges_deg(facts, joint)), is_signed=True),
+            lambda joint, _: _degrees(_farthest(thirds_apart, facts, joint), is_signed=True),
             tr("at most {limit}°").format(limit=fixed(LIMITS.thirds_deg, 0)),
         ),
         ("strap", tr("Strap"), lambda joint, _: _strap(facts, joint), tr("no slip")),
@@ -174,7 +174,7 @@ def hips_table(facts: Facts) -> list[Block]:
         (
             "halves",
             tr("Range, second half less first"),
-            lambda joint, _: _degrees(halves_apart(_ranges_deg(facts, joint)), is_signed=True),
+            lambda joint, _: _degrees(_farthest(halves_apart, facts, joint), is_signed=True),
             tr("at most {limit}°").format(limit=fixed(LIMITS.halves_deg, 0)),
         ),
     ]
@@ -270,11 +270,21 @@ def thirds_apart(values: FloatArray) -> float:
     return float(values[-third:].mean() - values[:third].mean())
 
 
+def _ranges_of_walks(facts: Facts, joint: Joint) -> list[FloatArray]:
+    """Of every stride used of each walk, as evidence: whatever may be said of the joint."""
+    gaits = [walk.gait[joint.side] for walk in facts.part.walks if joint.side in walk.gait]
+    found = [raw_values(gait, f"{joint.kind}_range_deg")[gait.strides.is_used] for gait in gaits]
+    return [one[np.isfinite(one)] for one in found]
+
+
 def _ranges_deg(facts: Facts, joint: Joint) -> FloatArray:
-    """Of every stride used, as evidence: whatever may be said of the joint."""
-    walks = [walk.gait[joint.side] for walk in facts.part.walks if joint.side in walk.gait]
-    found = np.concatenate([raw_values(gait, f"{joint.kind}_range_deg")[gait.strides.is_used] for gait in walks])
-    return found[np.isfinite(found)]
+    return np.concatenate([np.empty(0), *_ranges_of_walks(facts, joint)])
+
+
+def _farthest(apart: Callable[[FloatArray], float], facts: Facts, joint: Joint) -> float:
+    """Of the walk in which the parts lie farthest apart: each walk has to pass by itself."""
+    found = [value for one in _ranges_of_walks(facts, joint) if math.isfinite(value := apart(one))]
+    return max(found, key=abs, default=math.nan)
 
 
 def _degrees(value: float, *, is_signed: bool = False) -> str:

@@ -28,6 +28,7 @@ from app.reports.patient_report.numbers_in_words import (
 )
 from app.reports.patient_report.pelvis_table import pelvis_table
 from app.reports.patient_report.phase_bars import phase_bars, phases_of
+from app.reports.patient_report.plain_text import CONDITION_LENGTH, typed
 from app.reports.patient_report.stride_rails import reasons_in_words, stride_rail
 from app.reports.walk_figures import by_hand_in_words
 from app.wording import tr
@@ -241,7 +242,9 @@ def _every_stride(facts: Facts) -> list[Block]:
     rails = [figures([stride_rail(facts, kind)]) for kind in told]
     if not kinds or is_evidence_beside_time(facts):
         return []
+    walk = typed(str(facts.visit.shown_names[facts.walk.name]), CONDITION_LENGTH)
     said = [
+        tr("Strides of {walk}.").format(walk=walk) if rails and len(facts.part.walks) > 1 else "",
         tr("In order of time. Lines: means of the first and of the second half of the walk."),
         reasons_in_words(facts),
         by_hand_in_words(*facts.part.walks),

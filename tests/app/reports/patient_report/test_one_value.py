@@ -8,8 +8,10 @@ from uuid import UUID
 
 import openpyxl
 import pytest
+from pytestqt.qtbot import QtBot
 
 from app.exports.spreadsheet import write_spreadsheet
+from app.pages.result_page import ResultPage
 from app.reports.course import KNEE, course_of
 from app.reports.course_lanes import CourseVisit
 from app.reports.patient_report.comparison_page import comparison_of
@@ -21,6 +23,7 @@ from app.reports.patient_report.patient_page import patient_page
 from app.reports.patient_report.request import AnalysedVisit, ReportRequest, default_walks
 from app.reports.patient_report.trend_lines import trend_lines
 from app.reports.summary import write_summary
+from app.theme import ThemeNotifier
 from core.body import Side
 from core.goals import NO_GOALS
 from core.samples import Patient, Session
@@ -117,3 +120,17 @@ def test_page_one_and_the_patients_page_judge_the_knee_alike(
     assert ("so this is a real change" in patient) is is_real
     assert ("on 1 Jul 2026 34.0" in page_one) is is_real
     assert ("No difference is larger than its error" in page_one) is not is_real
+
+
+@pytest.mark.parametrize("first_deg", [34.0, 50.0])
+def test_the_screen_says_first_what_page_one_says_first(qtbot: QtBot, now: AnalysedVisit, first_deg: float) -> None:
+    request = request_of(visit_on(FIRST, (first_deg, 12)), now)
+    facts = facts_of(request)
+    sentences = answer(facts, comparison_of(request))["sentences"]
+    assert isinstance(sentences, list)
+    page = ResultPage(ThemeNotifier())
+    qtbot.addWidget(page)
+    page.show_visit(now, course=request.course)
+    assert page.answer.text.startswith(sentences[0][1])
+    assert page.recordings.currentData() == request.shown
+    assert [cycle.mean.n for cycle in page.cycles.charts.knee.chart.cycles.values()] == [25, 25]
