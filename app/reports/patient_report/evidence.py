@@ -13,7 +13,7 @@ from app.reports.patient_report.quality import slipped_straps
 from app.wording import capitalised, name_of, side_name, tr
 from core.body import Joint, JointKind, Side, hip_of
 from core.calibration.clinical_sign import MIN_MARGIN
-from core.calibration.same_joint import DOUBTFUL_DISAGREEMENT, DOUBTFUL_MARGIN, MAX_DISAGREEMENT
+from core.calibration.same_joint import DOUBTFUL_DISAGREEMENT, MAX_DISAGREEMENT
 from core.hip.results import ClockStatus, HipIdentification
 from core.results import JointCalibration, ZeroKind
 from core.samples import FloatArray
@@ -65,8 +65,8 @@ def evidence_table(facts: Facts) -> list[Block]:
             "disagreement",
             tr("Disagreement about the joint"),
             lambda _, found: NOTHING if found.disagreement is None else fixed(found.disagreement, 2),
-            tr("under {limit}; from margin {margin} on {most}").format(
-                limit=fixed(DOUBTFUL_DISAGREEMENT, 2), margin=fixed(DOUBTFUL_MARGIN, 1), most=fixed(MAX_DISAGREEMENT, 2)
+            tr("under {limit} to {most}, by margin").format(
+                limit=fixed(DOUBTFUL_DISAGREEMENT, 2), most=fixed(MAX_DISAGREEMENT, 2)
             ),
         ),
         (
