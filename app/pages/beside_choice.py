@@ -82,14 +82,13 @@ class BesideChoice(Choice):
         if visit is None or self._shown not in self._walks:
             return None, ""
         is_simulated, names = visit.analysis.is_simulated, visit.shown_names
-        walk = replace(facts.part, name=str(names[self._shown]))
+        walk = replace(facts.part, name=str(names.get(self._shown, self._shown)))
         if chosen is Beside.LAST_VISIT:
             if visits is None:
                 return None, tr("The earlier visits are being read.")
-            condition = next((one.condition for one in visit.session.recordings if one.name == self._shown), "")
-            found = beside_last_visit(walk, condition, visits, is_simulated=is_simulated)
+            found = beside_last_visit(walk, facts.condition, visits, is_simulated=is_simulated)
             return found, "" if found is not None else tr("No earlier visit was walked in this condition.")
         if chosen not in self._walks:
             return None, ""
-        other = replace(part_of(visit, chosen, self.walks), name=str(names[chosen]))
+        other = replace(part_of(visit, chosen, self.walks), name=str(names.get(chosen, chosen)))
         return beside_walk(walk, other, is_simulated=is_simulated), ""

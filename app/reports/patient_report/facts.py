@@ -91,7 +91,7 @@ class Facts:
     @property
     def condition(self) -> str:
         """Under which condition was walked, as it was typed; empty where none was stated."""
-        return self.visit.recording(self.walk.name).condition
+        return self.visit.condition_of(self.walk.name)
 
     @property
     def speed_m_s(self) -> float:
@@ -236,14 +236,19 @@ class Facts:
 
 def part_of(visit: AnalysedVisit, name: str, chosen: Sequence[str] = ()) -> Part:
     """All walks of this one's condition; this one alone where several of them are chosen."""
-    shown, agreed = visit.shown_names[name], agreed_with(visit.session)
+    letter, agreed = _letter_of(visit, name), agreed_with(visit.session)
     for part in conditions_of(visit.analysis, visit.session.recordings, agreed=agreed):
         names = {walk.name for walk in part.walks}
         if name in names:
             is_alone = len(names.intersection(chosen)) > 1
-            return replace(part, letter=shown.letter, walks=(visit.walk(name),)) if is_alone else part
-    walk, condition = visit.walk(name), visit.recording(name).condition
-    return Part(shown.letter, condition or name, (walk,), visit.analysis.calibrated_for(walk), agreed=agreed)
+            return replace(part, letter=letter, walks=(visit.walk(name),)) if is_alone else part
+    walk = visit.walk(name)
+    return Part(letter, visit.condition_of(name) or name, (walk,), visit.analysis.calibrated_for(walk), agreed=agreed)
+
+
+def _letter_of(visit: AnalysedVisit, name: str) -> str:
+    shown = visit.shown_names.get(name)
+    return shown.letter if shown is not None else ""
 
 
 def _parts_of(column: str) -> tuple[str, str, str | None]:

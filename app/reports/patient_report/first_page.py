@@ -67,7 +67,7 @@ def what(request: ReportRequest, facts: Facts, comparison: Comparison | None) ->
     """What this report is of: joints and legs, the walk and when, by whom; and what is compared with what."""
     recording = request.visit.recording(facts.walk.name)
     shown = request.visit.shown_names
-    walk = ", ".join(typed(str(shown[one.name]), CONDITION_LENGTH) for one in facts.part.walks)
+    walk = ", ".join(typed(str(shown.get(one.name, one.name)), CONDITION_LENGTH) for one in facts.part.walks)
     speed = facts.speed_m_s
     started = recording.started or request.visit.session.started
     operator, clinic = request.operator or request.visit.session.operator, request.clinic

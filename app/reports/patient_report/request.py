@@ -37,6 +37,10 @@ class AnalysedVisit:
         """Give the recording as it was told."""
         return next(recording for recording in self.session.recordings if recording.name == name)
 
+    def condition_of(self, name: str) -> str:
+        """Under which condition a recording was walked, as it was typed; empty where none was stated."""
+        return next((one.condition for one in self.session.recordings if one.name == name), "")
+
     @property
     def shown_names(self) -> dict[str, ShownName]:
         """What each recording is called, by its name."""

@@ -242,7 +242,7 @@ def _every_stride(facts: Facts) -> list[Block]:
     rails = [figures([stride_rail(facts, kind)]) for kind in told]
     if not kinds or is_evidence_beside_time(facts):
         return []
-    walk = typed(str(facts.visit.shown_names[facts.walk.name]), CONDITION_LENGTH)
+    walk = typed(str(facts.visit.shown_names.get(facts.walk.name, facts.walk.name)), CONDITION_LENGTH)
     said = [
         tr("Strides of {walk}.").format(walk=walk) if rails and len(facts.part.walks) > 1 else "",
         tr("In order of time. Lines: means of the first and of the second half of the walk."),
