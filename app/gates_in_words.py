@@ -34,6 +34,10 @@ WORDS = {
         later("The two sensors do not move as neighbours (margin {value}, {limit} wanted)."),
         later("Check which sensor is where, or record free motion."),
     ),
+    "disagreement": GateWords(
+        later("The two sensors disagree about their joint (disagreement {value}, limit {limit})."),
+        later("Check which sensor is where, or record free motion."),
+    ),
     "labels": GateWords(
         later("The motion fits better if the sensors were worn in another order."),
         later("Check which sensor is where."),

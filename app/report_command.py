@@ -32,7 +32,7 @@ def add_report_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="NAME",
         action="append",
         default=[],
-        help="a walk to show; up to three are compared, the last is shown (the last walk of each condition)",
+        help="a walk to show; up to three are compared, the last is shown (of each condition, most strides)",
     )
     parser.add_argument("--earlier", metavar="SESSION", type=session_place, help="a visit to compare with")
     parser.add_argument("--comment", metavar="FILE", type=Path, help="the clinician's words, a text in UTF-8")

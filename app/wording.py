@@ -193,8 +193,8 @@ SENTENCES = {
     ),
     "lag_corrected": "the farther sensor's clock was {lag_ms:+.0f} ms off. It has been corrected.",
     "not_the_same_joint": (
-        "the two sensors do not move as neighbours (margin {margin:.2f}). Check which sensor is where, or use one "
-        "receiver for all sensors."
+        "the two sensors do not move like the two sides of one joint. Check which sensor is where, or use one receiver "
+        "for all sensors."
     ),
     "centre_unknown": "the joint centre could not be found from this motion. The angle does not need it.",
     "ankle_axis_from_rates": (

@@ -7,6 +7,7 @@ text whatever it begins with, so that it is never worked out as a formula.
 
 import datetime
 import io
+import math
 import re
 import zipfile
 from collections.abc import Iterable, Iterator, Sequence
@@ -21,6 +22,8 @@ from openpyxl.worksheet._write_only import WriteOnlyWorksheet
 from app.alignment_words import since_in_words
 from app.exports.figures import SIMULATED, reason_of, software, unit_of, walk_figures
 from app.exports.pseudonymised import what_is_said
+from app.reports.condition_figures import condition_figures
+from app.reports.conditions import conditions_of
 from app.reports.gait_csv import gait_tables
 from app.reports.status import WITHHELD, all_that_is_said, why
 from app.wording import PURPOSE, sentence
@@ -31,6 +34,7 @@ from core.verdicts.model import Assessment, Verdict, together
 from core.verdicts.quantities import OF_HIPS, PARAMETERS, assessment_of
 
 Value = str | float | int | None
+OF_CONDITIONS = ("condition", "walks", "side", "parameter", "mean", "stride_sd", "error", "unit", "strides_used")
 NUMBER = re.compile(r"-?\d+(\.\d+)?")
 NO_TIME = datetime.datetime(1980, 1, 1)  # the first that a ZIP can hold: the same analysis gives the same bytes
 PROPERTIES, MODIFIED = "docProps/core.xml", re.compile(rb"(<dcterms:modified[^>]*>)[^<]*")
@@ -52,6 +56,7 @@ def write_spreadsheet(session: Session, analysis: Analysis, path: Path) -> None:
     of_summary = ["recording", "condition", "side", "parameter", "mean", "stride_sd", "unit", "strides_used"]
     of_summary += ["error", "status", "reasons"]
     _sheet(book, "Summary", of_summary, _summary(session, analysis))
+    _sheet(book, "Conditions", [*OF_CONDITIONS, "status"], _conditions(session, analysis))
     columns: dict[str, None] = dict.fromkeys(of_summary)
     for name in ("strides", "cycles", "events"):
         header, rows = _joined(analysis, name)
@@ -95,6 +100,23 @@ def _summary(session: Session, analysis: Analysis) -> Iterable[list[Value]]:
         status, reasons = str(one.assessment.verdict), reason_of(one.assessment) or None
         figures = [mean, one.sd, unit_of(one.name), one.strides, one.error]
         yield [one.walk, condition, side, one.name, *figures, status, reasons]
+
+
+def _conditions(session: Session, analysis: Analysis) -> Iterable[list[Value]]:
+    """The figures of report and screen, over the strides of all walks of each condition."""
+    for part in conditions_of(analysis, session.recordings):
+        walks = ", ".join(walk.name for walk in part.walks)
+        for one in condition_figures(part):
+            is_told = one.verdict is not Verdict.WITHHELD
+            mean: Value = one.found.mean if is_told else WITHHELD
+            figures: list[Value] = [mean, *(_finite(value) for value in (one.found.sd, one.error))]
+            side = "both" if one.side is None else str(one.side)
+            strides = one.found.n if is_told else None
+            yield [part.name, walks, side, one.column, *figures, unit_of(one.column), strides, str(one.verdict)]
+
+
+def _finite(value: float) -> Value:
+    return value if math.isfinite(value) else None
 
 
 def _joined(analysis: Analysis, name: str) -> tuple[list[str], Iterable[list[Value]]]:

@@ -1,7 +1,6 @@
 """What stands round a walk's curves: its key figures, and in one line how far all of it can be trusted."""
 
 import math
-from collections import Counter
 from collections.abc import Sequence
 from statistics import fmean
 
@@ -15,7 +14,6 @@ from app.reports.walk_figures import Figure
 from app.widgets.door import DoorWords
 from app.widgets.fact_strip import KeyFigure
 from app.wording import tr, tr_n
-from core.body import Side
 from core.gait.strides import Reason
 from core.goals import Goal
 from core.verdicts.model import Verdict
@@ -40,7 +38,7 @@ def door_words(found: DataQuality) -> DoorWords:
 
 def key_figures(facts: Facts) -> list[KeyFigure]:
     """Speed, cadence and stride length of a walk whose legs were measured."""
-    return [_of_row(facts.time_distance[column], facts.alone.agreed.of(column)) for column in KEY_COLUMNS]
+    return [_of_row(facts.time_distance[column], facts.part.agreed.of(column)) for column in KEY_COLUMNS]
 
 
 def _of_row(row: Figure, goals: Sequence[Goal]) -> KeyFigure:
@@ -79,11 +77,10 @@ def figures_in_short(facts: Facts) -> str:
 
 def strides_in_short(facts: Facts) -> str:
     """How many strides of each leg were used and left out, and for which reasons."""
-    used = ", ".join(f"{side[0].upper()} {facts.strides(side)}" for side in Side if side in facts.gait)
+    sides = facts.part.sides
+    used = ", ".join(f"{side[0].upper()} {facts.strides(side)}" for side in sides)
     if not used:
         return tr("No stride was found.")
-    out = {side: Counter(gait.strides.reason) for side, gait in facts.gait.items()}
-    left_out = ", ".join(
-        f"{side[0].upper()} {out[side].total() - out[side][Reason.USED]}" for side in Side if side in facts.gait
-    )
+    out = {side: facts.part.reasons(side) for side in sides}
+    left_out = ", ".join(f"{side[0].upper()} {out[side].total() - out[side][Reason.USED]}" for side in sides)
     return tr("Strides used: {used}. Left out: {left_out}.").format(used=used, left_out=left_out)

@@ -1,6 +1,7 @@
 """What a walk's curves stand beside: the band, the other leg, another walk of the session or the last visit."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from enum import Enum, auto
 
 from PySide6.QtCore import Qt
@@ -9,6 +10,7 @@ from app.reports.agreed import agreed_with
 from app.reports.beside import beside_last_visit, beside_walk, walks_alone
 from app.reports.comparison import Comparison
 from app.reports.conditions import Part
+from app.reports.patient_report.facts import Facts, part_of
 from app.reports.patient_report.request import AnalysedVisit
 from app.reports.visits import ComparedVisits
 from app.theme import ThemeNotifier
@@ -60,23 +62,33 @@ class BesideChoice(Choice):
         self.blockSignals(False)
         self.updateGeometry()
 
-    def compared(self, visits: Sequence[ComparedVisits] | None) -> tuple[Comparison | None, str]:
-        """The walk against what was chosen, or why there is nothing to compare it with.
+    @property
+    def walks(self) -> tuple[str, ...]:
+        """The walk that is shown and the one beside it, which stand alone where both are of one condition."""
+        chosen = self.currentData()
+        return (self._shown, chosen) if isinstance(chosen, str) else ()
+
+    def compared(self, facts: Facts, visits: Sequence[ComparedVisits] | None) -> tuple[Comparison | None, str]:
+        """The walk's condition against what was chosen, or why there is nothing to compare it with.
 
         Parameters
         ----------
+        facts
+            Of the walk that is shown, beside the chosen one.
         visits
             Those of the patient; None while they are being read.
         """
-        chosen, walk, visit = self.currentData(), self._walks.get(self._shown), self._visit
-        if visit is None or walk is None:
+        chosen, visit = self.currentData(), self._visit
+        if visit is None or self._shown not in self._walks:
             return None, ""
-        is_simulated = visit.analysis.is_simulated
+        is_simulated, names = visit.analysis.is_simulated, visit.shown_names
+        walk = replace(facts.part, name=str(names.get(self._shown, self._shown)))
         if chosen is Beside.LAST_VISIT:
             if visits is None:
                 return None, tr("The earlier visits are being read.")
-            condition = next((one.condition for one in visit.session.recordings if one.name == self._shown), "")
-            found = beside_last_visit(walk, condition, visits, is_simulated=is_simulated)
+            found = beside_last_visit(walk, facts.condition, visits, is_simulated=is_simulated)
             return found, "" if found is not None else tr("No earlier visit was walked in this condition.")
-        other = self._walks.get(chosen) if isinstance(chosen, str) else None
-        return (None, "") if other is None else (beside_walk(walk, other, is_simulated=is_simulated), "")
+        if chosen not in self._walks:
+            return None, ""
+        other = replace(part_of(visit, chosen, self.walks), name=str(names.get(chosen, chosen)))
+        return beside_walk(walk, other, is_simulated=is_simulated), ""

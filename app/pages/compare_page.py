@@ -464,8 +464,7 @@ class ComparePage(Themed):
         """The curves that a part may stand beside, and which of its legs."""
         if self._analysis is None or not part.walks:
             return None, frozenset()
-        walk = part.walks[-1]
-        return bands_of(walk, self._who).curves, sides_with_band(walk)
+        return bands_of(part, self._who).curves, sides_with_band(part)
 
     def _say(self, said: Sequence[str], parts: Sequence[Part], *, is_marked: bool) -> None:
         by_hand = left_out_of_parts(parts)

@@ -1,12 +1,14 @@
-"""The mean cycle of one walk, and its figures: the charts here, the tables beside them where the page puts them."""
+"""The mean cycle of a condition, and its figures: the charts here, the tables beside them where the page puts them."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
 from app.plots.cycle_chart import CycleCharts
-from app.reports.reference_bands import OTHER_AGES, WHY_NO_BAND, bands_of, reference_curves
+from app.reports.conditions import Part
+from app.reports.reference_bands import OTHER_AGES, WHY_NO_BAND, bands_of, reference_curves, sides_with_band
 from app.reports.walk_figures import (
     Figure,
     by_hand_in_words,
@@ -17,7 +19,6 @@ from app.reports.walk_figures import (
     reason_in_words,
     side_cycle,
     strides_in_words,
-    strides_used,
     time_distance_figures,
 )
 from app.theme import ThemeNotifier
@@ -27,10 +28,11 @@ from app.widgets.table import CellTable
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.wording import capitalised, joined, later, name_of, side_name, tr
 from core.body import Joint, Side
+from core.gait.cycles import POINTS
 from core.norms import AgeAndHeight, Bands, NoBand, ReferenceValues
 from core.results import RecordingAnalysis
+from core.samples import FloatArray
 from core.verdicts.model import Verdict
-from core.verdicts.quantities import both_sides
 
 # whose bands the program brings along, as the core names them
 GROUPS = (
@@ -73,44 +75,44 @@ class CyclePage(QWidget):
         """Say under the charts what was left out by hand, where nothing beside them does."""
         self.by_hand.setVisible(is_shown and bool(self.by_hand.text()))
 
-    def show_walk(
-        self, recording: RecordingAnalysis, is_simulated: bool, who: AgeAndHeight, sides_with_band: frozenset[Side]
-    ) -> None:
-        """Show the strides of `recording`, each side on its own stride; nothing where it has none.
+    def show_walk(self, part: Part, walk: RecordingAnalysis, is_simulated: bool, who: AgeAndHeight) -> None:
+        """Show the strides of a condition, each side on its own stride; nothing where it has none.
 
         Parameters
         ----------
+        walk
+            One of its walks, whose single strides can be looked at.
         who
-            Choose the band, with the speed of the walk.
-        sides_with_band
-            Legs that may be compared with other people's.
+            Choose the band, with the speed of the walks.
         """
-        bands = bands_of(recording, who)
-        curves, values = (bands.curves, bands.values) if sides_with_band else (None, None)
-        joints = [joint for gait in recording.gait.values() for joint in gait.cycles]
-        cycles = {joint: side_cycle(recording, joint) for joint in joints}
+        bands, sides_of_band = bands_of(part, who), sides_with_band(part)
+        curves, values = (bands.curves, bands.values) if sides_of_band else (None, None)
+        joints = [joint for side in part.sides for joint in part.joints if joint.side is side]
+        own = replace(part, walks=(walk,))
+        cycles = {joint: replace(side_cycle(part, joint), strides_deg=_strides_deg(own, joint)) for joint in joints}
         self.charts.set_band(curves)
-        self.charts.show_cycles(cycles, {joint: recording.verdicts.joint(joint) for joint in joints}, is_simulated)
-        strides = {side: strides_used(gait) for side, gait in recording.gait.items()}
-        of_joints = peak_figures(recording, curves)
-        of_hips = _under_heads({**of_joints, **pelvis_figures(recording)}, HIP_KINDS)
+        self.charts.show_cycles(cycles, {joint: part.verdicts.joint(joint) for joint in joints}, is_simulated)
+        strides = {side: part.strides(side) for side in part.sides}
+        of_joints = peak_figures(part, curves)
+        of_hips = _under_heads({**of_joints, **pelvis_figures(part)}, HIP_KINDS)
         rows = _under_heads(of_joints, LEG_KINDS)
-        told = " ".join(strides_in_words(side, gait) for side, gait in recording.gait.items())
-        reasons = [told, few_strides_in_words(recording), *_why_withheld(recording, joints)]
+        told = " ".join(strides_in_words(part, side) for side in part.sides)
+        reasons = [told, few_strides_in_words(part), *_why_withheld(part, joints)]
         reasons += _care_in_words(rows)
         self.peaks.show_figures(rows, strides, " ".join(filter(None, reasons)))
-        self.hips.show_figures(of_hips, strides, " ".join([*pelvis_in_words(recording), *_care_in_words(of_hips)]))
+        self.hips.show_figures(of_hips, strides, " ".join([*pelvis_in_words(part), *_care_in_words(of_hips)]))
         self.hips.setVisible(bool(of_hips))
-        figures = time_distance_figures(recording, values, sides_with_band)
-        by_hand = by_hand_in_words(recording)
-        self.by_hand.setText(by_hand)
-        only = _only_for(sides_with_band, recording)
-        group = _group_in_words(values, bands.why_no_values if sides_with_band else None)
+        figures = time_distance_figures(part, values, sides_of_band)
+        by_hand, count = by_hand_in_words(*part.walks), len(part.walks)
+        of_walks = tr("Mean over {count} walks of this condition.").format(count=count) if count > 1 else ""
+        self.by_hand.setText(" ".join(filter(None, [of_walks, by_hand])))
+        only = _only_for(sides_of_band, part)
+        group = _group_in_words(values, bands.why_no_values if sides_of_band else None)
         said = [by_hand, group, only, *_care_in_words(figures)]
         self.time_distance.show_figures(figures, strides, " ".join(filter(None, said)))
         if curves is not None and any(joint.is_hip for joint in joints):
             only = " ".join(filter(None, [only, tr(HIP_BAND)]))
-        self.band_words = band_in_words(bands, both_sides(recording).speed_m_s, sides_with_band, only)
+        self.band_words = band_in_words(bands, part.of_both("speed_m_s"), sides_of_band, only)
 
 
 def _under_heads(figures: Mapping[str, Sequence[Figure]], kinds: Sequence[str]) -> list[str | Figure]:
@@ -121,11 +123,16 @@ def _under_heads(figures: Mapping[str, Sequence[Figure]], kinds: Sequence[str]) 
     return rows
 
 
-def _why_withheld(recording: RecordingAnalysis, joints: Sequence[Joint]) -> list[str]:
+def _strides_deg(walk: Part, joint: Joint) -> FloatArray:
+    """The single strides of one walk (k, 101), degrees, that are known throughout."""
+    return side_cycle(walk, joint).strides_deg if joint.side in walk.sides else np.empty((0, POINTS))
+
+
+def _why_withheld(part: Part, joints: Sequence[Joint]) -> list[str]:
     """Why figures of the table are withheld, with what to do; what holds alike of several joints once."""
     places: dict[str, list[str]] = {}
     for joint in joints:
-        found = recording.verdicts.joint(joint)
+        found = part.verdicts.joint(joint)
         if found.height.verdict is Verdict.WITHHELD:
             places.setdefault(reason_in_words(found), []).append(name_of(joint))
     return [f"{capitalised(joined(names))}: {said}" for said, names in places.items()]
@@ -136,11 +143,11 @@ def _care_in_words(rows: Sequence[str | Figure]) -> list[str]:
     return [tr(CARE).format(mark=CARE_MARK)] if has_care else []
 
 
-def _only_for(sides_with_band: frozenset[Side], recording: RecordingAnalysis) -> str:
+def _only_for(sides_of_band: frozenset[Side], part: Part) -> str:
     """Say which leg the band is for, where it is not for both."""
-    if not sides_with_band or sides_with_band.issuperset(recording.gait):
+    if not sides_of_band or sides_of_band.issuperset(part.sides):
         return ""
-    sides = joined([side_name(side) for side in Side if side in sides_with_band])
+    sides = joined([side_name(side) for side in Side if side in sides_of_band])
     return tr("The band is for the {side} leg alone.").format(side=sides)
 
 
@@ -166,9 +173,9 @@ class FiguresCard(Card):
         self.note.setText(note)
 
 
-def band_in_words(bands: Bands, speed_m_s: float, sides_with_band: frozenset[Side], only: str) -> str:
+def band_in_words(bands: Bands, speed_m_s: float, sides_of_band: frozenset[Side], only: str) -> str:
     """Whose band it is and how fast they walked, or why there is none; how fast this walk was."""
-    whose = _whose(bands, only) if sides_with_band else tr(NO_SIDE)
+    whose = _whose(bands, only) if sides_of_band else tr(NO_SIDE)
     is_known = bool(np.isfinite(speed_m_s))
     speed = tr("This walk: {speed_m_s:.2f} m/s.").format(speed_m_s=speed_m_s) if is_known else tr(NO_SPEED)
     return f"{whose} {speed}"

@@ -18,12 +18,13 @@ from app.reports.agreed import agreed_with
 from app.reports.beside import changes_on_curves
 from app.reports.comparison import Comparison
 from app.reports.conditions import Part, conditions_of
+from app.reports.course_lanes import CourseVisit
 from app.reports.patient_report.answer import Outcome, answer_of
 from app.reports.patient_report.data_quality import data_quality, quality_without_walk
 from app.reports.patient_report.facts import Facts
 from app.reports.patient_report.marks_on_curves import deviations_of, gaps_of
-from app.reports.patient_report.request import AnalysedVisit
-from app.reports.reference_bands import age_and_height, sides_with_band
+from app.reports.patient_report.request import AnalysedVisit, default_walks
+from app.reports.reference_bands import age_and_height
 from app.reports.visits import ComparedVisits
 from app.review.mean_legs import mean_legs
 from app.theme import ThemeNotifier
@@ -82,6 +83,7 @@ class ResultPage(Themed):
         self._facts: Facts | None = None  # of the walk on the screen
         self._found: Comparison | None = None  # with what it stands beside
         self._can_choose = self._is_live = False
+        self._course: tuple[CourseVisit, ...] = ()
         self._stride: Mapping[Joint, FloatArray] = {}  # in force
         self._room = PageRoom()
         self._width = self._height = 0.0
@@ -118,8 +120,15 @@ class ResultPage(Themed):
         self._build()
         self._connect()
 
-    def show_visit(self, visit: AnalysedVisit, *, can_choose: bool = False, is_live: bool = False) -> None:
-        """Show the recording that was on the screen, if `visit` has it, else its first walk or first recording.
+    def show_visit(
+        self,
+        visit: AnalysedVisit,
+        *,
+        can_choose: bool = False,
+        is_live: bool = False,
+        course: tuple[CourseVisit, ...] = (),
+    ) -> None:
+        """Show the recording that was on the screen, if `visit` has it, else the walk of a report or the first.
 
         Parameters
         ----------
@@ -127,8 +136,10 @@ class ResultPage(Themed):
             Whether somebody keeps which strides are left out: see `strides`.
         is_live
             Whether the sensors are still worn, so that a free motion can be repeated.
+        course
+            The patient's visits in order of time, this one the last: the answer tells the changes since.
         """
-        self._visit, self._can_choose, self._is_live = visit, can_choose, is_live
+        self._visit, self._can_choose, self._is_live, self._course = visit, can_choose, is_live, course
         session, analysis = visit.session, visit.analysis
         shown, called = self.recordings.currentData(), visit.shown_names
         is_prosthetic = session.patient.prosthetic_side in set(Side)
@@ -136,12 +147,12 @@ class ResultPage(Themed):
         self.compare.show_conditions(analysis, parts, is_prosthetic, age_and_height(session))
         self.beside.show_visit(visit)
         names = [recording.name for recording in analysis.recordings]
-        walks = [i for i, recording in enumerate(analysis.recordings) if recording.kind is RecordingKind.WALKING]
         self.recordings.blockSignals(True)
         self.recordings.clear()
         for name in names:
             self.recordings.addItem(str(called.get(name, name)), name)
-        first = walks[0] if walks else 0
+        proposed = default_walks(visit)
+        first = names.index(proposed[-1]) if proposed else 0
         self.recordings.setCurrentIndex(names.index(shown) if shown in names else first)
         self.recordings.blockSignals(False)
         self.recordings.updateGeometry()
@@ -451,8 +462,6 @@ class ResultPage(Themed):
             self._facts = self._found = None
             self._offer()
             return
-        who = age_and_height(visit.session)
-        self.cycles.show_walk(recording, visit.analysis.is_simulated, who, sides_with_band(recording))
         self.strides.show_walk(recording, self._can_choose)
         self.beside.offer(recording.name, has_visits=self.compare.has_visits)
         self._show_beside()
@@ -472,9 +481,10 @@ class ResultPage(Themed):
         chosen = self.beside.currentData()
         if chosen is Beside.LAST_VISIT:
             self.compare.wish_visits()
-        facts = self._facts = Facts(visit, recording)
-        found, words = self.beside.compared(self.compare.visits)
+        facts = self._facts = Facts(visit, recording, self.beside.walks, self._course)
+        found, words = self.beside.compared(facts, self.compare.visits)
         self._found = found
+        self.cycles.show_walk(facts.part, recording, facts.is_simulated, age_and_height(visit.session))
         charts = self.cycles.charts
         charts.set_band_shown(chosen is Beside.BAND)
         charts.show_beside(found, words)

@@ -1,4 +1,4 @@
-"""What a walk can stand beside: another walk of its session, or its condition on the visit before. Never pooled."""
+"""What a walk can stand beside: another walk of its session, or its condition on the visit before."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -43,7 +43,7 @@ def beside_walk(shown: Part, other: Part, *, is_simulated: bool) -> Comparison:
 def beside_last_visit(
     shown: Part, condition: str, visits: Sequence[ComparedVisits], *, is_simulated: bool
 ) -> Comparison | None:
-    """A walk against its condition on the latest earlier visit that has it; None where none has."""
+    """A condition against itself on the latest earlier visit that has it; None where none has."""
     for found in visits:
         if found.condition == condition:
             *_, before, now = found.parts

@@ -4,6 +4,7 @@ Walks of one pool (`app.reports.pooled_walks`) are one part of every comparison.
 """
 
 import math
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import date
@@ -24,6 +25,7 @@ from core.body import Joint, Side
 from core.chosen_strides import left_out_by_hand
 from core.gait.cycles import POINTS, MeanCycle, mean_cycle
 from core.gait.spatiotemporal import BothFeet, MeanAndSd, mean_and_sd
+from core.gait.strides import Reason
 from core.goals import NO_GOALS, AgreedGoals
 from core.norms import MIN_STRIDES_FOR_MEAN
 from core.results import Analysis, JointCalibration, RecordingAnalysis, ZeroKind
@@ -124,12 +126,14 @@ class Part:
             self._found_means[side, column, clock_error] = found
         return found
 
+    def strides_deg(self, joint: Joint) -> FloatArray:
+        """The joint's angle over the strides used of all walks (k, 101), degrees: evidence, whatever may be said."""
+        cycles = [used_cycles(walk, joint) for walk in self.walks if joint.side in walk.gait]
+        return np.rad2deg(np.concatenate(cycles)) if cycles else np.empty((0, POINTS))
+
     def cycle(self, joint: Joint) -> MeanCycle:
         """Mean over the strides used of all walks, degrees; NaN throughout where its shape or sign is withheld."""
-        cycles = [used_cycles(walk, joint) for walk in self.walks if joint.side in walk.gait]
-        if not cycles or not self.is_drawn(joint):
-            return mean_cycle(np.empty((0, POINTS)))
-        return mean_cycle(np.rad2deg(np.concatenate(cycles)))
+        return mean_cycle(self.strides_deg(joint) if self.is_drawn(joint) else np.empty((0, POINTS)))
 
     def curve(self, joint: Joint, *, is_about_mean: bool) -> StrideCurve:
         """A joint's mean cycle as charts show it; without its height where that says nothing beside the others'."""
@@ -146,9 +150,13 @@ class Part:
     def is_measured(self, side: Side, column: str) -> bool:
         """Whether a column of strides.csv is of the leg itself, or of a joint or a pelvis that was measured."""
         joint = joint_of(column, side)
-        if column.startswith("pelvis") and all(walk.pelvis is None for walk in self.walks):
+        if column.startswith("pelvis") and not self.has_pelvis:
             return False
         return side in self.sides and (joint is None or joint in self.joints)
+
+    @property
+    def has_pelvis(self) -> bool:
+        return any(walk.pelvis is not None for walk in self.walks)
 
     def is_drawn(self, joint: Joint) -> bool:
         """Whether the joint's curve may be seen at all."""
@@ -208,6 +216,10 @@ class Part:
 
     def strides(self, side: Side) -> int:
         return sum(int(np.count_nonzero(walk.gait[side].strides.is_used)) for walk in self.walks if side in walk.gait)
+
+    def reasons(self, side: Side) -> Counter[Reason]:
+        """Of how many strides each reason holds, those that are used among them."""
+        return Counter(reason for walk in self.walks if side in walk.gait for reason in walk.gait[side].strides.reason)
 
     def left_out_by_hand(self, side: Side | None) -> int:
         """Of one side, or of both."""

@@ -3,6 +3,7 @@
 from functools import cache
 from importlib.resources import files
 
+from app.reports.conditions import Part
 from app.wording import later
 from core.body import Side
 from core.norms import (
@@ -15,9 +16,7 @@ from core.norms import (
     read_curves,
     read_time_distance,
 )
-from core.results import RecordingAnalysis
 from core.samples import Session
-from core.verdicts.quantities import both_sides
 
 FOLDER = files("resources") / "reference_bands"
 
@@ -52,14 +51,14 @@ def age_and_height(session: Session) -> AgeAndHeight:
     return AgeAndHeight(age_years, session.patient.height_m)
 
 
-def bands_of(recording: RecordingAnalysis, who: AgeAndHeight) -> Bands:
-    """The bands that may stand beside a walk, chosen by its speed."""
-    return choose_bands(reference_curves(), time_distance_classes(), both_sides(recording).speed_m_s, who)
+def bands_of(part: Part, who: AgeAndHeight) -> Bands:
+    """The bands that may stand beside a condition's walks, chosen by their speed."""
+    return choose_bands(reference_curves(), time_distance_classes(), part.of_both("speed_m_s"), who)
 
 
-def sides_with_band(recording: RecordingAnalysis) -> frozenset[Side]:
+def sides_with_band(part: Part) -> frozenset[Side]:
     """Legs that may be compared with other people's: none with a prosthesis, whose foot rolls on over its toe-off."""
-    return frozenset(side for side, gait in recording.gait.items() if not gait.is_toe_off_biased)
+    return frozenset(side for side in part.sides if not part.is_toe_off_biased(side))
 
 
 def _text(name: str) -> str:

@@ -10,6 +10,7 @@ import numpy as np
 
 from app.gates_in_words import gate_sentence
 from app.reports.comparison import compare_legs, first_and_second
+from app.reports.condition_figures import summarise_conditions
 from app.reports.conditions import Part
 from app.reports.fitting_csv import fitting_of_side
 from app.reports.goals_csv import goal_figures, goals_of_walk
@@ -88,7 +89,8 @@ def summarise(
 
     A walk before which a prosthesis was changed has `alignment`: since which condition, and each part's figures. One
     that is a timed test has `timed_test`. Where goals had been agreed by the session's day, each walk has `goals`, by
-    the columns of goals.csv.
+    the columns of goals.csv. With `recordings`, `conditions` has the figures of report and screen, over the strides of
+    all walks of a condition.
     """
     changed = {one.name: alignment_table(one.alignment) for one in recordings if one.alignment is not None}
     calibrations = [{"walks": list(span.walks), "joints": _joints(span.joints)} for span in analysis.calibrations]
@@ -105,6 +107,7 @@ def summarise(
             | ({"goals": _goals(analysis, walk, agreed)} if agreed.held else {})
             for walk in walks
         },
+        **({"conditions": summarise_conditions(analysis, recordings, agreed)} if recordings else {}),
         "reference_group": _reference_group(),
         "findings": [_finding(finding) for finding in analysis.findings],
     }

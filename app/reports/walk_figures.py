@@ -1,4 +1,4 @@
-"""Which figures of one walk does a clinician read? Peaks and ranges, time and distance, beside those of a cited group.
+"""Which figures of a condition's walks does a clinician read? Peaks, ranges, time, distance, beside a cited group's.
 
 The window and the report show the same rows, so that no number stands in one that the other computes differently.
 """
@@ -6,6 +6,7 @@ The window and the report show the same rows, so that no number stands in one th
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,9 +19,11 @@ from core.gait.cycles import ANKLE_WINDOWS, KNEE_WINDOWS, find_peak, mean_cycle
 from core.gait.spatiotemporal import MeanAndSd
 from core.gait.strides import Reason
 from core.norms import MIN_STRIDES_FOR_MEAN, MIN_STRIDES_FOR_SD, ReferenceCurves, ReferenceValues
-from core.results import RecordingAnalysis, SideGait
+from core.results import RecordingAnalysis
 from core.verdicts.model import JointVerdicts, Verdict, worst
-from core.verdicts.quantities import assessment_of_both, both_sides, side_mean, used_cycles
+
+if TYPE_CHECKING:  # it tells what was left out by hand, as this does
+    from app.reports.conditions import Part
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +46,14 @@ class Figure:
     unknown_both: str = ""
     with_care: frozenset[Side] = frozenset()
 
+    @property
+    def judged_band(self) -> tuple[float, float] | None:
+        """The band, where words may say how far from it a figure lies."""
+        return None if self.column in WITHOUT_BAND_WORDS else self.band
 
+
+# its band's SD holds no error of ours: with the source's alone half of healthy walks lay beyond 2 SD
+WITHOUT_BAND_WORDS = frozenset({"stance_percent"})
 PEAKS = (  # name of the column in strides.csv, name for the reader, window of the band's peak
     ("at_initial_contact_deg", later("At initial contact"), None),
     ("loading_peak_deg", later("Loading peak"), "knee_loading_peak"),
@@ -76,14 +86,13 @@ WITHHELD, MAY_BE_MIRRORED = later("withheld"), later("sign unsure")
 NO_ZERO, NO_HEIGHT = later("no zero"), later("height withheld")
 
 
-def strides_used(gait: SideGait) -> int:
-    return int(np.count_nonzero(gait.strides.is_used))
-
-
-def strides_in_words(side: Side, gait: SideGait) -> str:
+def strides_in_words(part: "Part", side: Side) -> str:
     """How many strides stand behind the averages, and why the others do not."""
-    used = strides_used(gait)
-    left_out = Counter(tr(NAMES["reason"][reason]) for reason in gait.strides.reason if reason is not Reason.USED)
+    used = part.strides(side)
+    left_out: Counter[str] = Counter()
+    for reason, count in part.reasons(side).items():
+        if reason is not Reason.USED:
+            left_out[tr(NAMES["reason"][reason])] += count
     letter = side[0].upper()
     if not left_out:
         return tr_n("{side}: {used} stride used.", "{side}: {used} strides used.", used).format(side=letter, used=used)
@@ -96,19 +105,20 @@ def strides_in_words(side: Side, gait: SideGait) -> str:
     return said.format(side=letter, used=used, out=left_out.total(), reasons=", ".join(reasons))
 
 
-def by_hand_in_words(recording: RecordingAnalysis) -> str:
+def by_hand_in_words(*walks: RecordingAnalysis) -> str:
     """How many strides of which side a person has left out; empty where none was."""
     said = []
-    for side, gait in recording.gait.items():
-        if count := left_out_by_hand(gait):
+    for side in Side:
+        gaits = [walk.gait[side] for walk in walks if side in walk.gait]
+        if count := sum(map(left_out_by_hand, gaits)):
             told = tr("{count} of {of} {side} strides left out by hand.")
-            said.append(told.format(count=count, of=len(gait.strides), side=side_name(side)))
+            said.append(told.format(count=count, of=sum(len(g.strides) for g in gaits), side=side_name(side)))
     return " ".join(said)
 
 
-def few_strides_in_words(recording: RecordingAnalysis) -> str:
+def few_strides_in_words(part: "Part") -> str:
     """What is missing for want of strides; empty where there are enough."""
-    counts = {side[0].upper(): strides_used(gait) for side, gait in recording.gait.items()}
+    counts = {side[0].upper(): part.strides(side) for side in part.sides}
     without_mean = [side for side, n in counts.items() if n and not is_mean_enough(n)]
     without_spread = [side for side, n in counts.items() if is_mean_enough(n) and not is_spread_enough(n)]
     said = []
@@ -121,34 +131,33 @@ def few_strides_in_words(recording: RecordingAnalysis) -> str:
     return " ".join(said)
 
 
-def side_cycle(recording: RecordingAnalysis, joint: Joint) -> SideCycle:
+def side_cycle(part: "Part", joint: Joint) -> SideCycle:
     """The joint's strides that are used and known over all of the stride."""
-    strides_deg = np.rad2deg(used_cycles(recording, joint))
+    strides_deg = part.strides_deg(joint)
     strides_deg = strides_deg[np.isfinite(strides_deg).all(axis=1)]
-    toe_off = side_mean(recording, joint.side, "stance_percent").found
-    return SideCycle(mean_cycle(strides_deg), strides_deg, toe_off.mean)
+    return SideCycle(mean_cycle(strides_deg), strides_deg, part.stance_percent(joint.side))
 
 
-def peak_figures(recording: RecordingAnalysis, reference: ReferenceCurves | None) -> dict[str, tuple[Figure, ...]]:
+def peak_figures(part: "Part", reference: ReferenceCurves | None) -> dict[str, tuple[Figure, ...]]:
     """Rows of each kind of joint, degrees and percent of the stride; the band by the same windows on its mean curve.
 
     The band stands where its source has it; None: none may stand beside this walk.
     """
     found: dict[str, tuple[Figure, ...]] = {}
     for kind, rows in ROWS.items():
-        joints = {side: kind.of(side) for side, gait in recording.gait.items() if kind.of(side) in gait.cycles}
+        joints = {side: joint for side in part.sides if (joint := kind.of(side)) in part.joints}
         if not joints:
             continue
-        doubts = {side: why for side, joint in joints.items() if (why := doubt_of(recording, joint))}
+        doubts = {side: why for side, joint in joints.items() if (why := doubt_in(part.verdicts.joint(joint)))}
         figures = []
         for column, name, window in rows:
             of_joint = f"{kind}_{column}"
-            means = {side: side_mean(recording, side, of_joint) for side in joints}
-            unknown = {side: doubts.get(side, WITHHELD) for side, mean in means.items() if not mean.assessment.is_told}
-            sides = {side: mean.found for side, mean in means.items() if side not in unknown}
+            told = {side: part.assessment(side, of_joint) for side in joints}
+            unknown = {side: doubts.get(side, WITHHELD) for side, one in told.items() if not one.is_told}
+            sides = {side: part.value(side, of_joint) for side in joints if side not in unknown}
             unit, decimals = ("%", 0) if column.endswith("_percent") else ("°", 1)
             band = band_of_peak(reference, kind, column, window) if reference is not None and sides else None
-            care = frozenset(side for side, mean in means.items() if mean.assessment.verdict is Verdict.CARE)
+            care = frozenset(side for side, one in told.items() if one.verdict is Verdict.CARE)
             figures.append(
                 Figure(of_joint, tr(name), unit, decimals, sides, band=band, unknown=unknown, with_care=care)
             )
@@ -156,25 +165,25 @@ def peak_figures(recording: RecordingAnalysis, reference: ReferenceCurves | None
     return found
 
 
-def pelvis_figures(recording: RecordingAnalysis) -> dict[str, tuple[Figure, ...]]:
+def pelvis_figures(part: "Part") -> dict[str, tuple[Figure, ...]]:
     """Rows of the pelvis over each leg's strides, degrees; none without a sensor on it."""
-    if recording.pelvis is None:
+    if not part.has_pelvis:
         return {}
     figures = []
     for column, name in PELVIS_ROWS:
-        means = {side: side_mean(recording, side, column) for side in recording.gait}
-        told = {side: mean.found for side, mean in means.items() if mean.assessment.is_told}
-        unknown = {side: WITHHELD for side, mean in means.items() if not mean.assessment.is_told}
-        care = frozenset(side for side, mean in means.items() if mean.assessment.verdict is Verdict.CARE)
+        found = {side: part.assessment(side, column) for side in part.sides}
+        told = {side: part.value(side, column) for side, one in found.items() if one.is_told}
+        unknown = {side: WITHHELD for side, one in found.items() if not one.is_told}
+        care = frozenset(side for side, one in found.items() if one.verdict is Verdict.CARE)
         figures.append(Figure(column, tr(name), "°", 1, told, unknown=unknown, with_care=care))
     return {"pelvis": tuple(figures)}
 
 
-def pelvis_in_words(recording: RecordingAnalysis) -> list[str]:
+def pelvis_in_words(part: "Part") -> list[str]:
     """Why figures of pelvis and abduction are withheld, what holds alike of both once; how often the body turned."""
-    if recording.pelvis is None:
+    if not part.has_pelvis:
         return []
-    said = recording.verdicts
+    said = part.verdicts
     withheld: dict[str, list[str]] = {}
     for name, found in (
         (tr("pelvis"), said.pelvis),
@@ -185,38 +194,35 @@ def pelvis_in_words(recording: RecordingAnalysis) -> list[str]:
             if reason.verdict is Verdict.WITHHELD:
                 withheld.setdefault(gate_words(reason).why, []).append(name)
     told = [f"{capitalised(joined(list(dict.fromkeys(names))))}: {why}" for why, names in withheld.items()]
-    turns = len(recording.turns)
+    turns = sum(len(walk.turns) for walk in part.walks)
     return [*told, tr_n("{count} turn.", "{count} turns.", turns).format(count=turns)] if turns else told
 
 
 def time_distance_figures(
-    recording: RecordingAnalysis, group: ReferenceValues | None, sides_with_band: frozenset[Side]
+    part: "Part", group: ReferenceValues | None, sides_with_band: frozenset[Side]
 ) -> tuple[Figure, ...]:
     """Rows of time and distance beside the group of this speed, None without one.
 
     What both legs make together stands beside it only where both may be compared with other people's.
     """
-    feet = both_sides(recording)
-    is_any, is_all = bool(sides_with_band), sides_with_band.issuperset(recording.gait)
+    is_any, is_all = bool(sides_with_band), sides_with_band.issuperset(part.sides)
 
     def row(label: str, name: str, unit: str, decimals: int, band: tuple[float, float] | None = None) -> Figure:
-        means = {side: side_mean(recording, side, name) for side in recording.gait}
-        told = {side: mean.found for side, mean in means.items() if mean.assessment.is_told}
-        withheld = [side for side, mean in means.items() if mean.assessment.verdict is Verdict.WITHHELD]
-        care = frozenset(side for side, mean in means.items() if mean.assessment.verdict is Verdict.CARE)
+        found = {side: part.assessment(side, name) for side in part.sides}
+        told = {side: part.value(side, name) for side, one in found.items() if one.is_told}
+        withheld = [side for side, one in found.items() if one.verdict is Verdict.WITHHELD]
+        care = frozenset(side for side, one in found.items() if one.verdict is Verdict.CARE)
         unknown = dict.fromkeys(withheld, WITHHELD)
         return Figure(
             name, label, unit, decimals, told, band=band if is_any and told else None, unknown=unknown, with_care=care
         )
 
-    def both(
-        label: str, name: str, unit: str, decimals: int, value: float, band: tuple[float, float] | None = None
-    ) -> Figure:
-        verdict = assessment_of_both(recording.verdicts, name).verdict
-        care = frozenset(recording.gait) if verdict is Verdict.CARE else frozenset()
+    def both(label: str, name: str, unit: str, decimals: int, band: tuple[float, float] | None = None) -> Figure:
+        verdict = part.assessment_of_walk(name).verdict
+        care = frozenset(part.sides) if verdict is Verdict.CARE else frozenset()
         why = WITHHELD if verdict is Verdict.WITHHELD else ""
         shown = band if is_all else None
-        return Figure(name, label, unit, decimals, {}, value, shown, unknown_both=why, with_care=care)
+        return Figure(name, label, unit, decimals, {}, part.of_both(name), shown, unknown_both=why, with_care=care)
 
     def band(name: str, factor: float = 1.0) -> tuple[float, float] | None:
         if group is None:
@@ -226,24 +232,19 @@ def time_distance_figures(
 
     return (
         # the class is chosen by speed, so its speed would be no comparison
-        both(tr("Walking speed"), "speed_m_s", "m/s", 2, feet.speed_m_s),
-        both(tr("Cadence"), "cadence_steps_min", tr("steps/min"), 0, feet.cadence_steps_min, band("cadence")),
+        both(tr("Walking speed"), "speed_m_s", "m/s", 2),
+        both(tr("Cadence"), "cadence_steps_min", tr("steps/min"), 0, band("cadence")),
         row(tr("Stride time"), "stride_time_s", "s", 2),
         # a subject's stride is the two steps of which the group's step length is the mean
         row(tr("Stride length"), "stride_length_m", "m", 2, band("step_length", 2.0)),
         row(tr("Stance"), "stance_percent", "%", 1, band("stance")),
         # it holds the biases of all four events, and nobody has yet looked how large these are
-        both(tr("Double support"), "double_support_percent", "%", 1, feet.double_support_percent),
+        both(tr("Double support"), "double_support_percent", "%", 1),
     )
 
 
-def doubt_of(recording: RecordingAnalysis, joint: Joint) -> str | None:
-    """Why a joint's curve does not say all that a curve can: the gravest of what is withheld; None where nothing is."""
-    return doubt_in(recording.verdicts.joint(joint))
-
-
 def doubt_in(found: JointVerdicts) -> str | None:
-    """As `doubt_of`, of one joint's verdicts."""
+    """Why a joint's curve does not say all that a curve can: the gravest of what is withheld; None where nothing is."""
     if found.shape.verdict is Verdict.WITHHELD:
         return WITHHELD
     if found.sign.verdict is Verdict.WITHHELD:

@@ -73,7 +73,8 @@ class Sheets(QWidget):
 
     def show_pages(self, pages: Sequence[Sheet]) -> None:
         self.pages = list(pages)
-        self.setAccessibleName(tr_n("{count} page", "{count} pages", len(pages)).format(count=len(pages)))
+        counted = tr_n("{count} page", "{count} pages", len(pages)).format(count=len(pages))
+        self.setAccessibleName(counted if pages else tr("No pages yet"))
         self._fit()
         self.update()
 

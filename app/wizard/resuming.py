@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, NamedTuple
 from uuid import UUID
 
 from app.reports.course import Course, course_of
+from app.reports.course_lanes import CourseVisit
+from app.reports.patient_report.dates import date_of
 from app.storage.analysis_content import FORMAT, unpacked
 from app.storage.exchange import recording_with_samples
 from app.storage.kept_analyses import bare, find_analysis, inputs_of, keep_analysis
@@ -109,6 +111,25 @@ def current_courses(library: "Library", session_ids: Sequence[UUID]) -> dict[UUI
         for session_id, (key, course) in library.courses.find(session_ids).items()
         if key == current_course_key(library.sessions.get(session_id))
     }
+
+
+def courses_before(opened: "OpenedLibrary", session: StoredSession) -> tuple[CourseVisit, ...]:
+    """The patient's visits before this one in order of time, each with its course as far as that is known."""
+    lines = opened.library.sessions.list(session.patient_id)  # latest first
+    before = [line for line in reversed(lines) if line.id != session.id and line.started < session.details.started]
+    found = current_courses(opened.library, [line.id for line in before])
+    days = [(line.id, date_of(line.started)) for line in before]
+    return tuple(CourseVisit(session_id, day, found.get(session_id)) for session_id, day in days if day is not None)
+
+
+def course_to(
+    before: Sequence[CourseVisit], stored: StoredSession, session: Session, analysis: "Analysis"
+) -> tuple[CourseVisit, ...]:
+    """The same with this visit at their end; none where there is no earlier one, or nobody knows this one's day."""
+    day = date_of(session.started)
+    if day is None or not before:
+        return ()
+    return (*before, CourseVisit(stored.id, day, course_of(analysis, session.recordings)))
 
 
 def evaluated(session: StoredSession, recordings: Sequence[SessionRecording]) -> Session:

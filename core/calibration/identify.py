@@ -21,6 +21,7 @@ from core.calibration.joint_axis import (
 from core.calibration.joint_centre import JointCentre, centre_by_lengths, centre_by_vectors, centre_sd_m
 from core.calibration.lag import Lag, find_lag, sharpest_lag, smoothest_lag
 from core.calibration.refinement import refine_on_hinge
+from core.calibration.same_joint import most_disagreement
 from core.datasets import Datasets, gather, moving_indices, slow_ones, united
 from core.pair import FAST_RAD_S, Pair
 from core.rotations import wrap
@@ -40,12 +41,6 @@ MAX_LAG_SD_S = 0.002  # of a lag from free motion alone
 MAX_REST_S = 0.01  # after the first correction
 ELEVATION_SD_RAD = np.deg2rad(25.0)
 MAX_ELEVATION_RAD = np.deg2rad(40.0)
-# Two sensors with no joint between them: what they disagree on, and the margin, are both poor. Neighbours on people
-# (stroke_treadmill, full_body_free_motion, a walk overground: 20 joints) disagree on 0.13 at most with margins of 5.7
-# and more; strangers made of them (32) on 0.18 and more, with margins of 3.3 at most. Simulated sensors two segments
-# apart look like neighbours where the joint between hardly moves: 0.2 and margins up to 14.
-DOUBTFUL_DISAGREEMENT, DOUBTFUL_MARGIN = 0.2, 3.1
-MAX_DISAGREEMENT, STRANGERS_MARGIN = 0.33, 8.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,9 +63,8 @@ class Identification:
     @property
     def is_same_joint(self) -> bool:
         """Whether the two sensors may be neighbours."""
-        is_doubtful = self.disagreement > DOUBTFUL_DISAGREEMENT and self.sign_margin < DOUBTFUL_MARGIN
-        is_apart = self.disagreement > MAX_DISAGREEMENT and self.sign_margin < STRANGERS_MARGIN
-        return not (self.lag.is_at_border or is_doubtful or is_apart)
+        most = most_disagreement(self.sign_margin)
+        return not (self.lag.is_at_border or (most is not None and self.disagreement > most))
 
 
 Downs = tuple[FloatArray, FloatArray]

@@ -10,6 +10,7 @@ import numpy as np
 
 from core.body import Joint, Segment, Side, Site, ankle_of, hip_of, knee_of
 from core.calibration.clinical_sign import MIN_MARGIN
+from core.calibration.same_joint import most_disagreement
 from core.gait.clocks import CARE_S, READ_S, ClockGate, LegClocks
 from core.gait.cycles import mean_cycle, range_of_cycles
 from core.hip.results import HipIdentification
@@ -240,15 +241,22 @@ def _labels(recording: RecordingAnalysis, *sites: Site) -> Iterator[GateReason]:
 
 
 def _calibrated(found: JointCalibration) -> Iterator[GateReason]:
-    yield from _pairing(found)
-    yield from _axis(found)
-    yield from _lag(found)
+    yield from dict.fromkeys((*_pairing(found), *_axis(found), *_lag(found)))  # a lag may decide two of them
 
 
 def _pairing(found: JointCalibration) -> Iterator[GateReason]:
-    margin = found.sign_margin
-    if not found.is_same_joint or (margin is not None and margin < LIMITS.pairing_margin):
-        yield GateReason("pairing", Verdict.WITHHELD, _below(margin, LIMITS.pairing_margin), LIMITS.pairing_margin)
+    """Whether both sensors sit on one joint; the reason is the one of three that decided it."""
+    margin, disagreement = found.sign_margin, found.disagreement
+    if margin is not None and margin < LIMITS.pairing_margin:
+        yield GateReason("pairing", Verdict.WITHHELD, margin, LIMITS.pairing_margin)
+    elif not found.is_same_joint:
+        most = most_disagreement(margin)
+        if disagreement is not None and most is not None and disagreement > most:
+            yield GateReason("disagreement", Verdict.WITHHELD, disagreement, most)
+        elif found.is_lag_at_border:
+            yield GateReason("lag", Verdict.WITHHELD, None, LIMITS.lag_sd_ms[1], "ms")
+        else:
+            yield GateReason("pairing", Verdict.WITHHELD, None, LIMITS.pairing_margin)
 
 
 def _axis(found: JointCalibration) -> Iterator[GateReason]:

@@ -92,7 +92,11 @@ OF_HIPS: Mapping[str, QuantityClass] = {  # what strides.csv has more where a se
     "pelvis_tilt_range_deg": QuantityClass.SHAPE,
     "pelvis_lean_deg": QuantityClass.HEIGHT,
 }
-CLASSES: Mapping[str, QuantityClass] = {**QUANTITIES, **FITTING, **OF_HIPS}
+OF_WALK: Mapping[str, QuantityClass] = {  # what both legs make together, beside speed
+    "cadence_steps_min": QuantityClass.TIMING,
+    "double_support_percent": QuantityClass.TIMING,
+}
+CLASSES: Mapping[str, QuantityClass] = {**QUANTITIES, **FITTING, **OF_HIPS, **OF_WALK}  # of all that is compared
 SEGMENTS = ("shank", "thigh")
 ABDUCTION = ("hip_abduction", "hip_adduction")
 OF_BOTH = ("cadence_steps_min", "double_support_percent", "speed_m_s")

@@ -49,6 +49,11 @@ CASES: list[tuple[RecordingAnalysis, dict[str, Any], str]] = [
     (walk(), {"sign_margin": 1.2}, "The two sensors do not move as neighbours (margin 1.20, 1.50 wanted). Check which"),
     (walk(), {"is_same_joint": False}, "The two sensors do not move as neighbours. Check which sensor is where, or"),
     (
+        walk(),
+        {"is_same_joint": False, "sign_margin": 1.89, "disagreement": 0.26},
+        "The two sensors disagree about their joint (disagreement 0.26, limit 0.20). Check which sensor is where, or",
+    ),
+    (
         walk(doubted_sites=frozenset({Site.LEFT_SHANK, Site.LEFT_FOOT})),
         {},
         "The motion fits better if the sensors were worn in another order. Check which sensor is where.",

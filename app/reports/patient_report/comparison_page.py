@@ -10,15 +10,15 @@ from app.charts.drawing import MM, Picture
 from app.charts.on_paper import compared_look, draw
 from app.charts.stride_chart import NOT_KNOWN, StrideChart
 from app.gates_in_words import verdict_word
-from app.reports.agreed import agreed_with
 from app.reports.comparison import Compared, Comparison, Contrast, Reservation
-from app.reports.conditions import Part, left_out_of_parts, parts_of
+from app.reports.conditions import Part, left_out_of_parts
 from app.reports.error_sources import sources_in_words
 from app.reports.measures import MEASURES, Measure
 from app.reports.patient_report import panels
 from app.reports.patient_report.blocks import Block, Cell, Column, Row, figures, heading, legend, note, paragraph, table
 from app.reports.patient_report.dates import day
-from app.reports.patient_report.facts import Facts, joint_of, role
+from app.reports.patient_report.facts import Facts, joint_of, part_of, role
+from app.reports.patient_report.measure_sentences import measure_in_words
 from app.reports.patient_report.numbers_in_words import (
     CARE,
     NOTHING,
@@ -31,12 +31,11 @@ from app.reports.patient_report.numbers_in_words import (
     spread,
 )
 from app.reports.patient_report.plain_text import CONDITION_LENGTH, typed
-from app.reports.patient_report.request import AnalysedVisit, ReportRequest
-from app.reports.patient_report.what_stands_out import measure_in_words
+from app.reports.patient_report.request import ReportRequest
 from app.reports.visits import by_condition, condition_in_words
 from app.wording import capitalised, joined, tr
 from core.body import JointKind, Side
-from core.verdicts.measurement_error import ComparisonKind, Judgement, sigma_of
+from core.verdicts.measurement_error import ComparisonKind, sigma_of
 from core.verdicts.model import Verdict, worst
 from core.verdicts.quantities import EXCURSIONS_BY_COLUMN, OF_HIPS
 
@@ -57,7 +56,7 @@ def comparison_of(request: ReportRequest) -> Comparison | None:
         same = by_condition(request.earlier.analysis, request.earlier.session.recordings).get(name)
         if same is None:
             return None
-        pair = same, _condition(visit, request.shown, (request.shown,))
+        pair = same, part_of(visit, request.shown)
         names = tr("Earlier visit, {day}"), tr("This visit, {day}")
         parts = [
             replace(part, letter=str(k + 1), name=names[k].format(day=_day_of(of.session.started)))
@@ -66,7 +65,7 @@ def comparison_of(request: ReportRequest) -> Comparison | None:
         return Comparison(Contrast.VISITS, tuple(parts), is_simulated=is_simulated)
     if len(request.walks) < 2:
         return None
-    conditions = [_condition(visit, name, request.walks) for name in request.walks]
+    conditions = [part_of(visit, name, request.walks) for name in request.walks]
     return Comparison(Contrast.CONDITIONS, tuple(conditions), is_simulated=is_simulated)
 
 
@@ -91,17 +90,6 @@ def not_compared_page(request: ReportRequest) -> list[Block]:
 
 def _condition_typed(condition: str) -> str:
     return typed(condition, CONDITION_LENGTH) if condition else condition_in_words("")
-
-
-def _condition(visit: AnalysedVisit, name: str, chosen: Sequence[str]) -> Part:
-    """All walks of this one's condition; this one alone where several of them are chosen."""
-    shown = visit.shown_names[name]
-    for part in parts_of(visit.analysis, visit.session.recordings, agreed=agreed_with(visit.session)):
-        names = {walk.name for walk in part.walks}
-        if name in names:
-            is_only = len(names.intersection(chosen)) == 1
-            return part if is_only else replace(part, letter=shown.letter, walks=(visit.walk(name),))
-    return Part(shown.letter, visit.recording(name).condition or name, (visit.walk(name),), {})
 
 
 def _day_of(started: str) -> str:
@@ -329,8 +317,6 @@ def _what_else_changed(comparison: Comparison) -> str:
 
 
 def _why_not(compared: Compared) -> Cell | str:
-    if compared.reservation is Reservation.NONE and compared.difference.judgement is Judgement.NO_PUBLISHED_FIGURE:
-        return tr("not compared")
     return tr("withheld") if compared.reservation in (Reservation.WITHHELD, Reservation.OTHER_ZERO) else NOTHING
 
 

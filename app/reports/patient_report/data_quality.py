@@ -21,7 +21,7 @@ GATES_OF_FINDINGS = {
     "axis_from_walking": ("axis",),
     "too_little_motion": ("axis",),
     "sign_in_doubt": ("pairing", "sign"),
-    "not_the_same_joint": ("pairing",),
+    "not_the_same_joint": ("pairing", "disagreement", "lag"),
     "clinical_sign_uncertain": ("sign",),
     "clock_moved": ("lag", "clocks"),
     "clock_drifts": ("clock_drift",),
@@ -32,7 +32,7 @@ GATES_OF_FINDINGS = {
     "no_spread": ("strides",),
     "no_spread_of_side": ("strides",),
 }
-FREE_MOTION_MENDS = frozenset({"axis", "pairing", "strap"})  # gates that a new free motion may open
+FREE_MOTION_MENDS = frozenset({"axis", "pairing", "disagreement", "strap"})  # gates that a new free motion may open
 ALL_READ = {
     1: later("The {joint} can be read."),
     2: later("Both joints can be read."),
@@ -89,14 +89,15 @@ class DataQuality:
 def data_quality(facts: Facts) -> DataQuality:
     """Look at the verdicts of a walk and at what was noticed about it."""
     found = quality.causes(facts)
-    findings = _noticed(facts.visit, facts.walk.name, {cause.gate for cause in found})
+    names = {walk.name for walk in facts.part.walks}
+    findings = _noticed(facts.visit, names, {cause.gate for cause in found})
     first, then = _in_words(facts)
     return _quality(first, then, [*map(_of_cause, found), *map(_of_finding, findings)], _in_order(facts))
 
 
 def quality_without_walk(visit: AnalysedVisit, recording: str) -> DataQuality:
     """What was noticed about a recording of which nothing is judged; empty: about the whole session."""
-    lines = [_of_finding(finding) for finding in _noticed(visit, recording, set())]
+    lines = [_of_finding(finding) for finding in _noticed(visit, {recording} - {""}, set())]
     first = tr("Nothing stands out.") if not lines else tr("This was noticed.")
     return _quality(first, "", lines, "")
 
@@ -121,12 +122,12 @@ def _of_finding(finding: Finding) -> QualityLine:
     return QualityLine(Verdict.CARE, where, capitalised(why + "." if stop else why), to_do)
 
 
-def _noticed(visit: AnalysedVisit, recording: str, gates: set[str]) -> list[Finding]:
-    """What was noticed of this recording or of the session that no verdict says already, the gravest first.
+def _noticed(visit: AnalysedVisit, names: set[str], gates: set[str]) -> list[Finding]:
+    """What was noticed of these recordings or of the session that no verdict says already, the gravest first.
 
     Where it was found is told as the reader knows it.
     """
-    others = {one.name for one in visit.session.recordings} - {recording} if recording else set()
+    others = {one.name for one in visit.session.recordings} - names if names else set()
     found = [
         finding
         for finding in visit.analysis.findings
@@ -134,9 +135,9 @@ def _noticed(visit: AnalysedVisit, recording: str, gates: set[str]) -> list[Find
         and gates.isdisjoint(GATES_OF_FINDINGS.get(finding.key, ()))
         and others.isdisjoint(finding.where.split(", "))
     ]
-    names = visit.shown_names
+    shown = visit.shown_names
     return [
-        with_shown_names(finding, names)
+        with_shown_names(finding, shown)
         for finding in sorted(found, key=lambda finding: finding.severity is not Severity.GRAVE)
     ]
 
@@ -145,19 +146,36 @@ def _in_words(facts: Facts) -> tuple[str, str]:
     joints = {joint: facts.verdicts.joint(joint).shape.verdict for joint in Joint if facts.is_measured(joint)}
     if not joints:
         return tr("No joint was measured in this walk."), ""
-    out = [name_of(joint) for joint, verdict in joints.items() if verdict is Verdict.WITHHELD]
+    care, out = (
+        [name_of(joint) for joint, verdict in joints.items() if verdict is wanted]
+        for wanted in (Verdict.CARE, Verdict.WITHHELD)
+    )
     if len(out) == len(joints):
         return tr("No joint can be read in this walk."), ""
-    if out:
-        first = tr("{count} of {all} joints can be read. Withheld: {joints}.")
-        return first.format(count=len(joints) - len(out), all=len(joints), joints=joined(out)), ""
-    first = tr(ALL_READ[len(joints)]).format(joint=name_of(next(iter(joints))))
+    first = _readable(list(map(name_of, joints)), care, out)
     heights = [name_of(joint) for joint in joints if facts.verdicts.joint(joint).height.verdict is Verdict.WITHHELD]
-    if not heights:
+    if out or not heights:
         return first, ""
     if len(heights) == len(joints):
         return first, tr("Range and shape hold; heights are withheld.")
     return first, tr("Of these joints the height is withheld: {joints}.").format(joints=joined(heights))
+
+
+def _readable(joints: list[str], care: list[str], out: list[str]) -> str:
+    """How many joints can be read, and which are read with care or withheld."""
+    read = len(joints) - len(care) - len(out)
+    if read == len(joints):
+        return tr(ALL_READ[read]).format(joint=joints[0])
+    if len(care) == len(joints):
+        return (
+            tr("All joints: read with care.")
+            if len(joints) > 1
+            else tr("Read with care: {joints}.").format(joints=care[0])
+        )
+    said = [tr("{count} of {all} joints can be read.").format(count=read, all=len(joints))] if read else []
+    said += [tr("Read with care: {joints}.").format(joints=joined(care))] if care else []
+    said += [tr("Withheld: {joints}.").format(joints=joined(out))] if out else []
+    return " ".join(said)
 
 
 def one_time_in_words(walk: RecordingAnalysis) -> str:
@@ -179,7 +197,7 @@ def _in_order(facts: Facts) -> str:
     said = []
     if not quality.slipped_straps(facts):
         said.append(tr("no strap slipped"))
-    if max(facts.walk.lost_percent.values(), default=0.0) < MIN_LOSS_PERCENT:
+    if max((lost for walk in facts.part.walks for lost in walk.lost_percent.values()), default=0.0) < MIN_LOSS_PERCENT:
         said.append(tr("no samples lost"))
     if facts.verdicts.between.verdict is Verdict.READ:
         said.append(one_time_in_words(facts.walk))

@@ -168,7 +168,7 @@ def pages_of_walk(facts: Facts) -> list[list[Block]]:
 
 
 def facts_of(request: ReportRequest) -> Facts:
-    return Facts(request.visit, request.visit.walk(request.shown))
+    return Facts(request.visit, request.visit.walk(request.shown), request.walks, request.course)
 
 
 def _subject(facts: Facts) -> str:

@@ -13,6 +13,7 @@ from app.reports.patient_report.quality import slipped_straps
 from app.wording import capitalised, name_of, side_name, tr
 from core.body import Joint, JointKind, Side, hip_of
 from core.calibration.clinical_sign import MIN_MARGIN
+from core.calibration.same_joint import DOUBTFUL_DISAGREEMENT, MAX_DISAGREEMENT
 from core.hip.results import ClockStatus, HipIdentification
 from core.results import JointCalibration, ZeroKind
 from core.samples import FloatArray
@@ -61,6 +62,14 @@ def evidence_table(facts: Facts) -> list[Block]:
             tr("at least {limit}").format(limit=fixed(LIMITS.pairing_margin, 1)),
         ),
         (
+            "disagreement",
+            tr("Disagreement about the joint"),
+            lambda _, found: NOTHING if found.disagreement is None else fixed(found.disagreement, 2),
+            tr("under {limit} to {most}, by margin").format(
+                limit=fixed(DOUBTFUL_DISAGREEMENT, 2), most=fixed(MAX_DISAGREEMENT, 2)
+            ),
+        ),
+        (
             "sign",
             tr("Bent or straight, margin"),
             _sign,
@@ -83,13 +92,13 @@ def evidence_table(facts: Facts) -> list[Block]:
         (
             "halves",
             tr("Range, second half less first"),
-            lambda joint, _: _degrees(halves_apart(_ranges_deg(facts, joint)), is_signed=True),
+            lambda joint, _: _degrees(_farthest(halves_apart, facts, joint), is_signed=True),
             tr("at most {limit}°").format(limit=fixed(LIMITS.halves_deg, 0)),
         ),
         (
             "drift",
             tr("Range, last third less first"),
-            lambda joint, _: _degrees(thirds_apart(_ranges_deg(facts, joint)), is_signed=True),
+            lambda joint, _: _degrees(_farthest(thirds_apart, facts, joint), is_signed=True),
             tr("at most {limit}°").format(limit=fixed(LIMITS.thirds_deg, 0)),
         ),
         ("strap", tr("Strap"), lambda joint, _: _strap(facts, joint), tr("no slip")),
@@ -165,7 +174,7 @@ def hips_table(facts: Facts) -> list[Block]:
         (
             "halves",
             tr("Range, second half less first"),
-            lambda joint, _: _degrees(halves_apart(_ranges_deg(facts, joint)), is_signed=True),
+            lambda joint, _: _degrees(_farthest(halves_apart, facts, joint), is_signed=True),
             tr("at most {limit}°").format(limit=fixed(LIMITS.halves_deg, 0)),
         ),
     ]
@@ -261,11 +270,21 @@ def thirds_apart(values: FloatArray) -> float:
     return float(values[-third:].mean() - values[:third].mean())
 
 
+def _ranges_of_walks(facts: Facts, joint: Joint) -> list[FloatArray]:
+    """Of every stride used of each walk, as evidence: whatever may be said of the joint."""
+    gaits = [walk.gait[joint.side] for walk in facts.part.walks if joint.side in walk.gait]
+    found = [raw_values(gait, f"{joint.kind}_range_deg")[gait.strides.is_used] for gait in gaits]
+    return [one[np.isfinite(one)] for one in found]
+
+
 def _ranges_deg(facts: Facts, joint: Joint) -> FloatArray:
-    """Of every stride used, as evidence: whatever may be said of the joint."""
-    gait = facts.gait[joint.side]
-    found = raw_values(gait, f"{joint.kind}_range_deg")[gait.strides.is_used]
-    return found[np.isfinite(found)]
+    return np.concatenate([np.empty(0), *_ranges_of_walks(facts, joint)])
+
+
+def _farthest(apart: Callable[[FloatArray], float], facts: Facts, joint: Joint) -> float:
+    """Of the walk in which the parts lie farthest apart: each walk has to pass by itself."""
+    found = [value for one in _ranges_of_walks(facts, joint) if math.isfinite(value := apart(one))]
+    return max(found, key=abs, default=math.nan)
 
 
 def _degrees(value: float, *, is_signed: bool = False) -> str:

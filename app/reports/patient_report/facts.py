@@ -1,42 +1,48 @@
-"""What do all pages need to know of one walk? Its means, what may not be told, which cited groups stand beside it."""
+"""What do all pages need to know of a walk's condition? Its means, what may not be told, the cited groups beside it."""
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
 from app.charts.cycles import is_mean_enough
 from app.reports.agreed import agreed_with
 from app.reports.comparison import first_and_second
-from app.reports.conditions import Part
+from app.reports.conditions import Part, parts_of
+from app.reports.course_lanes import CourseVisit
 from app.reports.goals import GoalFigure, of_part
 from app.reports.patient_report.numbers_in_words import Band
 from app.reports.patient_report.request import AnalysedVisit
 from app.reports.reference_bands import age_and_height, bands_of, sides_with_band
-from app.reports.summary import summarise
-from app.reports.walk_figures import Figure, band_of_peak, peak_place, side_cycle, strides_used, time_distance_figures
+from app.reports.walk_figures import Figure, band_of_peak, peak_place, side_cycle, time_distance_figures
 from app.wording import side_name, tr
 from core.body import Joint, JointKind, Side
 from core.gait.cycles import POINTS
-from core.gait.spatiotemporal import BothFeet, MeanAndSd, mean_and_sd
+from core.gait.spatiotemporal import MeanAndSd, mean_and_sd
 from core.norms import Bands, ReferenceCurves, ReferenceValues, height_offset_deg, peak_away_sd
 from core.results import JointCalibration, RecordingAnalysis, SideGait
 from core.samples import FloatArray
 from core.verdicts.model import Assessment, Verdict, Verdicts
-from core.verdicts.quantities import WINDOWS, assessment_of, both_sides, mean_curve, peak_percent
+from core.verdicts.quantities import WINDOWS, assessment_of, peak_percent
 
 KINDS = (JointKind.KNEE, JointKind.ANKLE)  # that every report tells of
 
 
 @dataclass(frozen=True, eq=False)
 class Facts:
-    """One walk of one visit."""
+    """One condition of one visit, by one of its walks: every figure, curve and verdict is of the walks of `part`.
+
+    What only one recording has, as when each stride was, is that of `walk`. `chosen` are the walks that are looked at
+    together: where two of them are of one condition, each stands alone. `course` are the patient's visits in order of
+    time, this one the last; the changes since then are findings of this one.
+    """
 
     visit: AnalysedVisit
     walk: RecordingAnalysis
+    chosen: tuple[str, ...] = ()
+    course: tuple[CourseVisit, ...] = ()
 
     @property
     def gait(self) -> Mapping[Side, SideGait]:
@@ -65,36 +71,35 @@ class Facts:
 
     @property
     def verdicts(self) -> Verdicts:
-        return self.walk.verdicts
+        return self.part.verdicts
 
     @cached_property
-    def alone(self) -> Part:
-        """The walk as it would stand in a comparison."""
-        agreed = agreed_with(self.visit.session)
-        return Part("", self.walk.name, (self.walk,), self.calibrated, agreed=agreed)
+    def part(self) -> Part:
+        """The condition as it stands in every comparison."""
+        return part_of(self.visit, self.walk.name, self.chosen)
 
     @cached_property
     def goals(self) -> tuple[GoalFigure, ...]:
-        """What had been agreed by the walk's day, and how the walk stands to it."""
-        return of_part(self.alone)
+        """What had been agreed by the walk's day, and how its condition stands to it."""
+        return of_part(self.part)
 
     @property
     def told_goals(self) -> tuple[GoalFigure, ...]:
         """Those of which may be said whether they are reached: agreed before the walk's day."""
-        return tuple(one for one in self.goals if one.goal in self.alone.agreed.told)
+        return tuple(one for one in self.goals if one.goal in self.part.agreed.told)
 
-    @cached_property
-    def summary(self) -> dict[str, Any]:
-        """The walk as `summary.json` has it."""
-        return summarise(self.visit.analysis)["walks"][self.walk.name]
+    @property
+    def condition(self) -> str:
+        """Under which condition was walked, as it was typed; empty where none was stated."""
+        return self.visit.condition_of(self.walk.name)
 
-    @cached_property
-    def feet(self) -> BothFeet:
-        return both_sides(self.walk)
+    @property
+    def speed_m_s(self) -> float:
+        return self.part.of_both("speed_m_s")
 
     @cached_property
     def bands(self) -> Bands:
-        return bands_of(self.walk, age_and_height(self.visit.session))
+        return bands_of(self.part, age_and_height(self.visit.session))
 
     @property
     def curves_group(self) -> ReferenceCurves | None:
@@ -109,15 +114,15 @@ class Facts:
     @cached_property
     def sides_with_band(self) -> frozenset[Side]:
         """Legs that may be compared with other people's."""
-        return sides_with_band(self.walk)
+        return sides_with_band(self.part)
 
     @cached_property
     def time_distance(self) -> dict[str, Figure]:
         """Rows of time and distance by column, without the band where its group walked at another speed."""
-        return {row.column: row for row in time_distance_figures(self.walk, self.values_group, self.sides_with_band)}
+        return {row.column: row for row in time_distance_figures(self.part, self.values_group, self.sides_with_band)}
 
     def strides(self, side: Side) -> int:
-        return strides_used(self.gait[side]) if side in self.gait else 0
+        return self.part.strides(side)
 
     def counted(self, side: Side) -> str:
         """Head a side's column, with its strides where it was measured."""
@@ -127,11 +132,11 @@ class Facts:
         return said.format(count=self.strides(side))
 
     def is_measured(self, joint: Joint) -> bool:
-        return joint.side in self.gait and joint in self.gait[joint.side].cycles
+        return joint in self.part.joints
 
     def is_worn(self, side: Side, column: str) -> bool:
         """Whether a column of strides.csv is of the leg itself, or of a joint that was measured."""
-        return self.alone.is_measured(side, column)
+        return self.part.is_measured(side, column)
 
     @property
     def kinds(self) -> tuple[JointKind, ...]:
@@ -148,30 +153,32 @@ class Facts:
     def has_no_zero(self, kind: str) -> bool:
         """Whether a height of either leg's joint says nothing: both curves are then drawn about their own mean."""
         joints = [joint_of(kind, side) for side in Side]
-        told = [self.walk.verdicts.joint(joint) for joint in joints if self.is_measured(joint)]
+        told = [self.verdicts.joint(joint) for joint in joints if self.is_measured(joint)]
         return any(found.shape.is_told and not found.height.is_told for found in told)
 
     def value(self, side: Side, column: str) -> MeanAndSd:
         """Mean and SD of one column of strides.csv over the strides used."""
-        return self.alone.value(side, column)
+        return self.part.value(side, column)
 
     def is_no_peak(self, side: Side, column: str) -> bool:
         """Whether the angle is known and only passes through where this peak is looked for."""
-        return self.alone.is_no_peak(side, column)
+        return self.part.is_no_peak(side, column)
 
     def peak_percent(self, side: Side, column: str) -> MeanAndSd:
         """When in the stride a peak comes, as each stride of peaks.csv has it."""
         if column not in WINDOWS or side not in self.gait:
             return MeanAndSd(math.nan, math.nan, 0)
-        return mean_and_sd(peak_percent(self.walk, side, column)[self.gait[side].strides.is_used])
+        walks = [walk for walk in self.part.walks if side in walk.gait]
+        found = [peak_percent(walk, side, column)[walk.gait[side].strides.is_used] for walk in walks]
+        return mean_and_sd(np.concatenate(found))
 
     def measured_curve_deg(self, side: Side, kind: str) -> FloatArray:
         """The mean over the strides used (101,) as it was measured, with or without a zero; NaN from too few."""
         joint = joint_of(kind, side)
         if not self.is_measured(joint):
             return np.full(POINTS, np.nan)
-        found = mean_curve(self.walk, joint)
-        return np.rad2deg(found.mean) if is_mean_enough(found.n) else np.full(POINTS, np.nan)
+        found = self.part.cycle(joint)
+        return found.mean if is_mean_enough(found.n) else np.full(POINTS, np.nan)
 
     def mean_curve_deg(self, side: Side, kind: str) -> FloatArray:
         """The same (101,), about its own mean where there is no zero."""
@@ -181,12 +188,12 @@ class Facts:
     def strides_deg(self, side: Side, kind: str) -> FloatArray:
         """Every stride used that is known, (k, 101), as `mean_curve_deg` has their mean, or would with more of them."""
         joint = joint_of(kind, side)
-        found = self.walk.verdicts.joint(joint)
+        found = self.verdicts.joint(joint)
         reasons = (*found.shape.reasons, *found.sign.reasons)
         are_few = {one.gate for one in reasons if one.verdict is Verdict.WITHHELD} == {"strides"}
         if not self.is_measured(joint) or not ((found.shape.is_told and found.sign.is_told) or are_few):
             return np.empty((0, POINTS))
-        strides_deg = side_cycle(self.walk, joint).strides_deg
+        strides_deg = side_cycle(self.part, joint).strides_deg
         if self.has_no_zero(kind) and len(strides_deg):
             strides_deg = strides_deg - np.mean(strides_deg)
         return strides_deg
@@ -206,7 +213,7 @@ class Facts:
             return math.nan
         if group is None or side not in self.sides_with_band or not self.verdicts.joint(joint).height.is_told:
             return math.nan
-        return height_offset_deg(self._curve_deg(joint), group.mean_and_sd_deg(kind)[0])
+        return height_offset_deg(self.part.cycle(joint).mean, group.mean_and_sd_deg(kind)[0])
 
     def away_sd(self, side: Side, column: str) -> float:
         """How many SD a peak lies from band [1] laid at the curve's height; NaN where that is not judged."""
@@ -216,10 +223,8 @@ class Facts:
         at = peak_place(group, kind, rest, window)
         if at is None or not is_mean_enough(value.n) or not math.isfinite(value.mean):
             return math.nan
-        return peak_away_sd(value.mean, self._curve_deg(joint_of(kind, side)), group.mean_and_sd_deg(kind), at, kind)
-
-    def _curve_deg(self, joint: Joint) -> FloatArray:
-        return np.rad2deg(mean_curve(self.walk, joint).mean)
+        curve_deg = self.part.cycle(joint_of(kind, side)).mean
+        return peak_away_sd(value.mean, curve_deg, group.mean_and_sd_deg(kind), at, kind)
 
     def group_range_deg(self, kind: str) -> float | None:
         """The range of band [1]'s mean curve, which has no SD."""
@@ -227,6 +232,23 @@ class Facts:
         if group is None:
             return None
         return float(np.ptp(group.mean_and_sd_deg(kind)[0]))
+
+
+def part_of(visit: AnalysedVisit, name: str, chosen: Sequence[str] = ()) -> Part:
+    """All walks of this one's condition; this one alone where several of them are chosen."""
+    letter, agreed = _letter_of(visit, name), agreed_with(visit.session)
+    for part in parts_of(visit.analysis, visit.session.recordings, agreed=agreed):
+        names = {walk.name for walk in part.walks}
+        if name in names:
+            is_alone = len(names.intersection(chosen)) > 1
+            return replace(part, letter=letter, walks=(visit.walk(name),)) if is_alone else part
+    walk = visit.walk(name)
+    return Part(letter, visit.condition_of(name) or name, (walk,), visit.analysis.calibrated_for(walk), agreed=agreed)
+
+
+def _letter_of(visit: AnalysedVisit, name: str) -> str:
+    shown = visit.shown_names.get(name)
+    return shown.letter if shown is not None else ""
 
 
 def _parts_of(column: str) -> tuple[str, str, str | None]:

@@ -7,6 +7,7 @@ from app.charts.drawing import MM, Picture
 from app.charts.on_paper import draw
 from app.gates_in_words import verdict_word
 from app.reports.comparison import Comparison
+from app.reports.course import KNEE
 from app.reports.goals import goal_sentence
 from app.reports.patient_report import panels, quality
 from app.reports.patient_report.dates import moment
@@ -23,9 +24,10 @@ from app.reports.walk_figures import by_hand_in_words
 from app.wording import capitalised, figure_text, joined, name_of, side_name, tr, tr_n
 from core.body import Joint, JointKind, Side
 from core.verdicts.model import Assessment, Verdict, worst
-from core.verdicts.quantities import WINDOWS
+from core.verdicts.quantities import EXCURSIONS_BY_COLUMN, WINDOWS
 
 NOT_STATED = ("", "none")
+HEADLINES = {JointKind.KNEE: KNEE}  # the figure that the course and the goals have as well
 PLOT_WIDTH, ONE_LEG_WIDTH = 53 * MM, 68 * MM  # four panels, or two
 WITH_HIP_WIDTH, ONE_LEG_WITH_HIP_WIDTH = 34 * MM, 50 * MM  # six, or three
 
@@ -64,8 +66,9 @@ def who(request: ReportRequest) -> str:
 def what(request: ReportRequest, facts: Facts, comparison: Comparison | None) -> str:
     """What this report is of: joints and legs, the walk and when, by whom; and what is compared with what."""
     recording = request.visit.recording(facts.walk.name)
-    walk = typed(str(request.visit.shown_names[facts.walk.name]), CONDITION_LENGTH)
-    speed = facts.feet.speed_m_s
+    shown = request.visit.shown_names
+    walk = ", ".join(typed(str(shown.get(one.name, one.name)), CONDITION_LENGTH) for one in facts.part.walks)
+    speed = facts.speed_m_s
     started = recording.started or request.visit.session.started
     operator, clinic = request.operator or request.visit.session.operator, request.clinic
     parts = [
@@ -166,7 +169,7 @@ def curves(facts: Facts, comparison: Comparison | None) -> dict[str, object]:
         if counts
         else "",
         band_in_words(facts, is_at_height=True),
-        by_hand_in_words(facts.walk),
+        by_hand_in_words(*facts.part.walks),
     ]
     shown = [joint_of(kind, side) for kind in facts.kinds for side in Side if facts.is_measured(joint_of(kind, side))]
     legs, has_hips = {joint.side for joint in shown}, JointKind.HIP in facts.kinds
@@ -199,10 +202,12 @@ def _line(said: str, style: str = "small", picture: Picture | None = None) -> di
 def _beside(facts: Facts, joint: Joint) -> list[dict[str, object]]:
     """A joint's figures in the column beside its panel, or what to do where nothing of it may be read."""
     side, kind = joint.side, joint.kind
-    found, verdicts = facts.value(side, f"{kind}_range_deg"), facts.verdicts.joint(joint)
+    column, verdicts = _headline(facts, joint), facts.verdicts.joint(joint)
+    found = facts.value(side, column)
     if not verdicts.shape.is_told or not is_mean_enough(found.n):
         return [_line(said) for said in quality.to_do(facts, joint)]
-    lines = [_line(tr("Range"), "label"), _line(f"{fixed(found.mean, 1)}°", "value")]
+    name = capitalised(panels.excursion_name(column)) if column in EXCURSIONS_BY_COLUMN else tr("Range")
+    lines = [_line(name, "label"), _line(f"{fixed(found.mean, 1)}°", "value")]
     if is_spread_enough(found.n):
         lines.append(_line(tr("SD {sd}°").format(sd=fixed(found.sd, 1)), "grey"))
     lines.append(_line(verdict_word(verdicts.shape.verdict), "small", dot(verdicts.shape.verdict)))
@@ -217,6 +222,12 @@ def _beside(facts: Facts, joint: Joint) -> list[dict[str, object]]:
         ]
     lines.append(_line(verdict_word(verdicts.height.verdict), "small", dot(verdicts.height.verdict)))
     return lines
+
+
+def _headline(facts: Facts, joint: Joint) -> str:
+    """The column of a joint's first figure: a range where the joint has no excursion, or its sign is not known."""
+    own = HEADLINES.get(joint.kind, "")
+    return own if own and facts.value(joint.side, own).n else f"{joint.kind}_range_deg"
 
 
 def _against_band(facts: Facts, joint: Joint) -> list[str]:

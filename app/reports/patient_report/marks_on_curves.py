@@ -1,5 +1,7 @@
 """Which places of a walk's curves does the answer speak of? What differs most, and where a curve leaves the band."""
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from app.charts.cycles import Band, is_mean_enough
@@ -12,6 +14,7 @@ from app.reports.patient_report.what_stands_out import (
     BANDS_ON_PAPER,
     BANDS_ON_SCREEN,
     Candidate,
+    Since,
     printed_findings,
     ranked_findings,
 )
@@ -30,7 +33,7 @@ def deviations_of(facts: Facts) -> list[Deviation]:
     Degrees as measured: the screen takes away the height of a curve without a zero, and of its marks with it.
     """
     rows = {row.column: row for row in what_differs(facts)}
-    told = [rows[one.column] for one in ranked_findings(facts, None, BANDS_ON_SCREEN) if one.column in rows]
+    told = [rows[one.column] for one in ranked_findings(facts, None, BANDS_ON_SCREEN) if _is_between(one, rows)]
     found: list[Deviation] = []
     for kind in facts.kinds:
         row = next((row for row in told if _has_extremes(row, kind)), None)
@@ -66,7 +69,12 @@ def brackets_of(facts: Facts, comparison: Comparison | None) -> dict[Joint, Devi
 def _told_between_legs(facts: Facts) -> list[tuple[Candidate, LegsRow]]:
     """The findings between the legs, each with its figures."""
     rows = {row.column: row for row in what_differs(facts)}
-    return [(one, rows[one.column]) for one in ranked_findings(facts, None, BANDS_ON_PAPER) if one.column in rows]
+    return [(one, rows[one.column]) for one in ranked_findings(facts, None, BANDS_ON_PAPER) if _is_between(one, rows)]
+
+
+def _is_between(one: Candidate, rows: Mapping[str, LegsRow]) -> bool:
+    """Whether a finding is between the legs, and no change since a visit."""
+    return one.since is Since.NOTHING and one.column in rows
 
 
 def _has_extremes(row: LegsRow, kind: str) -> bool:

@@ -184,7 +184,7 @@ def _texts(
         meaning += _changed(now_deg, first, say)
     texts = [[say(later("What this means")), " ".join(meaning)]]
     other_deg = _knee_deg(facts, other)
-    between = compare_legs(facts.alone, KNEE, (side, other)) if math.isfinite(other_deg) else None
+    between = compare_legs(facts.part, KNEE, (side, other)) if math.isfinite(other_deg) else None
     if between is not None and between.is_told and between.error > 0:
         apart = abs(round(now_deg) - round(other_deg))
         said = [
@@ -209,7 +209,7 @@ def _changed(now_deg: float, first: _First, say: Say) -> list[str]:
 
 
 def _speed(facts: Facts, first: _First | None, say: Say, language: str) -> str:
-    now = facts.feet.speed_m_s
+    now = facts.speed_m_s
     if not math.isfinite(now) or assessment_of_both(facts.verdicts, "speed_m_s").verdict is not Verdict.READ:
         return ""
     before = first.walked.figure(SPEED) if first is not None else None

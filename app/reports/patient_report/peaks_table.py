@@ -149,7 +149,7 @@ def _notes(facts: Facts, kinds: Sequence[JointKind]) -> list[str]:
         said.append(judged.format(by=fixed(KNEE_OVERREAD, 2)))
     if any(_verdict(facts, side, column) is Verdict.CARE for side, column in shown):
         said.append(care_note())
-    return [*said, by_hand_in_words(facts.walk)]
+    return [*said, by_hand_in_words(*facts.part.walks)]
 
 
 def _side_column(facts: Facts, side: Side) -> Column:
@@ -235,7 +235,7 @@ def _difference_cells(facts: Facts, column: str) -> list[Cell | str]:
     """The difference, its error, and both in words. Of what is withheld on either leg there is none."""
     if not all(facts.value(side, column).n for side in Side):
         return [NOTHING] * 3
-    found = compare_legs(facts.alone, column, facts.first_and_second)
+    found = compare_legs(facts.part, column, facts.first_and_second)
     if not found.is_told:
         return [NOTHING] * 3
     dagger = DAGGER if found.is_unverified else ""

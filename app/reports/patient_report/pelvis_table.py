@@ -12,7 +12,7 @@ from core.verdicts.model import Verdict
 
 def pelvis_table(facts: Facts) -> list[Block]:
     """A row per figure of the pelvis, told once for the strides of each leg."""
-    if facts.walk.pelvis is None:
+    if not facts.part.has_pelvis:
         return []
     columns = [
         Column(tr("Pelvis, ° from standing"), "1fr", is_number=False),
@@ -21,7 +21,7 @@ def pelvis_table(facts: Facts) -> list[Block]:
     rows: list[Row] = [[tr(name), *(value_cell(facts, side, column) for side in Side)] for column, name in PELVIS_ROWS]
     said = [
         tr("Drop: how far the side of the swinging leg sinks below the other. Each over the strides of one leg."),
-        *pelvis_in_words(facts.walk),
+        *pelvis_in_words(facts.part),
     ]
     if any(facts.assessment(side, column).verdict is Verdict.CARE for side in facts.gait for column, _ in PELVIS_ROWS):
         said.append(tr("{mark}: read with care.").format(mark=CARE))

@@ -36,13 +36,12 @@ class Phases:
 def phases_of(facts: Facts, side: Side) -> Phases | None:
     """The means over the strides used; None where timing may not be told or a foot sensor did not tell them."""
     stance = facts.value(side, "stance_percent")
-    strides = facts.gait[side].strides
-    used = strides.is_used
     if not is_mean_enough(stance.n):
         return None
+    of_walks = [walk.gait[side].strides for walk in facts.part.walks if side in walk.gait]
     flat, rise = (
-        100 * (at_s[used] - strides.start_s[used]) / strides.time_s[used]
-        for at_s in (strides.full_contact_s, strides.heel_rise_s)
+        np.concatenate([(100 * (getattr(one, at) - one.start_s) / one.time_s)[one.is_used] for one in of_walks])
+        for at in ("full_contact_s", "heel_rise_s")
     )
     known = np.isfinite(flat) & np.isfinite(rise)
     if not is_mean_enough(int(known.sum())):

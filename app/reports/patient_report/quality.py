@@ -163,8 +163,8 @@ def _each(facts: Facts, said: Callable[[Side], str]) -> str:
 def _left_out(facts: Facts) -> str:
     """How many strides of each leg were left out for each reason."""
     parts = []
-    for side, gait in facts.gait.items():
-        out = Counter(reason for reason in gait.strides.reason if reason is not Reason.USED)
+    for side in facts.part.sides:
+        out = Counter({one: count for one, count in facts.part.reasons(side).items() if one is not Reason.USED})
         if out:
             each = [f"{count}\u00a0{tr(NAMES['reason'][reason])}" for reason, count in out.most_common()]
             parts.append(f"{side[0].upper()}\u00a0{', '.join(each)}")
@@ -172,7 +172,8 @@ def _left_out(facts: Facts) -> str:
 
 
 def _about_walk(facts: Facts) -> list[Finding]:
-    return [f for f in facts.visit.analysis.findings if facts.walk.name in f.where.split(", ")]
+    names = {walk.name for walk in facts.part.walks}
+    return [f for f in facts.visit.analysis.findings if not names.isdisjoint(f.where.split(", "))]
 
 
 def _site_of(finding: Finding) -> Site | None:
@@ -181,7 +182,8 @@ def _site_of(finding: Finding) -> Site | None:
 
 
 def _loss_in_words(facts: Facts) -> str:
-    worst_site = max(facts.walk.lost_percent.items(), key=lambda loss: loss[1], default=None)
+    lost = [one for walk in facts.part.walks for one in walk.lost_percent.items()]
+    worst_site = max(lost, key=lambda loss: loss[1], default=None)
     if worst_site is None or worst_site[1] < MIN_LOSS_PERCENT:
         return tr("under {percent} %").format(percent=fixed(MIN_LOSS_PERCENT, 1))
     return f"{fixed(worst_site[1], 1)} % ({name_of(worst_site[0])})"
@@ -230,7 +232,7 @@ def _zero(facts: Facts) -> str:
 def slipped_straps(facts: Facts) -> list[Site]:
     """Sensors whose strap slipped in this walk."""
     sites = [_site_of(finding) for finding in _about_walk(facts) if finding.key == "strap_slipped"]
-    return [site for site in sites if site is not None]
+    return list(dict.fromkeys(site for site in sites if site is not None))
 
 
 def _straps(facts: Facts) -> str:

@@ -1,11 +1,11 @@
 """What is a report made of? A visit, the walks that were chosen from it, and what the clinic said to it."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
 from app.recording_names import ShownName, shown_names
 from app.reports.course_lanes import CourseVisit
+from app.reports.visits import by_condition
 from core.results import Analysis, RecordingAnalysis
 from core.samples import Recording, RecordingKind, Session
 
@@ -36,6 +36,10 @@ class AnalysedVisit:
     def recording(self, name: str) -> Recording:
         """Give the recording as it was told."""
         return next(recording for recording in self.session.recordings if recording.name == name)
+
+    def condition_of(self, name: str) -> str:
+        """Under which condition a recording was walked, as it was typed; empty where none was stated."""
+        return next((one.condition for one in self.session.recordings if one.name == name), "")
 
     @property
     def shown_names(self) -> dict[str, ShownName]:
@@ -91,13 +95,16 @@ class ReportRequest:
 
 
 def default_walks(visit: AnalysedVisit) -> tuple[str, ...]:
-    """Choose the last walk of each of the last conditions; the last walk alone where there is one condition.
+    """Choose of each of the last conditions the walk with most usable strides, of its last strapping.
 
     Walks without a stride that is used come last, but a report of them still says why. Empty: no walk was analysed.
     """
     names = visit.walk_names()
-    walked = [name for name in names if any(g.strides.is_used.any() for g in visit.walk(name).gait.values())]
-    chosen: Sequence[str] = walked or names[-1:]
-    last = {visit.recording(name).condition: name for name in chosen}
-    by_time = [name for name in chosen if name in last.values()]
-    return tuple(by_time[-MAX_CONDITIONS:])
+    parts = by_condition(visit.analysis, visit.session.recordings).values()
+    by_time = sorted(parts, key=lambda part: max(names.index(walk.name) for walk in part.walks))
+    most = [max(part.walks, key=_usable_strides).name for part in by_time]
+    return tuple(most[-MAX_CONDITIONS:]) or names[-1:]
+
+
+def _usable_strides(walk: RecordingAnalysis) -> int:
+    return sum(int(gait.strides.is_used.sum()) for gait in walk.gait.values())

@@ -17,7 +17,6 @@ from app.reports.patient_report.numbers_in_words import (
     CARE,
     DAGGER,
     NOTHING,
-    Band,
     against_band,
     band_in_figures,
     dagger_note,
@@ -29,6 +28,7 @@ from app.reports.patient_report.numbers_in_words import (
 )
 from app.reports.patient_report.pelvis_table import pelvis_table
 from app.reports.patient_report.phase_bars import phase_bars, phases_of
+from app.reports.patient_report.plain_text import CONDITION_LENGTH, typed
 from app.reports.patient_report.stride_rails import reasons_in_words, stride_rail
 from app.reports.walk_figures import by_hand_in_words
 from app.wording import tr
@@ -71,16 +71,15 @@ def time_distance_table(facts: Facts) -> list[Block]:
         Column(tr("Band [2]")),
         Column(tr("Against the band"), "37mm", is_number=False),
     ]
-    bands = facts.time_distance
     rows: list[Row] = [
         _both_row(facts, "speed_m_s", tr("Walking speed, m/s")),
         _both_row(facts, "cadence_steps_min", tr("Cadence, steps/min")),
-        _side_row(facts, "stride_time_s", tr("Stride time, s"), 2, None),
-        _side_row(facts, "stride_length_m", tr("Stride length, m"), 2, bands["stride_length_m"].band),
-        _side_row(facts, "stance_percent", tr("Stance, % of stride"), 1, bands["stance_percent"].band),
+        _side_row(facts, "stride_time_s", tr("Stride time, s"), 2),
+        _side_row(facts, "stride_length_m", tr("Stride length, m"), 2),
+        _side_row(facts, "stance_percent", tr("Stance, % of stride"), 1),
         _single_support_row(facts),
         _both_row(facts, DOUBLE_SUPPORT, tr("Double support, % of stride")),
-        _side_row(facts, "step_time_s", tr("Step time, s"), 2, None),
+        _side_row(facts, "step_time_s", tr("Step time, s"), 2),
         _lift_row(facts),
         _variation_row(facts),
     ]
@@ -116,12 +115,14 @@ def _both_row(facts: Facts, column: str, label: str) -> list[Cell | str]:
     verdict = Verdict.CARE if figure.with_care else Verdict.READ
     unknown = tr(figure.unknown_both) if figure.unknown_both else tr("not measured")
     shown = marked(fixed(value, figure.decimals), verdict) if is_known else unknown
-    words = against_band(value, band) if band is not None and is_known else NOTHING
+    words = against_band(value, figure.judged_band) if figure.judged_band is not None and is_known else NOTHING
     in_band = band_in_figures(band, figure.decimals) if band is not None else NOTHING
     return [label, Cell(shown, is_grey=is_grey, span=2, is_centred=True), NOTHING, NOTHING, in_band, words]
 
 
-def _side_row(facts: Facts, column: str, label: str, decimals: int, band: Band | None) -> list[Cell | str]:
+def _side_row(facts: Facts, column: str, label: str, decimals: int) -> list[Cell | str]:
+    figure = facts.time_distance.get(column)
+    band, judged_band = (figure.band, figure.judged_band) if figure is not None else (None, None)
     values = {side: facts.value(side, column) for side in Side}
     cells = [_mean_cell(facts, side, column, value, decimals) for side, value in values.items()]
     in_band = band_in_figures(band, decimals) if band is not None else NOTHING
@@ -131,7 +132,7 @@ def _side_row(facts: Facts, column: str, label: str, decimals: int, band: Band |
         *cells,
         *difference_cells(_between(facts, column), decimals),
         in_band,
-        sides_against_band(judged, band),
+        sides_against_band(judged, judged_band),
     ]
 
 
@@ -148,7 +149,7 @@ def _between(facts: Facts, column: str) -> Difference | None:
     """What the legs differ by in a column of strides.csv; None where that is not told of both."""
     if not all(facts.value(side, column).n for side in Side):
         return None
-    found = compare_legs(facts.alone, column, facts.first_and_second)
+    found = compare_legs(facts.part, column, facts.first_and_second)
     return found if found.is_told else None
 
 
@@ -241,10 +242,12 @@ def _every_stride(facts: Facts) -> list[Block]:
     rails = [figures([stride_rail(facts, kind)]) for kind in told]
     if not kinds or is_evidence_beside_time(facts):
         return []
+    walk = typed(str(facts.visit.shown_names.get(facts.walk.name, facts.walk.name)), CONDITION_LENGTH)
     said = [
+        tr("Strides of {walk}.").format(walk=walk) if rails and len(facts.part.walks) > 1 else "",
         tr("In order of time. Lines: means of the first and of the second half of the walk."),
         reasons_in_words(facts),
-        by_hand_in_words(facts.walk),
+        by_hand_in_words(*facts.part.walks),
     ]
     columns, width = (4, PLOT_WIDTH) if rails else (2, ALONE_WIDTH)
     if rails and JointKind.HIP in kinds:

@@ -3,52 +3,31 @@
 import datetime
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from app.charts.drawing import Picture
 from app.dates import date, short_date
 from app.measure_names import least_span, measure_name, short_unit, unit_name
-from app.reports.course import KNEE, PUSH_OFF, SPEED, STANCE, CourseCondition, change
+from app.reports.course import KNEE, PUSH_OFF, SPEED, STANCE
 from app.reports.course_lanes import CourseVisit
 from app.reports.goals import goal_mark, goal_sentence, in_course
 from app.reports.patient_report.blocks import Block, Cell, Column, Row, bullets, figures, heading, note, table
 from app.reports.patient_report.facts import Facts, role
+from app.reports.patient_report.measure_sentences import measure_in_words, unit_and_decimals
 from app.reports.patient_report.numbers_in_words import DAGGER, NOTHING, dagger_note, fixed, in_brief, signed
 from app.reports.patient_report.plain_text import CONDITION_LENGTH, shortened, typed
-from app.reports.patient_report.trend_chart import TrendValue, trend_chart
-from app.reports.patient_report.what_stands_out import measure_in_words, unit_and_decimals
+from app.reports.patient_report.trend_chart import trend_chart
+from app.reports.patient_report.trend_lines import TrendLine, trend_columns, trend_lines, walked_visits
 from app.reports.visits import condition_in_words
 from app.wording import capitalised, tr
 from core.body import Side
-from core.goals import AgreedGoals, Goal, GoalOf, is_of_walk
+from core.goals import Goal, GoalOf
 from core.timed.measures import COLUMNS, PROTOCOLS
 from core.timed.protocols import TimedProtocol
-from core.verdicts.measurement_error import Difference
-from core.verdicts.model import Verdict
 
 MOST_COLUMNS = 6  # of visits in the table: the first, and the latest
 MOST_SENTENCES = 3
 MOST_GOALS = 5  # in sentences; all of them are in goals.csv
 BY_LENGTH = 16
-MEASURES = (KNEE, PUSH_OFF, STANCE, SPEED)
-MOST_CHARTS = 4  # those with goals come first
-
-
-@dataclass(frozen=True, slots=True)
-class _TrendLine:
-    """One measure of one leg, or of the walk, at all visits."""
-
-    column: str
-    side: Side | None
-    values: tuple[TrendValue, ...]
-    since_first: Difference | None
-    since_last: Difference | None
-    first: int
-    before: int
-
-    @property
-    def told(self) -> list[TrendValue]:
-        return [one for one in self.values if math.isfinite(one.value)]
 
 
 def trend_page(visits: Sequence[CourseVisit], condition: str, facts: Facts) -> list[Block]:
@@ -59,10 +38,10 @@ def trend_page(visits: Sequence[CourseVisit], condition: str, facts: Facts) -> l
     visits
         In order of time; the last is that of the report.
     """
-    walked = _walked(visits, condition)
-    agreed = facts.alone.agreed
-    columns = _columns(agreed)
-    lines = _lines(walked, condition, (*columns, *COLUMNS.values()), agreed)
+    walked = walked_visits(visits, condition)
+    agreed = facts.part.agreed
+    columns = trend_columns(agreed)
+    lines = trend_lines(walked, condition, (*columns, *COLUMNS.values()), agreed)
     shown = [line for line in lines if len(line.told) > 1]
     if not shown:
         return []
@@ -91,30 +70,16 @@ def trend_page(visits: Sequence[CourseVisit], condition: str, facts: Facts) -> l
 
 def charts_of_tests(visits: Sequence[CourseVisit], condition: str, facts: Facts) -> dict[TimedProtocol, Picture]:
     """One for each timed test that two visits and more have under a condition."""
-    walked, columns = _walked(visits, condition), tuple(COLUMNS.values())
-    lines = _lines(walked, condition, columns, facts.alone.agreed)
+    walked, columns = walked_visits(visits, condition), tuple(COLUMNS.values())
+    lines = trend_lines(walked, condition, columns, facts.part.agreed)
     shown, days = [line for line in lines if len(line.told) > 1], [visit.day for visit in walked]
     return {PROTOCOLS[column]: _chart(column, shown, days, facts) for column in columns if _of(shown, column)}
-
-
-def _walked(visits: Sequence[CourseVisit], condition: str) -> list[CourseVisit]:
-    return [visit for visit in visits if visit.course is not None and visit.course.condition(condition) is not None]
-
-
-def _columns(agreed: AgreedGoals) -> tuple[str, ...]:
-    """What has a chart: what goals are of, then the usual measures as far as there is room."""
-    own = (goal for goal in agreed.held if goal.of is not GoalOf.BETWEEN and goal.column not in PROTOCOLS)
-    wanted = dict.fromkeys(goal.column for goal in own)
-    few = list(wanted)[:MOST_CHARTS]
-    others = [column for column in MEASURES if column not in few][: MOST_CHARTS - len(few)]
-    shown = {*few, *others}
-    return tuple(column for column in dict.fromkeys((*MEASURES, *few)) if column in shown)
 
 
 def _goals(walked: Sequence[CourseVisit], condition: str, facts: Facts) -> list[str]:
     """Each goal that was agreed before this visit: at which visit it was first reached, and how it stands now."""
     said = []
-    for goal in facts.alone.agreed.told:
+    for goal in facts.part.agreed.told:
         parts = [(number, visit) for number, visit in enumerate(walked, start=1) if visit.day > goal.agreed]
         found = [
             (number, in_course(goal, part))
@@ -130,50 +95,14 @@ def _goals(walked: Sequence[CourseVisit], condition: str, facts: Facts) -> list[
     return said[:MOST_GOALS]
 
 
-def _lines(
-    walked: Sequence[CourseVisit], condition: str, columns: Sequence[str], agreed: AgreedGoals
-) -> list[_TrendLine]:
-    parts = [visit.course.condition(condition) if visit.course is not None else None for visit in walked]
-    at = [part for part in parts if part is not None]
-    found = []
-    for column in columns:
-        for side in (None,) if is_of_walk(column) else tuple(Side):
-            values = [value for number, part in enumerate(at) if (value := _value(part, column, side, number))]
-            told = [value.visit for value in values if math.isfinite(value.value)]
-            if not told:
-                continue
-            last = len(at) - 1
-            before = [visit for visit in told if visit < last]
-            first, previous = (before[0], before[-1]) if before else (0, 0)
-            is_changed = bool(before) and told[-1] == last
-            is_chosen = agreed.is_chosen(column, tuple(Side) if side is None else (side,))
-            since = [
-                change(at[last], at[k], column, side, is_chosen_before=is_chosen) if is_changed else None
-                for k in (first, previous)
-            ]
-            found.append(_TrendLine(column, side, tuple(values), since[0], since[1], first, previous))
-    return found
-
-
-def _value(part: CourseCondition, column: str, side: Side | None, number: int) -> TrendValue | None:
-    """None where it was not measured."""
-    if column in PROTOCOLS:
-        test = part.test(column)
-        return TrendValue(number, test.found.mean, test.whisker) if test is not None else None
-    figure = part.figure(column, side)
-    if figure is None or figure.verdict is Verdict.NOT_MEASURED:
-        return None
-    return TrendValue(number, figure.found.mean if figure.is_told else math.nan, figure.whisker)
-
-
-def _of(lines: Sequence[_TrendLine], column: str) -> list[_TrendLine]:
+def _of(lines: Sequence[TrendLine], column: str) -> list[TrendLine]:
     return [line for line in lines if line.column == column]
 
 
-def _chart(column: str, lines: Sequence[_TrendLine], days: Sequence[datetime.date], facts: Facts) -> Picture:
+def _chart(column: str, lines: Sequence[TrendLine], days: Sequence[datetime.date], facts: Facts) -> Picture:
     _, decimals = unit_and_decimals(column)
     drawn = {line.side: line.values for line in _of(lines, column)}
-    held = [goal for goal in facts.alone.agreed.of(column) if goal.of is not GoalOf.BETWEEN]
+    held = [goal for goal in facts.part.agreed.of(column) if goal.of is not GoalOf.BETWEEN]
     goals = [(goal.value, _agreed_in_words(goal)) for goal in held]
     least = least_span(column) if column in PROTOCOLS else 0.0
     return trend_chart(
@@ -202,7 +131,7 @@ def _name(column: str) -> str:
     return tr("{measure}, {unit}").format(measure=measure_name(column), unit=unit)
 
 
-def _sentences(lines: Sequence[_TrendLine], facts: Facts, visits: int) -> list[str]:
+def _sentences(lines: Sequence[TrendLine], facts: Facts, visits: int) -> list[str]:
     """The changes since the first visit that are large enough for a sentence, the largest against its error first."""
     first, _ = facts.first_and_second
     worth = [
@@ -225,12 +154,12 @@ def _sentences(lines: Sequence[_TrendLine], facts: Facts, visits: int) -> list[s
     return [_sentence(line, facts, visits) for line in ordered if told[_movement(line)] is line][:MOST_SENTENCES]
 
 
-def _movement(line: _TrendLine) -> tuple[str, Side | None]:
+def _movement(line: TrendLine) -> tuple[str, Side | None]:
     """What is told of once: speed is one, in a timed test or out of it."""
     return (SPEED if line.column.endswith(SPEED) else line.column), line.side
 
 
-def _sentence(line: _TrendLine, facts: Facts, visits: int) -> str:
+def _sentence(line: TrendLine, facts: Facts, visits: int) -> str:
     found, last = line.since_first, line.values[-1]
     assert found is not None  # those without one are not told
     unit, decimals = unit_and_decimals(line.column)
@@ -259,7 +188,7 @@ def _sentence(line: _TrendLine, facts: Facts, visits: int) -> str:
     return f"{said} {words.format(number=line.before + 1, change=signed(since.difference, decimals) + unit)}"
 
 
-def _table(lines: Sequence[_TrendLine], visits: int) -> Block:
+def _table(lines: Sequence[TrendLine], visits: int) -> Block:
     shown = list(range(visits)) if visits <= MOST_COLUMNS else [0, *range(visits - MOST_COLUMNS + 1, visits)]
     columns = [
         Column(tr("Measure"), "1fr", is_number=False),
@@ -294,7 +223,7 @@ def _table(lines: Sequence[_TrendLine], visits: int) -> Block:
     return table(columns, rows, is_dense=True)
 
 
-def _below(lines: Sequence[_TrendLine]) -> str:
+def _below(lines: Sequence[TrendLine]) -> str:
     said = [tr("Heights are left out: each visit has a zero of its own. First: the first visit that can be read.")]
     if any(line.since_first is not None and line.since_first.is_unverified for line in lines):
         said.append(dagger_note())

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 from app.gates_in_words import verdict_word
 from app.reports.comparison import compare_legs
 from app.reports.patient_report.facts import Facts
+from app.reports.patient_report.measure_sentences import measure_in_words, unit_and_decimals
 from app.reports.patient_report.numbers_in_words import Band
-from app.reports.patient_report.what_stands_out import BETWEEN_LEGS, measure_in_words, unit_and_decimals
+from app.reports.patient_report.what_stands_out import BETWEEN_LEGS
 from app.reports.walk_figures import NO_HEIGHT, NO_ZERO, doubt_in
 from app.wording import capitalised, tr
 from core.body import Side
@@ -69,9 +70,9 @@ def _row(facts: Facts, column: str) -> LegsRow:
         values={side: value for side, value in found.items() if side not in unknown},
         verdicts=verdicts,
         unknown=unknown,
-        difference=compare_legs(facts.alone, column, facts.first_and_second),
+        difference=compare_legs(facts.part, column, facts.first_and_second),
         band=_band(facts, column),
-        goals=facts.alone.agreed.of(column),
+        goals=facts.part.agreed.of(column),
     )
 
 

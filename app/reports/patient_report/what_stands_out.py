@@ -5,22 +5,23 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from enum import IntEnum
 
-from app.measure_names import decimals, short_unit
+from app.dates import date
 from app.reports.comparison import Compared, Comparison, Contrast, compare_legs
 from app.reports.patient_report import quality
 from app.reports.patient_report.facts import KINDS, Facts, joint_of, role
+from app.reports.patient_report.measure_sentences import leg_beside_leg, measure_in_words, unit_and_decimals
 from app.reports.patient_report.numbers_in_words import band_in_figures, fixed, signed
 from app.reports.patient_report.panels import peak_name
 from app.reports.patient_report.peaks_table import HEIGHTS
 from app.reports.patient_report.plain_text import CONDITION_LENGTH, typed
-from app.timed_words import name_of_test
+from app.reports.patient_report.trend_lines import TrendLine, trend_columns, trend_lines, walked_visits
 from app.wording import capitalised, later, name_of, tr
 from core.body import Joint, Side
 from core.results import ZeroKind
-from core.timed.measures import PROTOCOLS
+from core.timed.measures import COLUMNS, PROTOCOLS
 from core.verdicts.measurement_error import Z95, ComparisonKind, Difference, sigma_of
 from core.verdicts.model import Verdict
-from core.verdicts.quantities import QUANTITIES, QuantityClass
+from core.verdicts.quantities import CLASSES, QuantityClass
 from core.verdicts.quantities import joint_of as joint_of_column
 
 MAX_FINDINGS = 3
@@ -42,6 +43,16 @@ BETWEEN_LEGS = (
     "step_time_s",
     "hip_range_deg",  # no error of a difference is known: it stands in tables and never in a sentence
 )  # not the stride's length: in walking straight on both feet travel equally far
+
+
+class Since(IntEnum):
+    """What a finding is told against; that which is told first is least."""
+
+    CHOSEN = 0
+    LAST_VISIT = 1
+    FIRST_VISIT = 2
+    NOTHING = 3
+    """Of this visit alone: the legs, and the bands."""
 
 
 class Rank(IntEnum):
@@ -83,12 +94,13 @@ class Candidate:
     said: str
     evidence: str = ""
     column: str = ""
+    since: Since = Since.NOTHING
 
     @property
-    def weight(self) -> tuple[Rank, float, int]:
+    def weight(self) -> tuple[Since, Rank, float, int]:
         """What is told first is least; ratios that are alike leave it to the measure."""
         among = FIRST_OF_ALIKE.index(self.column) if self.column in FIRST_OF_ALIKE else len(FIRST_OF_ALIKE)
-        return self.rank, -round(self.ratio, 1), among
+        return self.since, self.rank, -round(self.ratio, 1), among
 
 
 def printed_findings(facts: Facts, comparison: Comparison | None) -> list[Candidate]:
@@ -97,12 +109,13 @@ def printed_findings(facts: Facts, comparison: Comparison | None) -> list[Candid
 
 
 def ranked_findings(facts: Facts, comparison: Comparison | None, bands: tuple[str, str]) -> list[Candidate]:
-    """What is told: the weightiest kind first, then what exceeds its error most; one per joint and direction.
+    """What is told: changes first, then by kind, then what exceeds its error most; one per joint and direction.
 
     `bands` names the cited groups of the curves and of time and distance, inside a sentence.
     """
     candidates = [
         *_changes(facts, comparison),
+        *_since_visits(facts),
         *_between_legs(facts),
         *_beyond_band(facts, bands),
         *_heights(facts),
@@ -153,8 +166,10 @@ def judged_differences(facts: Facts, comparison: Comparison | None) -> dict[str,
 def _differences(facts: Facts, comparison: Comparison | None) -> Iterator[tuple[str, Difference]]:
     if comparison is not None:
         yield from ((row.measure.column, row.difference) for row in comparison.rows if row.is_told)
+    for line in _course(facts):
+        yield from ((line.column, found) for found in (line.since_last, line.since_first) if found is not None)
     if len(facts.gait) == len(Side):
-        yield from ((column, compare_legs(facts.alone, column, facts.first_and_second)) for column in BETWEEN_LEGS)
+        yield from ((column, compare_legs(facts.part, column, facts.first_and_second)) for column in BETWEEN_LEGS)
 
 
 def _changes(facts: Facts, comparison: Comparison | None) -> Iterator[Candidate]:
@@ -166,10 +181,42 @@ def _changes(facts: Facts, comparison: Comparison | None) -> Iterator[Candidate]
             and not comparison.is_same_attachment(row.part, row.against)
         )
         if row.is_told and row.difference.is_worth_a_sentence and not is_height:
-            topic = _topic(row.side, row.measure.column, row.difference.difference > 0)
-            rank = _RANKS[QUANTITIES[row.measure.column]]
+            column, found = row.measure.column, row.difference
+            topic = _topic(None if row.measure.is_of_walk else row.side, column, found.difference > 0)
             said = _changed(facts, comparison, row)
-            yield Candidate(rank, row.difference.ratio, (topic,), said, column=row.measure.column)
+            yield Candidate(_rank(column), found.ratio, (topic,), said, column=column, since=Since.CHOSEN)
+
+
+def _course(facts: Facts) -> list[TrendLine]:
+    """What the page of the course tells of the condition that is shown, in the same lines."""
+    walked, agreed = walked_visits(facts.course, facts.condition), facts.part.agreed
+    return trend_lines(walked, facts.condition, (*trend_columns(agreed), *COLUMNS.values()), agreed)
+
+
+def _since_visits(facts: Facts) -> Iterator[Candidate]:
+    """What has changed since the last visit under this condition, and since the first, by the course's judgement."""
+    walked = walked_visits(facts.course, facts.condition)
+    for line in _course(facts):
+        for since, found, at in (
+            (Since.LAST_VISIT, line.since_last, line.before),
+            (Since.FIRST_VISIT, line.since_first, line.first),
+        ):
+            if found is None or not found.is_worth_a_sentence:
+                continue
+            unit, decimals = unit_and_decimals(line.column)
+            values = {one.visit: one.value for one in line.values}
+            measure = measure_in_words(line.column)
+            of_leg = measure if line.side is None else f"{role(facts, line.side)}, {measure}"
+            said = tr("{what}: {value}, on {day} {other}; difference {difference}, error {error}.").format(
+                what=capitalised(of_leg),
+                value=fixed(line.values[-1].value, decimals) + unit,
+                day=date(walked[at].day),
+                other=fixed(values[at], decimals) + unit,
+                difference=signed(found.difference, decimals) + unit,
+                error=fixed(found.error, decimals) + unit,
+            )
+            topic = _topic(line.side, line.column, found.difference > 0)
+            yield Candidate(_rank(line.column), found.ratio, (topic,), said, column=line.column, since=since)
 
 
 def _between_legs(facts: Facts) -> Iterator[Candidate]:
@@ -178,78 +225,19 @@ def _between_legs(facts: Facts) -> Iterator[Candidate]:
         return
     first, second = facts.first_and_second
     for column in BETWEEN_LEGS:
-        found = compare_legs(facts.alone, column, (first, second))
-        if not (found.is_told and found.is_worth_a_sentence) or QUANTITIES[column] is QuantityClass.HEIGHT:
+        found = compare_legs(facts.part, column, (first, second))
+        if not (found.is_told and found.is_worth_a_sentence) or CLASSES[column] is QuantityClass.HEIGHT:
             continue
         is_more = found.difference > 0
         topics = (_topic(first, column, is_more), _topic(second, column, not is_more))
         unit, decimals = unit_and_decimals(column)
         evidence = tr("Measurement error between the legs: {error}.").format(error=fixed(found.error, decimals) + unit)
-        said = _leg_beside_leg(facts, column, found)
-        yield Candidate(_RANKS[QUANTITIES[column]], found.ratio, topics, said, evidence, column)
-
-
-def _leg_beside_leg(facts: Facts, column: str, found: Difference) -> str:
-    """How one leg's figure differs from the other's, in the words of who would say it."""
-    first, second = facts.first_and_second
-    unit, decimals = unit_and_decimals(column)
-    is_less = found.difference < 0
-    match column:
-        case "knee_range_deg" | "ankle_range_deg":
-            pattern = (
-                tr("The {joint} moves {size} less over the stride than the {second}: {value} against {other}.")
-                if is_less
-                else tr("The {joint} moves {size} more over the stride than the {second}: {value} against {other}.")
-            )
-        case "knee_stance_to_swing_deg":
-            pattern = (
-                tr("The {joint} bends {size} less from stance to swing than the {second}: {value} against {other}.")
-                if is_less
-                else tr(
-                    "The {joint} bends {size} more from stance to swing than the {second}: {value} against {other}."
-                )
-            )
-        case "knee_while_loading_deg":
-            pattern = (
-                tr("The {joint} bends {size} less while loading than the {second}: {value} against {other}.")
-                if is_less
-                else tr("The {joint} bends {size} more while loading than the {second}: {value} against {other}.")
-            )
-        case "knee_straightening_deg":
-            pattern = (
-                tr("The {joint} straightens {size} less in stance than the {second}: {value} against {other}.")
-                if is_less
-                else tr("The {joint} straightens {size} more in stance than the {second}: {value} against {other}.")
-            )
-        case "stance_percent":
-            pattern = (
-                tr("Stance is {size} of the stride shorter {first} than {second}: {value} against {other}.")
-                if is_less
-                else tr("Stance is {size} of the stride longer {first} than {second}: {value} against {other}.")
-            )
-        case "step_time_s":
-            pattern = (
-                tr("The step takes {size} less {first} than {second}: {value} against {other}.")
-                if is_less
-                else tr("The step takes {size} more {first} than {second}: {value} against {other}.")
-            )
-        case _:
-            raise ValueError(f"{column} has no sentence between the legs")
-    joint = joint_of_column(column, first)
-    return pattern.format(
-        joint=tr("{side} {joint}").format(side=role(facts, first), joint=tr("knee") if joint.is_knee else tr("ankle"))
-        if joint
-        else "",
-        first=role(facts, first),
-        second=role(facts, second),
-        size=fixed(abs(found.difference), decimals) + unit,
-        value=fixed(facts.value(first, column).mean, decimals) + unit,
-        other=fixed(facts.value(second, column).mean, decimals) + unit,
-    )
+        said = leg_beside_leg(facts, column, found)
+        yield Candidate(_rank(column), found.ratio, topics, said, evidence, column)
 
 
 def _beyond_band(facts: Facts, bands: tuple[str, str]) -> Iterator[Candidate]:
-    """Peaks more than 2 SD from band [1] laid at their curve's height; stance and stride length, from band [2]."""
+    """Peaks more than 2 SD from band [1] laid at their curve's height; time and distance, from band [2]."""
     for side, column in _peaks(facts):
         away, band, kind = facts.away_sd(side, column), facts.band(column), column.split("_")[0]
         if not abs(away) > MAX_AWAY_SD or band is None:
@@ -272,9 +260,9 @@ def _beyond_band(facts: Facts, bands: tuple[str, str]) -> Iterator[Candidate]:
         figure = facts.time_distance[column]
         for side in facts.sides_with_band.intersection(figure.sides):
             value = facts.value(side, column)
-            if figure.band is None or not math.isfinite(value.mean):
+            if figure.judged_band is None or not math.isfinite(value.mean):
                 continue
-            low, high = figure.band
+            low, high = figure.judged_band
             away = (value.mean - (low + high) / 2) / ((high - low) / 2)
             if abs(away) > MAX_AWAY_SD:
                 unit, decimals = unit_and_decimals(column)
@@ -288,9 +276,9 @@ def _beyond_band(facts: Facts, bands: tuple[str, str]) -> Iterator[Candidate]:
                     side=role(facts, side),
                     group=tr(bands[1]),
                     value=fixed(value.mean, decimals) + unit,
-                    band=band_in_figures(figure.band, decimals) + unit,
+                    band=band_in_figures(figure.judged_band, decimals) + unit,
                 )
-                rank = _RANKS[QUANTITIES[column]]
+                rank = _rank(column)
                 yield Candidate(rank, abs(away) / MAX_AWAY_SD, (_topic(side, column, away > 0),), said)
 
 
@@ -373,49 +361,12 @@ def _peaks(facts: Facts) -> Iterable[tuple[Side, str]]:
     ]
 
 
-def _topic(side: Side, column: str, is_more: bool) -> Topic:
-    joint = joint_of_column(column, side)
-    return (joint, None, is_more) if joint is not None else (side, _RANKS[QUANTITIES[column]], is_more)
+def _topic(side: Side | None, column: str, is_more: bool) -> Topic:
+    joint = joint_of_column(column, side) if side is not None else None
+    return (joint, None, is_more) if joint is not None else (side, _rank(column), is_more)
 
 
-def unit_and_decimals(column: str) -> tuple[str, int]:
-    """A column's unit as it follows a number, and its decimals."""
+def _rank(column: str) -> Rank:
     if column in PROTOCOLS:
-        return short_unit(column), decimals(column)
-    if column.endswith("_deg"):
-        return "°", 1
-    if column.endswith("_m_s"):
-        return "\u00a0m/s", 2
-    if column.endswith("_steps_min"):
-        return f"\u00a0{tr('steps/min')}", 0
-    return ("\u00a0%", 1) if column.endswith("_percent") else (f"\u00a0{column.rsplit('_', 1)[1]}", 2)
-
-
-def measure_in_words(column: str) -> str:
-    """A column's name inside a sentence."""
-    if column in PROTOCOLS:
-        return name_of_test(PROTOCOLS[column])
-    names = {
-        "stance_percent": tr("stance, share of the stride"),
-        "step_time_s": tr("step time"),
-        "stride_length_m": tr("stride length"),
-        "speed_m_s": tr("walking speed"),
-        "cadence_steps_min": tr("cadence"),
-        "knee_stance_to_swing_deg": tr("knee bend from stance to swing"),
-        "knee_while_loading_deg": tr("knee bend while loading"),
-        "knee_straightening_deg": tr("knee straightening in stance"),
-        "ankle_push_off_deg": tr("ankle push\u2011off"),
-        "ankle_rocker_deg": tr("ankle rocker"),
-        "ankle_heel_rocker_deg": tr("ankle, heel rocker"),
-        "ankle_toes_lifted_deg": tr("ankle, toes lifted in swing"),
-        "knee_range_deg": tr("knee range over the stride"),
-        "ankle_range_deg": tr("ankle range over the stride"),
-        "hip_range_deg": tr("hip range over the stride"),
-        "hip_extension_peak_deg": tr("hip, most extended"),
-        "pelvis_obliquity_range_deg": tr("pelvis, obliquity over the stride"),
-        "pelvis_drop_deg": tr("pelvis drop in swing"),
-    }
-    if column in names:
-        return names[column]
-    kind = tr("knee") if column.startswith("knee") else tr("ankle")
-    return f"{kind} {peak_name(column)}"
+        return Rank.TIMING if column.endswith("_s") and not column.endswith("_m_s") else Rank.DISTANCE
+    return _RANKS[CLASSES[column]]

@@ -16,9 +16,8 @@ from PySide6.QtWidgets import QFileDialog, QStackedWidget
 from app.icons import Icon
 from app.logs import version_of
 from app.pages.sentence_page import SentencePage
-from app.reports.course import course_of
 from app.reports.course_lanes import CourseVisit
-from app.reports.patient_report.dates import date_of, day
+from app.reports.patient_report.dates import day
 from app.reports.patient_report.request import AnalysedVisit, ReportRequest, default_walks
 from app.reports.proposed_names import free_name, session_name
 from app.storage.audit import REPORT_FORMAT, about
@@ -33,7 +32,7 @@ from app.wizard.keys import Intent, KeyAction
 from app.wizard.report.leaving_dialog import LeavingDialog
 from app.wizard.report.page import ReportPage
 from app.wizard.report.printing import PRINTED_PPI, ReportPrinter
-from app.wizard.resuming import current_courses, read_analysed
+from app.wizard.resuming import course_to, courses_before, read_analysed
 from app.wizard.step import Step
 from app.wording import capitalised, filled, tr
 from app.workers.background import Report, Work
@@ -69,7 +68,7 @@ class ReportStep(Step):
         self._clinic = ""
         self._earlier: tuple[UUID, AnalysedVisit] | None = None  # as was read last
         self._before: tuple[CourseVisit, ...] = ()  # earlier visits of the course, in order of time
-        self._reading: UUID | None = None
+        self._has_failed = False  # the preview, so that no page is in sight
         self._preview: ReportPreview | None = None  # of its threads
         visit.preview.done.connect(self._on_previewed)
         visit.preview.failed.connect(self._on_preview_failed)
@@ -198,7 +197,7 @@ class ReportStep(Step):
             self.told.emit(tr("The printer did not take the report."), tr("Save it, and print the file."))
 
     def can_save(self) -> bool:
-        return self._has_results() and self._reading is None
+        return self._has_results() and not self._lacks_earlier
 
     def _has_results(self) -> bool:
         """Whether there is a walk to report: of a free motion alone no report can be made."""
@@ -220,7 +219,7 @@ class ReportStep(Step):
 
     def _request(self) -> ReportRequest | None:
         evaluation = self._visit.evaluation
-        if evaluation.session is None or evaluation.analysis is None:
+        if evaluation.session is None or evaluation.analysis is None or self._lacks_earlier:
             return None
         visit = AnalysedVisit(evaluation.session, evaluation.analysis)
         walks = default_walks(visit)
@@ -243,10 +242,8 @@ class ReportStep(Step):
 
     def _course(self, visit: AnalysedVisit) -> tuple[CourseVisit, ...]:
         """The patient's visits up to this one, as far as their figures are known."""
-        stored, day = self._visit.session, date_of(visit.session.started)
-        if stored is None or day is None or not self._before:
-            return ()
-        return (*self._before, CourseVisit(stored.id, day, course_of(visit.analysis, visit.session.recordings)))
+        stored = self._visit.session
+        return course_to(self._before, stored, visit.session, visit.analysis) if stored is not None else ()
 
     def _draw(self) -> None:
         """Set the pages anew, beside the screen."""
@@ -265,9 +262,15 @@ class ReportStep(Step):
 
     def _on_previewed(self, pages: list[bytes]) -> None:
         self.page.report.show_pages(pages)
+        if self._has_failed:
+            self._has_failed = False
+            self.told.emit("", "")
 
     def _on_preview_failed(self, error: Exception) -> None:
+        """Show no page rather than those of what was chosen before."""
         _log.error("the report could not be set", exc_info=error)
+        self._has_failed = True
+        self.page.report.show_pages([])
         self.told.emit(tr("The report cannot be shown."), tr("The log holds the details."))
 
     def _on_comment_edited(self, comment: str) -> None:
@@ -305,13 +308,7 @@ class ReportStep(Step):
         def read(opened: "OpenedLibrary") -> "tuple[str, list[SessionSummary], tuple[CourseVisit, ...]]":
             lines = opened.library.sessions.list(current.patient_id)  # latest first
             before = [line for line in lines if line.id != current.id and line.started < current.details.started]
-            found = current_courses(opened.library, [line.id for line in before])
-            visits = [
-                CourseVisit(line.id, day_of, found.get(line.id))
-                for line in reversed(before)
-                if (day_of := date_of(line.started)) is not None
-            ]
-            return str(opened.library.settings.get(CLINIC, "")), before, tuple(visits)
+            return str(opened.library.settings.get(CLINIC, "")), before, courses_before(opened, current)
 
         self._controller.run(read, self._on_choices, self._on_refused, self)
 
@@ -327,9 +324,12 @@ class ReportStep(Step):
         chosen = self.page.report.chosen_visit
         return self._earlier[1] if self._earlier is not None and self._earlier[0] == chosen else None
 
-    def _read_earlier(self, session_id: UUID) -> None:
-        self._reading = session_id
+    @property
+    def _lacks_earlier(self) -> bool:
+        """Whether a visit is chosen to compare with that is not read yet, or cannot be."""
+        return self.page.report.chosen_visit is not None and self._earlier_chosen() is None
 
+    def _read_earlier(self, session_id: UUID) -> None:
         def read(opened: "OpenedLibrary", report: Report) -> tuple[UUID, AnalysedVisit]:
             return session_id, AnalysedVisit(*read_analysed(opened, session_id, report))
 
@@ -337,13 +337,12 @@ class ReportStep(Step):
         self.changed.emit()
 
     def _on_earlier_read(self, found: tuple[UUID, AnalysedVisit]) -> None:
-        self._reading = None
         self._earlier = found
         self._on_options_changed()  # another one may have been chosen meanwhile
         self.changed.emit()
 
     def _on_earlier_refused(self, what: str, remedy: str) -> None:
-        self._reading = None
+        self.page.report.show_pages([])  # those in sight are of what was chosen before
         self._on_refused(what, remedy)
         self.changed.emit()
 

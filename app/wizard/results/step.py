@@ -5,6 +5,7 @@ from dataclasses import replace
 from enum import Enum, auto
 from pathlib import Path
 from typing import TYPE_CHECKING
+from uuid import UUID
 
 from PySide6.QtCore import QObject, QTimer
 from PySide6.QtWidgets import QWidget
@@ -14,6 +15,7 @@ from app.pages.correct_page import CorrectPage, JointLine, WalkLine
 from app.pages.sentence_page import SentencePage
 from app.recording_names import shown_names, where_shown
 from app.reports.agreed import agreed_with
+from app.reports.course_lanes import CourseVisit
 from app.reports.patient_report.dates import date_of
 from app.reports.visits import WalkedVisit, conditions_in_words, parts_of_visits, visits_by_condition
 from app.theme import ThemeNotifier
@@ -24,6 +26,7 @@ from app.widgets.start_pages import WorkingPage
 from app.wizard.keys import Intent
 from app.wizard.keys import KeyAction as KeyAction
 from app.wizard.results.stride_choice import StrideChoice
+from app.wizard.resuming import course_to, courses_before
 from app.wizard.step import Step
 from app.wording import capitalised, name_of, place, tr
 from app.workers.behind_results import BehindResults
@@ -33,6 +36,7 @@ from core.samples import RecordingKind
 if TYPE_CHECKING:
     from app.pages.result_page import ResultPage
     from app.pages.result_parts import ResultParts
+    from app.reports.patient_report.request import AnalysedVisit
     from app.wizard.session_recording import SessionRecording
     from app.wizard.visit import Visit
     from core.results import Analysis
@@ -56,6 +60,7 @@ class ResultsStep(Step):
         self._frame: _ResultsFrame | None = None
         self._shown: Analysis | None = None
         self._held: tuple[object, Analysis] | None = None  # by the page of results, which may be out of sight
+        self._before: tuple[UUID | None, tuple[CourseVisit, ...]] = None, ()  # a session, and the visits before it
         self._part = Shown.RESULTS
         self._undos: list[Callable[[], object]] = []  # the latest last
         self._strides = StrideChoice(visit.recordings, self)
@@ -104,6 +109,7 @@ class ResultsStep(Step):
         if self._kept_walks:
             self._visit.end_stopwatch()
         self._visit.evaluate_if_stale()
+        self._read_courses()
         self._show()
 
     def bar(self) -> BarState:
@@ -192,7 +198,8 @@ class ResultsStep(Step):
             return
         self._held = session, analysis  # of other words for a walk the same analysis may come
         is_live = self._visit.sensors.acquisition is not None
-        results.show_visit(AnalysedVisit(session, analysis), can_choose=True, is_live=is_live)
+        visit = AnalysedVisit(session, analysis)
+        results.show_visit(visit, can_choose=True, is_live=is_live, course=self._course(visit))
 
     # what stands behind the results
 
@@ -336,6 +343,31 @@ class ResultsStep(Step):
         self.offered.emit(words)
 
     # earlier visits
+
+    def _course(self, visit: "AnalysedVisit") -> tuple[CourseVisit, ...]:
+        stored, (session_id, before) = self._visit.session, self._before
+        if stored is None or stored.id != session_id:
+            return ()
+        return course_to(before, stored, visit.session, visit.analysis)
+
+    def _read_courses(self) -> None:
+        """What was kept of the visits before: changes since then are what the answer tells first."""
+        if (session := self._visit.session) is not None:
+            self._visit.controller.run(
+                lambda opened: (session.id, courses_before(opened, session)),
+                self._on_courses,
+                self._on_no_courses,
+                self,
+            )
+
+    def _on_courses(self, before: tuple[UUID, tuple[CourseVisit, ...]]) -> None:
+        if before != self._before:
+            self._before, self._held = before, None
+            if self._shown is not None and self._frame is not None:
+                self._hold(self._frame.results(), self._shown)
+
+    def _on_no_courses(self, _what: str, _remedy: str) -> None:
+        """No harm: the answer is then of this visit alone."""
 
     def _on_earlier_read(self, found: "list[tuple[Session, Analysis]]") -> None:
         """Show the visits in the order of time, this one last."""

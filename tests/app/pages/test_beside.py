@@ -60,6 +60,7 @@ def page(qtbot: QtBot, qapp: QApplication, analysis: Analysis, session: Session)
     page.set_room(1064, 672)
     page.set_has_visits(True)
     page.show_visit(AnalysedVisit(session, analysis))
+    show(page, "walk 1")
     page.show()
     return page
 

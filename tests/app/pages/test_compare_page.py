@@ -114,7 +114,8 @@ def test_a_walk_is_called_in_the_boxes_of_results_as_its_condition_is_in_the_com
     chips = [button.text() for button in page.compare.chips.buttons]
     assert [chip.split(" · ")[0] for chip in chips] == ["A barefoot", "B AFO"]
     walks = [row for row in range(page.beside.count()) if isinstance(page.beside.itemData(row), str)]
-    assert [page.beside.itemText(row) for row in walks] == ["Beside A2 barefoot", "Beside B AFO"]
+    assert page.recordings.currentData() == "walk 3"  # of the latest condition
+    assert [page.beside.itemText(row) for row in walks] == ["Beside A barefoot", "Beside A2 barefoot"]
 
 
 def test_a_walk_that_gets_another_condition_stays_on_the_screen_under_its_new_name(

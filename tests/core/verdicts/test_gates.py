@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from core.body import LEG_JOINTS, Joint, Side, Site
+from core.calibration.same_joint import most_disagreement
 from core.gait.clocks import ClockTie
 from core.gait.strides import Reason
 from core.results import Analysis, Calibration, Method, RecordingAnalysis, ZeroKind
@@ -104,6 +105,32 @@ def test_a_figure_that_would_have_passed_is_not_given_as_the_reason(
     found = gates_of(walk(), calibrations(Joint.LEFT_KNEE, **changes)).joint(Joint.LEFT_KNEE)
     (reason,) = getattr(found, part).reasons
     assert (reason.gate, reason.verdict, reason.value) == (gate, Verdict.WITHHELD, None)
+
+
+@pytest.mark.parametrize(
+    ("gate", "changes", "figures"),
+    [
+        ("pairing", {"sign_margin": 1.2, "disagreement": 0.5}, (1.2, 1.5)),
+        ("disagreement", {"sign_margin": 1.89, "disagreement": 0.26}, (0.26, 0.2)),
+        ("disagreement", {"sign_margin": 5.0, "disagreement": 0.4}, (0.4, 0.33)),
+        ("lag", {"sign_margin": 5.0, "disagreement": 0.1, "is_lag_at_border": True}, (None, 10.0)),
+        ("pairing", {"sign_margin": 5.0, "disagreement": None}, (None, 1.5)),  # of an analysis that kept no figure
+    ],
+)
+def test_sensors_that_are_not_of_one_joint_are_refused_by_the_gate_that_decided_it(
+    gate: str, changes: dict[str, Any], figures: tuple[float | None, float]
+) -> None:
+    found = gates_of(walk(), calibrations(Joint.LEFT_KNEE, is_same_joint=False, **changes)).joint(Joint.LEFT_KNEE)
+    (reason,) = found.shape.reasons
+    assert (reason.gate, reason.verdict, reason.value, reason.limit) == (gate, Verdict.WITHHELD, *figures)
+
+
+@pytest.mark.parametrize(("margin", "disagreement"), [(1.6, 0.19), (3.2, 0.32), (9.0, 0.6)])
+def test_sensors_that_agree_well_enough_for_their_margin_may_be_of_one_joint(
+    margin: float, disagreement: float
+) -> None:
+    most = most_disagreement(margin)
+    assert most is None or disagreement <= most
 
 
 def test_a_foot_sensor_that_may_be_on_another_foot_puts_its_legs_strides_in_doubt() -> None:

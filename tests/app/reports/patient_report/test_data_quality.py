@@ -10,7 +10,7 @@ from app.reports.patient_report.answer import answer_of
 from app.reports.patient_report.data_quality import DataQuality, data_quality, quality_without_walk
 from app.reports.patient_report.facts import Facts
 from app.reports.patient_report.request import AnalysedVisit, ReportRequest
-from core.body import Joint, Side
+from core.body import LEG_JOINTS, Joint, Side
 from core.findings import Finding, Severity
 from core.results import Analysis, ZeroKind
 from core.verdicts.model import Assessment, GateReason, Verdict
@@ -43,7 +43,7 @@ def test_a_withheld_joint_comes_first_with_why_what_to_do_and_whose_motion_mends
     slanted = recalibrated(visit.analysis, [Joint.RIGHT_KNEE], axis_sd_rad=np.deg2rad(8.0))
     gated = recalibrated(slanted, [Joint.LEFT_ANKLE], axis_sd_rad=np.deg2rad(11.0))
     found = quality_of(visit, gated)
-    assert found.first == "3 of 4 joints can be read. Withheld: left ankle."
+    assert found.first == "2 of 4 joints can be read. Read with care: right knee. Withheld: left ankle."
     first, second, *_ = found.lines
     assert (first.where, first.verdict, first.side) == ("Left ankle", Verdict.WITHHELD, Side.LEFT)
     assert first.why == "The joint's axis is known to 11.0° only (9.0° wanted)."
@@ -54,6 +54,29 @@ def test_a_withheld_joint_comes_first_with_why_what_to_do_and_whose_motion_mends
     assert door.then == first.to_do
     assert door.is_caution
     assert answer_of(facts(visit, gated)).then.endswith("Withheld: left ankle.")
+
+
+@pytest.mark.parametrize(
+    ("care", "out", "words"),
+    [
+        ((), (), "All four joints can be read."),
+        (LEG_JOINTS, (), "All joints: read with care."),
+        ((Joint.LEFT_KNEE,), (), "3 of 4 joints can be read. Read with care: left knee."),
+        (
+            (Joint.LEFT_KNEE, Joint.RIGHT_KNEE),
+            (Joint.LEFT_ANKLE, Joint.RIGHT_ANKLE),
+            "Read with care: left knee and right knee. Withheld: left ankle and right ankle.",
+        ),
+        ((), (Joint.LEFT_ANKLE,), "3 of 4 joints can be read. Withheld: left ankle."),
+        ((), LEG_JOINTS, "No joint can be read in this walk."),
+    ],
+)
+def test_what_is_said_of_the_joints_follows_their_verdicts(
+    visit: AnalysedVisit, care: tuple[Joint, ...], out: tuple[Joint, ...], words: str
+) -> None:
+    found = recalibrated(visit.analysis, care, axis_sd_rad=np.deg2rad(8.0)) if care else visit.analysis
+    found = recalibrated(found, out, axis_sd_rad=np.deg2rad(11.0)) if out else found
+    assert quality_of(visit, found).first == words
 
 
 def test_without_a_zero_the_shape_is_read_and_the_heights_are_not(visit: AnalysedVisit) -> None:

@@ -2,30 +2,33 @@
 
 import datetime
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
-from app.reports.comparison import Comparison
-from app.reports.measures import MEASURES
+from app.pages.beside_words import answer_beside
+from app.reports import comparison
+from app.reports.comparison import Comparison, Contrast
+from app.reports.measures import MEASURES, Measure
+from app.reports.patient_report.answer import Outcome, answer_of
 from app.reports.patient_report.comparison_page import comparison_of
 from app.reports.patient_report.document import facts_of
 from app.reports.patient_report.facts import Facts
 from app.reports.patient_report.first_page import answer
+from app.reports.patient_report.measure_sentences import measure_in_words, unit_and_decimals
+from app.reports.patient_report.numbers_in_words import NOTHING
 from app.reports.patient_report.request import AnalysedVisit, ReportRequest
-from app.reports.patient_report.what_stands_out import (
-    BETWEEN_LEGS,
-    MAX_FINDINGS,
-    measure_in_words,
-    printed_findings,
-    unit_and_decimals,
-)
+from app.reports.patient_report.time_page import time_distance_table
+from app.reports.patient_report.what_stands_out import BETWEEN_LEGS, MAX_FINDINGS, printed_findings
 from core.body import Joint, Side
 from core.goals import Goal, GoalOf
 from core.results import Analysis, ZeroKind
 from core.verdicts.gates import judged
+from core.verdicts.measurement_error import Difference, Judgement
 from core.verdicts.quantities import CLASSES, QUANTITIES, QuantityClass
 from tests.app.changed_analysis import recalibrated, rewalked, walk_of, with_few_strides
+from tests.app.hip_visits import hip_facts
 
 NO_DIFFERENCE = "No difference is larger than its error."
 ALL_INSIDE = "Every peak that could be judged lies within 2 SD of the band"
@@ -159,15 +162,36 @@ def test_a_measure_chosen_before_the_walk_is_told_from_one_error_on_and_never_on
     assert not is_told(with_goal_of(of_a_child(request_of_demonstration, less), "2026-11-19"))
 
 
-@pytest.mark.parametrize(("more", "is_told"), [(1.0, False), (4.0, True)])
-def test_stance_beyond_two_sd_of_its_band(request_of_demonstration: ReportRequest, more: float, is_told: bool) -> None:
-    analysis = with_more(request_of_demonstration.visit.analysis, Side.LEFT, "stance_percent", more)
-    told = [
-        one for one in said(request_of_demonstration, analysis) if one.startswith("Stance, share of the stride, left")
-    ]
+@pytest.mark.parametrize(("more_m", "is_told"), [(0.0, False), (0.5, True)])
+def test_a_stride_length_beyond_two_sd_of_its_band(
+    request_of_demonstration: ReportRequest, more_m: float, is_told: bool
+) -> None:
+    analysis = request_of_demonstration.visit.analysis
+    for side in Side:
+        analysis = with_more(analysis, side, "stride_length_m", more_m)
+    told = [one for one in said(request_of_demonstration, analysis) if one.startswith("Stride length, ")]
     assert bool(told) is is_told
     if is_told:
-        assert told[0].endswith("band [2] 60.3 ± 1.1 %: more than 2 SD above.")
+        assert "band [2]" in told[0]
+        assert told[0].endswith("more than 2 SD above.")
+
+
+@pytest.mark.parametrize("more", [-8.0, 4.0, 8.0])
+def test_of_stance_no_word_says_how_far_from_the_band_it_lies(
+    request_of_demonstration: ReportRequest, more: float
+) -> None:
+    """Neither on page one, nor on the screen, nor in the table of time and distance, whose other rows have words."""
+    analysis = request_of_demonstration.visit.analysis
+    for side in Side:
+        analysis = with_more(analysis, side, "stance_percent", more)
+    facts = Facts(AnalysedVisit(request_of_demonstration.visit.session, analysis), walk_of(analysis))
+    told = [*findings(facts, None), answer_of(facts).first, answer_of(facts).then]
+    assert not any("tance" in one and "SD" in one for one in told)
+    table: Any = time_distance_table(facts)[0]
+    rows = [[cell["said"] for cell in row["cells"]] for row in table["rows"]]
+    words = {row[0]: row[-1] for row in rows}
+    assert words["Stance, % of stride"] == NOTHING
+    assert "SD" in words["Stride length, m"]
 
 
 def test_stance_of_a_foot_that_rolls_on_is_told_in_no_sentence(request_of_demonstration: ReportRequest) -> None:
@@ -352,6 +376,41 @@ def test_of_excursions_as_large_against_their_errors_the_swing_is_told_first(
     told = lines(request_of_demonstration, analysis)
     assert "from stance to swing" in told[0]
     assert "while loading" in told[1]
+
+
+def forged(monkeypatch: pytest.MonkeyPatch, wanted: str) -> None:
+    """Let one column differ by five times its error in every comparison, and no other by anything."""
+
+    def compared(column: str, *_: object, **__: object) -> Difference:
+        size = -5.0 if column == wanted else 0.0
+        judgement = Judgement.EXCEEDS_ERROR if size else Judgement.INSIDE_ERROR
+        return Difference(size, 1.0, judgement, is_worth_a_sentence=bool(size))
+
+    monkeypatch.setattr(comparison, "compare", compared)
+
+
+@pytest.mark.parametrize("contrast", [one for one in Contrast if one is not Contrast.SIDES])
+@pytest.mark.parametrize("measure", MEASURES, ids=lambda measure: measure.column)
+def test_every_compared_column_has_a_sentence_on_paper_and_screen_in_every_comparison(
+    monkeypatch: pytest.MonkeyPatch, measure: Measure, contrast: Contrast
+) -> None:
+    forged(monkeypatch, measure.column)
+    facts = hip_facts()
+    pair = tuple(replace(facts.part, letter=letter, name=letter) for letter in "AB")
+    found = Comparison(contrast, pair)
+    told = printed_findings(facts, found)
+    assert answer_beside(found).outcome is Outcome.DIFFERS
+    has_other_zero = measure.needs_height and contrast is Contrast.VISITS
+    assert any(one.column == measure.column and one.said for one in told) is not has_other_zero
+
+
+@pytest.mark.parametrize("column", BETWEEN_LEGS)
+def test_every_column_that_is_compared_between_the_legs_has_a_sentence(
+    monkeypatch: pytest.MonkeyPatch, column: str
+) -> None:
+    forged(monkeypatch, column)
+    (told,) = [one for one in printed_findings(hip_facts(), None) if one.column == column]
+    assert "less" in told.said or "shorter" in told.said
 
 
 def test_between_the_legs_no_height_is_compared() -> None:

@@ -4,15 +4,17 @@ import zipfile
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
-from uuid import UUID
+from uuid import UUID, uuid4
 
 import pypdf
 import pytest
 from pytestqt.qtbot import QtBot
 
+from app.reports.patient_report.document import ReportPreview
 from app.reports.proposed_names import free_name, session_name
 from app.storage.exchange import import_session
 from app.storage.operators import CLINIC
+from app.storage.stored import LibraryError
 from app.theme import ThemeNotifier
 from app.widgets.rail_row import StepState
 from app.wizard.keys import Intent, KeyAction
@@ -209,6 +211,49 @@ def test_an_earlier_visit_is_compared_with_and_the_clinic_named(
     header, first, *_ = (tmp_path / "results" / "visits.csv").read_text().splitlines()
     assert header.startswith("part,name,walks,against_part")
     assert first.startswith("2,")
+
+
+def test_a_preview_that_fails_goes_blank_and_says_so_until_one_can_be_shown(
+    qtbot: QtBot, step: ReportStep, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    sheets, told = step.page.report.sheets, []
+    step.told.connect(lambda what, remedy: told.append((what, remedy)))
+    qtbot.waitUntil(lambda: sheets.count >= 4, timeout=WAIT_MS)
+
+    def fail(*_: object) -> None:
+        raise KeyError("no such column")
+
+    with monkeypatch.context() as broken:
+        broken.setattr(ReportPreview, "pages", fail)
+        step.page.report.options_changed.emit()
+        qtbot.waitUntil(lambda: bool(told), timeout=WAIT_MS)
+    assert sheets.count == 0
+    assert told[-1] == ("The report cannot be shown.", "The log holds the details.")
+    step.page.report.options_changed.emit()
+    qtbot.waitUntil(lambda: sheets.count >= 4, timeout=WAIT_MS)
+    assert told[-1] == ("", "")
+
+
+def test_an_earlier_visit_that_cannot_be_read_leaves_no_page_of_another_comparison_and_nothing_to_save(
+    qtbot: QtBot, step: ReportStep, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(*_: object) -> None:
+        raise LibraryError("the visit cannot be read", "Choose another")
+
+    monkeypatch.setattr("app.wizard.report.step.read_analysed", refuse)
+    report, told = step.page.report, []
+    step.told.connect(lambda what, _remedy: told.append(what))
+    qtbot.waitUntil(lambda: report.sheets.count >= 4, timeout=WAIT_MS)
+    report.show_visits([(uuid4(), "1 Jul 2026")])
+    report.earlier.setCurrentIndex(1)
+    report.earlier.activated.emit(1)
+    qtbot.waitUntil(lambda: bool(told), timeout=WAIT_MS)
+    assert report.sheets.count == 0
+    assert not step.can_save()
+    report.earlier.setCurrentIndex(0)
+    report.earlier.activated.emit(0)
+    qtbot.waitUntil(lambda: report.sheets.count >= 4, timeout=WAIT_MS)
+    assert step.can_save()
 
 
 def test_ctrl_s_saves_as_its_cap_says(qtbot: QtBot, visit: Visit, monkeypatch: pytest.MonkeyPatch) -> None:
