@@ -76,7 +76,7 @@ class Wizard(QWidget):
         column.setContentsMargins(0, 0, 0, 0)
         column.addWidget(self.shell)
         self.asked = AskedEdits(look, self, self._may_ask)
-        self._keys = Keys(self)
+        self._keys = Keys(self, lambda: self.shell.bar.keys)
         self._timer = QTimer(self)
         self._timer.setInterval(TICK_MS)
         self._to_prepare: list[Step] = []
@@ -172,6 +172,7 @@ class Wizard(QWidget):
         shell.banner.acted.connect(self._on_new_state_wished)
         shell.room_changed.connect(self._on_room_changed)
         self._keys.pressed.connect(self.act_on)
+        self._keys.bar_pressed.connect(self._on_bar_key)
         self._timer.timeout.connect(self._on_tick)
         self._preparing.timeout.connect(self._on_prepare)
         self._settings.changed.connect(self._on_settings_changed)
@@ -349,6 +350,10 @@ class Wizard(QWidget):
                 self._look.grow(-1)
             case KeyAction.USUAL_SIZE:
                 self._look.grow(0)
+
+    def _on_bar_key(self, key: str) -> None:
+        if not self._has_just_turned():
+            self.shell.bar.press(key)
 
     def _has_just_turned(self) -> bool:
         """Whether the page turned by itself a moment ago: what is pressed now was meant for the one before."""
