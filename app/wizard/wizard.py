@@ -114,6 +114,7 @@ class Wizard(QWidget):
     def begin(self, patient: "StoredPatient | None") -> None:
         """Begin a session, with a patient of the library or one that is still to be typed."""
         visit = self._begin_visit()
+        self.shell.banner.hide()
         visit.begin_stopwatch()
         if patient is not None:
             visit.patient.choose_from_list(patient)
@@ -234,13 +235,13 @@ class Wizard(QWidget):
         if reason := self._steps[self._current].cannot_leave or self._steps[number].cannot_enter:
             self._tell(reason, "")
             return
-        self._steps[self._current].leave()
+        self.shell.banner.hide()
+        self._steps[self._current].leave()  # which may have something to say over the next
         self._go_to(number)
 
     def _go_to(self, number: int) -> None:
         step = self._steps[number]
         self._current = number
-        self.shell.banner.hide()
         self._turn(step.page)
         self.shell.show_page(number, step.page)
         step.enter()
@@ -492,6 +493,7 @@ class Wizard(QWidget):
 
     def _on_resumed(self) -> None:
         """Land where something is to be answered or seen, else where it goes on."""
+        self.shell.banner.hide()
         walks = self._visit.recordings.walks if self._visit is not None else ()
         if not walks:
             self._go_to(SENSORS)

@@ -141,11 +141,27 @@ class SensorsStep(Step):
             sensors.acquisition.set_estimator(None)
         self._estimator = None
         if sensors.site_of and sensors.site_of != self._known_places and not self._visit.cannot_record:
-            # other places of the same sensors: they were told wrongly; other sensors: strapped on since
-            if self._visit.recordings.since_strapped and sensors.site_of.keys() == self._known_places.keys():
-                self._visit.worn.place_as_said_now()
-            else:
-                self._visit.place_sensors()
+            self._take_places()
+
+    def _take_places(self) -> None:
+        """Other places of the same sensors: they were told wrongly; another sensor at a place: strapped on since."""
+        visit, worn, known = self._visit, self._visit.sensors.site_of, self._known_places
+        known_at, worn_at = {site: name for name, site in known.items()}, visit.sensors.sensor_at
+        if not visit.recordings.since_strapped:
+            visit.place_sensors()
+        elif worn.keys() == known.keys():
+            visit.worn.place_as_said_now()
+            for joint in visit.details.turned_sign:  # said by hand of other sensors
+                if any(known_at.get(site) != worn_at.get(site) for site in (joint.proximal, joint.distal)):
+                    visit.record.set_turned(joint, None)
+            what = tr("Sensor positions changed. Standing reference and calibration are derived again.")
+            self.told.emit(what, tr("If sensors were moved on the body, record both again."))
+        else:
+            visit.place_sensors()
+            if any(known_at.get(site, name) != name for name, site in worn.items()):
+                visit.recordings.say_restrapped()
+                what = tr("Another sensor is worn. Standing reference and calibration no longer hold.")
+                self.told.emit(what, tr("Record the standing and the free motion again."))
 
     def tick(self) -> None:
         self._ticks += 1
