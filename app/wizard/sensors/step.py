@@ -9,6 +9,7 @@ from app.theme import ThemeNotifier
 from app.widgets.action_bar import BarAction, BarState
 from app.widgets.rail_row import StepState
 from app.widgets.sensor_tile import SILENT_FROM_S
+from app.wizard.free_motion.label_questions import doubt_message
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.sensors.columns_telling import ColumnsTelling
 from app.wizard.sensors.dot_setup import DotSetup
@@ -94,6 +95,8 @@ class SensorsStep(Step):
             return tr("not for this patient")
         if sensors.is_left_to_motion and not sensors.site_of:
             return tr("left to the motion")
+        if sensors.detected:
+            return tr("positions look swapped")
         return tr("{count} of {most} worn").format(count=len(sensors.site_of), most=len(sensors.places))
 
     @property
@@ -101,7 +104,7 @@ class SensorsStep(Step):
         sensors = self._visit.sensors
         if sensors.acquisition is None:
             return StepState.TODO
-        if self._silent_site is not None or self._visit.cannot_record:
+        if self._silent_site is not None or self._visit.cannot_record or sensors.detected:
             return StepState.ATTENTION
         return StepState.DONE if sensors.joints or sensors.is_left_to_motion else StepState.TODO
 
@@ -130,12 +133,16 @@ class SensorsStep(Step):
         self._begin_estimator()
         self._show()
         self.page.focus()
+        if detected := self._visit.sensors.detected:
+            what, _ = doubt_message([site for site in Site if site in detected], ())
+            self.told.emit(what, tr("Change their positions, or go on to keep them."))
 
     def leave(self) -> None:
         self._end_asking()
         self._is_in_sight = False
         self._told_of = ""
         sensors = self._visit.sensors
+        sensors.keep_labels()  # somebody has looked at them
         sensors.sync.forget()
         if sensors.acquisition is not None:
             sensors.acquisition.set_estimator(None)
