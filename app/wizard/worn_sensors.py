@@ -12,7 +12,7 @@ from PySide6.QtCore import QObject, Signal
 from app.storage.stored import PlacedSensor
 from app.widgets.sensor_tile import SILENT_FROM_S
 from app.wizard.sensor_sync import SensorSync
-from app.wording import filled, later, name_of, tr
+from app.wording import capitalised, filled, later, name_of, tr
 from app.workers.background import Background, Report, Work
 from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site, hip_of
 from core.placement.labels import groups_of
@@ -238,6 +238,16 @@ class WornSensors(QObject):
             self.detected = doubted
             self.changed.emit()
 
+    def doubt_in_words(self) -> tuple[str, str]:
+        """Which positions the motion contradicts, and which angles that costs, in two sentences."""
+        doubted = [site for site in Site if site in self.detected]
+        names = [name_of(site) for site in doubted]
+        what = tr("{first} and {last} look swapped.") if len(names) == 2 else tr("{sites} look mixed up.")
+        what = what.format(sites=", ".join(names), first=names[0], last=names[-1])
+        wrong = [name_of(joint) for joint in self.joints if not self.detected.keys().isdisjoint(_ends(joint))]
+        then = tr("Angles would be wrong: {joints}.").format(joints=", ".join(wrong)) if wrong else ""
+        return capitalised(what), then
+
     def use_detected(self) -> None:
         """Wear them where the motion puts them."""
         self.assign_all({name: self.detected.get(site, site) for name, site in self.site_of.items()})
@@ -301,6 +311,10 @@ class WornSensors(QObject):
                 tr("{name} cannot be opened.").format(name=name), tr("Choose another source; the log has more.")
             )
         self.changed.emit()
+
+
+def _ends(joint: Joint) -> tuple[Site, Site]:
+    return joint.proximal, joint.distal
 
 
 def _opening(choice: SourceChoice, wait: Callable[[], None]) -> Work:

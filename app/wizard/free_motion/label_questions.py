@@ -1,14 +1,12 @@
 """What somebody has to answer while the legs move: labels that the motion contradicts, and which leg it is."""
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Signal, Slot
 
 from app.wizard.free_motion.side_question import SideQuestion, Words
 from app.wizard.worn_corrections import opposite
-from app.wording import capitalised, name_of, tr
-from core.body import Joint, Side, Site
+from core.body import Side
 
 if TYPE_CHECKING:
     from app.wizard.visit import Visit
@@ -56,8 +54,7 @@ class LabelQuestions(QObject):
     @property
     def words(self) -> Words:
         """What is asked and what can be answered, or what was understood; empty while there is nothing."""
-        doubted = [site for site in Site if site in self._visit.sensors.detected]
-        return (*doubt_message(doubted, self._visit.sensors.joints), ()) if doubted else self._side.words
+        return (*self._visit.sensors.doubt_in_words(), ()) if self.is_in_doubt else self._side.words
 
     def begin(self) -> None:
         """Another recording begins: nothing is asked yet. What was kept or told of sensors holds for the visit."""
@@ -94,12 +91,3 @@ class LabelQuestions(QObject):
         elif told is not None and told[0] in sensors.site_of and sensors.site_of[told[0]].side is not told[1]:
             sensors.assign_all({name: opposite(site) for name, site in sensors.site_of.items()})
             self.relabelled.emit()
-
-
-def doubt_message(doubted: Sequence[Site], joints: Sequence[Joint]) -> tuple[str, str]:
-    """Which labels the motion contradicts, and which of the joints that costs, in two sentences."""
-    what = tr("{first} and {last} look swapped.") if len(doubted) == 2 else tr("{sites} look mixed up.")
-    sites = ", ".join(name_of(site) for site in doubted)
-    named = what.format(sites=sites, first=name_of(doubted[0]), last=name_of(doubted[-1]))
-    wrong = [name_of(joint) for joint in joints if {joint.proximal, joint.distal} & set(doubted)]
-    return capitalised(named), tr("Angles would be wrong: {joints}.").format(joints=", ".join(wrong)) if wrong else ""

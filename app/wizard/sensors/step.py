@@ -9,7 +9,6 @@ from app.theme import ThemeNotifier
 from app.widgets.action_bar import BarAction, BarState
 from app.widgets.rail_row import StepState
 from app.widgets.sensor_tile import SILENT_FROM_S
-from app.wizard.free_motion.label_questions import doubt_message
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.sensors.columns_telling import ColumnsTelling
 from app.wizard.sensors.dot_setup import DotSetup
@@ -133,8 +132,8 @@ class SensorsStep(Step):
         self._begin_estimator()
         self._show()
         self.page.focus()
-        if detected := self._visit.sensors.detected:
-            what, _ = doubt_message([site for site in Site if site in detected], ())
+        if self._visit.sensors.detected:
+            what, _ = self._visit.sensors.doubt_in_words()
             self.told.emit(what, tr("Change their positions, or go on to keep them."))
 
     def leave(self) -> None:

@@ -307,15 +307,15 @@ def test_labels_that_are_kept_are_not_asked_about_again(qtbot: QtBot, step: Free
     pair = (Site.LEFT_THIGH, Site.LEFT_SHANK)
     step.enter()
     visit.sensors.doubt(swapped(*pair))
-    step._show()
+    step.enter()
     assert step.page.question.notice.text == (
         "L thigh and L shank look swapped. Angles would be wrong: left knee, left ankle."
     )
     visit.sensors.keep_labels()
-    step._show()
+    step.enter()
     assert step.page.question.isHidden()
     visit.sensors.doubt(swapped(*pair))
-    step._show()
+    step.enter()
     assert step.page.question.isHidden()
 
 
@@ -336,6 +336,29 @@ def test_swapped_labels_change_places_and_what_was_recorded_is_corrected(
         return placement is not None and placement.sensors[Site.LEFT_THIGH].name == f"DEMO-{Site.LEFT_SHANK}"
 
     qtbot.waitUntil(is_corrected, timeout=PATIENCE_MS)
+
+
+@pytest.mark.parametrize(
+    "mixed",
+    [
+        {Site.LEFT_SHANK: Site.RIGHT_THIGH, Site.RIGHT_THIGH: Site.LEFT_SHANK},
+        {Site.LEFT_THIGH: Site.LEFT_SHANK, Site.LEFT_SHANK: Site.LEFT_FOOT, Site.LEFT_FOOT: Site.LEFT_THIGH},
+    ],
+    ids=["two", "three"],
+)
+def test_sensors_that_are_mixed_up_are_detected_and_one_key_puts_them_right(
+    qtbot: QtBot, step: FreeMotionStep, visit: Visit, worn: dict[str, Site], mixed: dict[Site, Site]
+) -> None:
+    visit.sensors.assign_all({name: mixed.get(site, site) for name, site in worn.items()})
+    step.enter()
+    ticks(qtbot, step, lambda: step.labels.is_in_doubt)
+    step.on_primary()
+    assert visit.sensors.site_of == worn
+    assert visit.recordings.is_recording
+    ticks(qtbot, step, lambda: knows(step))
+    with qtbot.waitSignal(step.done, timeout=PATIENCE_MS):
+        step.on_primary()
+    assert not step.labels.is_in_doubt
 
 
 def test_labels_swapped_in_a_visit_that_is_closed_amid_the_motion_are_in_the_library(

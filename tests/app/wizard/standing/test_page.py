@@ -243,9 +243,7 @@ def test_what_is_not_heard_enough_is_not_said_to_be_still() -> None:
     assert verdict(view) == (None, "", "", False)
 
 
-def test_a_row_is_marked_as_moving_just_when_its_figure_reaches_the_limit(page: StandStillPage) -> None:
+def test_a_sensor_moves_just_when_its_figure_reaches_the_limit() -> None:
     view = counting(still_s=2.0)
-    page.show_state(replace(view, movement_deg_s=STILL | {Site.LEFT_FOOT: view.limit_deg_s}))
-    assert {site for site, row in page.bars._rows.items() if row.has_moved} == {Site.LEFT_FOOT}
-    page.show_state(replace(view, movement_deg_s=STILL | {Site.LEFT_FOOT: view.limit_deg_s - 0.01}))
-    assert not any(row.has_moved for row in page.bars._rows.values())
+    assert replace(view, movement_deg_s=STILL | {Site.LEFT_FOOT: view.limit_deg_s}).moving == (Site.LEFT_FOOT,)
+    assert replace(view, movement_deg_s=STILL | {Site.LEFT_FOOT: view.limit_deg_s - 0.01}).moving == ()
