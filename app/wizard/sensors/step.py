@@ -132,9 +132,6 @@ class SensorsStep(Step):
         self._begin_estimator()
         self._show()
         self.page.focus()
-        if self._visit.sensors.detected:
-            what, _ = self._visit.sensors.doubt_in_words()
-            self.told.emit(what, tr("Change their positions, or go on to keep them."))
 
     def leave(self) -> None:
         self._end_asking()
@@ -328,7 +325,7 @@ class SensorsStep(Step):
             return
         status = sensors.status
         rows = tuple(self._row(status[name]) for name in acquisition.sensors if name in status)
-        self.page.show_sensors(rows)
+        self.page.show_sensors(rows, sensors.doubt_in_words()[0] if sensors.detected else "")
         silent = next((row.site for row in rows if row.silent_s > 0 and row.site is not None), None)
         if silent is not self._silent_site:
             self._silent_site = silent

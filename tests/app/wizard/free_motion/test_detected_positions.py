@@ -77,12 +77,14 @@ def test_positions_can_be_checked_and_kept_as_they_are(
     assert jumped.args == [SENSORS]
     sensors = SensorsStep(ThemeNotifier(), visit)
     qtbot.addWidget(sensors.page)
-    with qtbot.waitSignal(sensors.told) as told:
-        sensors.enter()
-    assert told.args[0] == "L thigh, L shank, L foot look mixed up."
+    sensors.enter()
+    words = "L thigh, L shank, L foot look mixed up. Change their positions, or go on to keep them."
+    assert sensors.page.notice.text == words
     assert (sensors.state, sensors.note) == (StepState.ATTENTION, "positions look swapped")
     sensors.leave()
     assert visit.sensors.site_of == worn
+    sensors.enter()
+    assert sensors.page.notice.text == "All six are worn and heard."
     primary = moved.bar().primary
     assert primary is not None
     assert primary.text == "Go on to walking"
