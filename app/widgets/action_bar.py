@@ -123,6 +123,15 @@ class ActionBar(Themed):
         """All that can be pressed, in the order of reading."""
         return [button for button in self.buttons if not button.isHidden()]
 
+    @property
+    def keys(self) -> list[str]:
+        """The keys that its buttons show."""
+        return [button.verb.key for button in self.buttons if not button.isHidden() and button.verb.key]
+
+    def press(self, key: str) -> None:
+        """Press the button that shows this key, if it can be pressed."""
+        next(button for button in self.buttons if not button.isHidden() and button.verb.key == key).click()
+
     def show_state(self, state: BarState) -> None:
         """Show what can be done; cheap where only the elapsed time is another."""
         before, self._state = self._state, state
@@ -294,12 +303,18 @@ class ActionBar(Themed):
 
 
 class VerbButton(Button):
-    """A button whose word, key and kind follow what can be done now; hidden while it is nothing."""
+    """A button whose word, key and kind follow what can be done now; hidden while it is nothing.
+
+    Attributes
+    ----------
+    verb
+        What it does; its key holds though there may be no room for the cap.
+    """
 
     def __init__(self, look: ThemeNotifier, parent: QWidget, is_primary: bool = False) -> None:
         super().__init__(look, "", parent=parent)
         self._is_primary = is_primary
-        self._verb = BarAction("")
+        self.verb = BarAction("")
         self.hide()
 
     @property
@@ -310,7 +325,7 @@ class VerbButton(Button):
         self.setVisible(verb is not None)
         if verb is None:
             return
-        self._verb = verb
+        self.verb = verb
         height = STOP_HEIGHT if is_inverse and self._is_primary else HEIGHT
         self.set_face(kind=kind, icon=verb.icon, key=verb.key, is_inverse=is_inverse, height=height)
         self.setText(verb.text)
@@ -324,7 +339,7 @@ class VerbButton(Button):
 
     def set_room(self, width: int) -> None:
         """Leave away the key cap, then the icon, where the words alone fill `width` pixels."""
-        self.set_face(icon=self._verb.icon, key=self._verb.key)
+        self.set_face(icon=self.verb.icon, key=self.verb.key)
         if self.sizeHint().width() > width:
             self.set_face(key="")
         if self.sizeHint().width() > width:

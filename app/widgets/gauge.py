@@ -31,6 +31,9 @@ RING_GAP = 5.0
 VALUE, LARGEST_VALUE = 56, 72
 CHIP = 28
 PADDING = 20
+ROWS_FROM, ROW = CHIP + 10, 26
+ROWS_TO = ROWS_FROM + 2 * ROW
+STATE_FLAGS = int(Qt.AlignmentFlag.AlignVCenter) | int(Qt.TextFlag.TextWordWrap)
 WIDEST = 240  # of the words: what is told and what is wanted are read together
 
 
@@ -150,7 +153,7 @@ class Gauge(QWidget):
             return
         before, self._face = self._face, face
         self._name()
-        if self._is_compact or _words(before) != _words(face):
+        if self.is_brief or _words(before) != _words(face):
             self.update()
         else:
             self.update(self._ring().toAlignedRect().adjusted(-1, -1, 1, 1))
@@ -164,7 +167,16 @@ class Gauge(QWidget):
 
     def minimumSizeHint(self) -> QSize:
         px = self._look.theme.px
-        return QSize(px(300), px(112)) if self._is_compact else QSize(px(330), px(150))
+        return QSize(px(300 if self._is_compact else 330), px(112))
+
+    @property
+    def is_brief(self) -> bool:
+        """Whether it is compact, or too low for all of its words under each other, as below a banner."""
+        if self._is_compact:
+            return True
+        words = self._words_box(self._ring())
+        room = words.height() - self._look.theme.px(ROWS_TO)
+        return any(self._state_height(state, words.width()) > room for state in GaugeState)
 
     def paintEvent(self, event: QPaintEvent) -> None:
         theme, face = self._look.theme, self._face
@@ -182,7 +194,7 @@ class Gauge(QWidget):
         painter.setBrush(Qt.BrushStyle.NoBrush)
         if is_absent:
             self._paint_absent(painter)
-        elif self._is_compact:
+        elif self.is_brief:
             self._paint_compact(painter)
         else:
             self._paint_full(painter, event.rect())
@@ -199,18 +211,36 @@ class Gauge(QWidget):
         ring.moveCenter(QPointF(self.width() - middle if self._joint.side is Side.RIGHT else middle, self.height() / 2))
         return ring
 
-    def _paint_full(self, painter: QPainter, part: QRect) -> None:
-        px, ring = self._look.theme.px, self._ring()
-        self._paint_rings(painter, ring)
-        self._paint_value(painter, ring)
-        if ring.adjusted(-2, -2, 2, 2).contains(QRectF(part)):
-            return  # words are dear, and as they were
+    def _words_box(self, ring: QRectF) -> QRectF:
+        """Where the words of a full card are, beside its ring."""
+        px = self._look.theme.px
         words = QRectF(self.rect()).adjusted(px(22), px(PADDING), -px(22), -px(PADDING))
         if self._joint.side is Side.RIGHT:
             words.setRight(min(ring.left() - px(16), words.left() + px(WIDEST)))
         else:
             words.setLeft(ring.right() + px(16))
             words.setRight(min(words.right(), words.left() + px(WIDEST)))
+        return words.adjusted(0, 0, 0, px(4))
+
+    def _state_font(self, state: GaugeState) -> QFont:
+        is_short = state in (GaugeState.NOW, GaugeState.OPEN)
+        weight = REGULAR if state is GaugeState.OPEN else SEMIBOLD
+        return self._look.theme.font(20 if is_short else 16 if state in CLOSED else 14, weight)
+
+    def _state_height(self, state: GaugeState, width: float) -> int:
+        """How high the words of a state are in their lines."""
+        px = self._look.theme.px
+        room = QRect(0, 0, round(width) - px(38 if state in CLOSED else 26), 1000)
+        words = QFontMetrics(self._state_font(state)).boundingRect(room, STATE_FLAGS, state_word(state))
+        return max(px(28), words.height())
+
+    def _paint_full(self, painter: QPainter, part: QRect) -> None:
+        ring = self._ring()
+        self._paint_rings(painter, ring)
+        self._paint_value(painter, ring)
+        if ring.adjusted(-2, -2, 2, 2).contains(QRectF(part)):
+            return  # words are dear, and as they were
+        words = self._words_box(ring)
         self._paint_name(painter, words)
         self._paint_rows(painter, words)
         self._paint_state(painter, words)
@@ -249,11 +279,11 @@ class Gauge(QWidget):
         theme = self._look.theme
         px = theme.px
         words = QRectF(self.rect()).adjusted(px(22), px(PADDING), -px(22), -px(PADDING / 2))
-        if self._is_compact:
+        if self.is_brief:
             words.adjust(0, -px(8), 0, 0)
         self._paint_name(painter, words)
         painter.setPen(QColor(theme.colours.ink2))
-        painter.setFont(theme.font(16 if not self._is_compact else 14))
+        painter.setFont(theme.font(14 if self.is_brief else 16))
         note = words.adjusted(0, px(CHIP + 14), 0, 0)
         painter.drawText(note, Qt.TextFlag.TextWordWrap, self._face.note)
 
@@ -322,9 +352,9 @@ class Gauge(QWidget):
         """What is asked for, and whether it is met: in words, for rings are read by nobody at once."""
         theme, face = self._look.theme, self._face
         c, px = theme.colours, theme.px
-        top = words.top() + px(CHIP + 10)
+        top = words.top() + px(ROWS_FROM)
         for name, measure in ((tr("Axis"), face.axis), (tr("Centre"), face.centre)):
-            line = QRectF(words.left(), top, words.width(), px(26))
+            line = QRectF(words.left(), top, words.width(), px(ROW))
             mark = QRectF(line.left(), line.center().y() - px(8), px(16), px(16))
             is_met = measure is not None and measure.is_met
             paint_icon(painter, Icon.CHECK if is_met else Icon.UNCHECKED, mark, c.ink)
@@ -341,19 +371,14 @@ class Gauge(QWidget):
                 wanted = short
                 painter.setFont(self._fitting(short, 14, room, REGULAR))
             painter.drawText(line, Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignRight, wanted)
-            top += px(26)
+            top += px(ROW)
 
     def _paint_state(self, painter: QPainter, words: QRectF) -> None:
         theme, face = self._look.theme, self._face
         c, px = theme.colours, theme.px
         word, icon = state_word(face.state), _ICONS[face.state]
-        is_short = face.state in (GaugeState.NOW, GaugeState.OPEN)
-        weight = REGULAR if face.state is GaugeState.OPEN else SEMIBOLD
-        font = theme.font(20 if is_short else 16 if face.state in CLOSED else 14, weight)
-        room = QRect(0, 0, round(words.width()) - px(38 if face.state in CLOSED else 26), 1000)
-        wraps = int(Qt.AlignmentFlag.AlignVCenter) | int(Qt.TextFlag.TextWordWrap)
-        height = max(px(28), QFontMetrics(font).boundingRect(room, wraps, word).height())
-        line = QRectF(words.left(), words.bottom() - height + px(4), words.width(), height)
+        height = self._state_height(face.state, words.width())
+        line = QRectF(words.left(), words.bottom() - height, words.width(), height)
         x = line.left()
         if icon is not None:
             side = px(28) if face.state in CLOSED else px(20)
@@ -368,8 +393,8 @@ class Gauge(QWidget):
                 paint_icon(painter, icon, mark.translated(-px(4) if face.state is GaugeState.NOW else 0, 0), c.ink)
             x += side + (px(10) if face.state in CLOSED else px(6))
         painter.setPen(QColor(c.ink2 if face.state is GaugeState.OPEN else c.ink))
-        painter.setFont(font)
-        painter.drawText(QRectF(x, line.top(), line.right() - x + 1, line.height()), wraps, word)
+        painter.setFont(self._state_font(face.state))
+        painter.drawText(QRectF(x, line.top(), line.right() - x + 1, line.height()), STATE_FLAGS, word)
 
     def _paint_state_word(self, painter: QPainter, place: QRectF) -> None:
         theme, state = self._look.theme, self._face.state

@@ -1,4 +1,4 @@
-"""Every stride of a walk, a line each: Space, Enter or a click on its mark leaves it out or takes it in again."""
+"""Every stride of a walk, a line each: Space or a click on its mark leaves it out or takes it in again."""
 
 import math
 from collections.abc import Mapping, Sequence

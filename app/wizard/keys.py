@@ -1,12 +1,15 @@
 """What does a key mean while the wizard is in sight? One filter turns keys into intents; nobody else reads them.
 
 Text has the first word: in a text field letters, figures, brackets and Space are written, and Ctrl Z takes back what
-was written; only a field of numbers, which has no use for Space, lets it through. A button that has the focus is
-pressed by Space and Enter, as everywhere, and a list of choices is searched by letters; but while something runs Space
-stops it, whatever has the focus but a text field: who stops a walk looks at the patient and not at the screen.
+was written; only a field of numbers, which has no use for Space, lets it through. After it comes the bar: a key that
+one of its buttons shows presses that button, whatever has the focus, for who presses it looks at the patient and not at
+the screen; so does Space while something runs. Only then a button that has the focus is pressed by Space and Enter, as
+everywhere, and a list of choices is searched by letters. With Shift, Space and Enter are never the bar's: where it
+shows both, they press what has the focus.
 """
 
 import sys
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from enum import Enum, auto
 
@@ -24,6 +27,8 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 from shiboken6 import isValid
+
+from app.wording import tr
 
 
 class KeyAction(Enum):
@@ -123,13 +128,27 @@ _PRESSED_BY_SPACE = (QAbstractButton, QComboBox, QAbstractItemView)
 
 
 class Keys(QObject):
-    """Listens in the window of `root` while `root` is in sight; a dialog has its keys for itself."""
+    """Listens in the window of `root` while `root` is in sight; a dialog has its keys for itself.
 
-    pressed = Signal(object)  # Intent
+    Parameters
+    ----------
+    shown
+        Gives the keys that the bar's buttons show now.
 
-    def __init__(self, root: QWidget) -> None:
+    Signals
+    -------
+    pressed
+        An Intent.
+    bar_pressed
+        A key that the bar shows.
+    """
+
+    pressed = Signal(object)
+    bar_pressed = Signal(str)
+
+    def __init__(self, root: QWidget, shown: Callable[[], Collection[str]] = tuple) -> None:
         super().__init__(root)
-        self._root, self._is_running, self._has_clicker = root, False, False
+        self._root, self._shown, self._is_running, self._has_clicker = root, shown, False, False
         self._heard: list[QWidget] = []
         application = QApplication.instance()
         assert isinstance(application, QApplication)
@@ -156,9 +175,13 @@ class Keys(QObject):
         if self._has_clicker and event.key() in _OF_CLICKERS and not event.modifiers() & _NO_LETTERS:
             focused = self._focused_in(watched)
             return watched is focused and not _takes_text(focused) and self._emit(Intent(KeyAction.RUN), event)
+        focused = self._focused_in(watched)
+        if watched is focused and (key := self._bar_key(event, focused)):
+            if not event.isAutoRepeat():
+                self.bar_pressed.emit(key)
+            return True
         if event.key() in _ENTER:  # what nobody on its way up from the focus wanted is for the primary verb
             return watched is self._root.window() and self._emit(Intent(KeyAction.PRIMARY), event)
-        focused = self._focused_in(watched)
         if watched is not focused:
             return False
         intent = self._intent(event, focused)
@@ -180,6 +203,12 @@ class Keys(QObject):
         for widget in self._heard:
             widget.installEventFilter(self)
 
+    def _bar_key(self, event: QKeyEvent, focused: QWidget) -> str:
+        """Give the key as the bar shows it; empty where it shows none such, or the text that has the focus takes it."""
+        key = _as_shown(event)
+        is_written = _takes_text(focused) and not (event.key() == _Key.Key_Space and _takes_figures_only(focused))
+        return key if key in self._shown() and not is_written else ""
+
     def _intent(self, event: QKeyEvent, focused: QWidget) -> Intent | None:
         is_text = _takes_text(focused)
         plain = _plain_intent(event)
@@ -199,6 +228,19 @@ class Keys(QObject):
         if not event.isAutoRepeat() or intent.action in _REPEATED_WHILE_HELD:
             self.pressed.emit(intent)
         return True
+
+
+def _as_shown(event: QKeyEvent) -> str:
+    """Give a key that types or presses as a button of the bar shows it; the others reach the bar whatever has the
+    focus."""
+    has_shift = bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier)
+    if event.modifiers() & _NO_LETTERS or (has_shift and event.key() in (_Key.Key_Space, *_ENTER)):
+        return ""
+    if event.key() == _Key.Key_Space:
+        return tr("Space")
+    if event.key() in _ENTER:
+        return tr("Enter")
+    return event.text().upper()
 
 
 def _takes_text(widget: QWidget) -> bool:

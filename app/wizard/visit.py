@@ -46,8 +46,9 @@ if TYPE_CHECKING:
 
     from app.storage.opened import OpenedLibrary
     from core.calibration.rest import Rest
+    from core.hip.results import HipIdentification
     from core.live.sensors import LiveSensor
-    from core.results import Analysis
+    from core.results import Analysis, JointCalibration
 
 MOST_EARLIER = 4  # visits; more are too many lines on one axis
 DEMO = "DEMO"  # how the codes of patients begin that simulated recordings are kept for, as the library has it
@@ -272,6 +273,25 @@ class Visit(QObject):
     def live_sensors(self) -> "Mapping[str, LiveSensor]":
         """What the live estimator has to know of each sensor that is worn, by its name."""
         return live_sensors(self.sensors.site_of, self.rests, self.sensors.status)
+
+    @property
+    def calibration(self) -> "Mapping[Joint, JointCalibration]":
+        """What was found of each joint, as far as it holds for the sensors that are worn there now."""
+        return {joint: one for joint, one in self.evaluation.calibration.items() if self._is_of_worn(joint)}
+
+    @property
+    def hips(self) -> "Mapping[Joint, HipIdentification]":
+        """As `calibration`, of the hips."""
+        return {joint: one for joint, one in self.evaluation.hips.items() if self._is_of_worn(joint)}
+
+    def _is_of_worn(self, joint: Joint) -> bool:
+        """Whether what was evaluated of a joint was measured by the sensors that are worn at its places now."""
+        session, worn = self.evaluation.session, self.sensors.sensor_at
+        both = joint.proximal, joint.distal
+        for recording in reversed(session.recordings if session is not None else ()):
+            if all(site in recording.imu for site in both):
+                return all(recording.imu[site].sensor == worn.get(site) for site in both)
+        return False
 
     def evaluate(self, with_walk: Recording | None = None) -> None:
         """Find out what the recordings tell, with a walk that still goes on; `evaluation.done` follows."""

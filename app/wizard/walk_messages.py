@@ -4,8 +4,8 @@ from collections.abc import Collection, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from app.wizard.losses import NOTHING, Message
-from app.wording import name_of, tr
-from core.body import Segment, Side, Site
+from app.wording import capitalised, name_of, tr
+from core.body import Joint, Segment, Side, Site
 from core.strap import Slip
 
 if TYPE_CHECKING:
@@ -24,6 +24,13 @@ def slip_message(slips: Sequence[Slip], began_s: float) -> Message:
     left = tr("Strides after it are left out; tighten it and repeat free motion for the left leg.")
     right = tr("Strides after it are left out; tighten it and repeat free motion for the right leg.")
     return what, left if slip.site.side is Side.LEFT else right
+
+
+def implausible_message(joints: Sequence[Joint]) -> Message:
+    """Tell of angles that no joint has, and are not shown."""
+    names = ", ".join(name_of(joint) for joint in joints)
+    what = tr("{joints}: angle beyond \N{MINUS SIGN}40\N{DEGREE SIGN} to 160\N{DEGREE SIGN}, not shown.")
+    return what.format(joints=capitalised(names)), tr("Check the sensor positions, then record the free motion again.")
 
 
 def no_angles_message(worn: Collection[Site]) -> Message:

@@ -77,7 +77,7 @@ class Wizard(QWidget):
         column.setContentsMargins(0, 0, 0, 0)
         column.addWidget(self.shell)
         self.asked = AskedEdits(look, self, self._may_ask)
-        self._keys = Keys(self)
+        self._keys = Keys(self, lambda: self.shell.bar.keys)
         self._timer = QTimer(self)
         self._timer.setInterval(TICK_MS)
         self._to_prepare: list[Step] = []
@@ -115,6 +115,7 @@ class Wizard(QWidget):
     def begin(self, patient: "StoredPatient | None") -> None:
         """Begin a session, with a patient of the library or one that is still to be typed."""
         visit = self._begin_visit()
+        self.shell.banner.hide()
         visit.begin_stopwatch()
         if patient is not None:
             visit.patient.choose_from_list(patient)
@@ -182,6 +183,7 @@ class Wizard(QWidget):
         shell.banner.acted.connect(self._on_new_state_wished)
         shell.room_changed.connect(self._on_room_changed)
         self._keys.pressed.connect(self.act_on)
+        self._keys.bar_pressed.connect(self._on_bar_key)
         self._timer.timeout.connect(self._on_tick)
         self._timer.timeout.connect(self._on_resume_due)
         self._preparing.timeout.connect(self._on_prepare)
@@ -244,13 +246,13 @@ class Wizard(QWidget):
         if reason := self._steps[self._current].cannot_leave or self._steps[number].cannot_enter:
             self._tell(reason, "")
             return
-        self._steps[self._current].leave()
+        self.shell.banner.hide()
+        self._steps[self._current].leave()  # which may have something to say over the next
         self._go_to(number)
 
     def _go_to(self, number: int) -> None:
         step = self._steps[number]
         self._current = number
-        self.shell.banner.hide()
         self._turn(step.page)
         self.shell.show_page(number, step.page)
         step.enter()
@@ -360,6 +362,10 @@ class Wizard(QWidget):
                 self._look.grow(-1)
             case KeyAction.USUAL_SIZE:
                 self._look.grow(0)
+
+    def _on_bar_key(self, key: str) -> None:
+        if not self._has_just_turned():
+            self.shell.bar.press(key)
 
     def _has_just_turned(self) -> bool:
         """Whether the page turned by itself a moment ago: what is pressed now was meant for the one before."""
@@ -498,6 +504,7 @@ class Wizard(QWidget):
 
     def _on_resumed(self) -> None:
         """Land where something is to be answered or seen, else where it goes on."""
+        self.shell.banner.hide()
         walks = self._visit.recordings.walks if self._visit is not None else ()
         if not walks:
             self._go_to(SENSORS)

@@ -64,11 +64,12 @@ class WornCorrections(QObject):
     def swap_sides(self) -> None:
         """Say that left and right were worn the other way round in all recordings; they are read anew.
 
-        Done again, it is undone.
+        Done again, it is undone. So are the sensors that are worn now, and what is recorded next.
         """
         if self._is_busy:
             self._must_swap = not self._must_swap
             return
+        self._sensors.assign_all({name: opposite(site) for name, site in self._sensors.site_of.items()})
         placed: dict[UUID, list[SessionRecording]] = {}
         for recording in self._recordings.every:
             if recording.stored.placement is not None:
@@ -79,7 +80,7 @@ class WornCorrections(QObject):
             assert placement is not None  # only such were gathered
             other = {opposite(site): sensor for site, sensor in placement.sensors.items()}
             worn.append(([recording.id for recording in recordings], other))
-        self._correct(worn, self._seen())
+        self._correct(worn, self._seen(), self._sensors.placed() or None)
 
     def place_as_said_now(self) -> None:
         """Tell the library that all since the sensors were strapped on was worn as it is said now; it is read anew."""

@@ -12,9 +12,10 @@ from PySide6.QtCore import QObject, Signal
 from app.storage.stored import PlacedSensor
 from app.widgets.sensor_tile import SILENT_FROM_S
 from app.wizard.sensor_sync import SensorSync
-from app.wording import filled, later, name_of, tr
+from app.wording import capitalised, filled, later, name_of, tr
 from app.workers.background import Background, Report, Work
 from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site, hip_of
+from core.placement.labels import groups_of
 from core.samples import SensorInfo
 from devices.live import SourceRefusedError
 
@@ -67,7 +68,8 @@ class SourceChoice:
 class WornSensors(QObject):
     """`acquisition` is None until a source is open; `site_of` gives the site by the sensor's name.
 
-    Left to the motion (`is_left_to_motion`), sensors have no site until the free motion has told it.
+    Left to the motion (`is_left_to_motion`), sensors have no site until the free motion has told it. `detected`: by the
+    site that a sensor is said to be at, the one where the motion puts it, until that is used or the labels are kept.
     """
 
     changed = Signal()
@@ -85,6 +87,8 @@ class WornSensors(QObject):
         self.choice: SourceChoice | None = None
         self.site_of: dict[str, Site] = {}
         self.is_left_to_motion = False
+        self.detected: dict[Site, Site] = {}
+        self._kept_labels: set[tuple[Site, ...]] = set()
         self._closing: list[threading.Thread] = []
         self._background = Background(self)
         self._background.done.connect(self._on_opened)
@@ -197,7 +201,7 @@ class WornSensors(QObject):
         self._background.stop()
         self.sync.stop()
         acquisition = self.acquisition
-        self.acquisition, self.choice, self.site_of = None, None, {}
+        self.acquisition, self.choice, self.site_of, self.detected = None, None, {}, {}
         return acquisition
 
     def finish(self) -> None:
@@ -218,18 +222,45 @@ class WornSensors(QObject):
                 self.site_of[other] = before
         if site is not None:
             self.site_of[sensor] = site
-        self.is_left_to_motion = False
+        self.is_left_to_motion, self.detected = False, {}
         self.changed.emit()
 
     def assign_all(self, site_of: Mapping[str, Site]) -> None:
         """Wear all sensors as said, the others nowhere."""
-        self.site_of = dict(site_of)
+        self.site_of, self.detected = dict(site_of), {}
         self.changed.emit()
+
+    def doubt(self, detected: Mapping[Site, Site]) -> None:
+        """Say where the motion puts sensors otherwise than they are said to be; what was kept is not doubted again."""
+        groups = [group for group in groups_of(detected) if group not in self._kept_labels]
+        doubted = {site: detected[site] for group in groups for site in group}
+        if doubted != self.detected:
+            self.detected = doubted
+            self.changed.emit()
+
+    def doubt_in_words(self) -> tuple[str, str]:
+        """Which positions the motion contradicts, and which angles that costs, in two sentences."""
+        doubted = [site for site in Site if site in self.detected]
+        names = [name_of(site) for site in doubted]
+        what = tr("{first} and {last} look swapped.") if len(names) == 2 else tr("{sites} look mixed up.")
+        what = what.format(sites=", ".join(names), first=names[0], last=names[-1])
+        wrong = [name_of(joint) for joint in self.joints if not self.detected.keys().isdisjoint(_ends(joint))]
+        then = tr("Angles would be wrong: {joints}.").format(joints=", ".join(wrong)) if wrong else ""
+        return capitalised(what), then
+
+    def use_detected(self) -> None:
+        """Wear them where the motion puts them."""
+        self.assign_all({name: self.detected.get(site, site) for name, site in self.site_of.items()})
+
+    def keep_labels(self) -> None:
+        """Wear them as said, whatever the motion says; for the rest of the visit."""
+        self._kept_labels |= set(groups_of(self.detected))
+        self.doubt({})
 
     def leave_to_motion(self, is_left: bool) -> None:
         self.is_left_to_motion = is_left
         if is_left:
-            self.site_of = {}
+            self.site_of, self.detected = {}, {}
         self.changed.emit()
 
     def placed(self) -> dict[Site, PlacedSensor]:
@@ -280,6 +311,10 @@ class WornSensors(QObject):
                 tr("{name} cannot be opened.").format(name=name), tr("Choose another source; the log has more.")
             )
         self.changed.emit()
+
+
+def _ends(joint: Joint) -> tuple[Site, Site]:
+    return joint.proximal, joint.distal
 
 
 def _opening(choice: SourceChoice, wait: Callable[[], None]) -> Work:

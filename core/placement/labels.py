@@ -95,13 +95,11 @@ def exchanged_sites(tracks: Tracks, standing: Mapping[str, FloatArray]) -> list[
     list of tuple of Site
         One item per group.
     """
-    return at_once(exchanged_in_steps(tracks, standing))
+    return groups_of(at_once(detected_in_steps(tracks, standing)))
 
 
-def exchanged_in_steps(
-    tracks: Tracks, standing: Mapping[str, FloatArray]
-) -> Generator[None, None, list[tuple[Site, ...]]]:
-    """As `exchanged_sites`, in steps.
+def detected_in_steps(tracks: Tracks, standing: Mapping[str, FloatArray]) -> Generator[None, None, dict[Site, Site]]:
+    """Where the motion puts each sensor that `exchanged_sites` doubts, in steps.
 
     Parameters
     ----------
@@ -110,13 +108,13 @@ def exchanged_in_steps(
 
     Returns
     -------
-    list of tuple of Site
-        When the steps are over.
+    dict of Site to Site
+        When the steps are over: by the site that a sensor is said to be at, the one that it is detected at.
     """
     smoothed = (yield from smoothed_in_steps(tracks)) if tracks else None
     neighbours = (yield from neighbours_in_steps(smoothed, standing)) if smoothed else None
     if neighbours is None:
-        return []
+        return {}
     labelled = {Site(name): sensor for sensor, name in enumerate(neighbours.names)}
     arrangements = Arrangements(tuple(labelled), neighbours)
     best = arrangements.best()
@@ -124,7 +122,22 @@ def exchanged_in_steps(
         best = labelled
     upright = [one for one in arrangements.alike(best) if not _is_upside_down(one, neighbours)]
     nearest = min(upright, key=lambda one: _changes(one, labelled), default=labelled)
-    return _groups(nearest, labelled)
+    site_of = {sensor: site for site, sensor in nearest.items()}
+    return {site: site_of[sensor] for site, sensor in labelled.items() if site_of[sensor] is not site}
+
+
+def groups_of(detected: Mapping[Site, Site]) -> list[tuple[Site, ...]]:
+    """The cycles in which the sensors change places."""
+    groups: list[tuple[Site, ...]] = []
+    left = [site for site in Site if site in detected]
+    while left:
+        group, site = [], left[0]
+        while site in left:
+            left.remove(site)
+            group.append(site)
+            site = detected[site]
+        groups.append(tuple(sorted(group, key=list(Site).index)))
+    return groups
 
 
 def _has_every_joint(labelled: Arrangement, neighbours: Neighbours) -> bool:
@@ -138,18 +151,3 @@ def _is_upside_down(arrangement: Arrangement, neighbours: Neighbours) -> bool:
 
 def _changes(one: Arrangement, other: Arrangement) -> int:
     return sum(one[site] != other[site] for site in one)
-
-
-def _groups(wanted: Arrangement, labelled: Arrangement) -> list[tuple[Site, ...]]:
-    """The cycles in which the sensors change places."""
-    site_of = {sensor: site for site, sensor in wanted.items()}
-    groups: list[tuple[Site, ...]] = []
-    left = [site for site in Site if site in wanted and wanted[site] != labelled[site]]
-    while left:
-        group, site = [], left[0]
-        while site in left:
-            left.remove(site)
-            group.append(site)
-            site = site_of[labelled[site]]
-        groups.append(tuple(sorted(group, key=list(Site).index)))
-    return groups

@@ -13,7 +13,7 @@ from core.live.hip_heading import HipHeadingState
 from core.live.sensors import LiveSensor
 from core.placement.arrangements import joints_between
 from core.placement.chains import LIFTED_RAD_S, Chains
-from core.placement.labels import exchanged_in_steps
+from core.placement.labels import detected_in_steps
 from core.samples import FloatArray, ImuBlock
 
 LABELS_AFTER_S, LABELS_EVERY_S = 4.0, 2.5  # of motion, before labels are doubted; two looks have to agree
@@ -33,8 +33,9 @@ class FreeMotionView:
         Since the first sample, or since one leg alone began anew.
     repeated
         The leg that is being repeated; the other's joints stay as they were.
-    exchanged
-        Groups of sites whose labels the motion contradicts, in two looks that agree.
+    detected
+        By the site that a sensor is said to be at, the one where the motion puts it, in two looks that agree; empty
+        where it contradicts nothing.
     site_of
         By the sensor's name: as was said, or as the motion has told.
     chains
@@ -47,7 +48,7 @@ class FreeMotionView:
     motion: FreeMotionState = field(default_factory=FreeMotionState)
     elapsed_s: float = 0.0
     repeated: Side | None = None
-    exchanged: tuple[tuple[Site, ...], ...] = ()
+    detected: Mapping[Site, Site] = field(default_factory=dict)
     site_of: Mapping[str, Site] = field(default_factory=dict)
     chains: Chains | None = None
     is_side_open: bool = False
@@ -111,7 +112,7 @@ class FreeMotionEstimator:
             motion=_both(self._states, self._hips),
             elapsed_s=self._now_s - self._first_s,
             repeated=self._repeated,
-            exchanged=self._labels.exchanged,
+            detected=self._labels.detected,
             site_of=self._site_of,
         )
 
@@ -220,8 +221,8 @@ class _LabelCheck:
         self._standing = {str(site): force for site, force in standing.items()}
         self._memory = MotionMemory(self._sensors)
         self._looks = Looks(self._memory, self._look, LABELS_EVERY_S, LABELS_AFTER_S)
-        self._last: list[tuple[Site, ...]] = []
-        self.exchanged: tuple[tuple[Site, ...], ...] = ()
+        self._last: Mapping[Site, Site] = {}
+        self.detected: Mapping[Site, Site] = {}
 
     def update(self, worn: Mapping[Site, ImuBlock]) -> None:
         self._looks.update({str(site): block for site, block in worn.items()})
@@ -241,8 +242,8 @@ class _LabelCheck:
         if min(moved_s.values(), default=0.0) < MOVED_S:  # a leg that rests could belong anywhere
             return
         tracks = yield from tracks_in_steps(joined, self._sensors)
-        found = yield from exchanged_in_steps(tracks, self._standing)
-        self.exchanged = tuple(found) if found == self._last else ()
+        found = yield from detected_in_steps(tracks, self._standing)
+        self.detected = found if found == self._last else {}
         self._last = found
 
 

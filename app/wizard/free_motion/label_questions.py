@@ -6,8 +6,7 @@ from PySide6.QtCore import QObject, Signal, Slot
 
 from app.wizard.free_motion.side_question import SideQuestion, Words
 from app.wizard.worn_corrections import opposite
-from app.wording import name_of, tr
-from core.body import Side, Site
+from core.body import Side
 
 if TYPE_CHECKING:
     from app.wizard.visit import Visit
@@ -25,20 +24,15 @@ class LabelQuestions(QObject):
         Sensors are worn otherwise than they were said to be: what the motion has told was told of others.
     leg_named
         Which leg a sensor is on was answered, or that was undone, before the motion has told the sites.
-    sensors_wanted
-        The sensors are to be placed anew by hand.
     """
 
     changed = Signal()
     relabelled = Signal()
     leg_named = Signal()
-    sensors_wanted = Signal()
 
     def __init__(self, visit: "Visit", parent: QObject) -> None:
         super().__init__(parent)
         self._visit = visit
-        self._kept_labels: set[tuple[Site, ...]] = set()
-        self._doubted: tuple[Site, ...] = ()
         self._side = SideQuestion()
         self._sides_told: dict[str, Side] = {}  # in this visit, by the sensor's name
 
@@ -50,35 +44,22 @@ class LabelQuestions(QObject):
     @property
     def is_in_doubt(self) -> bool:
         """Whether labels are contradicted, and nobody has answered yet."""
-        return bool(self._doubted)
+        return bool(self._visit.sensors.detected)
 
     @property
     def is_understood(self) -> bool:
         """Whether `words` say what was understood, which can be undone by the answer 1."""
-        return self._side.told is not None and not self._doubted
+        return self._side.told is not None and not self.is_in_doubt
 
     @property
     def words(self) -> Words:
         """What is asked and what can be answered, or what was understood; empty while there is nothing."""
-        doubted, keep = self._doubted, tr("Keep as worn")
-        if not doubted:
-            return self._side.words
-        if len(doubted) == 2:
-            what = tr("{first} and {last} seem swapped: the legs move otherwise.")
-            named = what.format(first=name_of(doubted[0]), last=name_of(doubted[1]))
-            return named, tr("Swap them, or keep as worn."), (tr("Swap them"), keep)
-        what = tr("{sites} seem mixed up: the legs move otherwise.")
-        named = what.format(sites=", ".join(name_of(site) for site in doubted))
-        return named, tr("Place them anew, or keep as worn."), (tr("Go to Sensors"), keep)
+        return (*self._visit.sensors.doubt_in_words(), ()) if self.is_in_doubt else self._side.words
 
     def begin(self) -> None:
         """Another recording begins: nothing is asked yet. What was kept or told of sensors holds for the visit."""
-        self._side, self._doubted = SideQuestion(), ()
-
-    def doubt(self, exchanged: tuple[tuple[Site, ...], ...]) -> None:
-        """Say which labels the motion contradicts, until somebody has answered."""
-        self._doubted = next((group for group in exchanged if group not in self._kept_labels), ())
-        self.changed.emit()
+        self._side = SideQuestion()
+        self._visit.sensors.doubt({})
 
     def ask_for_side(self, chains: "Chains | None") -> None:
         """The motion does not tell left from right: both legs began together, or one alone wears sensors."""
@@ -96,18 +77,8 @@ class LabelQuestions(QObject):
     @Slot(int)
     def answer(self, number: int) -> None:
         """Take the answer of this number, as `words` offers them."""
-        doubted, self._doubted = self._doubted, ()
-        sensors = self._visit.sensors
-        if not doubted:
-            self._side.answer(number)
-            self._take_side()
-        elif number == 1:
-            self._kept_labels.add(doubted)
-        elif len(doubted) == 2:
-            sensors.assign(sensors.sensor_at[doubted[0]], doubted[1])
-            self.relabelled.emit()
-        else:
-            self.sensors_wanted.emit()
+        self._side.answer(number)
+        self._take_side()
         self.changed.emit()
 
     def _take_side(self) -> None:

@@ -12,8 +12,9 @@ from app.icons import Icon
 from app.sounds import Sound
 from app.storage.stored import RecordingState
 from app.theme import ThemeNotifier
-from app.widgets.action_bar import BarAction, BarState
+from app.widgets.action_bar import BarState
 from app.widgets.gauge import CLOSED
+from app.widgets.hint import Hint
 from app.widgets.rail_row import StepState
 from app.wizard.free_motion.estimator import FreeMotionEstimator, UnplacedFreeMotionEstimator
 from app.wizard.free_motion.hints import (
@@ -28,6 +29,7 @@ from app.wizard.free_motion.hints import (
     unplaced_hint,
 )
 from app.wizard.free_motion.label_questions import LabelQuestions
+from app.wizard.free_motion.motion_bar import BarFacts, motion_bar
 from app.wizard.free_motion.motion_shown import gauge_faces, hip_faces, sensor_marks
 from app.wizard.free_motion.page import FreeMotionFace, FreeMotionPage
 from app.wizard.free_motion.side_question import SILENT
@@ -35,7 +37,7 @@ from app.wizard.keys import Intent, KeyAction
 from app.wizard.session_recording import SessionRecording
 from app.wizard.step import Step
 from app.wording import tr
-from core.body import Joint, Side
+from core.body import Joint, Side, Site
 from core.live.free_motion import FreeMotionState
 from core.samples import RecordingKind
 
@@ -73,6 +75,8 @@ class FreeMotionStep(Step):
         self._before = FreeMotionState()  # of the leg that is not repeated
         self._repeated: Side | None = None
         self._again_side: Side | None = None  # that was being repeated when it was to begin again
+        self._worn_before: dict[str, Site] = {}  # what undoing brings back
+        self._seen_at: dict[str, Site] = {}  # where sensors were when the motion was seen
         self._elapsed_s: float | None = None
         self._enough: frozenset[Joint] = frozenset()  # joints with enough motion, as their gauges say
         self._replaced: FreeMotionState | None = None  # of the free motion that is in force while another is recorded
@@ -85,7 +89,6 @@ class FreeMotionStep(Step):
         self.labels.changed.connect(self._show_question)
         self.labels.relabelled.connect(self._on_relabelled)
         self.labels.leg_named.connect(self._on_leg_named)
-        self.labels.sensors_wanted.connect(self._on_sensors_wanted)
         self._asked_words = SILENT
         self._ticks = 0
         self._settled = QTimer(self)
@@ -110,6 +113,8 @@ class FreeMotionStep(Step):
     @property
     def note(self) -> str:
         joints = self._motion.joints
+        if self.labels.is_in_doubt:
+            return tr("positions look swapped")
         if not self._has_moved:
             return ""
         if not joints:
@@ -118,6 +123,8 @@ class FreeMotionStep(Step):
 
     @property
     def state(self) -> StepState:
+        if self.labels.is_in_doubt:
+            return StepState.ATTENTION
         if not self._has_moved:
             return StepState.TODO
         is_whole = len(self._with_enough()) == len(self._motion.joints) and not self._is_cut_short
@@ -136,12 +143,14 @@ class FreeMotionStep(Step):
         if self._then is AfterRecording.WORD:
             self._then = AfterRecording.ITSELF
         self._hold = HintHold(self._visit.prosthetic_sides)
+        if self._seen_at != self._visit.sensors.site_of and not self._is_recording:
+            self._motion = FreeMotionState()  # of other positions
         if not self._has_moved and not self._is_recording:
             self._begin()
         self._show()
 
     def leave(self) -> None:
-        self._is_in_sight = False
+        self._is_in_sight, self._worn_before = False, {}
         self._settled.stop()
         if self._is_recording and not self._visit.recordings.is_stopping:  # not to its end
             self._break_off()
@@ -164,27 +173,24 @@ class FreeMotionStep(Step):
 
     def bar(self) -> BarState:
         price = price_of_stopping(self._motion, self._visit.prosthetic_sides, can_move=not self._is_played)
-        words = {Side.LEFT: (tr("Repeat left"), "L"), Side.RIGHT: (tr("Repeat right"), "R")}
-        repeat = tuple(BarAction(*words[side], Icon.REPEAT) for side in self._repeatable)
-        go_on = BarAction(tr("Go on to walking"), tr("Enter"), Icon.NEXT)
-        if not self._is_recording:
-            if not self._has_moved:
-                begin = BarAction(tr("Begin the free motion"), tr("Space"), Icon.PLAY)
-                return BarState(primary=begin)
-            again = BarAction(tr("Record again"), tr("Space"), Icon.REPEAT, is_wished=False)
-            return BarState(primary=go_on, others=(again,), quiet=repeat)
-        if self._is_done:
-            return BarState(primary=go_on, quiet=repeat, note=price or tr("Goes on by itself."))
-        if self._is_played:
-            if not self._plays_s:
-                return BarState(primary=go_on)
-            again = BarAction(tr("Record again"), icon=Icon.REPEAT, is_wished=False)
-            return BarState(primary=go_on, others=(again,), note=price)
-        stop = BarAction(tr("Stop early"), tr("Space"), Icon.STOP, is_wished=False)
-        return BarState(primary=stop, quiet=repeat, note=price)
+        return motion_bar(
+            BarFacts(
+                is_recording=self._is_recording,
+                has_moved=self._has_moved,
+                is_in_doubt=self.labels.is_in_doubt,
+                is_unplaced=self._is_unplaced,
+                is_done=self._is_done,
+                is_played=self._is_played,
+                has_played=bool(self._plays_s),
+                price=price,
+            ),
+            self._repeatable,
+        )
 
     def on_primary(self) -> None:
-        if self._is_recording:
+        if self.labels.is_in_doubt:
+            self._use_detected()
+        elif self._is_recording:
             self._stop()
         elif self._has_moved:
             self.done.emit()
@@ -195,15 +201,25 @@ class FreeMotionStep(Step):
         if not self._is_recording:
             self._begin()
             return
+        if self.labels.is_in_doubt:
+            self._stop()
+            return
         self._then, self._again_side = AfterRecording.ANOTHER, self._repeated
         self._motion = self._replaced or FreeMotionState()
         self._visit.recordings.stop(is_kept=False)
 
     def on_quiet(self, number: int) -> None:
-        self._repeat(self._repeatable[number])
+        if self.labels.is_in_doubt or (self._is_unplaced and not self._is_recording):
+            self.jumped.emit(SENSORS)
+        else:
+            self._repeat(self._repeatable[number])
 
     def undo(self) -> None:
-        if self._is_recording and self.labels.is_understood:
+        if self._worn_before:
+            self._visit.sensors.assign_all(self._worn_before)
+            self._worn_before = {}
+            self._on_relabelled()
+        elif self._is_recording and self.labels.is_understood:
             self.labels.answer(1)
 
     def on_intent(self, intent: Intent) -> bool:
@@ -227,7 +243,13 @@ class FreeMotionStep(Step):
 
     @property
     def _has_moved(self) -> bool:
-        return self._visit.recordings.has_moved
+        return self._visit.recordings.has_moved and not self._is_unplaced
+
+    @property
+    def _is_unplaced(self) -> bool:
+        """Whether a motion is to tell where the sensors are, and none has."""
+        sensors = self._visit.sensors
+        return sensors.is_left_to_motion and not sensors.site_of
 
     @property
     def _is_cut_short(self) -> bool:
@@ -270,7 +292,7 @@ class FreeMotionStep(Step):
         self._replaced = self._motion if self._has_moved else None
         self._before = self._other_leg(side) if side is not None else FreeMotionState()
         self._repeated, self._motion, self._elapsed_s = side, self._before, None
-        self._then, self._again_side = AfterRecording.ITSELF, None
+        self._then, self._again_side, self._worn_before = AfterRecording.ITSELF, None, {}
         self.labels.begin()
         self._enough = self._with_enough()
         if side is not None:
@@ -321,7 +343,8 @@ class FreeMotionStep(Step):
         had_joints, was_done = bool(self._motion.joints), self._is_done
         self._motion = self._joined(view.motion)
         if sensors.site_of:
-            self.labels.doubt(view.exchanged)
+            self._seen_at = dict(sensors.site_of)
+            sensors.doubt(view.detected)
         else:
             self.labels.ask_for_side(view.chains if view.is_side_open else None)
         enough = self._with_enough() | {joint for joint, hip in self._motion.hips.items() if hip.is_sure}
@@ -404,7 +427,7 @@ class FreeMotionStep(Step):
     @Slot()
     def _show_question(self) -> None:
         """Show what is to be answered, or what was understood; the page is left alone where that stands there."""
-        words = self.labels.words if self._is_recording else SILENT
+        words = self.labels.words if self._is_recording or self.labels.is_in_doubt else SILENT
         if words != self._asked_words:
             self._asked_words = words
             self.page.ask(*words, is_understood=self.labels.is_understood)
@@ -419,9 +442,23 @@ class FreeMotionStep(Step):
         if self._unplaced is not None:
             self._unplaced.name_leg(self.labels.named)
 
-    @Slot()
-    def _on_sensors_wanted(self) -> None:
-        self.jumped.emit(SENSORS)
+    def _use_detected(self) -> None:
+        """Wear the sensors where the motion puts them: what was recorded is derived again, and the step goes on."""
+        sensors = self._visit.sensors
+        before = dict(sensors.site_of)
+        sensors.use_detected()
+        if self._is_recording and not self._is_played:
+            self._worn_before = before
+            self._on_relabelled()
+            self.offered.emit(tr("Sensor positions changed."))
+        elif self._is_recording:
+            self._on_relabelled()
+            self._stop()
+        else:
+            self._motion = FreeMotionState()
+            self._visit.worn.place_as_said_now()
+            self.done.emit()
+            self.told.emit(tr("Sensor positions changed. Standing reference and calibration are derived again."), "")
 
     # the page
 
@@ -443,6 +480,9 @@ class FreeMotionStep(Step):
 
     def _asked(self) -> Asked:
         acquisition, sensors = self._visit.sensors.acquisition, self._visit.sensors
+        if self.labels.is_in_doubt:
+            how = tr("Use the positions detected from the movement, or check them.")
+            return Asked(Hint(tr("Positions look swapped"), how, how, Icon.WARNING))
         if not self._is_recording:
             prosthetic = self._visit.prosthetic_sides
             return Asked(recorded_hint(self._motion, prosthetic) if self._has_moved else first_hint())
@@ -477,8 +517,12 @@ class FreeMotionStep(Step):
             self._visit.place_sensors()
         self.changed.emit()
         if self._then is AfterRecording.NEXT_STEP and self._is_in_sight:
-            self._then = AfterRecording.ITSELF
-            self.done.emit()
+            self._then = AfterRecording.WORD if self._is_unplaced else AfterRecording.ITSELF
+            if self._is_unplaced:
+                then = tr("Move each leg for longer, or place the sensors by hand.")
+                self.told.emit(tr("Sensor positions could not be detected."), then)
+            elif not self.labels.is_in_doubt:
+                self.done.emit()
         if self._left[0]:  # over the step that came next
             self.told.emit(*self._left)
             self._left = "", ""

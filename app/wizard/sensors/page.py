@@ -78,6 +78,7 @@ class SensorsPage(Themed):
         super().__init__()
         self._look, self._is_compact = look, False
         self._sensors: tuple[SensorRow, ...] = ()
+        self._doubt = ""
         self._names: tuple[str, ...] = ()
         self._offered: tuple[tuple[SourceOption, ...], str] = ((), "")
         self._told = ("", "")
@@ -225,11 +226,11 @@ class SensorsPage(Themed):
         self.searching.begin(tr("Reading {name}").format(name=session))
         self._show(self.searching)
 
-    def show_sensors(self, sensors: Sequence[SensorRow]) -> None:
-        """Show how the sensors are; four times a second is enough."""
-        if tuple(sensors) == self._sensors and self._in_sight is self._lists:
+    def show_sensors(self, sensors: Sequence[SensorRow], doubt: str = "") -> None:
+        """Show how the sensors are; four times a second is enough. `doubt`: which positions a motion contradicts."""
+        if (tuple(sensors), doubt) == (self._sensors, self._doubt) and self._in_sight is self._lists:
             return
-        self._sensors = tuple(sensors)
+        self._sensors, self._doubt = tuple(sensors), doubt
         self._bared -= {sensor.site for sensor in sensors if sensor.site is not None}
         self.list.show_sensors(sensors, self.offered_places)
         names = tuple(sorted(sensor.name for sensor in sensors))
@@ -428,6 +429,8 @@ class SensorsPage(Themed):
             return said_of_dragged(*self._hovered, worn)
         if self._shaken_together:
             return said_of_shaken_together(self._shaken_together)
+        if self._doubt:
+            return Icon.WARNING, self._doubt, tr("Change their positions, or go on to keep them."), True
         next_place = self.next_place if self.way is Way.SHAKE else None
         is_left_to_motion = self.way is Way.MOTION
         return said_of_sensors(self._sensors, worn, self._bared, next_place, is_left_to_motion, self.offered_places)

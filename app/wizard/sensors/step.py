@@ -94,6 +94,8 @@ class SensorsStep(Step):
             return tr("not for this patient")
         if sensors.is_left_to_motion and not sensors.site_of:
             return tr("left to the motion")
+        if sensors.detected:
+            return tr("positions look swapped")
         return tr("{count} of {most} worn").format(count=len(sensors.site_of), most=len(sensors.places))
 
     @property
@@ -101,7 +103,7 @@ class SensorsStep(Step):
         sensors = self._visit.sensors
         if sensors.acquisition is None:
             return StepState.TODO
-        if self._silent_site is not None or self._visit.cannot_record:
+        if self._silent_site is not None or self._visit.cannot_record or sensors.detected:
             return StepState.ATTENTION
         return StepState.DONE if sensors.joints or sensors.is_left_to_motion else StepState.TODO
 
@@ -136,16 +138,33 @@ class SensorsStep(Step):
         self._is_in_sight = False
         self._told_of = ""
         sensors = self._visit.sensors
+        sensors.keep_labels()  # somebody has looked at them
         sensors.sync.forget()
         if sensors.acquisition is not None:
             sensors.acquisition.set_estimator(None)
         self._estimator = None
         if sensors.site_of and sensors.site_of != self._known_places and not self._visit.cannot_record:
-            # other places of the same sensors: they were told wrongly; other sensors: strapped on since
-            if self._visit.recordings.since_strapped and sensors.site_of.keys() == self._known_places.keys():
-                self._visit.worn.place_as_said_now()
-            else:
-                self._visit.place_sensors()
+            self._take_places()
+
+    def _take_places(self) -> None:
+        """Other places of the same sensors: they were told wrongly; another sensor at a place: strapped on since."""
+        visit, worn, known = self._visit, self._visit.sensors.site_of, self._known_places
+        known_at, worn_at = {site: name for name, site in known.items()}, visit.sensors.sensor_at
+        if not visit.recordings.since_strapped:
+            visit.place_sensors()
+        elif worn.keys() == known.keys():
+            visit.worn.place_as_said_now()
+            for joint in visit.details.turned_sign:  # said by hand of other sensors
+                if any(known_at.get(site) != worn_at.get(site) for site in (joint.proximal, joint.distal)):
+                    visit.record.set_turned(joint, None)
+            what = tr("Sensor positions changed. Standing reference and calibration are derived again.")
+            self.told.emit(what, tr("If sensors were moved on the body, record both again."))
+        else:
+            visit.place_sensors()
+            if any(known_at.get(site, name) != name for name, site in worn.items()):
+                visit.recordings.say_restrapped()
+                what = tr("Another sensor is worn. Standing reference and calibration no longer hold.")
+                self.told.emit(what, tr("Record the standing and the free motion again."))
 
     def tick(self) -> None:
         self._ticks += 1
@@ -306,7 +325,7 @@ class SensorsStep(Step):
             return
         status = sensors.status
         rows = tuple(self._row(status[name]) for name in acquisition.sensors if name in status)
-        self.page.show_sensors(rows)
+        self.page.show_sensors(rows, sensors.doubt_in_words()[0] if sensors.detected else "")
         silent = next((row.site for row in rows if row.silent_s > 0 and row.site is not None), None)
         if silent is not self._silent_site:
             self._silent_site = silent

@@ -70,9 +70,18 @@ class StandStillView:
     is_read_back: bool = True
 
     @property
-    def tells_moved(self) -> bool:
+    def moving(self) -> tuple[str, ...]:
+        """Sensors that are beyond the limit as it is shown, and for a moment those that were: what is judged is what is
+        shown."""
         is_waiting = self.phase in (StandPhase.READY, StandPhase.COUNTING)
-        return bool(self.moved) and is_waiting and self.still_s < MOVED_FOR_S
+        named = self.moved if is_waiting and self.still_s < MOVED_FOR_S else ()
+        now = (name for name, moves in self.movement_deg_s.items() if self.limit_deg_s <= moves < math.inf)
+        return (*named, *(name for name in now if name not in named))
+
+    @property
+    def is_known(self) -> bool:
+        """Whether enough was heard of all sensors to tell whether they move."""
+        return bool(self.movement_deg_s) and all(map(math.isfinite, self.movement_deg_s.values()))
 
 
 class StandStillPage(Themed):
@@ -150,8 +159,7 @@ class StandStillPage(Themed):
         self._how.setText(instruction(view))
         self._ring.show_face(ring_face(view))
         self._limit.setText(tr("limit {limit:.1f} °/s").format(limit=view.limit_deg_s))
-        moved = view.moved if view.tells_moved else ()
-        self.bars.show_movement(view.movement_deg_s, view.limit_deg_s, moved, view.silent)
+        self.bars.show_movement(view.movement_deg_s, view.limit_deg_s, view.moving, view.silent)
         icon, what, then, is_caution = verdict(view, self._is_compact)
         self.verdict.tell(icon, what, then, is_caution)
         self.zero.show_standing(view)
@@ -379,7 +387,9 @@ def verdict(view: StandStillView, is_short: bool = False) -> tuple[Icon | None, 
     if view.phase is StandPhase.SKIPPED or not view.movement_deg_s:
         return None, "", "", False
     if view.phase is StandPhase.DONE:
-        return Icon.CHECK, _all_still(len(view.movement_deg_s)), tr("Goes on by itself."), False
+        is_still = view.is_known and not view.moving
+        what = _all_still(len(view.movement_deg_s)) if is_still else tr("The standing is recorded")
+        return Icon.CHECK, what, tr("Goes on by itself."), False
     if view.silent == (Site.PELVIS,):
         goes_on = tr("The count goes on; hip angles will be missing.")
         return Icon.SILENT, tr("The pelvis is silent"), tr("No hip angles.") if is_short else goes_on, True
@@ -388,10 +398,12 @@ def verdict(view: StandStillView, is_short: bool = False) -> tuple[Icon | None, 
         what = (tr("{sites} is silent") if is_one else tr("{sites} are silent")).format(sites=_names(view.silent))
         waits = tr("The count waits.")
         return Icon.SILENT, what, waits if is_short else f"{waits} {tr('Switch the sensor off and on.')}", True
-    if view.tells_moved:
-        is_one = len(view.moved) == 1
-        what = (tr("{sites} moves") if is_one else tr("{sites} move")).format(sites=_names(view.moved))
+    if view.moving:
+        is_one = len(view.moving) == 1
+        what = (tr("{sites} moves") if is_one else tr("{sites} move")).format(sites=_names(view.moving))
         return Icon.WAVE, what, _moved(view, is_short), True
+    if not view.is_known:
+        return None, "", "", False
     then = tr("Movement restarts the count.")
     return Icon.CHECK, _all_still(len(view.movement_deg_s)), then, False
 
@@ -412,7 +424,7 @@ def way_round(view: StandStillView, is_short: bool = False) -> tuple[Icon | None
 
 
 def _moved(view: StandStillView, is_short: bool) -> str:
-    sides = {Site(sensor).side for sensor in view.moved if sensor in set(Site)}
+    sides = {Site(sensor).side for sensor in view.moving if sensor in set(Site)}
     legs = [_leg_moved(side) for side in sides if side is not None]
     what = tr("Both legs moved.") if len(legs) > 1 else "".join(legs)
     if sides == {None}:

@@ -4,12 +4,13 @@ import math
 from bisect import bisect_left
 from collections import deque
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 
 from app.wizard.walking.readout import LiveLane, LiveTrace, PhaseSpan, WalkingReadout
-from core.body import LEG_JOINTS, Joint, Segment, Site
+from core.body import LEG_JOINTS, Joint, Segment, Site, knee_of
 from core.gait.live import PHASE_AFTER, FootEvent, LiveEvent, PhaseChange
 from core.gait.phases import Phase
 from core.gait.strides import MAX_STRIDE_S
@@ -17,13 +18,19 @@ from core.hip.results import HipIdentification
 from core.live.angle import AngleSamples
 from core.live.sensors import LiveSensor
 from core.live.stride_values import StrideValue, StrideValues
-from core.live.walking import LiveFoot, LiveWalk
+from core.live.walking import LiveFoot, LiveJoint, LiveWalk
 from core.results import JointCalibration
 from core.samples import FloatArray, ImuBlock
+from core.targets import TargetMeasure
 from core.timed.live import LiveTest
 
 KEPT_S = 15.0
 SILENT_S = 0.5
+# Beyond, a knee or ankle is not where its sensors are said to be. Of 12 ankles of people walking after a stroke three
+# left it, for 0.2 s in all at most: such samples are left out, and only where they are more so is the whole joint.
+PLAUSIBLE_RAD = np.deg2rad(-40.0), np.deg2rad(160.0)
+OUTSIDE_S = 0.5
+HIP_RAD = -np.inf, np.inf
 KEPT_VALUES = 64  # of strides; who looks thirty times a second misses none
 
 
@@ -112,14 +119,21 @@ class WalkingEstimator:
         test = self.test
         if test is not None:
             test.update(told.turned)
-        values = self._values.update(told)
+        kept_from_s = self._now_s - KEPT_S
+        joints = {}
+        for joint, new in told.joints.items():
+            if joint not in self._curves:
+                self._curves[joint] = _Curve(self._steps_s[joint.proximal], HIP_RAD)
+            joints[joint] = self._curves[joint].add(new)
+        traces = {joint: curve.since(kept_from_s) for joint, curve in self._curves.items()}
+        implausible = tuple(joint for joint, curve in self._curves.items() if curve.outside_s > OUTSIDE_S)
+        values = tuple(
+            one
+            for one in self._values.update(replace(told, joints=joints))
+            if one.measure is not TargetMeasure.KNEE_SWING_PEAK or knee_of(one.side) not in implausible
+        )
         self._told.extend(values)
         self._values_told += len(values)
-        kept_from_s = self._now_s - KEPT_S
-        for joint, new in told.joints.items():
-            if joint not in self._curves:  # a hip
-                self._curves[joint] = _Curve(self._steps_s[joint.proximal])
-            self._curves[joint].add(new.samples, new.is_provisional)
         missing = tuple(site for site in self._walking_sites() if self._is_silent(site))
         lanes, cadences = {}, []
         for side, foot in self._feet.items():
@@ -131,12 +145,13 @@ class WalkingEstimator:
                 cadences.append(cadence)
         self.state = WalkingReadout(
             now_s=self._now_s,
-            joints={joint: curve.since(kept_from_s) for joint, curve in self._curves.items()},
+            joints={joint: trace for joint, trace in traces.items() if joint not in implausible},
             lanes=lanes,
             strides={side: foot.strides_since(self._count_from_s, kept_from_s) for side, foot in self._feet.items()},
             cadence_steps_min=float(np.mean(cadences)) if cadences else math.nan,
             slips=told.slips,
             missing=missing,
+            implausible=implausible,
             stride_values=tuple(self._told),
             values_told=self._values_told,
             test=None if test is None else test.state,
@@ -162,19 +177,34 @@ class WalkingEstimator:
 class _Curve:
     """One joint's angles. They are written behind what the screen holds, and never twice: what it holds stays."""
 
-    def __init__(self, step_s: float) -> None:
-        self._step_s = step_s
+    def __init__(self, step_s: float, plausible_rad: tuple[float, float] = PLAUSIBLE_RAD) -> None:
+        self._step_s, self._plausible_rad = step_s, plausible_rad
+        self._outside: list[float] = []  # when
         self._room = round(4 * KEPT_S / step_s)
         self._time_s, self._angle_rad = np.empty(self._room), np.empty(self._room)
         self._begin = self._end = 0
         self._last_tick: int | None = None
         self._is_provisional = False
 
-    def add(self, samples: AngleSamples, is_provisional: bool) -> None:
-        """Take the next samples; where ticks jump, a NaN parts the stretches."""
-        self._is_provisional = is_provisional
-        if not len(samples):
-            return
+    @property
+    def outside_s(self) -> float:
+        """For how long the angle was, within what is kept, where none can be."""
+        return len(self._outside) * self._step_s
+
+    def add(self, new: LiveJoint) -> LiveJoint:
+        """Take the next samples, and give them without those that cannot be; where ticks jump, a NaN parts them."""
+        self._is_provisional = new.is_provisional
+        lowest, highest = self._plausible_rad
+        is_outside = (new.samples.angle_rad < lowest) | (new.samples.angle_rad > highest)
+        if is_outside.any():
+            self._outside += new.samples.time_s[is_outside].tolist()
+            angle_rad = np.where(is_outside, np.nan, new.samples.angle_rad)
+            new = replace(new, samples=replace(new.samples, angle_rad=angle_rad))
+        if len(new.samples):
+            self._write(new.samples)
+        return new
+
+    def _write(self, samples: AngleSamples) -> None:
         before = samples.tick[:1] - 1 if self._last_tick is None else [self._last_tick]
         jumps = np.flatnonzero(np.diff(np.concatenate([before, samples.tick])) > 1)
         self._last_tick = int(samples.tick[-1])
@@ -189,6 +219,7 @@ class _Curve:
         self._end = end
 
     def since(self, time_s: float) -> LiveTrace:
+        self._outside = self._outside[bisect_left(self._outside, time_s) :]
         self._begin += int(np.searchsorted(self._time_s[self._begin : self._end], time_s))
         part = slice(self._begin, self._end)
         return LiveTrace(_read_only(self._time_s[part]), _read_only(self._angle_rad[part]), self._is_provisional)

@@ -88,24 +88,22 @@ class LivePreview(QObject):
 
     def take_over(self) -> None:
         """Go on with what has been found out by now: by another estimator only where joints have become known."""
-        acquisition, evaluation = self._visit.sensors.acquisition, self._visit.evaluation
+        acquisition = self._visit.sensors.acquisition
         if acquisition is None:
             return
         fresh = self._new_estimator()
         if self._estimator is None or fresh.calibrated - self._estimator.calibrated:
             self._go_over(acquisition, fresh)
             return
-        calibration = evaluation.calibration
+        calibration = self._visit.calibration
         for joint in LEG_JOINTS:
             if not joint.is_knee and joint in calibration:
                 self._estimator.recalibrate(joint, calibration[joint])
-        self._estimator.find_hips(evaluation.hips)
+        self._estimator.find_hips(self._visit.hips)
 
     def _new_estimator(self) -> WalkingEstimator:
-        evaluation = self._visit.evaluation
-        return WalkingEstimator(
-            self._visit.sensors.site_of, self._visit.live_sensors(), evaluation.calibration, evaluation.hips
-        )
+        visit = self._visit
+        return WalkingEstimator(visit.sensors.site_of, visit.live_sensors(), visit.calibration, visit.hips)
 
     def _go_over(self, acquisition: "Acquisition", estimator: WalkingEstimator) -> None:
         walk = ongoing_walk(self._visit.recordings)
@@ -130,7 +128,7 @@ class LivePreview(QObject):
         are_hips_due = acquisition.now_s - walk.began_s >= HIPS_AFTER_S and not self._are_hips_asked
         self._is_ankle_asked |= is_ankle_due
         self._are_hips_asked |= are_hips_due
-        if is_ankle_due or (are_hips_due and set(visit.sensors.hips) - evaluation.hips.keys()):
+        if is_ankle_due or (are_hips_due and set(visit.sensors.hips) - visit.hips.keys()):
             visit.evaluate(self._until_now(walk, acquisition))
 
     def _until_now(self, walk: "Ongoing", acquisition: "Acquisition") -> Recording:

@@ -131,7 +131,7 @@ class PatientFeedback(QObject):
         sensors = self._visit.sensors
         rested = {site for sensor, site in sensors.site_of.items() if sensor in self._visit.rests}
         reasons = reasons_against(
-            tuple(sensors.sensor_at), rested, self._visit.evaluation.calibration, self._visit.prosthetic_sides
+            tuple(sensors.sensor_at), rested, self._visit.calibration, self._visit.prosthetic_sides
         )
         self._controls.show_reasons(reasons)
 
@@ -231,7 +231,7 @@ def _not_measured(measure: TargetMeasure, side: Side | None, worn: tuple[Site, .
 
 
 def _is_gated(target: Target, view: "WalkingReadout", worn: Collection[Site]) -> bool:
-    """Whether a strap that slipped or a silent sensor keeps the target from being measured."""
+    """Whether a strap that slipped, a silent sensor or an angle that cannot be keeps the target from being measured."""
     slipped = {slip.site for slip in view.slips}
     doubtful = slipped | set(view.missing)
     feet = {Site(f"{side}_{Segment.FOOT}") for side in Side}
@@ -239,7 +239,8 @@ def _is_gated(target: Target, view: "WalkingReadout", worn: Collection[Site]) ->
         heard = {site for site in feet if site in worn} - doubtful
         return not heard
     if target.measure is TargetMeasure.KNEE_SWING_PEAK:
-        return bool(doubtful & {Site(f"{target.side}_{segment}") for segment in LEG_SEGMENTS})
+        is_silent = bool(doubtful & {Site(f"{target.side}_{segment}") for segment in LEG_SEGMENTS})
+        return is_silent or knee_of(target.side) in view.implausible
     if target.measure is TargetMeasure.FOOT_STRIKE:
         return Site(f"{target.side}_{Segment.FOOT}") in doubtful
     return bool(doubtful & feet)

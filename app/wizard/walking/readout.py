@@ -51,13 +51,15 @@ class WalkingReadout:
     now_s
         The newest sample of any sensor, NaN before the first; while all are silent, the time that goes on meanwhile.
     joints
-        Of every joint with a calibration, or hip that was found, whose two sensors are worn.
+        Of every joint with a calibration, or hip that was found, whose two sensors are worn and whose angle can be.
     lanes, strides
         Of every side with a foot sensor; strides since the walk began.
     cadence_steps_min
         Of both feet; NaN while nobody walks.
     missing
         Sites that are silent.
+    implausible
+        Knees and ankles whose angle left what a joint can do within the last seconds, so that they are not in `joints`.
     stride_values, values_told
         The values of the last strides in the order of telling, for a target; and how many there were of them so far,
         those that are no longer among them included.
@@ -72,6 +74,7 @@ class WalkingReadout:
     cadence_steps_min: float = math.nan
     slips: tuple[Slip, ...] = ()
     missing: tuple[Site, ...] = ()
+    implausible: tuple[Joint, ...] = ()
     stride_values: tuple[StrideValue, ...] = ()
     values_told: int = 0
     test: LiveReadout | None = None

@@ -7,6 +7,7 @@ from app.storage.stored import RecordingState
 from app.wizard.losses import NOTHING, Losses, Message
 from app.wizard.walk_messages import (
     few_strides_message,
+    implausible_message,
     lacks_message,
     loose_message,
     no_angles_message,
@@ -63,6 +64,8 @@ class WalkNotice:
         ongoing, sensors = self._visit.recordings.ongoing, self._visit.sensors
         if ongoing is None or view is None:
             return NOTHING
+        if view.implausible:
+            return implausible_message(view.implausible)
         message = slip_message(view.slips, ongoing.began_s)
         if message == NOTHING and not view.joints and sensors.joints:
             return no_angles_message(sensors.sensor_at)

@@ -1,12 +1,17 @@
 """A gauge as it reads the excitation of a joint: figures without floors, rings that close, and words beside them."""
 
 import math
-from itertools import pairwise
+from dataclasses import replace
+from itertools import combinations, pairwise
+from typing import ClassVar
 
 import pytest
+from PySide6.QtCore import QRectF, Qt
+from PySide6.QtGui import QPainter
 from pytestqt.qtbot import QtBot
 
-from app.theme import ThemeNotifier
+from app.theme import ThemeNotifier, load_fonts
+from app.widgets import gauge as gauge_module
 from app.widgets.gauge import Gauge, GaugeFace, GaugeState, gauge_face, two_digits
 from app.wording import use_language
 from core.body import Joint
@@ -164,3 +169,43 @@ def test_an_ankles_gauge_tells_readers_of_screens_what_it_judges(qtbot: QtBot, l
     assert said[Joint.LEFT_KNEE] == (
         "Left knee, axis 1.0°, under 1.5° needed, centre 6.0 mm, under 10 mm needed, Enough motion"
     )
+
+
+class Recorder(QPainter):
+    """A painter that notes what is written where, in the place that the words themselves take."""
+
+    written: ClassVar[list[tuple[str, QRectF]]] = []
+
+    def drawText(self, place: QRectF, flags: Qt.AlignmentFlag | Qt.TextFlag | int, text: str) -> None:  # type: ignore[override]  # noqa: N802  the only form that a gauge uses
+        box = self.boundingRect(place, int(flags), text)
+        leading = 0.2 * self.fontMetrics().height()  # of a line, above and below its letters
+        self.written.append((text, box.adjusted(0, leading, 0, -leading)))
+        super().drawText(place, int(flags), text)
+
+
+@pytest.mark.parametrize("language", ["en", "de"])
+@pytest.mark.parametrize("joint", [Joint.LEFT_KNEE, Joint.RIGHT_ANKLE])
+def test_no_words_of_a_card_lie_on_others_however_low_it_is(
+    qtbot: QtBot, look: ThemeNotifier, monkeypatch: pytest.MonkeyPatch, language: str, joint: Joint
+) -> None:
+    load_fonts()
+    monkeypatch.setattr(gauge_module, "QPainter", Recorder)
+    use_language(language)
+    gauge = Gauge(look, joint)
+    qtbot.addWidget(gauge)
+    states = [one for one in GaugeState if one is not GaugeState.ABSENT]
+    face = gauge_face(joint, state(1.4, 23.0), HUMAN, is_now=False)
+    forms = set()
+    try:
+        for height in (112, 130, 150, 160, 172, 190, 210):
+            for shown in states:
+                gauge.resize(392, height)
+                gauge.show_face(replace(face, state=shown))
+                Recorder.written = []
+                gauge.grab()
+                forms.add(gauge.is_brief)
+                pairs = combinations([one for one in Recorder.written if one[0]], 2)
+                assert [(a, b) for (a, one), (b, other) in pairs if one.intersects(other)] == [], (height, shown)
+    finally:
+        use_language("en")
+    assert forms == {False, True}

@@ -53,14 +53,14 @@ def test_both_legs_are_watched_and_the_weakest_joint_is_of_either(usual: list[Fr
     assert halfway.joints[Joint.RIGHT_KNEE].moved_s < 1.0
     assert halfway.weakest is not None
     assert halfway.weakest.side is Side.RIGHT
-    assert not any(state.exchanged for state in usual)
+    assert not any(state.detected for state in usual)
 
 
 @pytest.mark.parametrize("block_s", [0.7, 60.0])
 def test_the_size_of_the_blocks_changes_nothing(dressed: Worn, usual: list[FreeMotionView], block_s: float) -> None:
     other = fed(FreeMotionEstimator(dressed.site_of, dressed.live_sensors), dict(dressed.free_motion), block_s)[-1]
     assert_same(other.motion, usual[-1].motion)
-    assert (other.elapsed_s, other.exchanged) == (usual[-1].elapsed_s, usual[-1].exchanged)
+    assert (other.elapsed_s, other.detected) == (usual[-1].elapsed_s, usual[-1].detected)
 
 
 def test_one_leg_begins_anew_and_the_other_stays_as_it_is(dressed: Worn) -> None:
@@ -84,9 +84,9 @@ def test_labels_that_the_motion_contradicts_are_named(dressed: Worn, one: Site, 
     standing = {name: rest.acc_m_s2 for name, rest in dressed.rests.items()}
     estimator = FreeMotionEstimator(exchanged(dressed, one, other), dressed.live_sensors, standing=standing)
     told = fed(estimator, dict(dressed.free_motion))
-    assert told[-1].exchanged == ((one, other),)
+    assert told[-1].detected == {one: other, other: one}
     if one.side is other.side:  # across the legs another group may be named until both have moved for long
-        assert all(state.exchanged in ((), ((one, other),)) for state in told)
+        assert all(state.detected in ({}, {one: other, other: one}) for state in told)
 
 
 @pytest.mark.parametrize("first", [Side.LEFT, None])

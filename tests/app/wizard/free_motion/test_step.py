@@ -306,13 +306,16 @@ def test_what_a_recording_before_it_told_neither_ends_nor_counts_for_the_next(
 def test_labels_that_are_kept_are_not_asked_about_again(qtbot: QtBot, step: FreeMotionStep, visit: Visit) -> None:
     pair = (Site.LEFT_THIGH, Site.LEFT_SHANK)
     step.enter()
-    step.labels.doubt((pair,))
+    visit.sensors.doubt(swapped(*pair))
+    step.enter()
     assert step.page.question.notice.text == (
-        "L thigh and L shank seem swapped: the legs move otherwise. Swap them, or keep as worn."
+        "L thigh and L shank look swapped. Angles would be wrong: left knee, left ankle."
     )
-    step.page.answered.emit(1)
+    visit.sensors.keep_labels()
+    step.enter()
     assert step.page.question.isHidden()
-    step.labels.doubt((pair,))
+    visit.sensors.doubt(swapped(*pair))
+    step.enter()
     assert step.page.question.isHidden()
 
 
@@ -321,8 +324,8 @@ def test_swapped_labels_change_places_and_what_was_recorded_is_corrected(
 ) -> None:
     step.enter()
     ticks(qtbot, step, lambda: visit.recordings.is_recording and knows(step))
-    step.labels.doubt(((Site.LEFT_THIGH, Site.LEFT_SHANK),))
-    step.page.answered.emit(0)
+    visit.sensors.doubt(swapped(Site.LEFT_THIGH, Site.LEFT_SHANK))
+    step.on_primary()
     assert visit.sensors.sensor_at[Site.LEFT_THIGH] == f"DEMO-{Site.LEFT_SHANK}"
     with qtbot.waitSignal(step.done, timeout=PATIENCE_MS):
         step.on_primary()
@@ -335,13 +338,36 @@ def test_swapped_labels_change_places_and_what_was_recorded_is_corrected(
     qtbot.waitUntil(is_corrected, timeout=PATIENCE_MS)
 
 
+@pytest.mark.parametrize(
+    "mixed",
+    [
+        {Site.LEFT_SHANK: Site.RIGHT_THIGH, Site.RIGHT_THIGH: Site.LEFT_SHANK},
+        {Site.LEFT_THIGH: Site.LEFT_SHANK, Site.LEFT_SHANK: Site.LEFT_FOOT, Site.LEFT_FOOT: Site.LEFT_THIGH},
+    ],
+    ids=["two", "three"],
+)
+def test_sensors_that_are_mixed_up_are_detected_and_one_key_puts_them_right(
+    qtbot: QtBot, step: FreeMotionStep, visit: Visit, worn: dict[str, Site], mixed: dict[Site, Site]
+) -> None:
+    visit.sensors.assign_all({name: mixed.get(site, site) for name, site in worn.items()})
+    step.enter()
+    ticks(qtbot, step, lambda: step.labels.is_in_doubt)
+    step.on_primary()
+    assert visit.sensors.site_of == worn
+    assert visit.recordings.is_recording
+    ticks(qtbot, step, lambda: knows(step))
+    with qtbot.waitSignal(step.done, timeout=PATIENCE_MS):
+        step.on_primary()
+    assert not step.labels.is_in_doubt
+
+
 def test_labels_swapped_in_a_visit_that_is_closed_amid_the_motion_are_in_the_library(
     qtbot: QtBot, step: FreeMotionStep, visit: Visit, controller: LibraryController
 ) -> None:
     step.enter()
     ticks(qtbot, step, lambda: visit.recordings.is_recording and knows(step))
-    step.labels.doubt(((Site.LEFT_THIGH, Site.LEFT_SHANK),))
-    step.page.answered.emit(0)
+    visit.sensors.doubt(swapped(Site.LEFT_THIGH, Site.LEFT_SHANK))
+    step.on_primary()
     with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
         visit.close()
     qtbot.waitUntil(lambda: visit.is_idle, timeout=PATIENCE_MS)
@@ -409,6 +435,10 @@ def test_a_leg_that_was_named_wrongly_changes_places_when_that_is_undone(
     assert step.page.question.notice.text == f"Understood: {shank} is on the left leg."
     step._stop()
     ticks(qtbot, step, step.page.question.isHidden)
+
+
+def swapped(one: Site, other: Site) -> dict[Site, Site]:
+    return {one: other, other: one}
 
 
 def tell(step: FreeMotionStep, worn: dict[str, Site], motion: FreeMotionState | None = None) -> None:

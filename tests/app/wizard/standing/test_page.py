@@ -1,5 +1,6 @@
 """Standing still on the page: the count, who moved, what follows without it, and the angles typed beside it."""
 
+import math
 from dataclasses import replace
 
 import pytest
@@ -223,3 +224,26 @@ def test_a_pelvis_that_moves_is_named() -> None:
 def test_more_sensors_than_places_are_all_still() -> None:
     names = {f"0A{number}": 0.3 for number in range(9)}
     assert verdict(StandStillView(StandPhase.COUNTING, 1.0, movement_deg_s=names))[1] == "All are still"
+
+
+@pytest.mark.parametrize("phase", StandPhase)
+@pytest.mark.parametrize("moves_deg_s", [21.0, 74.0])
+def test_all_are_never_said_to_be_still_beside_a_figure_above_the_limit(phase: StandPhase, moves_deg_s: float) -> None:
+    for sites in ((Site.LEFT_SHANK,), LEG_SITES):
+        view = StandStillView(phase, 2.0, movement_deg_s=STILL | dict.fromkeys(sites, moves_deg_s))
+        said = " ".join(str(part) for part in verdict(view))
+        assert "still" not in said
+        if phase in (StandPhase.READY, StandPhase.COUNTING):
+            assert "move" in said
+        assert "All six are still" in verdict(replace(view, movement_deg_s=STILL)) or phase is StandPhase.SKIPPED
+
+
+def test_what_is_not_heard_enough_is_not_said_to_be_still() -> None:
+    view = replace(counting(), movement_deg_s=STILL | {Site.LEFT_FOOT: math.inf})
+    assert verdict(view) == (None, "", "", False)
+
+
+def test_a_sensor_moves_just_when_its_figure_reaches_the_limit() -> None:
+    view = counting(still_s=2.0)
+    assert replace(view, movement_deg_s=STILL | {Site.LEFT_FOOT: view.limit_deg_s}).moving == (Site.LEFT_FOOT,)
+    assert replace(view, movement_deg_s=STILL | {Site.LEFT_FOOT: view.limit_deg_s - 0.01}).moving == ()

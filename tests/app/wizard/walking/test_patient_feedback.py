@@ -68,8 +68,7 @@ def feedback(qtbot: QtBot, look: ThemeNotifier, estimator: Told, heard: list[Sou
     card.setParent(page)
     page.show()
     sensors = SimpleNamespace(sensor_at={site: name for name, site in WORN.items()}, site_of=WORN)
-    evaluation = SimpleNamespace(calibration=SURE)
-    visit: Any = SimpleNamespace(sensors=sensors, evaluation=evaluation, prosthetic_sides=frozenset(), rests=WORN)
+    visit: Any = SimpleNamespace(sensors=sensors, calibration=SURE, prosthetic_sides=frozenset(), rests=WORN)
     feedback = PatientFeedback(look, visit, card, page)
     feedback.toggle()
     told: Any = estimator
