@@ -226,7 +226,17 @@ def _is_moving(leg: LegMotion) -> FloatArray:
 
 
 def small_rotation(v: FloatArray) -> FloatArray:
-    """Rotation matrices (n, 3, 3) of rotation vectors (n, 3)."""
+    """Rotation matrices of rotation vectors.
+
+    Parameters
+    ----------
+    v : (n, 3)
+        rad.
+
+    Returns
+    -------
+    (n, 3, 3)
+    """
     angle = np.linalg.norm(v, axis=1)
     k = np.zeros((len(v), 3, 3))
     k[:, 0, 1], k[:, 0, 2], k[:, 1, 2] = -v[:, 2], v[:, 1], -v[:, 0]

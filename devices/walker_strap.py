@@ -19,9 +19,16 @@ def on_loose_strap(
     Parameters
     ----------
     poses : (n, 3, 3) and (n, 3)
-        Earth from sensor, and its place in m, at `time_s` (n,).
+        Earth from sensor, and its place in m, earth axes, z up.
     looseness
         0: none; 1: some degrees in swing and after landing.
+    time_s : (n,)
+        Fine clock.
+
+    Returns
+    -------
+    (n, 3, 3) and (n, 3)
+        As `poses`.
     """
     if looseness <= 0.0:
         return poses

@@ -51,7 +51,7 @@ Feet = dict[Side, list[FootEvents]]
 
 
 @dataclass(slots=True)
-class Count:
+class WalksSeen:
     """Walks, their strides, those called stairs, and those that would be if each were judged by itself."""
 
     walks: int = 0
@@ -152,9 +152,9 @@ KINDS: Mapping[str, Callable[[np.random.Generator], WalkerSettings]] = {
 }
 
 
-def simulated(kind: str, first: int, walks: int) -> Count:
+def simulated(kind: str, first: int, walks: int) -> WalksSeen:
     """What is found in simulated walks of one kind."""
-    count = Count()
+    count = WalksSeen()
     for number in range(first, first + walks):
         rng = np.random.default_rng([number, list(KINDS).index(kind)])
         count.add(events_of(simulate(KINDS[kind](rng)).session))
@@ -222,9 +222,9 @@ def made_worse(session: Session, seed: int) -> Session:
     return replace(session, recordings=(*session.recordings[:-1], replace(walk, imu=imu)))
 
 
-def recorded(session: Session) -> Count:
+def recorded(session: Session) -> WalksSeen:
     """What is found in a recording as it is, in pieces, and made worse."""
-    count = Count()
+    count = WalksSeen()
     for walk in (session, *in_pieces(session), *(made_worse(session, seed) for seed in range(3))):
         count.add(events_of(walk))
     return count
@@ -260,7 +260,7 @@ def main() -> None:
     print(f"\nStairs that nobody declared: {found} of {there} strides found, {level} level ones called stairs.")
 
 
-def row(name: str, count: Count) -> str:
+def row(name: str, count: WalksSeen) -> str:
     return f"| {name} | {count.walks} | {count.strides} | {count.by_itself} | {count.stairs} |"
 
 

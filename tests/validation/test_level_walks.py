@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.validation.level_walks import KINDS, RECORDED, Count, events_of, on_stairs, recorded, simulated
+from tests.validation.level_walks import KINDS, RECORDED, WalksSeen, events_of, on_stairs, recorded, simulated
 
 STEEP = {"clipped-at-2g": 4, "free motion": 2}  # strides that climb by more than a step, by themselves
 
@@ -23,7 +23,7 @@ def test_no_level_stride_is_called_stairs(kind: str) -> None:
 def test_no_stride_of_people_is_called_stairs_though_some_would_be_by_themselves(
     test_data: Callable[[str], Path], name: str
 ) -> None:
-    count = Count()
+    count = WalksSeen()
     count.add(events_of(RECORDED[name](test_data(""))))
     assert count.by_itself >= STEEP[name]
     assert count.stairs == 0
