@@ -22,7 +22,7 @@ from core.gait.foot import FootMotion
 from core.gait.phases import phases_at
 from core.gait.shank import gait_of_shank
 from core.gait.spatiotemporal import parameters_of
-from core.gait.strides import Strides, strides_of
+from core.gait.strides import Strides, strides_of_feet
 from core.results import JointAngle, SideGait
 from core.samples import BoolArray, FloatArray, Patient, Recording
 from core.sensors import SensorTracks
@@ -107,7 +107,8 @@ def gait_in(
         for side in Side
         if (site := site_of_events(tracks, recording, side)) is not None
     }
-    strides = {side: strides_of(found) for side, found in events.items()}
+    are_declared = recording.test is not None and recording.test.protocol.is_on_stairs
+    strides = strides_of_feet(events, are_stairs_declared=are_declared)
     gait = {}
     for side, found in events.items():
         other = strides.get(Side.RIGHT if side is Side.LEFT else Side.LEFT)

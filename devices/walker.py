@@ -27,6 +27,7 @@ from devices.walker_body import (
     Standing,
     TimedCourse,
     Tissue,
+    Treadmill,
     Variation,
     Walk,
     WalkerSettings,
@@ -62,6 +63,8 @@ from devices.walker_sensors import (
     record,
     sensor_poses,
 )
+from devices.walker_strap import on_loose_strap
+from devices.walker_treadmill import on_treadmill
 from devices.walker_truth import (
     FootTruth,
     JointTruth,
@@ -96,6 +99,7 @@ __all__ = [
     "Standing",
     "TimedCourse",
     "Tissue",
+    "Treadmill",
     "Variation",
     "Walk",
     "WalkerSettings",
@@ -143,7 +147,7 @@ def simulate(settings: WalkerSettings) -> SimulatedSession:
     if any(abs(late_s) > MAX_LATE_S for late_s in settings.clock_late_s.values()):
         raise ValueError(f"clock_late_s is {dict(settings.clock_late_s)}, expected at most {MAX_LATE_S} s")
     legs = {side: make_leg(settings, side) for side in Side}
-    faults = {site: draw_faults(settings.errors, _rng(settings, 2, _index(site))) for site in settings.sites}
+    faults = {site: draw_faults(settings.errors_of(site), _rng(settings, 2, _index(site))) for site in settings.sites}
     start_faults = faults
     strapping = 0
     mountings = _mount(settings, strapping)
@@ -231,6 +235,7 @@ def _take(
                 following = turned if following is None else turned @ following
                 wobble = REAL_THIGH_WOBBLE
             poses = sensor_poses(leg, site, worn.mountings[site], tissue, ride, chance, following, wobble)
+            poses = on_loose_strap(poses, worn.mountings[site], settings.loose_straps.get(site, 0.0), fine_s)
         clocks[site] = make_clock(settings, site, duration_s, _rng(settings, 5, _index(site), number))
         noise = _rng(settings, 8, _index(site), number)
         imu[site], bias = record(settings, site, clocks[site], fine_s, poses, faults[site], noise)
@@ -313,6 +318,8 @@ def _move(
     else:
         changes = draw_changes(settings, number, strapping, wanted) if isinstance(wanted, Walk) else NO_CHANGES
         motions, duration_s = _stand_or_walk(settings, wanted, changes, legs, rng, per_leg)
+    if isinstance(wanted, Walk) and wanted.treadmill is not None:
+        motions = on_treadmill(motions, wanted.treadmill, wanted.speed_m_s)
     compass = rotation_about(Z_AXIS, rng.uniform(0.0, 2.0 * np.pi, 1))[0]
     if Site.PELVIS in settings.sites and pelvis is None:
         pelvis, motions = with_pelvis(motions, _rng(settings, 9, number))

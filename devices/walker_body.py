@@ -133,6 +133,22 @@ class FreeMotion:
 
 
 @dataclass(frozen=True, slots=True)
+class Treadmill:
+    """The belt that a walk is on.
+
+    Attributes
+    ----------
+    ripple
+        By what share of its speed each landing slows the belt, which then makes up for it.
+    slope
+        Rise over run.
+    """
+
+    ripple: float = 0.0
+    slope: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
 class Walk:
     """Standing, `strides` steps of each foot, standing. `turn_rad` (positive to the left) is made half-way.
 
@@ -147,6 +163,8 @@ class Walk:
         deviation) away.
     prosthesis
         What was set at the prosthesis before this walk; of who wears none it means nothing.
+    treadmill
+        None: over ground. On a belt the walk is as over ground, seen from the belt; it begins and ends there.
     """
 
     name: str = "walk 1"
@@ -163,6 +181,7 @@ class Walk:
     drift: GaitChange = NO_CHANGE
     is_drift_random: bool = False
     prosthesis: ProsthesisSetting = AS_BUILT
+    treadmill: Treadmill | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -279,6 +298,10 @@ class WalkerSettings:
         Standard deviation of a stamp around the instant of its sample.
     site_rates_hz
         Sites that do not sample at `rate_hz`.
+    site_errors
+        Sites whose sensor has other errors than `errors`.
+    loose_straps
+        How loosely sites are strapped: 1 turns a foot's sensor by some degrees in swing and after landing.
     stiff_knee_side
         A leg whose knee bends by a quarter only.
     tissue_gain, tissue_gain_sd
@@ -304,6 +327,8 @@ class WalkerSettings:
     site_loss_fractions: Mapping[Site, float] = field(default_factory=dict)
     stamp_jitter_s: float = 0.0
     errors: SensorErrors = SensorErrors()
+    site_errors: Mapping[Site, SensorErrors] = field(default_factory=dict)
+    loose_straps: Mapping[Site, float] = field(default_factory=dict)
     mounting_sd_m: float = 0.025
     tissue_gain: float = 0.0
     tissue_gain_sd: float = 0.0
@@ -314,6 +339,10 @@ class WalkerSettings:
     def body(self) -> int:
         """The seed of the body."""
         return self.seed if self.body_seed is None else self.body_seed
+
+    def errors_of(self, site: Site) -> SensorErrors:
+        """The errors of one site's sensor."""
+        return self.site_errors.get(site, self.errors)
 
 
 @dataclass(frozen=True, slots=True)

@@ -137,7 +137,7 @@ def sensor_poses(
     if tissue is Tissue.RIGID:
         return segment @ mounting.segment_from_sensor, origin + segment @ mounting.place_m
     turn, shift = _tissue_motion(leg, site.segment, tissue, ride, rng, wobble)
-    rotation = segment @ _small_rotation(turn) @ mounting.segment_from_sensor
+    rotation = segment @ small_rotation(turn) @ mounting.segment_from_sensor
     return rotation, origin + np.einsum("nij,nj->ni", segment, mounting.place_m + shift)
 
 
@@ -225,8 +225,18 @@ def _is_moving(leg: LegMotion) -> FloatArray:
     return np.minimum(gaussian_filter1d(np.minimum(speed, 1.5), 0.15 / step_s) / 0.5, 1.0)
 
 
-def _small_rotation(v: FloatArray) -> FloatArray:
-    """Rotation matrices (n, 3, 3) of rotation vectors (n, 3)."""
+def small_rotation(v: FloatArray) -> FloatArray:
+    """Rotation matrices of rotation vectors.
+
+    Parameters
+    ----------
+    v : (n, 3)
+        rad.
+
+    Returns
+    -------
+    (n, 3, 3)
+    """
     angle = np.linalg.norm(v, axis=1)
     k = np.zeros((len(v), 3, 3))
     k[:, 0, 1], k[:, 0, 2], k[:, 1, 2] = -v[:, 2], v[:, 1], -v[:, 0]
@@ -400,7 +410,7 @@ def record(
     without_gravity = acceleration(place, step_s) - GRAVITY_M_S2
     acc = interpolate(np.einsum("nji,nj->ni", rotations, without_gravity), at)
 
-    errors, n = settings.errors, len(at)
+    errors, n = settings.errors_of(site), len(at)
     gyr_noise, acc_noise = rng.normal(size=(2, n, 3)) * np.sqrt(0.5 * rate_hz)
     since = np.diff(clock.true_s, prepend=clock.true_s[:1])[:, None]
     bias = np.asarray(

@@ -24,6 +24,7 @@ import numpy as np
 
 from core.gait.crossings import Onset, first_crossing, last_crossing, onset
 from core.gait.foot import FootMotion, follow
+from core.gait.rolling import LANDING_SHARES, LEAST_SWINGS, landing_marks, leaving_marks, sharpest, timed_by
 from core.gait.sole import SoleTravel, travel_of
 from core.pair import OrientedTrack
 from core.robust import robust_sd
@@ -41,9 +42,7 @@ FLAT_LANDING_RAD = np.deg2rad(8.0)  # toes no further up before landing may come
 MAX_STRAIGHT_RAD = np.deg2rad(12.0)  # straight strides turn a foot by up to 5 deg
 MIN_LOWERED_RAD = np.deg2rad(17.0)  # a foot that turns its toes down less on leaving is lifted; healthy ones turn 50
 SHAKING_SHARE = 0.25  # of the level of rest: so far apart, flat feet's rates are not the feet's; real ones are by 0.16
-MIN_SWINGS_TO_AVERAGE = 4
 STRAY_SD, STRAY_S = 5.0, 0.07  # beyond both, a toe-off lies where no other of the foot's does
-LEAVING_SHARE, LANDING_SHARE = 0.2, 0.25  # of the pitch's extremes: where its passing is sharp
 FLAT_SHARE = 0.15  # of the greatest speed: below, a foot that does not roll is on the floor; for the live events
 
 
@@ -212,6 +211,7 @@ def detect_events(motion: FootMotion, is_measured: BoolArray, is_rigid: bool = F
     without_stray_toe_offs(timing, swings.fastest, motion.step_s)
     for k in np.flatnonzero(~(timing.index[:, FULL_CONTACT] >= timing.index[:, CONTACT])).tolist():
         timing.put(k, FULL_CONTACT, _settled(rate, timing.index[k, CONTACT], spans[k][2], usual), EventSource.PITCH)
+    _even_out_others(timing, motion, spans, landings, is_usual)
     return _as_events(motion, timing, is_measured)
 
 
@@ -303,20 +303,45 @@ def _landing(landing: Landing, usual: Usual, step_s: float) -> tuple[Onset, Onse
 
 
 def _even_out(timing: Timing, motion: FootMotion, spans: list[tuple[int, int, int]], is_usual: BoolArray) -> None:
-    """Time heel rise and full contact of usual swings by where the pitch passes a share of its extremes; in place.
+    """Time heel rise and full contact of usual swings by the marks of a rolling foot; in place.
 
-    A foot begins to roll, and comes to rest, too slowly for a level of its rate to be sharp: pitch passes its share of
-    every swing's extreme at an instant that scatters a third as much. How far from there the foot mostly begins, or
-    ends, is what all its swings say together.
+    A foot begins to roll, and comes to rest, too slowly for a level of its rate to be sharp. How far from its mark it
+    mostly begins, or ends, is what all its swings say together.
     """
-    chosen = np.flatnonzero(is_usual)
-    for event, marks in zip((HEEL_RISE, FULL_CONTACT), _rolling_marks(motion.pitch_rad, spans), strict=True):
-        known = chosen[np.isfinite(timing.index[chosen, event] - marks[chosen])]
-        if len(known) < MIN_SWINGS_TO_AVERAGE:
+    landing = landing_marks(motion.pitch_rad, spans, LANDING_SHARES[0])
+    for event, marks in ((HEEL_RISE, leaving_marks(motion.pitch_rad, spans)), (FULL_CONTACT, landing)):
+        known = np.flatnonzero(is_usual & np.isfinite(timing.index[:, event] - marks))
+        if len(known) >= LEAST_SWINGS:
+            timing.index[known, event], timing.reach[known, event] = timed_by(marks[known], timing.index[known, event])
+
+
+def _even_out_others(
+    timing: Timing,
+    motion: FootMotion,
+    spans: list[tuple[int, int, int]],
+    landings: list[Landing],
+    is_usual: BoolArray,
+) -> None:
+    """Time heel rise and full contact of straight swings that are not usual by their marks, if sharper; in place.
+
+    Feet that are put down slowly, flat or toes first come to rest slowly, and tissue rings at their level of rest.
+    """
+    is_straight = np.abs(motion.turn_rad) < MAX_STRAIGHT_RAD
+    is_forefoot = np.array([landing.is_forefoot for landing in landings], dtype=bool)
+    lowered = [landing.begin if landing.is_forefoot else None for landing in landings]
+    of_landing = [landing_marks(motion.pitch_rad, spans, share, lowered) for share in LANDING_SHARES]
+    for event, beside, is_one, candidates in (
+        (HEEL_RISE, TOE_OFF, is_straight, [leaving_marks(motion.pitch_rad, spans)]),
+        (FULL_CONTACT, CONTACT, is_straight & is_forefoot, of_landing),
+        (FULL_CONTACT, CONTACT, is_straight & ~is_forefoot, of_landing),
+    ):
+        marks = sharpest(candidates, timing.index[:, event], timing.index[:, beside], is_one)
+        if marks is None:
             continue
-        apart = timing.index[known, event] - marks[known]
-        timing.index[known, event] = marks[known] + np.median(apart)
-        timing.reach[known, event] = robust_sd(apart - np.median(apart))
+        known = np.flatnonzero(np.isfinite(marks))
+        index, spread = timed_by(marks[known], timing.index[known, event])
+        is_other = ~is_usual[known]
+        timing.index[known[is_other], event], timing.reach[known[is_other], event] = index[is_other], spread
 
 
 def without_stray_toe_offs(timing: Timing, fastest: IntArray, step_s: float) -> None:
@@ -329,7 +354,7 @@ def without_stray_toe_offs(timing: Timing, fastest: IntArray, step_s: float) -> 
     fastest : (k,)
         Index of the sample in each swing at which the foot is fastest.
     """
-    if len(fastest) < MIN_SWINGS_TO_AVERAGE:
+    if len(fastest) < LEAST_SWINGS:
         return
     before = fastest - timing.index[:, TOE_OFF]
     usual = float(np.median(before))
@@ -337,17 +362,6 @@ def without_stray_toe_offs(timing: Timing, fastest: IntArray, step_s: float) -> 
     for k in np.flatnonzero(np.abs(before - usual) > reach).tolist():
         timing.index[k, TOE_OFF] = fastest[k] - usual
         timing.reach[k, TOE_OFF] = abs(before[k] - usual)
-
-
-def _rolling_marks(pitch: FloatArray, spans: list[tuple[int, int, int]]) -> tuple[FloatArray, FloatArray]:
-    """Where the pitch (n,) of each swing passes its share of the lowest on leaving, and of the highest on landing."""
-    leaving, landing = np.full(len(spans), np.nan), np.full(len(spans), np.nan)
-    for k, (a, m, b) in enumerate(spans):
-        lowest = a + int(np.argmin(pitch[a : m + 1]))
-        highest = m + int(np.argmax(pitch[m : b + 1]))
-        leaving[k] = last_crossing(pitch, a, lowest, LEAVING_SHARE * pitch[lowest])
-        landing[k] = first_crossing(pitch, highest, b, LANDING_SHARE * pitch[highest])
-    return leaving, landing
 
 
 def _steady(
@@ -361,7 +375,7 @@ def _steady(
     """
     marks = np.array([_marks(motion.pitch_rad, *span) for span in spans]).reshape(-1, 2)
     chosen = np.flatnonzero(is_usual & np.isfinite(marks).all(axis=1))
-    if len(chosen) < MIN_SWINGS_TO_AVERAGE:
+    if len(chosen) < LEAST_SWINGS:
         return
     rate = motion.pitch_rate_rad_s
     begin, middle, end = np.array(spans)[chosen].T

@@ -4,20 +4,20 @@ A stride leads from one initial contact to the next of the same foot. Starts, st
 events and outliers keep their stride out of averages, each with its reason; nothing is dropped in silence.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 
 import numpy as np
 
+from core.body import Side
 from core.gait.events import FootEvents
+from core.gait.stairs import FootClimbs, on_stairs
 from core.samples import BoolArray, FloatArray, IntArray
 
 MAX_STRIDE_S = 3.0  # a stride at 0.3 m/s takes 2; longer, the patient stood
 PAUSE_RATIO = 1.5  # of the usual stride time
 MAX_TURN_RAD = np.deg2rad(12.0)  # straight strides turn a foot by up to 5 deg
-LEAST_CLIMB_M = 0.1  # steps of stairs rise by 0.14 to 0.2 m; the height of a level stride is told to some centimetres
-LEAST_SLOPE = 0.125  # ramps rise by up to 1 in 8, stairs by half; the first swing onto them comes from the level floor
 EDGE_STRIDES = 2  # so many at either end of a bout may be speeding up or slowing down,
 EDGE_RATIO = 0.87  # if they are so much slower or shorter than the bout
 OUTLIER_SD, MIN_OUTLIER_SHARE = 4.0, 0.12  # beyond both, a stride is unlike the others
@@ -100,7 +100,35 @@ class Strides:
 
 
 def strides_of(stretches: Sequence[FootEvents]) -> Strides:
-    """Strides of one foot from its events, one item per stretch without gaps, in order of time."""
+    """Strides of one foot on level ground from its events, one item per stretch without gaps, in order of time."""
+    columns = _columns(stretches)
+    return _strides(columns, np.zeros(len(columns["end_s"]), dtype=np.int64))
+
+
+def strides_of_feet(
+    events: Mapping[Side, Sequence[FootEvents]], *, are_stairs_declared: bool = False
+) -> dict[Side, Strides]:
+    """Strides of each foot of one walk, and which of them are on stairs.
+
+    Parameters
+    ----------
+    events
+        Of each foot, one item per stretch without gaps, in order of time; both on one clock.
+    are_stairs_declared
+        Whether each stride is to be judged by itself, as in a test on stairs; else they are where a run of steps shows.
+
+    Returns
+    -------
+    dict of Side to Strides
+        Of each foot in `events`.
+    """
+    columns = {side: _columns(stretches) for side, stretches in events.items()}
+    climbs = [FootClimbs(c["end_s"], c["length_m"], c["climb_m"]) for c in columns.values()]
+    ways = on_stairs(climbs, are_declared=are_stairs_declared)
+    return {side: _strides(columns[side], way) for side, way in zip(events, ways, strict=True)}
+
+
+def _columns(stretches: Sequence[FootEvents]) -> dict[str, FloatArray]:
     parts: dict[str, list[FloatArray]] = {name: [] for name in _COLUMNS}
     for events in stretches:
         start, end = events.initial_contact_s[:-1], events.initial_contact_s[1:]
@@ -120,12 +148,15 @@ def strides_of(stretches: Sequence[FootEvents]) -> Strides:
         }
         for name, values in here.items():
             parts[name].append(values[is_stride])
-    columns = {name: np.concatenate([np.empty(0), *values]) for name, values in parts.items()}
-    is_certain, is_measured = columns.pop("is_certain") > 0, columns.pop("is_measured") > 0
+    return {name: np.concatenate([np.empty(0), *values]) for name, values in parts.items()}
+
+
+def _strides(columns: dict[str, FloatArray], way: IntArray) -> Strides:
+    """`way` (k,) as of `on_stairs`."""
+    times = {name: values for name, values in columns.items() if name not in ("is_certain", "is_measured")}
     start, end = columns["start_s"], columns["end_s"]
     bout = np.concatenate([np.zeros(min(1, len(start)), int), np.cumsum(start[1:] > end[:-1] + 1e-6)]).astype(np.int64)
-    reason = _reasons(columns, bout, is_certain, is_measured)
-    return Strides(**columns, bout=bout, reason=reason)
+    return Strides(**times, bout=bout, reason=_reasons(columns, bout, way))
 
 
 _COLUMNS = (
@@ -135,9 +166,7 @@ _COLUMNS = (
 )
 
 
-def _reasons(
-    columns: dict[str, FloatArray], bout: IntArray, is_certain: BoolArray, is_measured: BoolArray
-) -> tuple[Reason, ...]:
+def _reasons(columns: dict[str, FloatArray], bout: IntArray, way: IntArray) -> tuple[Reason, ...]:
     """The first reason that holds for each stride, the gravest first."""
     time, length = columns["end_s"] - columns["start_s"], columns["length_m"]
     if not len(time):
@@ -148,11 +177,10 @@ def _reasons(
     def mark(where: BoolArray, reason: Reason, *instead_of: Reason) -> None:
         code[where & np.isin(code, [order.index(r) for r in (Reason.USED, *instead_of)])] = order.index(reason)
 
-    mark(~is_measured, Reason.GAP)
-    mark(~is_certain, Reason.DOUBT)
-    is_up, is_down = on_stairs(columns["climb_m"], length)
-    mark(is_up, Reason.STAIRS_UP, Reason.DOUBT)  # a foot that climbs rolls otherwise
-    mark(is_down, Reason.STAIRS_DOWN, Reason.DOUBT)
+    mark(columns["is_measured"] == 0.0, Reason.GAP)
+    mark(columns["is_certain"] == 0.0, Reason.DOUBT)
+    mark(way > 0, Reason.STAIRS_UP, Reason.DOUBT)  # a foot that climbs rolls otherwise
+    mark(way < 0, Reason.STAIRS_DOWN, Reason.DOUBT)
     mark(np.abs(columns["turn_rad"]) > MAX_TURN_RAD, Reason.TURN)
     usual = np.median(time[code == 0]) if np.any(code == 0) else np.median(time)
     is_start, is_stop = _edges(time, length, bout, code == 0)
@@ -161,25 +189,6 @@ def _reasons(
     mark(time > PAUSE_RATIO * usual, Reason.PAUSE)
     mark(_is_unlike(time, code == 0) | _is_unlike(length, code == 0), Reason.OUTLIER)
     return tuple(order[k] for k in code)
-
-
-def on_stairs(climb_m: FloatArray, length_m: FloatArray) -> tuple[BoolArray, BoolArray]:
-    """Which swings lead up a step or two of stairs, and which down: higher than any kerb, steeper than any ramp.
-
-    Parameters
-    ----------
-    climb_m, length_m : (k,)
-        How much higher the foot came to stand, and how far it went over the floor; NaN where not known.
-
-    Returns
-    -------
-    (k,), (k,)
-        Neither of an unknown one.
-    """
-    low = climb_m[np.abs(climb_m) < LEAST_CLIMB_M]  # a sensor whose scale is off raises every level stride alike
-    above_m = climb_m - (float(np.median(low)) if len(low) >= MIN_STRIDES_TO_COMPARE else 0.0)
-    is_steep = np.abs(above_m) > np.maximum(LEAST_CLIMB_M, LEAST_SLOPE * length_m)
-    return is_steep & (above_m > 0.0), is_steep & (above_m < 0.0)
 
 
 def _edges(time: FloatArray, length: FloatArray, bout: IntArray, is_good: BoolArray) -> tuple[BoolArray, BoolArray]:

@@ -17,6 +17,10 @@ class TimedProtocol(StrEnum):
     SIT_TO_STAND = "sit to stand 5"
     STAIRS = "stairs"
 
+    @property
+    def is_on_stairs(self) -> bool:
+        return self is TimedProtocol.STAIRS
+
 
 class KeyMeaning(StrEnum):
     """What a key that was pressed said; the values stand in a recording's journal."""

@@ -9,7 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from core.gait.strides import on_stairs
+from core.gait.stairs import FootClimbs, on_stairs
 from core.samples import Recording
 from core.sensors import SensorTracks
 from core.timed.found import NotMeasured, StairStride, TimedPart, TimedTest
@@ -87,7 +87,7 @@ def timed(way: BodyWay, seat: SeatMotions, planned: PlannedTest) -> TimedTest:
         rises=tuple(rise for rise in seat.rises if start_s <= rise.left_seat_s <= end_s),
         silences=silences,
         missing=tuple(dict.fromkeys(missing)),
-        stairs=stairs_in(way, start_s, end_s) if is_whole else (),
+        stairs=stairs_in(way, start_s, end_s, are_declared=planned.protocol.is_on_stairs) if is_whole else (),
     )
 
 
@@ -148,21 +148,20 @@ def _end_on_foot(definition: Definition, way: BodyWay, start_s: float) -> float:
     return math.nan if len(way.time_s) and end_s > way.time_s[-1] else end_s
 
 
-def stairs_in(way: BodyWay, start_s: float, end_s: float) -> tuple[StairStride, ...]:
-    """Every stride onto a higher or a lower step between two instants.
+def stairs_in(way: BodyWay, start_s: float, end_s: float, *, are_declared: bool) -> tuple[StairStride, ...]:
+    """Every stride onto a higher or a lower step between two instants; `are_declared` as in `on_stairs`.
 
     Returns
     -------
     tuple of StairStride
         In order of time, seconds and metres; a foot's first contact ends no stride.
     """
+    feet = [FootClimbs(foot.contact_s, foot.length_m, foot.climb_m) for foot in way.feet.values()]
     found = []
-    for side, foot in way.feet.items():
-        for is_one in on_stairs(foot.climb_m, foot.length_m):
-            for k in np.flatnonzero(is_one).tolist():
-                if k > 0 and start_s <= foot.contact_s[k] <= end_s:
-                    span_s = float(foot.contact_s[k - 1]), float(foot.contact_s[k])
-                    found.append(StairStride(side, *span_s, float(foot.climb_m[k])))
+    for side, foot, ways in zip(way.feet, feet, on_stairs(feet, are_declared=are_declared), strict=True):
+        for k in np.flatnonzero(ways).tolist():
+            if k > 0 and start_s <= foot.end_s[k] <= end_s:
+                found.append(StairStride(side, float(foot.end_s[k - 1]), float(foot.end_s[k]), float(foot.climb_m[k])))
     return tuple(sorted(found, key=lambda one: one.end_s))
 
 

@@ -8,7 +8,7 @@ import pytest
 from core.gait.events import FootEvents
 from core.gait.phases import PHASES, Phase, phases_at
 from core.gait.spatiotemporal import both_feet, mean_and_sd, parameters_of
-from core.gait.strides import Reason, Strides, on_stairs, strides_of
+from core.gait.strides import Reason, Strides, strides_of
 
 STRIDE_S, SWING_S = 1.1, 0.42
 
@@ -166,39 +166,3 @@ def test_phases_follow_each_other() -> None:
     named = [PHASES[k] for k in phases_at(asked, [events])]
     assert named == [Phase.FOOT_FLAT, Phase.PRE_SWING, Phase.SWING, Phase.LOADING, Phase.UNKNOWN]
     assert PHASES[phases_at(np.array([0.0]), [events])[0]] is Phase.UNKNOWN
-
-
-CLIMBS = [
-    (0.34, 0.6, "up"),
-    (-0.34, 0.6, "down"),
-    (0.15, 0.3, "up"),  # both feet on each tread
-    (0.17, 1.0, "up"),  # the first swing onto stairs comes from the level floor
-    (0.05, 0.2, ""),  # a kerb's edge, or what the height is off
-    (0.12, 1.2, ""),  # a ramp of 10 %
-    (-0.16, 1.35, ""),  # and down one of 12 %
-    (np.nan, np.nan, ""),  # from a shank
-]
-
-
-@pytest.mark.parametrize(("climb_m", "length_m", "way"), CLIMBS)
-def test_strides_on_stairs_are_told_from_level_ones_and_ramps(climb_m: float, length_m: float, way: str) -> None:
-    is_up, is_down = on_stairs(np.array([climb_m]), np.array([length_m]))
-    assert (bool(is_up[0]), bool(is_down[0])) == (way == "up", way == "down")
-
-
-def test_strides_on_stairs_are_left_out_with_their_reason() -> None:
-    events = feet_events()
-    climb_m = np.zeros(len(events))
-    climb_m[4:6], climb_m[7] = 0.34, -0.34
-    length_m = np.where(climb_m == 0.0, events.length_m, 0.6)
-    reasons = strides_of([replace(events, climb_m=climb_m, length_m=length_m)]).reason
-    assert [one for one in reasons if one is Reason.STAIRS_UP] == [reasons[3], reasons[4]]
-    assert reasons[6] is Reason.STAIRS_DOWN
-    assert not {Reason.STAIRS_UP, Reason.STAIRS_DOWN} & set(strides_of([events]).reason)
-
-
-def test_a_sensor_that_raises_every_level_stride_makes_no_stairs_of_them() -> None:
-    climb_m = np.array([0.06, 0.065, 0.07, 0.06, 0.055, 0.105, 0.06, 0.41, -0.28])
-    is_up, is_down = on_stairs(climb_m, np.full(len(climb_m), 0.6))
-    assert np.flatnonzero(is_up).tolist() == [7]
-    assert np.flatnonzero(is_down).tolist() == [8]

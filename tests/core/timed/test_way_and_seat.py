@@ -1,12 +1,16 @@
 """Turns, pauses and starts of made-up ways, rises of made-up tilts: what must be told, and what must not."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from core.body import Side, Site
 from core.samples import FloatArray
 from core.timed.found import Silence
-from core.timed.seat import motions_of_tilt
+from core.timed.protocols import PlannedTest, TimedProtocol
+from core.timed.seat import NO_SEAT, motions_of_tilt
+from core.timed.timing import timed
 from core.timed.way import BodyWay, FootSteps, pauses_of, start_of, turns_of
 
 TIME_S = np.arange(0.0, 30.0, 0.02)
@@ -26,6 +30,19 @@ def way_with(
 
 def ramp(at_s: float, lasts_s: float, angle_deg: float) -> FloatArray:
     return np.deg2rad(angle_deg) * np.clip((TIME_S - at_s) / lasts_s, 0.0, 1.0)
+
+
+@pytest.mark.parametrize(("protocol", "strides"), [(TimedProtocol.STAIRS, 2), (TimedProtocol.UP_AND_GO, 0)])
+def test_a_single_high_step_of_each_foot_is_on_stairs_only_in_the_test_on_stairs(
+    protocol: TimedProtocol, strides: int
+) -> None:
+    way = way_with(np.zeros_like(TIME_S))
+    feet = {
+        side: replace(foot, climb_m=np.where(np.arange(len(foot.climb_m)) == 7, 0.2, 0.0))
+        for side, foot in way.feet.items()
+    }
+    found = timed(replace(way, feet=feet), NO_SEAT, PlannedTest(protocol, 1.0, 28.0))
+    assert len(found.stairs) == strides
 
 
 @pytest.mark.parametrize("angle_deg", [180.0, -180.0, 90.0])
