@@ -595,7 +595,7 @@ def closed_amid(folder: Path, name: str) -> UUID:
         line = library.sessions.list()[0]
         told = Recording(name, RecordingKind.WALKING, name.replace(" ", "_"), {}, condition="Shoes")
         walk = library.recordings.start(line.id, told, False, is_decided=False)
-        library.recordings.add_journal(walk.id, StoredJournal(1, f"{walk.id}.1.journal", b"key"))
+        library.recordings.add_journal(walk.id, StoredJournal(walk.id, 1, b"key"))
         library.recordings.close(walk.id, RecordingState.CLOSED, {1: ""})
         return line.id
 
