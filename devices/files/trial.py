@@ -78,12 +78,16 @@ class UnreadFile:
 
 @dataclass(frozen=True, slots=True)
 class ImportedTrial:
-    """`format`: one of `formats.FORMATS`. `started`: as the file says it, empty where it does not."""
+    """`format`: one of `formats.FORMATS`. `started`: as the file says it, empty where it does not.
+
+    `is_simulated`: the files, or the session that they are a part of, say that nobody was measured.
+    """
 
     format: str
     sensors: tuple[ImportedSensor, ...]
     unread: tuple[UnreadFile, ...] = ()
     started: str = ""
+    is_simulated: bool = False
 
 
 @dataclass(frozen=True, slots=True)

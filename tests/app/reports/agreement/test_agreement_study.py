@@ -172,7 +172,7 @@ def test_left_and_right_exchanged_is_said_and_where_they_are_not_it_is_not(
 @pytest.mark.parametrize("write", [write_c3d, write_motion])
 def test_our_own_exports_agree_with_us(
     simulated: tuple[Session, SessionTruth, Analysis],
-    write: Callable[[RecordingAnalysis, bool, Path], None],
+    write: Callable[[RecordingAnalysis, bool, Path], str],
     tmp_path: Path,
 ) -> None:
     _, _, analysis = simulated
