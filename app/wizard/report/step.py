@@ -406,7 +406,7 @@ class ReportStep(Step):
 
     def _on_saved(self, found: tuple[Path, list[str]]) -> None:
         self.is_saving, (self.saved, lines) = False, found
-        self.told.emit(tr("Not every file was written.") if lines else "", " ".join(lines[:MOST_LINES]))
+        self.told.emit(tr("Not every file was written.") if lines else "", "\n".join(lines[:MOST_LINES]))
         self.changed.emit()
 
     def _on_refused(self, what: str, remedy: str) -> None:
