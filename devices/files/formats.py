@@ -18,7 +18,7 @@ from devices.files.parquet_tables import is_parquet, parquet_trial
 from devices.files.refusal import FileRefusedError
 from devices.files.session_toml import FILE_NAME
 from devices.files.shimmer_tables import is_shimmer, shimmer_trial
-from devices.files.trial import ImportedTrial
+from devices.files.trial import SIMULATED_MARK, ImportedTrial
 from devices.files.xdf import is_xdf, xdf_trial
 from devices.files.ximu3_files import is_ximu3, ximu3_recording, ximu3_trial
 from devices.files.xsens_mtmanager import is_mtmanager, mtmanager_trial
@@ -126,7 +126,9 @@ def format_of(path: Path) -> str | None:
 
 
 def _is_of_simulated_session(path: Path) -> bool:
-    """Whether a file lies in a recording of a session folder of which nobody was measured."""
+    """Whether a file lies in a recording of a session folder of which nobody was measured, or beside the mark of it."""
+    if (path.resolve().parent / SIMULATED_MARK).is_file():
+        return True
     beside = path.resolve().parent.parent / FILE_NAME
     try:
         return bool(tomllib.loads(beside.read_text(encoding="utf-8"))["session"]["simulated"] is True)

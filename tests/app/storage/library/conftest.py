@@ -81,6 +81,7 @@ def record(opened: OpenedLibrary, session_id: UUID) -> Record:
         has_row: bool = True,
         is_told: bool = True,
         says_session: UUID | None = None,
+        is_simulated: bool = False,
     ) -> StoredRecording:
         library, recording_id = opened.library, uuid7()
         told = Recording(name, RecordingKind.WALKING, name.replace(" ", "_"), {})
@@ -94,7 +95,9 @@ def record(opened: OpenedLibrary, session_id: UUID) -> Record:
         if says_session is not None:
             writer.mark(Belonging(says_session, replace(told, condition="barefoot")).text())
         block = samples(count)
-        source = writer.source(SourceInfo("walker", "1", sensors=(SENSOR,)), layout_of(block))
+        source = writer.source(
+            SourceInfo("walker", "1", sensors=(SENSOR,), is_simulated=is_simulated), layout_of(block)
+        )
         writer.samples(source, 0, block, waits=True)
         summary = writer.stop()
         if is_stopped:
