@@ -62,7 +62,8 @@ def session_id(opened: OpenedLibrary) -> UUID:
 def samples(count: int, seed: int = 0) -> ImuBlock:
     rng = np.random.default_rng(seed)
     time_s = np.arange(count) / 100
-    return ImuBlock(SENSOR, time_s, rng.normal(size=(count, 3)), rng.normal(size=(count, 3)))
+    gyr, noise = rng.normal(size=(count, 3)), rng.normal(size=(count, 3))
+    return ImuBlock(SENSOR, time_s, gyr, np.array([0.0, 0.0, 9.81]) + noise)
 
 
 @pytest.fixture
