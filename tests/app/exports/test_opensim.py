@@ -15,6 +15,11 @@ from tests.app.exports.test_parts import missing
 pytestmark = pytest.mark.endurance
 
 
+@pytest.fixture(autouse=True)
+def _writes_its_log_elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
 @pytest.fixture
 def walk(visit: tuple[Session, Analysis]) -> RecordingAnalysis:
     return next(r for r in visit[1].recordings if r.kind is RecordingKind.WALKING)
