@@ -82,16 +82,16 @@ def export(wanted: argparse.Namespace, report: Report) -> list[str]:
         if isinstance(wanted.session, LibrarySession):
             with opened_library(wanted) as opened:
                 session_id, identified = wanted.session.id, wanted.identified
-                export_from_library(
+                lines = export_from_library(
                     opened, session_id, formats, folder, DECODERS, report, kept=kept, is_identified=identified
                 )
         else:
             session = read_foreign_session(session_of(wanted.session), lambda: report(0.0, str(wanted.session)))
             analysis = analyse(session, progress=report)
-            export_from_folder(session, analysis, formats, folder, kept=kept, is_identified=wanted.identified)
+            lines = export_from_folder(session, analysis, formats, folder, kept=kept, is_identified=wanted.identified)
         count = sum(path.is_file() for path in folder.rglob("*"))
     whose = "with identity" if wanted.identified else "pseudonymised"
-    return [f"{wanted.out}: {count} {'file' if count == 1 else 'files'}, {whose}."]
+    return [f"{wanted.out}: {count} {'file' if count == 1 else 'files'}, {whose}.", *lines]
 
 
 def _chosen(option: str, said: str, known: Sequence[str], what: str) -> list[str]:

@@ -100,7 +100,20 @@ WORDS = {
         later("Every second stride differs from the others by {value} standard errors ({limit} at most).")
     ),
     "loss": GateWords(
-        later("{value} of a sensor's samples are missing ({limit} at most)."), later("Move the receiver nearer.")
+        later("Gaps over 50 ms take {value} of the strides used ({limit} at most)."),
+        later("Move the receiver nearer."),
+    ),
+    "clipping": GateWords(
+        later("The motion exceeded a sensor's range in {value} of the strides used ({limit} at most)."),
+        later("Choose a wider range, then record again."),
+    ),
+    "rate": GateWords(
+        later("A sensor's samples came at {value} of the rate set (limit {limit})."),
+        later("Check its sample rate, then record again."),
+    ),
+    "every_second": GateWords(
+        later("Every second sample of a sensor is missing: {value} came (limit {limit})."),
+        later("Check its sample rate, move the receiver nearer, then record again."),
     ),
     "events": GateWords(later("Stance takes {value} of the stride (limit {limit}): the events may be wrong.")),
     "distance": GateWords(later("The stride lengths of both feet differ by {value} ({limit} at most).")),

@@ -61,7 +61,7 @@ def import_files(wanted: argparse.Namespace, progress: Report) -> list[str]:
     trial = read_foreign_trial(wanted.format or "", wanted.files, wanted.rate, lambda: progress(0.0, name))
     imported = place_trial(trial, placement, name)
     recording = Recording(name, kind, folder_for(name), imported.imu)
-    session = add_recording(session, recording, imported.sensors, imported.findings)
+    session = add_recording(session, recording, imported.sensors, imported.findings, imported.is_simulated)
     progress(0.5, str(wanted.out))
     write_over_session(session, wanted.out)
     held = f"{wanted.out} now holds {name}, with {len(imported.imu)} of 6 sites."

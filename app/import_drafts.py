@@ -116,7 +116,7 @@ def session_of(
         imported = place_sensors(one.trial, placed, name)
         started = _when(one.trial)
         recording = Recording(name, kind, folder_for(name), imported.imu, started=started, note=one.title)
-        session = add_recording(session, recording, imported.sensors, imported.findings)
+        session = add_recording(session, recording, imported.sensors, imported.findings, imported.is_simulated)
         session = replace(session, started=session.started or started)
     return session
 

@@ -100,6 +100,18 @@ SENTENCES = {
         "samples are missing ({missing_percent:.1f} % in all; gaps: {count}, the longest {longest_s:.2f} s). "
         "Too few are left to rely on; record again, nearer to the receiver."
     ),
+    "pause": (
+        "no sensor recorded anything for {length_s:.1f} s from {from_s:.1f} s on. The strides before and after this "
+        "pause are used."
+    ),
+    "rate_off": (
+        "{rate_hz:.1f} samples per second came, {nominal_hz:.1f} were set. Check the sample rate of this sensor, then "
+        "record again."
+    ),
+    "every_second_lost": (
+        "every second sample is missing ({lost_percent:.0f} % lost): {rate_hz:.1f} per second came, {nominal_hz:.1f} "
+        "were set. Check the sample rate of this sensor, move the receiver nearer, then record again."
+    ),
     "acc_in_g": (
         "the median acceleration is {median_m_s2:.2f} m/s² where some 9.81 m/s² are expected, as if in g; its "
         "joints are left out. Convert the file and import it again."

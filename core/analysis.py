@@ -24,8 +24,9 @@ from core.joint_findings import about_angles, about_joint, about_missing_joints,
 from core.measure import Twist, measure
 from core.placement.labels import doubted_labels
 from core.published.angles import DEFAULT_TAU_S
-from core.quality import look_at, lost_percent
+from core.quality import look_at
 from core.rate_kind import tracks_of_kind
+from core.reception import receptions
 from core.results import (
     Analysis,
     Calibration,
@@ -312,8 +313,14 @@ def _angles(
         for joint in (knee for knee in joints if knee.is_knee):
             leaning |= _inclinations(tracks, calibrated[bases[recording.name, joint]], measured[recording.name, joint])
         gait = gait_in(tracks, recording, time_s, joints, offsets, leaning)
-    lost = {site: lost_percent(block) for site, block in recording.imu.items() if tracks.is_usable(recording, site)}
-    return RecordingAnalysis(recording.name, recording.folder, recording.kind, time_s, joints, gait, lost)
+    nominal_hz = {site: info.rate_hz for site, info in tracks.session.sensors.items()}
+    offsets_s = {
+        site: _offset_of_s(recording, site, lags) + (hips.offset_s(recording, site.side) if site.side else 0.0)
+        for site in recording.imu
+        if tracks.is_usable(recording, site)
+    }
+    received = receptions(recording, nominal_hz, offsets_s)
+    return RecordingAnalysis(recording.name, recording.folder, recording.kind, time_s, joints, gait, received)
 
 
 def _inclinations(tracks: SensorTracks, knee: JointCalibration, found: Twist) -> dict[Site, FloatArray]:
@@ -382,9 +389,16 @@ def _lags_in(recording: Recording, lags: dict[tuple[str, Joint], float]) -> dict
 def _clock_offset_s(
     tracks: SensorTracks, recording: Recording, side: Side, lags: dict[tuple[str, Joint], float]
 ) -> float:
-    """What brings the clock of the sensor that tells the events to the thigh's: the lags of the joints between."""
+    """What brings the clock of the sensor that tells the events to the thigh's."""
     site = site_of_events(tracks, recording, side)
-    joints = (knee_of(side), ankle_of(side)) if site and site.segment is Segment.FOOT else (knee_of(side),)
+    return _offset_of_s(recording, site or Site(f"{side}_{Segment.SHANK}"), lags)
+
+
+def _offset_of_s(recording: Recording, site: Site, lags: dict[tuple[str, Joint], float]) -> float:
+    """What brings the clock of a leg's sensor to its thigh's: the lags of the joints between; the pelvis has none."""
+    if site.side is None or site.segment is Segment.THIGH:
+        return 0.0
+    joints = (knee_of(site.side), ankle_of(site.side))[: 1 if site.segment is Segment.SHANK else 2]
     return sum(lags.get((recording.name, joint), 0.0) for joint in joints)
 
 

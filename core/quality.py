@@ -1,22 +1,33 @@
 """Quality of the samples: every recording is looked at before anything is computed from it."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from core.body import LEG_JOINTS, Site
 from core.calibration.rest import rest_of
+from core.clipping import clipped_forces, clipped_rates
 from core.clock_jumps import jump_of, spans_of
 from core.findings import Finding, Severity
 from core.handedness import Turn, reversed_sites, turn_about_vertical
 from core.pair import moving_mean
+from core.reception import (
+    KEPT_RATE_PERCENT,
+    Pause,
+    gaps_of,
+    is_half,
+    lost_percent,
+    outside_of,
+    pauses_of,
+    rate_percent,
+)
 from core.samples import BoolArray, FloatArray, ImuBlock, IntArray, Recording, RecordingKind, Session
 from core.tracks import (
     MAX_REPORTED_GAP_S,
     MIN_STRETCH_S,
     MIN_STRETCH_SAMPLES,
     in_every_column,
-    is_heard,
     is_possible,
     is_stuck,
     nominal_step_s,
@@ -29,17 +40,11 @@ PLAUSIBLE_M_S2 = (5.0, 20.0)
 PLAUSIBLE_RAD_S = 35.0  # 2000 deg/s, the range of the sensors; a walking shank reaches 8
 LARGE = 1e6
 LOOKED_AT_ROWS = 6000  # units show in so many rows as in all
-STEPS_TOGETHER, STEPS_BESIDE = 30, 5
-SHORT_STEP, MIN_SHORT_STEPS = 0.7, 0.005  # of the usual step; of all steps, where stamps jitter
 MIN_RATE_HZ = 25.0  # below, a swing is a handful of samples
 COMPARED_ROWS = 2000
 ROW_FACTORS = 1_000_003 ** np.arange(1, 7)  # two rows hardly ever make one number
 MIN_DISTINCT = 0.8  # share of rows that are unlike all others: a finer sensor than that never repeats itself by chance
 MOVING_RAD_S = 0.5
-CLIPPED_RUN = 3  # equal extreme values in a row
-MIN_CLIPPED = 6  # samples: what happens once is chance
-CLIPPED_STEPS = 5  # of the sensor's least steps: noise goes on by one or two
-CLIPPED_BEYOND_M_S2, CLIPPED_BEYOND_RAD_S = 14.7, 1.5  # 1.5 g; the narrowest ranges are 2 g and 125 deg/s
 MIN_CLIPPED_PERCENT = 0.05
 CLOCK_OFFSET_S = 5.0
 CLOCK_AGREEMENT_S = 1.0
@@ -67,11 +72,17 @@ def look_at(session: Session) -> Quality:
             findings.append(Finding("recording_discarded", Severity.INFO, recording.name))
             continue
         turns: dict[Site, Turn] = {}
+        pauses = pauses_of(recording)
+        for first, last in pauses:
+            numbers = {"from_s": round(first, 1), "length_s": round(last - first, 1)}
+            findings.append(Finding("pause", Severity.WARNING, recording.name, numbers))
         for site, block in recording.imu.items():
             worn[recording.name, site] = block.sensor
             where = f"{recording.name}, {site}"
+            nominal_hz = session.sensors[site].rate_hz if site in session.sensors else None
             about = [
-                Finding(key, severity, where, numbers) for key, severity, numbers in _about_block(block, recording.kind)
+                Finding(key, severity, where, told)
+                for key, severity, told in _about_block(block, recording.kind, nominal_hz, pauses)
             ]
             findings += about
             if any(found.severity is Severity.GRAVE for found in about):
@@ -95,7 +106,9 @@ def look_at(session: Session) -> Quality:
 About = tuple[str, Severity, dict[str, float | int | str]]
 
 
-def _about_block(block: ImuBlock, kind: RecordingKind) -> list[About]:
+def _about_block(
+    block: ImuBlock, kind: RecordingKind, nominal_hz: float | None, pauses: Sequence[Pause]
+) -> list[About]:
     is_there = in_every_column(np.isfinite(block.gyr_rad_s)) & in_every_column(np.isfinite(block.acc_m_s2))
     there = int(np.count_nonzero(is_there))
     if there < MIN_STRETCH_SAMPLES or np.ptp(block.time_s[is_there]) < MIN_STRETCH_S:
@@ -121,14 +134,12 @@ def _about_block(block: ImuBlock, kind: RecordingKind) -> list[About]:
     if stuck > 0.0:
         about.append(("stuck", Severity.WARNING, {"percent": round(stuck, 1)}))
     step_s = nominal_step_s(block.time_s[heard])
-    about += _about_gaps(block, block.time_s[heard], step_s)
+    about += _about_gaps(block.time_s[heard], lost_percent(block, pauses=pauses), pauses)
+    about += _about_rate(block.time_s[heard], nominal_hz)
     rate_hz = 1 / step_s
     if rate_hz < MIN_RATE_HZ:
         about.append(("low_rate", Severity.WARNING, {"rate_hz": round(rate_hz, 1)}))
-    clipped = max(
-        _clipped_percent(block.acc_m_s2[heard], CLIPPED_BEYOND_M_S2),
-        _clipped_percent(block.gyr_rad_s[heard], CLIPPED_BEYOND_RAD_S),
-    )
+    clipped = _clipped_percent(block, heard)
     if clipped > MIN_CLIPPED_PERCENT and kind is not RecordingKind.STANDING:
         about.append(("clipped", Severity.WARNING, {"percent": round(clipped, 2)}))
     if kind is RecordingKind.STANDING and rest_of(block) is None:
@@ -163,87 +174,43 @@ def _lengths(vectors: FloatArray) -> FloatArray:
     return np.sqrt(np.einsum("ni,ni->n", vectors, vectors, dtype=np.float64))
 
 
-def lost_percent(block: ImuBlock) -> float:
-    """How many of a sensor's samples are missing, to its own rate; 100 where next to none was heard.
-
-    Returns
-    -------
-    float
-        Percent.
-    """
-    heard_s = block.time_s[is_heard(block.time_s, block.gyr_rad_s, block.acc_m_s2)]
-    return _missing_percent(block, heard_s, nominal_step_s(heard_s)) if len(heard_s) >= MIN_STRETCH_SAMPLES else 100.0
-
-
-def _missing_percent(block: ImuBlock, heard_s: FloatArray, step_s: float) -> float:
-    missing = float(np.sum(_missing_rows(heard_s, step_s)))
-    missing += float(np.count_nonzero(block.time_s < heard_s[0]) + np.count_nonzero(block.time_s > heard_s[-1]))
-    return 100 * missing / (missing + len(heard_s))
-
-
-def _missing_rows(heard_s: FloatArray, step_s: float) -> FloatArray:
-    """How many samples lack after each but the last (n - 1,).
-
-    Where stamps jitter, which shows in short steps, a long step between short ones lacks nothing: as many samples must
-    be missing around it, by a step that many steps tell.
-    """
-    steps = np.diff(heard_s)
-    if len(steps) <= STEPS_TOGETHER or np.mean(steps < SHORT_STEP * step_s) < MIN_SHORT_STEPS:
-        return np.asarray(np.maximum(np.round(steps / step_s) - 1, 0))
-    together_s = (heard_s[STEPS_TOGETHER:] - heard_s[:-STEPS_TOGETHER]) / STEPS_TOGETHER
-    step_s = float(np.quantile(together_s, 0.1))
-    index = np.arange(len(steps))
-    first, last = np.maximum(index - STEPS_BESIDE, 0), np.minimum(index + STEPS_BESIDE + 1, len(steps))
-    around = np.floor((heard_s[last] - heard_s[first]) / step_s - (last - first) + 0.3)
-    return np.asarray(np.clip(np.round(steps / step_s) - 1, 0, np.maximum(around, 0)))
-
-
-def _about_gaps(block: ImuBlock, heard_s: FloatArray, step_s: float) -> list[About]:
-    steps = np.diff(heard_s)
-    percent = _missing_percent(block, heard_s, step_s)
-    longest_s = float(np.max(steps))
-    count = int(np.count_nonzero(steps > max(MAX_REPORTED_GAP_S, 1.5 * step_s)))
-    if percent < MIN_LOSS_PERCENT and count == 0:
+def _about_gaps(heard_s: FloatArray, percent: float, pauses: Sequence[Pause]) -> list[About]:
+    """What is missing outside of pauses; a gap that is bridged leaves what was measured as good as it was."""
+    gaps_s = gaps_of(heard_s)
+    out_s = outside_of(pauses, gaps_s)
+    is_gap = out_s > MAX_REPORTED_GAP_S
+    if percent < MIN_LOSS_PERCENT and not is_gap.any():
         return []
-    is_grave = percent >= GRAVE_LOSS_PERCENT
-    if count == 0 and not is_grave:
+    if not is_gap.any():
         return [("bridged", Severity.INFO, {"missing_percent": round(percent, 1)})]
     numbers: dict[str, float | int | str] = {
-        "count": count,
+        "count": int(np.count_nonzero(is_gap)),
         "missing_percent": round(percent, 1),
-        "longest_s": round(longest_s, 3),
+        "longest_s": round(float(np.max(out_s)), 3),
     }
+    span_s = float(heard_s[-1] - heard_s[0]) - sum(last - first for first, last in pauses)
+    is_grave = 100.0 * float(np.sum(out_s[is_gap])) >= GRAVE_LOSS_PERCENT * span_s
     # told as a warning in either case: what was heard is still used
     return [("many_gaps" if is_grave else "gaps", Severity.WARNING, numbers)]
 
 
-def _clipped_percent(values: FloatArray, beyond: float) -> float:
-    """How much of the worst column of (n, 3) lies at the end of the sensor's range.
-
-    There a signal stays for some samples, farther from zero than any rest (`beyond`), and would have gone on by the
-    slope with which it came or left. A coarse sensor repeats its extremes as well: where the signal turns.
-    """
-    worst = 0.0
-    for v in (side for column in values.T for side in (column, -column)):
-        limit = float(v.max())
-        if limit <= beyond or np.count_nonzero(v == limit) < CLIPPED_RUN:
-            continue
-        steps = np.abs(np.diff(v))
-        edges = np.flatnonzero(np.diff(np.concatenate([[0], (v == limit).astype(np.int8), [0]])))
-        runs = [(int(i), int(j)) for i, j in zip(edges[::2], edges[1::2], strict=True) if j - i >= CLIPPED_RUN]
-        least = CLIPPED_STEPS * float(np.min(steps[steps > 0.0], initial=np.inf))
-        clipped = sum(j - i for i, j in runs if _would_go_on(v, i, j, limit, least))
-        if clipped >= MIN_CLIPPED:
-            worst = max(worst, 100 * clipped / len(v))
-    return worst
+def _about_rate(heard_s: FloatArray, nominal_hz: float | None) -> list[About]:
+    """Where samples came at another rate than the sensor was set to."""
+    percent = rate_percent(heard_s, nominal_hz)
+    if percent is None or nominal_hz is None or abs(percent - 100.0) <= KEPT_RATE_PERCENT:
+        return []
+    numbers: dict[str, float | int | str] = {
+        "rate_hz": round(0.01 * percent * nominal_hz, 1),
+        "nominal_hz": round(nominal_hz, 1),
+        "lost_percent": round(100.0 - percent, 1),
+    }
+    return [("every_second_lost" if is_half(percent) else "rate_off", Severity.WARNING, numbers)]
 
 
-def _would_go_on(v: FloatArray, first: int, end: int, limit: float, least: float) -> bool:
-    """Whether a signal comes and leaves by more than `least`, and one of both leads beyond more than flatness does."""
-    sides = [(v[i], v[i] - v[k]) for i, k in ((first - 1, first - 2), (end, end + 1)) if 0 <= k < len(v)]
-    farthest = max((limit - near for near, _ in sides), default=0.0)
-    beyond = max((near + slope - limit for near, slope in sides), default=0.0)
-    return beyond > max(least, 0.5 * farthest) and all(slope > least for _, slope in sides)
+def _clipped_percent(block: ImuBlock, heard: BoolArray) -> float:
+    """How much of the worst axis lies at one end of the sensor's range."""
+    ends = (clipped_rates(block.gyr_rad_s[heard]), clipped_forces(block.acc_m_s2[heard]))
+    return 100 * max(float(column.mean()) for end in ends for column in (*end.T, np.zeros(1)))
 
 
 def _same_data(recording: Recording) -> list[tuple[tuple[Site, ...], Finding]]:

@@ -10,6 +10,7 @@ from core.gait.clocks import LegClocks
 from core.gait.events import FootEvents
 from core.gait.strides import Strides
 from core.hip.results import HipAngle, LegClock, PelvisAngles, PelvisTurn
+from core.reception import Reception
 from core.samples import FloatArray, IntArray, RecordingKind
 from core.timed.found import TimedTest
 from core.verdicts.model import Verdicts
@@ -142,8 +143,8 @@ class RecordingAnalysis:
 
     Attributes
     ----------
-    lost_percent
-        Samples missing, by site.
+    received
+        What it holds of each sensor, by site: gaps, samples at the end of the range, the rate.
     slipped_from_s
         From when on a side's straps are not to be trusted, on the recording's clock; -inf throughout.
     drifting_percent
@@ -167,7 +168,7 @@ class RecordingAnalysis:
     time_s: FloatArray
     joints: Mapping[Joint, JointAngle]
     gait: Mapping[Side, SideGait] = field(default_factory=dict)
-    lost_percent: Mapping[Site, float] = field(default_factory=dict)
+    received: Mapping[Site, Reception] = field(default_factory=dict)
     slipped_from_s: Mapping[Side, float] = field(default_factory=dict)
     drifting_percent: Mapping[Site, float] = field(default_factory=dict)
     doubted_sites: frozenset[Site] = frozenset()
@@ -178,6 +179,11 @@ class RecordingAnalysis:
     leg_clock: LegClock | None = None
     verdicts: Verdicts = field(default_factory=Verdicts)
     timed: TimedTest | None = None
+
+    @property
+    def lost_percent(self) -> Mapping[Site, float]:
+        """Samples missing, by site."""
+        return {site: one.lost_percent for site, one in self.received.items()}
 
     @property
     def measured(self) -> Mapping[Joint, JointAngle | HipAngle]:

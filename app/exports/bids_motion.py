@@ -1,9 +1,10 @@
-"""How does a set of BIDS data hold what the sensors measured? A recording's samples, their channels and settings.
+"""BIDS-Motion data of what the sensors measured: a recording's samples, their channels and settings.
 
 As the Brain Imaging Data Structure has it for motion: one table without heads for each tracking system, which is all
 sensors of one time base, with the latencies from the start of the recording in its first column. Samples and times are
 those of the recording to their last digit; what is missing is n/a. Two columns of ours say what BIDS has no word for,
-the sensor's number and what its rates are, so that `gaitwright import` gives back the same recording.
+the sensor's number and what its rates are, and a setting says what is simulated: `gaitwright import` gives back the
+same recording.
 """
 
 import json
@@ -17,7 +18,7 @@ import numpy as np
 
 from app.exports.figures import SIMULATED, software
 from app.storage.pseudonyms import AGE, age_in_words
-from app.wording import PURPOSE
+from app.wording import PURPOSE, tr
 from core.body import Site
 from core.samples import FloatArray, ImuBlock, Recording, RecordingKind, SensorInfo, Session
 
@@ -33,6 +34,7 @@ OLDEST_YEARS = 89  # BIDS has one age for all from here on
 UNKNOWN_START = "1900-01-01T00:00:00"  # BIDS takes years before 1926 for moved ones
 MISSING = "n/a"
 DERIVED = "derived"
+IS_SIMULATED = "Simulated"  # of our own, as BIDS has no word for it: an import keeps what nobody was measured for apart
 AXES, QUATERNION = ("x", "y", "z"), ("quat_w", "quat_x", "quat_y", "quat_z")
 COLUMNS = ("name", "component", "type", "tracked_point", "units", "reference_frame", "sensor", "rate_kind")
 ABOUT_COLUMNS = {
@@ -66,22 +68,28 @@ class BidsChannel:
     values: FloatArray
 
 
-def write_bids(session: Session, folder: Path) -> None:
+def write_bids(session: Session, folder: Path) -> str:
     """Write the recordings that were kept as a set of data of one participant, into `folder`, which is new.
+
+    Returns
+    -------
+    str
+        Why nothing was written, in the user's language; empty where something was.
 
     Raises
     ------
     OSError
         The files cannot be written.
     """
+    held = [one for one in session.recordings if one.is_kept and any(len(block) for block in one.imu.values())]
+    if not held:
+        return tr("No recording that was kept holds samples.")
     participant = f"sub-{_label(session.patient.code) or 'unknown'}"
     motion = folder / participant / "motion"
     motion.mkdir(parents=True)
     scans = ["filename\tacq_time"]
     runs: dict[RecordingKind, int] = {}
-    for recording in session.recordings:
-        if not recording.is_kept or not any(len(block) for block in recording.imu.values()):
-            continue
+    for recording in held:
         run = runs[recording.kind] = runs.get(recording.kind, 0) + 1
         for system, sites in _systems(recording).items():
             base = f"{participant}_task-{TASKS[recording.kind]}_tracksys-{system}_run-{run}"
@@ -104,6 +112,7 @@ def write_bids(session: Session, folder: Path) -> None:
         "Accelerations hold gravity. Axes are those of the sensors, whose alignment to the body is not known.",
     ]
     (folder / "README").write_text("\n".join([*said, ""]), encoding="utf-8")
+    return ""
 
 
 def _systems(recording: Recording) -> dict[str, list[Site]]:
@@ -189,6 +198,8 @@ def _settings(
         "TrackedPointsCount": len(sites),
         "MotionChannelCount": len(channels),
     }
+    if session.is_simulated:
+        settings[IS_SIMULATED] = True
     settings |= {f"{kind}ChannelCount": kinds.count(kind) for kind in dict.fromkeys(kinds)}
     if len(models) == 1 and (model := next(iter(models))):
         settings["ManufacturersModelName"] = model

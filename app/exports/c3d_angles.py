@@ -1,14 +1,16 @@
-"""How does a motion laboratory's program read the angles? One C3D file per recording, angles as points, with events.
+"""Angles and events for programs of motion laboratories: a C3D file per recording, angles as points.
 
 Angles stand where such programs look for them: as points of the kind ANGLES, LKneeAngles and so on, of which the first
 component bends; the two others were not measured and are 0. Of a hip the second one is adduction, where that is told.
 A C3D has one rate and no stamps, so each frame holds the row of angles.csv nearest to it, at most half a frame away; a
-frame without one, or in a gap, has residual -1.
+frame without one, or in a gap, has residual -1. The format counts frames in 16 bits, and programs differ in how they
+count beyond (the one used here to write reads 65 535 of them back), so a longer recording goes on in another file.
 
 A joint that is withheld, or whose sign is not known, is left out. One without a zero is named as its shape, such as
 LKneeAngles_SHAPE, and its mean is taken away, so that nothing reads a height from it. PROCESSING:STATUS says why.
 """
 
+from collections.abc import Sequence
 from pathlib import Path
 from textwrap import shorten
 
@@ -16,14 +18,14 @@ import ezc3d
 import numpy as np
 
 from app.exports.figures import SIMULATED, status_in_ascii, told_abduction_deg, told_deg
+from app.exports.parts import part_paths
 from app.reports.gait_csv import events_of
-from app.reports.status import NO_ZERO, WITH_HEIGHT, joint_status
-from app.wording import PURPOSE
-from core.body import Joint, JointKind
+from app.reports.status import NO_ZERO, WITH_HEIGHT, joint_status, why_status
+from app.wording import PURPOSE, tr
+from core.body import Joint, JointKind, Side
 from core.results import RecordingAnalysis
 from core.samples import FloatArray, IntArray
 from core.tracks import nominal_step_s
-from devices.files.refusal import FileRefusedError
 
 POINTS = {
     Joint.LEFT_KNEE: "LKneeAngles",
@@ -49,29 +51,27 @@ MOST_ENTRIES = 255  # and the entries of a list in 8, so a longer one goes on in
 HALF_A_FRAME = 0.5 + 1e-6
 
 
-def write_c3d(recording: RecordingAnalysis, is_simulated: bool, path: Path) -> None:
-    """Write one recording's angles and events; time starts at its first row.
+def write_c3d(recording: RecordingAnalysis, is_simulated: bool, path: Path) -> str:
+    """Write one recording's angles and events; time starts at the first row of each file.
+
+    Returns
+    -------
+    str
+        Why there is no file, in the user's language; empty where there is.
 
     Raises
     ------
-    FileRefusedError
-        It is longer than a C3D can hold.
     OSError
         The file cannot be written.
     """
     status = {joint: joint_status(recording, joint) for joint in POINTS if joint in recording.measured}
     joints = [joint for joint, said in status.items() if said in TOLD]
+    if not joints and not events_of(recording):
+        reasons = [why_status(recording, joint) for joint in status]
+        return " ".join([tr("Neither angles nor events of it can be given."), *dict.fromkeys(filter(None, reasons))])
     found = {joint: told_abduction_deg(recording, joint) for joint in joints if joint.is_hip}
     abductions = {joint: abduction_deg for joint, abduction_deg in found.items() if abduction_deg is not None}
     rows, step_s = _rows_of_frames(recording)
-    if len(rows) > MOST_FRAMES:
-        raise FileRefusedError(
-            recording.name,
-            "{count} frames are more than a C3D can hold ({most})",
-            "Take the CSV or the OpenSim file of this recording",
-            count=len(rows),
-            most=MOST_FRAMES,
-        )
     values = np.zeros((4, len(joints), len(rows)))
     values[3] = 1.0
     for k, joint in enumerate(joints):
@@ -81,32 +81,46 @@ def write_c3d(recording: RecordingAnalysis, is_simulated: bool, path: Path) -> N
         values[0, k] = np.append(angle_deg, np.nan)[rows]  # a frame without a row is the last, which is missing
         if joint in abductions:
             values[1, k] = np.append(-abductions[joint], np.nan)[rows]
-    is_missing = ~np.isfinite(values[0])
-    values[:3, is_missing] = np.nan
+    values[:3, ~np.isfinite(values[0])] = np.nan
+    labels = [POINTS[joint] + (SHAPE if status[joint] == NO_ZERO else "") for joint in joints]
+    descriptions = [_description(joint, status[joint], has_adduction=joint in abductions) for joint in joints]
+    firsts, events = range(0, len(rows), MOST_FRAMES), events_of(recording)
+    start_s = float(recording.time_s[0]) if len(recording.time_s) else 0.0
+    part_of = [min(max(int((one[0] - start_s) / (step_s * MOST_FRAMES)), 0), len(firsts) - 1) for one in events]
+    for first, place in zip(firsts, part_paths(path, len(firsts)), strict=True):
+        c3d = _angles_in_c3d(values[:, :, first : first + MOST_FRAMES], step_s, labels, descriptions)
+        said = [f"{joint}: {status_in_ascii(recording, joint)}" for joint in status]
+        c3d.add_parameter("PROCESSING", "STATUS", [shorten(text, LONGEST_TEXT, placeholder=" ...") for text in said])
+        c3d.add_parameter("PROCESSING", "USE", [PURPOSE])
+        c3d.add_parameter("SUBJECTS", "IS_SIMULATED", [int(is_simulated)])
+        if is_simulated:
+            c3d.add_parameter("SUBJECTS", "NOTE", [SIMULATED])
+        number = first // MOST_FRAMES
+        if len(firsts) > 1:
+            c3d.add_parameter("PROCESSING", "PART", [1.0 + number, float(len(firsts))])
+            c3d.add_parameter("PROCESSING", "PART_STARTS_S", [step_s * first])
+        here = [one for one, part in zip(events, part_of, strict=True) if part == number]
+        _add_events(c3d, here, start_s + step_s * first)
+        place.touch()  # ezc3d reports an unwritable file in its own words
+        c3d.write(str(place))
+    return ""
+
+
+def _angles_in_c3d(values: FloatArray, step_s: float, labels: Sequence[str], descriptions: Sequence[str]) -> ezc3d.c3d:
+    """A C3D with the angles (4, joints, frames) as points."""
     c3d = ezc3d.c3d()
     point = c3d["parameters"]["POINT"]
     point["RATE"]["value"] = [1.0 / step_s]
-    labels = [POINTS[joint] + (SHAPE if status[joint] == NO_ZERO else "") for joint in joints]
-    point["LABELS"]["value"] = labels
-    point["DESCRIPTIONS"]["value"] = [
-        _description(joint, status[joint], has_adduction=joint in abductions) for joint in joints
-    ]
-    point["UNITS"]["value"] = ["deg"] * len(joints)
+    point["LABELS"]["value"] = list(labels)
+    point["DESCRIPTIONS"]["value"] = list(descriptions)
+    point["UNITS"]["value"] = ["deg"] * len(labels)
     c3d.add_parameter("POINT", "TYPE_GROUPS", ["ANGLES"])
-    c3d.add_parameter("POINT", "ANGLES", labels)
+    c3d.add_parameter("POINT", "ANGLES", list(labels))
     c3d.add_parameter("POINT", "ANGLE_UNITS", ["deg"])
     c3d.add_parameter("MANUFACTURER", "SOFTWARE", ["gaitwright"])
-    said = [f"{joint}: {status_in_ascii(recording, joint)}" for joint in status]
-    c3d.add_parameter("PROCESSING", "STATUS", [shorten(text, LONGEST_TEXT, placeholder=" ...") for text in said])
-    c3d.add_parameter("PROCESSING", "USE", [PURPOSE])
-    c3d.add_parameter("SUBJECTS", "IS_SIMULATED", [int(is_simulated)])
-    if is_simulated:
-        c3d.add_parameter("SUBJECTS", "NOTE", [SIMULATED])
     c3d["data"]["points"] = values
-    c3d["data"]["meta_points"]["residuals"] = np.where(is_missing, -1.0, 0.0)[None]
-    _add_events(c3d, recording)
-    path.touch()  # ezc3d reports an unwritable file in its own words
-    c3d.write(str(path))
+    c3d["data"]["meta_points"]["residuals"] = np.where(np.isfinite(values[0]), 0.0, -1.0)[None]
+    return c3d
 
 
 def _rows_of_frames(recording: RecordingAnalysis) -> tuple[IntArray, float]:
@@ -131,14 +145,13 @@ def _description(joint: Joint, status: str, *, has_adduction: bool) -> str:
     return f"x: {BENDS[joint.kind]}{shape}{', from standing' if joint.is_hip else ''}; {rest}"
 
 
-def _add_events(c3d: ezc3d.c3d, recording: RecordingAnalysis) -> None:
-    start_s = float(recording.time_s[0]) if len(recording.time_s) else 0.0
-    events = events_of(recording)
+def _add_events(c3d: ezc3d.c3d, events: Sequence[tuple[float, Side, str]], from_s: float) -> None:
+    """Add the events of a file that begins at `from_s` on their clock."""
     c3d.add_parameter("EVENT", "USED", [len(events)])
     for number, first in enumerate(range(0, len(events), MOST_ENTRIES), start=1):
         some = events[first : first + MOST_ENTRIES]
         end = str(number) if number > 1 else ""
         c3d.add_parameter("EVENT", f"CONTEXTS{end}", [side.capitalize() for _, side, _ in some])
         c3d.add_parameter("EVENT", f"LABELS{end}", [EVENTS[event] for _, _, event in some])
-        minutes_seconds = np.array([divmod(time_s - start_s, 60.0) for time_s, _, _ in some]).T
+        minutes_seconds = np.array([divmod(time_s - from_s, 60.0) for time_s, _, _ in some]).T
         c3d.add_parameter("EVENT", f"TIMES{end}", minutes_seconds)

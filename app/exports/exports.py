@@ -1,5 +1,6 @@
-"""How do results leave for another program? In the formats asked for, without names unless identity is asked for."""
+"""Results for other programs: in the formats asked for, without names unless identity is asked for."""
 
+import logging
 import shutil
 import tempfile
 from collections.abc import Callable, Collection, Sequence
@@ -17,6 +18,7 @@ from app.storage.journal.decoding import Decoders
 from app.storage.opened import OpenedLibrary, Report
 from app.storage.pseudonyms import Pseudonyms, Typed
 from app.storage.stored import Action
+from app.wording import filled
 from core.analysis import analyse
 from core.results import Analysis, RecordingAnalysis
 from core.samples import Session
@@ -31,6 +33,7 @@ class Format(StrEnum):
     BIDS = "bids-motion"
 
 
+_log = logging.getLogger(__name__)
 SPREADSHEET, BUNDLE = "gaitwright.xlsx", "fhir_bundle.json"
 NEEDED = {Format.XLSX: "openpyxl", Format.C3D: "ezc3d"}  # libraries of the extra `exports`
 
@@ -61,22 +64,27 @@ def export_from_folder(
     *,
     kept: Collection[Typed] = (),
     is_identified: bool = False,
-) -> None:
-    """Write a session that is in no library into `folder`, which is there: whole, or not at all.
+) -> list[str]:
+    """Write a session that is in no library into `folder`, which is there: each format whole, or not at all.
 
     Without identity, of what was typed freely only what is `kept` leaves.
+
+    Returns
+    -------
+    list of str
+        What was not written, and why: one sentence each.
 
     Raises
     ------
     FileRefusedError
-        A library is missing, a recording is too long for a format, or a folder stands where a file should.
+        A library is missing, or no format could be written.
     OSError
         The files cannot be written.
     """
     check_formats(formats)
     if not is_identified:
         session, analysis = pseudonymised(*pseudonyms_of_folder(session), session, analysis, kept)
-    _write(session, analysis, formats, folder)
+    return _write(session, analysis, formats, folder)
 
 
 def export_from_library(
@@ -90,10 +98,15 @@ def export_from_library(
     analysed: Callable[[Session], Analysis] = analyse,
     kept: Collection[Typed] = (),
     is_identified: bool = False,
-) -> None:
+) -> list[str]:
     """Analyse a session of a library and write it; the audit says which formats before anything is written.
 
     Without identity, of what was typed freely only what is `kept` leaves, and the audit names it.
+
+    Returns
+    -------
+    list of str
+        As `export_from_folder`.
 
     Raises
     ------
@@ -118,7 +131,7 @@ def export_from_library(
         pseudonyms = Pseudonyms(opened.library.pseudonyms_key)
         session, analysis = pseudonymised(pseudonyms, visit.patient_id, session, analysis, kept)
     report(1.0, "writing")
-    _write(session, analysis, formats, folder)
+    return _write(session, analysis, formats, folder)
 
 
 def preview_from_folder(session: Session, kept: Collection[Typed] = ()) -> list[Row]:
@@ -140,18 +153,37 @@ def preview_from_library(opened: OpenedLibrary, session_id: UUID, kept: Collecti
     return what_leaves(Pseudonyms(opened.library.pseudonyms_key).session(visit.patient_id, told, kept))
 
 
-def _write(session: Session, analysis: Analysis, formats: Sequence[Format], folder: Path) -> None:
-    """Write beside, then move each file into its place, so that none is half there."""
-    with tempfile.TemporaryDirectory(prefix=".export-", dir=folder) as beside:
-        for wanted in formats:
-            _write_format(session, analysis, wanted, Path(beside))
-        for file in sorted(path for path in Path(beside).rglob("*") if path.is_file()):
-            place = folder / file.relative_to(beside)
-            place.parent.mkdir(parents=True, exist_ok=True)
-            shutil.move(file, place)
+def _write(session: Session, analysis: Analysis, formats: Sequence[Format], folder: Path) -> list[str]:
+    """Write each format beside, then move its files into their places, so that none is half there."""
+    lines, failed = list[str](), list[FileRefusedError]()
+    for wanted in formats:
+        with tempfile.TemporaryDirectory(prefix=".export-", dir=folder) as beside:
+            try:
+                lines += _write_format(session, analysis, wanted, Path(beside))
+            except (OSError, MemoryError):
+                raise
+            except Exception as error:  # a format's edge: whatever its library raises, the other formats are written
+                _log.warning("an export failed", exc_info=error)
+                failed.append(
+                    FileRefusedError(
+                        wanted,
+                        "this format could not be written ({why})",
+                        "Choose another format; the log holds the details",
+                        why=error,
+                    )
+                )
+                continue
+            for file in sorted(path for path in Path(beside).rglob("*") if path.is_file()):
+                place = folder / file.relative_to(beside)
+                place.parent.mkdir(parents=True, exist_ok=True)
+                shutil.move(file, place)
+    if failed and len(failed) == len(formats):
+        raise failed[0]
+    return [*(f"{one.where}: {filled(one.what, one.values)}" for one in failed), *lines]
 
 
-def _write_format(session: Session, analysis: Analysis, wanted: Format, folder: Path) -> None:
+def _write_format(session: Session, analysis: Analysis, wanted: Format, folder: Path) -> list[str]:
+    """Write one format, and give a line for each file that is not written."""
     # here, not above: two of them need libraries that may be missing
     if wanted is Format.XLSX:
         from app.exports.spreadsheet import write_spreadsheet
@@ -164,17 +196,20 @@ def _write_format(session: Session, analysis: Analysis, wanted: Format, folder: 
     elif wanted is Format.BIDS:
         from app.exports.bids_motion import FOLDER, write_bids
 
-        write_bids(session, folder / FOLDER)
-    elif wanted is Format.C3D:
-        from app.exports.c3d_angles import write_c3d
-
-        for recording in analysis.recordings:
-            write_c3d(recording, analysis.is_simulated, _place(recording, folder, "angles.c3d"))
+        why = write_bids(session, folder / FOLDER)
+        return [f"{wanted}: {why}"] if why else []
     else:
-        from app.exports.opensim_motion import write_motion
+        if wanted is Format.C3D:
+            from app.exports.c3d_angles import write_c3d as write
+        else:
+            from app.exports.opensim_motion import write_motion as write
 
-        for recording in analysis.recordings:
-            write_motion(recording, analysis.is_simulated, _place(recording, folder, "angles.mot"))
+        found = {
+            one.name: write(one, analysis.is_simulated, _place(one, folder, f"angles.{wanted}"))
+            for one in analysis.recordings
+        }
+        return [f"{name}, {wanted}: {why}" for name, why in found.items() if why]
+    return []
 
 
 def _place(recording: RecordingAnalysis, folder: Path, name: str) -> Path:

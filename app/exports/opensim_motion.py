@@ -1,4 +1,4 @@
-"""How does OpenSim read the angles? One motion file (.mot) per recording, in degrees, named as a model's coordinates.
+"""Angles for OpenSim: a motion file (.mot) per recording, in degrees, named as a model's coordinates.
 
 The names and signs are those of models whose knee flexion is positive, as Rajagopal et al. 2016, doi
 10.1109/TBME.2016.2586891; in gait2392 the knee has the other sign, hips and pelvis the same one. There x points
@@ -7,17 +7,21 @@ positive where the left side is the higher one. A model takes a coordinate for a
 not known is left out, and a comment says why.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 
 from app.exports.figures import SIMULATED, as_in_csv_deg, status_in_ascii, told_abduction_deg, told_deg
-from app.reports.status import WITH_HEIGHT, joint_status
-from app.wording import PURPOSE
+from app.exports.parts import part_paths
+from app.reports.status import WITH_HEIGHT, joint_status, why_status
+from app.wording import PURPOSE, tr
 from core.body import Joint
 from core.results import RecordingAnalysis
 from core.samples import FloatArray
+from core.tracks import nominal_step_s
 
 COORDINATES = {
     Joint.RIGHT_KNEE: "knee_angle_r",
@@ -27,6 +31,8 @@ COORDINATES = {
     Joint.RIGHT_HIP: "hip_flexion_r",
     Joint.LEFT_HIP: "hip_flexion_l",
 }
+BRIDGED_S = 0.1  # a joint's angle goes straight on for so long
+SHORTEST_S = 0.5  # of what is worth a file
 ADDUCTION = {Joint.RIGHT_HIP: "hip_adduction_r", Joint.LEFT_HIP: "hip_adduction_l"}
 OF_HIPS = (
     "Hip flexion and adduction are positive; pelvis_tilt is negative forward, pelvis_list positive with the left side "
@@ -35,8 +41,24 @@ OF_HIPS = (
 )
 
 
-def write_motion(recording: RecordingAnalysis, is_simulated: bool, path: Path) -> None:
-    """Write one recording's angles, a row per row of angles.csv; NaN in gaps and once a strap has slipped.
+@dataclass(frozen=True, slots=True)
+class MotionPart:
+    """Rows in which the same coordinates are known throughout."""
+
+    rows: slice
+    names: tuple[str, ...]
+
+
+def write_motion(recording: RecordingAnalysis, is_simulated: bool, path: Path) -> str:
+    """Write one recording's angles, a row per row of angles.csv that is known, in as many files as it takes.
+
+    OpenSim stops reading at what is no number. So short gaps are bridged, and at others the file ends and another one
+    begins, `angles_1.mot` and so on.
+
+    Returns
+    -------
+    str
+        Why there is no file, in the user's language; empty where there is.
 
     Raises
     ------
@@ -46,28 +68,75 @@ def write_motion(recording: RecordingAnalysis, is_simulated: bool, path: Path) -
     measured = [joint for joint in COORDINATES if joint in recording.measured]
     joints = [joint for joint in measured if joint_status(recording, joint) in WITH_HEIGHT]
     bending = {COORDINATES[joint]: told_deg(recording, joint) for joint in joints}
-    columns = {**bending, **_of_hips_and_pelvis(recording)}
-    n = len(recording.time_s)
+    found = {**bending, **_of_hips_and_pelvis(recording)}
+    columns = {name: _bridged(recording.time_s, values) for name, values in found.items()}
+    parts = _parts(recording.time_s, columns)
+    if not parts:
+        reasons = [why_status(recording, joint) for joint in measured if joint not in joints]
+        return " ".join([tr("No angle of it can be given as a pose."), *dict.fromkeys(filter(None, reasons))])
     header = [
-        "Coordinates",
-        "version=1",
-        f"nRows={n}",
-        f"nColumns={1 + len(columns)}",
-        "inDegrees=yes",
         "",
         *([SIMULATED] if is_simulated else []),
         f"Made by gaitwright. {PURPOSE}",
         "Knee flexion and ankle dorsiflexion are positive. What is named nowhere in this file was not measured.",
         *([OF_HIPS] if recording.hips else []),
         *(f"{COORDINATES[joint]} is {_said(recording, joint, joint in joints)}" for joint in measured),
+    ]
+    for number, (part, place) in enumerate(zip(parts, part_paths(path, len(parts)), strict=True), start=1):
+        time_s = recording.time_s[part.rows]
+        about = [f"Part {number} of {len(parts)}, {time_s[0]:.3f} to {time_s[-1]:.3f} s."] if len(parts) > 1 else []
+        about += [f"{name} is not known in this part." for name in columns if name not in part.names]
+        for name in part.names:
+            count = int(np.count_nonzero(~np.isfinite(found[name][part.rows])))
+            about += [f"{name} is interpolated over gaps of up to {BRIDGED_S:g} s, {count} rows."] if count else []
+        _write_part(place, time_s, {name: columns[name][part.rows] for name in part.names}, [*header, *about])
+    return ""
+
+
+def _write_part(path: Path, time_s: FloatArray, columns: Mapping[str, FloatArray], about: Sequence[str]) -> None:
+    header = [
+        "Coordinates",
+        "version=1",
+        f"nRows={len(time_s)}",
+        f"nColumns={1 + len(columns)}",
+        "inDegrees=yes",
+        *about,
         "endheader",
         "\t".join(["time", *columns]),
     ]
     with path.open("w", encoding="ascii", newline="\n") as file:
         file.write("\n".join(header) + "\n")
-        for k in range(n):
-            cells = [f"{column[k]:.5f}" if np.isfinite(column[k]) else "NaN" for column in columns.values()]
-            file.write("\t".join([repr(float(recording.time_s[k])), *cells]) + "\n")
+        for k, at_s in enumerate(time_s):
+            cells = (f"{column[k]:.5f}" for column in columns.values())
+            file.write("\t".join([repr(float(at_s)), *cells]) + "\n")
+
+
+def _bridged(time_s: FloatArray, values: FloatArray) -> FloatArray:
+    """The same (n,), straight over what is missing for no longer than `BRIDGED_S`."""
+    known = np.flatnonzero(np.isfinite(values))
+    ends_s = time_s[known]
+    gap = np.flatnonzero((np.diff(known) > 1) & (np.diff(ends_s) <= BRIDGED_S + 1e-9))
+    bridged = values.copy()
+    for first, last in zip(known[gap], known[gap + 1], strict=True):
+        rows = slice(first + 1, last)
+        bridged[rows] = np.interp(time_s[rows], time_s[[first, last]], values[[first, last]])
+    return bridged
+
+
+def _parts(time_s: FloatArray, columns: Mapping[str, FloatArray]) -> list[MotionPart]:
+    """Where the same coordinates are known, without a gap, for as long as is worth a file."""
+    if not columns or len(time_s) < 2:
+        return []
+    is_known = np.isfinite(np.stack(list(columns.values()), axis=1))
+    is_cut = np.any(is_known[1:] != is_known[:-1], axis=1)
+    is_cut |= np.diff(time_s) > max(BRIDGED_S, 1.5 * nominal_step_s(time_s))
+    edges = [0, *(np.flatnonzero(is_cut) + 1).tolist(), len(time_s)]
+    parts = []
+    for first, end in pairwise(edges):
+        names = tuple(name for name, known in zip(columns, is_known[first], strict=True) if known)
+        if names and time_s[end - 1] - time_s[first] >= SHORTEST_S:
+            parts.append(MotionPart(slice(first, end), names))
+    return parts
 
 
 def _of_hips_and_pelvis(recording: RecordingAnalysis) -> Mapping[str, FloatArray]:

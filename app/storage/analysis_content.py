@@ -19,6 +19,7 @@ from core.gait.clocks import ClockTie, LegClocks
 from core.gait.events import FootEvents
 from core.gait.strides import Reason, Strides
 from core.hip.results import ClockStatus, HipAngle, HipIdentification, LegClock, PelvisAngles, PelvisTurn
+from core.reception import Reception
 from core.results import (
     Analysis,
     AxisSource,
@@ -35,14 +36,14 @@ from core.timed.found import NotMeasured, Rise, Silence, StairStride, TimedPart,
 from core.timed.protocols import TimedProtocol
 from core.verdicts.model import Assessment, GateReason, JointVerdicts, LegVerdicts, Verdict, Verdicts
 
-FORMAT = "gaitwright-kept-analysis/4"
+FORMAT = "gaitwright-kept-analysis/5"
 DIGEST, LENGTH = 32, 8
 KINDS = "biuf"  # of arrays: truth and figures
 VALUES: Mapping[str, type] = {
     kind.__name__: kind
     for kind in (
         *(Analysis, Calibration, Finding, FootEvents, JointAngle, JointCalibration),
-        *(RecordingAnalysis, SideGait, Strides),
+        *(Reception, RecordingAnalysis, SideGait, Strides),
         *(HipAngle, HipIdentification, LegClock, PelvisAngles, PelvisTurn),
         *(Assessment, GateReason, LegClocks, JointVerdicts, LegVerdicts, Verdicts),
         *(Rise, Silence, StairStride, TimedPart, TimedTest, Turn),

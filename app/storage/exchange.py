@@ -40,6 +40,7 @@ from devices.files.imports import folder_for
 from devices.files.session_folder import write_session
 from devices.files.session_toml import default_sensor
 from devices.files.site_files import write_site
+from devices.files.trial import SIMULATED_MARK
 from devices.source import SourceInfo
 
 DRIVER, VERSION = "session-folder", "1"
@@ -213,6 +214,8 @@ def export_orphan(opened: OpenedLibrary, orphan: Interrupted, folder: Path, deco
     for number, (sensor, heard) in enumerate(decoded.sensors.items()):
         report(number / len(decoded.sensors), sensor)
         write_site(heard.block, folder / f"{folder_for(names.get(sensor, sensor))}.csv")
+    if decoded.is_simulated:
+        (folder / SIMULATED_MARK).write_text("Nobody was measured.\n", encoding="ascii")
     opened.library.audit.note(Action.EXPORT, subject, **WHOLE)
 
 

@@ -73,6 +73,11 @@ class FoundOffset:
     rival_score: float
     likeness: Mapping[Joint, float]
 
+    @property
+    def is_certain(self) -> bool:
+        """Whether no other offset fits nearly as well."""
+        return self.score >= min(MIN_MARGIN * self.rival_score, self.rival_score + MIN_LEAD)
+
 
 @dataclass(frozen=True, slots=True)
 class Alignment:
@@ -237,7 +242,7 @@ class _PolishedTrial:
             sign,
             {joint: abs(gain) for joint, gain in self.gain.items()},
             {joint: abs(value) for joint, value in self.likeness.items()},
-            start.score >= min(MIN_MARGIN * start.rival_score, start.rival_score + MIN_LEAD),
+            start.is_certain,
         )
 
 

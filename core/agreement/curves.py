@@ -10,7 +10,9 @@ from scipy.signal import butter, sosfiltfilt
 from core.body import Joint
 from core.samples import FloatArray
 
-MAX_GAP_S = 0.05  # no curve is continued across a longer one, as in angles.csv
+MAX_GAP_S = 0.05  # no curve is continued across a longer one, as in angles.csv,
+EVEN_STEPS = 1.5  # but for one sampled so rarely, up to
+LONGEST_STEP_S = 0.051  # 20 times a second, whose steps are a little over the limit as often as under it
 GRID_HZ = 100.0
 CUT_OFF_HZ = 6.0  # walking has its power below; tissue and markers ring above
 FILTER_ORDER = 2
@@ -64,7 +66,10 @@ def stretches_of(curve: TimedAngle) -> Iterator[TimedAngle]:
     time_s, angle_rad = curve.time_s[is_known], np.unwrap(curve.angle_rad[is_known])
     if not len(time_s):
         return
-    for part in np.split(np.arange(len(time_s)), np.nonzero(np.diff(time_s) > MAX_GAP_S)[0] + 1):
+    steps_s = np.diff(time_s)
+    usual_s = float(np.median(steps_s)) if len(steps_s) else 0.0
+    most_s = max(MAX_GAP_S, EVEN_STEPS * usual_s) if usual_s <= LONGEST_STEP_S else MAX_GAP_S
+    for part in np.split(np.arange(len(time_s)), np.nonzero(steps_s > most_s)[0] + 1):
         yield TimedAngle(time_s[part], angle_rad[part])
 
 

@@ -29,6 +29,7 @@ from core.verdicts.model import (
     Verdicts,
     assess,
 )
+from core.verdicts.sample_gates import clipped, lost, off_rate
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +55,9 @@ class GateLimits:
     halves_time_percent: float = 4.0
     thirds_deg: float = 3.0
     odd_even_ratio: float = 3.0
-    lost_percent: tuple[float, float] = (1.0, 5.0)
+    lost_percent: tuple[float, float] = (1.0, 5.0)  # of the time of the strides used, in gaps over 50 ms
+    clipped_percent: tuple[float, float] = (0.0, 20.0)  # of the strides used; +-2 g at a foot shortens them by 15 %
+    rate_percent: tuple[float, float] = (2.0, 10.0)  # off the rate that was set
     stance_percent: tuple[float, float] = (40.0, 85.0)
     stride_length_percent: float = 5.0
     speed_m_s: tuple[float, float] = (0.1, 2.5)
@@ -116,7 +119,7 @@ def _joint_verdicts(
     shape = [
         *_labels(recording, joint.proximal, joint.distal),
         *_calibrated(calibration),
-        *_lost(recording, joint.proximal, joint.distal),
+        *_delivered(recording, joint.proximal, joint.distal),
         *_drifting(recording, Verdict.WITHHELD, joint.proximal, joint.distal),
     ]
     height = [*shape, *_zero(calibration), *_sign(calibration)]
@@ -146,7 +149,7 @@ def _hip_verdicts(recording: RecordingAnalysis, joint: Joint, knee: JointCalibra
         *_labels(recording, joint.proximal, joint.distal),
         *_neighbours(recording.hips[joint].identification),
         *of_knee,
-        *_lost(recording, joint.proximal, joint.distal),
+        *_delivered(recording, joint.proximal, joint.distal),
         *_drifting(recording, Verdict.WITHHELD, joint.proximal, joint.distal),
     ]
     sign = [*_sign(knee)] if knee is not None else []
@@ -162,8 +165,8 @@ def _hip_verdicts(recording: RecordingAnalysis, joint: Joint, knee: JointCalibra
 
 def _worn_hips(recording: RecordingAnalysis) -> list[Joint]:
     """The hips that have a sensor on either side of them, whether they could be found or not."""
-    usable = recording.lost_percent
-    return [hip_of(side) for side in Side if Site.PELVIS in usable and hip_of(side).distal in usable]
+    worn = recording.received
+    return [hip_of(side) for side in Side if Site.PELVIS in worn and hip_of(side).distal in worn]
 
 
 def _heading(found: HipIdentification) -> Iterator[GateReason]:
@@ -193,7 +196,7 @@ def _neighbours(found: HipIdentification) -> Iterator[GateReason]:
 
 def _pelvis(recording: RecordingAnalysis) -> Iterator[GateReason]:
     """The pelvis's frame comes from the hips: where no hip can be read, it has none."""
-    yield from _lost(recording, Site.PELVIS)
+    yield from _delivered(recording, Site.PELVIS)
     trusted = [hip for hip in recording.hips.values() if not [*_neighbours(hip.identification)]]
     if not trusted:
         yield GateReason("pairing", Verdict.WITHHELD, None, LIMITS.pairing_margin)
@@ -225,7 +228,8 @@ def _leg_verdicts(
     timing = [*shared, *_steady_times(gait), *_drifting(recording, Verdict.CARE, foot)]
     if gait.is_toe_off_biased:
         timing.append(GateReason(TOE_OFF_GATE, Verdict.CARE))
-    distance = [*shared, *_lost(recording, foot), *_equal_lengths(recording), *_speed(gait)]
+    distance = [*shared, *lost(recording, LIMITS.lost_percent, foot)]
+    distance += [*clipped(recording, LIMITS.clipped_percent, [foot], [foot]), *_equal_lengths(recording), *_speed(gait)]
     has_length = bool(np.isfinite(strides.length_m[used]).any())
     timing = _without_course(recording, timing)
     return LegVerdicts(assess(timing), assess(distance) if has_length or not used.any() else NOT_MEASURED)
@@ -298,12 +302,11 @@ def _slip(recording: RecordingAnalysis, side: Side) -> Iterator[GateReason]:
         yield GateReason("strap", Verdict.CARE, from_s, None, "s")
 
 
-def _lost(recording: RecordingAnalysis, *sites: Site) -> Iterator[GateReason]:
-    percent = max((recording.lost_percent.get(site, 0.0) for site in sites), default=0.0)
-    care, most = LIMITS.lost_percent
-    if percent > care:
-        is_most = percent > most
-        yield GateReason("loss", Verdict.WITHHELD if is_most else Verdict.CARE, percent, most if is_most else care, "%")
+def _delivered(recording: RecordingAnalysis, *sites: Site) -> Iterator[GateReason]:
+    """What the sensors of a joint delivered."""
+    yield from lost(recording, LIMITS.lost_percent, *sites)
+    yield from clipped(recording, LIMITS.clipped_percent, rates_of=sites)
+    yield from off_rate(recording, LIMITS.rate_percent, *sites)
 
 
 def _drifting(recording: RecordingAnalysis, verdict: Verdict, *sites: Site) -> Iterator[GateReason]:

@@ -141,6 +141,7 @@ def details_of_trial(trial: ImportedTrial, arrays: list[Array]) -> Details:
     return {
         "format": trial.format,
         "started": trial.started,
+        "is_simulated": trial.is_simulated,
         "sensors": [
             {
                 "name": sensor.name,
@@ -182,7 +183,8 @@ def trial_from(details: Details, arrays: Sequence[Array]) -> ImportedTrial:
             UnreadFile(_text(one["file"]), tuple(map(_text, one["ids"])), refusal_from(one["refusal"]))
             for one in details["unread"]
         )
-        return ImportedTrial(_text(details["format"]), sensors, unread, _text(details["started"]))
+        is_simulated = details["is_simulated"] is True
+        return ImportedTrial(_text(details["format"]), sensors, unread, _text(details["started"]), is_simulated)
 
 
 def details_of_gathered(gathered: Gathered) -> Details:

@@ -5,7 +5,8 @@ point and in which unit; `*_motion.json` has the sampling frequency. The files b
 has it; which they are is told by the table of channels. Times are those of a LATENCY channel, in seconds from
 `acq_time` in `*_scans.tsv`, else even. Settings that BIDS lets stand in a folder above are not looked for there.
 
-Two columns that `gaitwright export` adds say what BIDS has no word for: the sensor's number, and what its rates are.
+Two columns that `gaitwright export` adds say what BIDS has no word for: the sensor's number, and what its rates are. A
+setting of ours says that nobody was measured.
 Held against the table of channels of a public set of a commercial system, and against our own exports.
 """
 
@@ -88,7 +89,9 @@ def bids_motion_trial(files: Sequence[Path], rate_hz: float | None = None) -> Im
         raise unread[0].refusal
     started = systems[0].started
     is_real = started[:4].isdigit() and int(started[:4]) > LAST_MOVED_YEAR
-    return ImportedTrial("bids-motion", tuple(_on_one_clock(systems)), tuple(unread), started if is_real else "")
+    is_simulated = any(system.is_simulated for system in systems)
+    sensors = tuple(_on_one_clock(systems))
+    return ImportedTrial("bids-motion", sensors, tuple(unread), started if is_real else "", is_simulated)
 
 
 def _read_sensors(system: MotionSystem, asked_hz: float | None) -> list[UnreadFile]:

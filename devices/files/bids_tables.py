@@ -17,6 +17,7 @@ SCANS = "*_scans.tsv"
 MOST_SCANS = 10
 REQUIRED = ("name", "type", "tracked_point", "component", "units")  # columns of a table of channels
 SENSOR, RATE_KIND = "sensor", "rate_kind"  # columns of ours
+IS_SIMULATED = "Simulated"  # a setting of ours
 MISSING = frozenset(("n/a", "nan", ""))
 LONGEST_LINE = 1_000_000  # bytes
 MOST_SETTINGS = 4_000_000  # bytes
@@ -48,6 +49,7 @@ class MotionSystem:
     rate_hz: float | None
     maker: str = ""
     started: str = ""
+    is_simulated: bool = False
     sensors: list[ImportedSensor] = field(default_factory=list)
 
 
@@ -119,6 +121,7 @@ def read_system(base: Path) -> MotionSystem:
         rate_hz=rate_hz if LEAST_RATE_HZ <= rate_hz <= MOST_RATE_HZ else None,
         maker=maker.replace("n/a", "").strip()[:100],
         started=_acquired(base),
+        is_simulated=settings.get(IS_SIMULATED) is True,
     )
 
 

@@ -1,7 +1,8 @@
 """The programs whose files can be read, each told by what stands in a file, never by its name."""
 
+import tomllib
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from devices.files.apdm import apdm_trial, is_apdm
@@ -15,8 +16,9 @@ from devices.files.mvnx import is_mvnx, mvnx_trial
 from devices.files.opensim_orientations import is_opensim_orientations, opensim_trial
 from devices.files.parquet_tables import is_parquet, parquet_trial
 from devices.files.refusal import FileRefusedError
+from devices.files.session_toml import FILE_NAME
 from devices.files.shimmer_tables import is_shimmer, shimmer_trial
-from devices.files.trial import ImportedTrial
+from devices.files.trial import SIMULATED_MARK, ImportedTrial
 from devices.files.xdf import is_xdf, xdf_trial
 from devices.files.ximu3_files import is_ximu3, ximu3_recording, ximu3_trial
 from devices.files.xsens_mtmanager import is_mtmanager, mtmanager_trial
@@ -69,7 +71,8 @@ def read_trial(name: str, files: Sequence[Path], rate_hz: float | None) -> Impor
     for path in files:
         _refuse_missing(path)
     every = list({path.resolve(): path for path in files}.values())
-    return FORMATS[name or recognised(every)].trial(every, rate_hz)
+    found = FORMATS[name or recognised(every)].trial(every, rate_hz)
+    return replace(found, is_simulated=found.is_simulated or any(map(_is_of_simulated_session, every)))
 
 
 def recognised(files: Sequence[Path]) -> str:
@@ -120,6 +123,17 @@ def format_of(path: Path) -> str | None:
         with path.open("rb") as file:
             head = file.read(HEAD_BYTES)
     return next((name for name, one in FORMATS.items() if one.is_it(path, head)), None)
+
+
+def _is_of_simulated_session(path: Path) -> bool:
+    """Whether a file lies in a recording of a session folder of which nobody was measured, or beside the mark of it."""
+    if (path.resolve().parent / SIMULATED_MARK).is_file():
+        return True
+    beside = path.resolve().parent.parent / FILE_NAME
+    try:
+        return bool(tomllib.loads(beside.read_text(encoding="utf-8"))["session"]["simulated"] is True)
+    except (OSError, ValueError, LookupError, TypeError):
+        return False
 
 
 def _refuse_missing(path: Path) -> None:

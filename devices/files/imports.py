@@ -25,6 +25,7 @@ class ImportedFiles:
     imu: Mapping[Site, ImuBlock]
     sensors: Mapping[Site, SensorInfo]
     findings: tuple[Finding, ...]
+    is_simulated: bool = False
 
 
 def parse_map(text: str) -> dict[Site, str]:
@@ -91,7 +92,8 @@ def place_sensors(trial: ImportedTrial, placed: Sequence[tuple[Site, ImportedSen
     findings = [Finding("file_left_out", Severity.INFO, recording, {"name": name}) for name in left_out]
     for site, sensor in placed:
         findings += [replace(finding, where=f"{recording}, {site}") for finding in sensor.findings]
-    return ImportedFiles(imu, {site: sensor.info for site, sensor in placed}, tuple(findings))
+    sensors_of = {site: sensor.info for site, sensor in placed}
+    return ImportedFiles(imu, sensors_of, tuple(findings), trial.is_simulated)
 
 
 def _sensor_of(trial: ImportedTrial, site: Site, value: str) -> ImportedSensor:
@@ -160,16 +162,23 @@ def add_recording(
     recording: Recording,
     sensors: Mapping[Site, SensorInfo] | None = None,
     findings: Sequence[Finding] = (),
+    is_simulated: bool = False,
 ) -> Session:
-    """`session` with one recording more, the latest.
+    """`session` with one recording more, the latest; of a simulated one the whole session is.
 
     What is known of a sensor stays as it was said first; rates and their kind only while all recordings agree on them.
 
     Raises
     ------
     FileRefusedError
-        The session has a recording of this name or in this folder.
+        The session has a recording of this name or in this folder, or somebody was measured in it and not in this one.
     """
+    if is_simulated and session.recordings and not session.is_simulated:
+        raise FileRefusedError(
+            recording.name,
+            "these files are simulated, and the session is not",
+            "Import them into a session of their own",
+        )
     for other in session.recordings:
         if other.name == recording.name:
             raise FileRefusedError(
@@ -194,6 +203,7 @@ def add_recording(
         recordings=recordings,
         sensors={**added, **{site: _agreed(info, added.get(site, info)) for site, info in session.sensors.items()}},
         findings=(*session.findings, *findings, *changes),
+        is_simulated=session.is_simulated or is_simulated,
     )
 
 

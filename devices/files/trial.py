@@ -12,6 +12,7 @@ from devices.files.refusal import FileRefusedError
 T = TypeVar("T")
 
 SESSION = "session"  # in place of a format: a session folder
+SIMULATED_MARK = "SIMULATED.txt"  # beside tables that belong to no session folder, which would say it
 PROGRAMS: Mapping[str, str] = {  # what writes each of `formats.FORMATS`, whose import takes longer than most files
     "xsens-mtmanager": "Xsens MT Manager",
     "movella-dot": "the Movella DOT app",
@@ -78,12 +79,16 @@ class UnreadFile:
 
 @dataclass(frozen=True, slots=True)
 class ImportedTrial:
-    """`format`: one of `formats.FORMATS`. `started`: as the file says it, empty where it does not."""
+    """`format`: one of `formats.FORMATS`. `started`: as the file says it, empty where it does not.
+
+    `is_simulated`: the files, or the session that they are a part of, say that nobody was measured.
+    """
 
     format: str
     sensors: tuple[ImportedSensor, ...]
     unread: tuple[UnreadFile, ...] = ()
     started: str = ""
+    is_simulated: bool = False
 
 
 @dataclass(frozen=True, slots=True)

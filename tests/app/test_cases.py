@@ -209,7 +209,6 @@ RIGHT: Mapping[str, Callable[[Case], None]] = {
     "ximu3-restarted": ximu3_restarted,
 }
 LONG = {"c3d-over-65535-frames"}
-MENDED_ELSEWHERE = {"c3d-over-65535-frames", "clipped-at-2g", "dot-every-second-lost", "pause-in-a-walk"}
 NOT_YET = {
     "acc-and-gyro-apart",
     "c3d-frames-float",
@@ -227,7 +226,7 @@ NOT_YET = {
 
 def marked(name: str) -> Any:
     marks = [pytest.mark.endurance] if name in LONG else []
-    if name in MENDED_ELSEWHERE | NOT_YET:
+    if name in NOT_YET:
         marks.append(pytest.mark.xfail(strict=True, reason="files of recordings"))
     return pytest.param(name, marks=marks)
 

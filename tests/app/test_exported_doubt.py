@@ -127,13 +127,17 @@ def analysed(case: Case) -> tuple[Session, Analysis]:
     return session, analyse(session)
 
 
+NOT_WRITTEN = "not_written"  # what the export said of files that it left out
+
+
 @pytest.fixture(scope="module")
 def out(analysed: tuple[Session, Analysis], tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder of results of a case, with every format in it."""
     folder = tmp_path_factory.mktemp("out")
     write_results(*analysed, folder)
     write_log(*analysed, folder / LOG)
-    export_from_folder(*analysed, list(Format), folder, is_identified=True)
+    lines = export_from_folder(*analysed, list(Format), folder, is_identified=True)
+    (folder / NOT_WRITTEN).write_text("\n".join(lines), encoding="utf-8")
     return folder
 
 
@@ -306,7 +310,12 @@ MOT = {"knee_angle_l": "left_knee", "knee_angle_r": "right_knee"} | {
 
 
 def in_mot(out: Path) -> dict[str, str]:
-    """The coordinates that are there, and the comments on them. A shape is no pose, so it is left out."""
+    """The coordinates that are there, and the comments on them. A shape is no pose, so it is left out.
+
+    Where none is left there is no file, and the export says why.
+    """
+    if not (out / "walk_1" / "angles.mot").exists():
+        return dict.fromkeys(CURVES, SHAPE if "No zero was set" in words_of_mot(out) else WITHHELD)
     head, body = (out / "walk_1" / "angles.mot").read_text(encoding="ascii").split("endheader\n")
     names = body.splitlines()[0].split("\t")
     comments = dict(line.split(" is ", 1) for line in head.splitlines() if line.split(" is ")[0] in MOT)
@@ -393,6 +402,15 @@ def words_of_about(out: Path) -> str:
     return "\n".join(str(row[1]) for row in rows)
 
 
+def words_of_mot(out: Path) -> str:
+    path = out / "walk_1" / "angles.mot"
+    if path.exists():
+        return path.read_text(encoding="ascii")
+    lines = (out / NOT_WRITTEN).read_text(encoding="utf-8").splitlines()
+    (line,) = (line for line in lines if line.startswith(f"{WALK}, mot: No angle of it can be given as a pose."))
+    return line
+
+
 def words_of_c3d(out: Path) -> str:
     parameters = ezc3d.c3d(str(out / "walk_1" / "angles.c3d"))["parameters"]
     return "\n".join(parameters["PROCESSING"]["STATUS"]["value"])
@@ -412,7 +430,7 @@ REASONS: dict[str, Callable[[Path], str]] = {
     "xlsx": words_of_about,
     "rerun": words_of_rerun,
     "c3d": words_of_c3d,
-    "mot": lambda out: (out / "walk_1" / "angles.mot").read_text(encoding="ascii"),
+    "mot": words_of_mot,
 }
 ANGLES_ONLY = ("c3d", "mot")  # which tell of no time
 

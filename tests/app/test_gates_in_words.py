@@ -10,10 +10,11 @@ import pytest
 from app.gates_in_words import WITHOUT_FIGURES, WORDS, gate_sentence, gate_words, verdict_word
 from core.body import Joint, Side, Site
 from core.gait.clocks import ClockTie
+from core.reception import Reception
 from core.results import RecordingAnalysis, ZeroKind
 from core.verdicts.gates import verdicts_of
 from core.verdicts.model import GateReason, Verdict, Verdicts
-from tests.core.verdicts.built_walk import SURE_CLOCKS, calibrations, leg, walk
+from tests.core.verdicts.built_walk import SURE_CLOCKS, calibrations, leg, walk, with_gaps
 
 GROWING = np.linspace(0.0, 1.0, 12)  # over a walk of twelve strides
 
@@ -138,14 +139,29 @@ CASES: list[tuple[RecordingAnalysis, dict[str, Any], str]] = [
         "Every second stride differs from the others by 25.0",
     ),
     (
-        walk(lost_percent={Site.LEFT_FOOT: 2.0}),
+        walk(received={Site.LEFT_FOOT: with_gaps(2.0)}),
         {},
-        "2.0 % of a sensor's samples are missing (1.0 % at most). Move the receiver",
+        "Gaps over 50 ms take 2.0 % of the strides used (1.0 % at most). Move the receiver",
     ),
     (
-        walk(lost_percent={Site.LEFT_FOOT: 6.0}),
+        walk(received={Site.LEFT_FOOT: with_gaps(6.0)}),
         {},
-        "6.0 % of a sensor's samples are missing (5.0 % at most). Move the receiver",
+        "Gaps over 50 ms take 6.0 % of the strides used (5.0 % at most). Move the receiver",
+    ),
+    (
+        walk(received={Site.LEFT_FOOT: Reception(clipped_forces_s=np.array([12.0]))}),
+        {},
+        "The motion exceeded a sensor's range in 8.3 % of the strides used (0.0 % at most). Choose a wider range",
+    ),
+    (
+        walk(received={Site.LEFT_SHANK: Reception(rate_percent=95.0)}),
+        {},
+        "A sensor's samples came at 95.0 % of the rate set (limit 98.0 %). Check its sample rate",
+    ),
+    (
+        walk(received={Site.LEFT_SHANK: Reception(rate_percent=50.1)}),
+        {},
+        "Every second sample of a sensor is missing: 50.1 % came (limit 90.0 %). Check its sample rate, move",
     ),
     (left(stance_percent=39.0), {}, "Stance takes 39.0 % of the stride (limit 40.0 %): the events may be wrong."),
     (left(stance_percent=86.0), {}, "Stance takes 86.0 % of the stride (limit 85.0 %): the events may be wrong."),

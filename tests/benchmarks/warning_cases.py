@@ -84,6 +84,10 @@ def hole(b: ImuBlock) -> ImuBlock:
     return part(b, (b.time_s < 3.0) | (b.time_s > 3.6))
 
 
+def paused(b: ImuBlock) -> ImuBlock:
+    return part(b, (b.time_s < 3.0) | (b.time_s > 6.0))
+
+
 def frozen(b: ImuBlock) -> ImuBlock:
     """The samples of half a second in swing all alike."""
     fastest = int(np.argmax(np.linalg.norm(b.gyr_rad_s, axis=1)))
@@ -274,6 +278,9 @@ CASES: dict[str, Case] = {
     "bridged": of_samples(lost(0.03)),
     "gaps": of_samples(hole),
     "many_gaps": of_samples(lost(0.6)),
+    "pause": Case(lambda: changed(walked(sites=LEFT), paused, LEFT, ("walk 1",)), is_of_samples=True),
+    "every_second_lost": of_samples(lambda b: part(b, slice(None, None, 2))),
+    "rate_off": of_samples(scaled(time=1.05)),
     "low_rate": of_samples(lambda b: part(b, slice(None, None, 5))),
     "clipped": of_samples(clipped),
     "moved_while_standing": of_samples(shaken, recording="standing"),

@@ -10,7 +10,8 @@ import pytest
 from core.analysis import analyse
 from core.body import LEG_SITES, Joint, Segment, Side, Site
 from core.findings import Severity
-from core.quality import look_at, lost_percent
+from core.quality import look_at
+from core.reception import lost_percent
 from core.results import Analysis, Method
 from core.samples import FloatArray, ImuBlock, Recording, RecordingKind, Session
 from devices.walker import (
@@ -141,7 +142,7 @@ def test_storms_of_nan_that_leave_nothing(knee_visit: Session, share: float, met
 
 
 @methods
-@pytest.mark.parametrize(("share", "key"), [(0.05, "bridged"), (0.5, "many_gaps")])
+@pytest.mark.parametrize(("share", "key"), [(0.05, "bridged"), (0.5, "gaps")])
 def test_storms_of_nan_that_leave_enough(
     person: "Person", knee_visit: Session, share: float, key: str, method: Method
 ) -> None:

@@ -16,6 +16,7 @@ from app.reports.agreement.printed import (
     optical_words,
     other_angles_words,
     rows_of_table_1,
+    used_words,
     verdict_words,
 )
 from app.reports.agreement.study import AgreementStudy, AngleKind
@@ -102,7 +103,7 @@ def _pages(study: AgreementStudy, patient: Patient, pictures: Mapping[str, Pictu
         for mark, title, of_walk, of_all in figures_of_table_1():
             first += [heading(f"{mark}: {title}", 2), _table_1(study, patient, of_walk, of_all)]
         first += [heading(tr("Over all walks"), 2), _over_walks(study, patient)]
-        first += [note(" ".join(other_angles_words(study)))]
+        first += [note(" ".join([*other_angles_words(study), *used_words(study)]))]
         if any(walk.recording.gait for walk in study.with_angles):
             first += [heading(tr("Errors by phase, degrees RMSE with the walk's mean removed"), 2)]
             first += [_phases(study, patient)]

@@ -82,6 +82,7 @@ def printed(study: AgreementStudy, patient: Patient) -> Iterator[str]:
             yield _more(joint, role, over.whole)
         yield ""
         yield from (f"  {said}" for said in other_angles_words(study))
+        yield from (f"  {said}" for said in used_words(study))
         for number, walk in enumerate(walks, 1):
             yield f"  {number}: {clock_words(walk)}"
     yield from _events(study)
@@ -108,7 +109,29 @@ def clock_words(walk: ComparedWalk) -> str:
         said += f"; it counts the other way: {', '.join(turned)}"
     if not found.is_offset_certain:
         said += "; another offset fits nearly as well, so it may be off by a stride"
+    for trial, other in walk.more:
+        name = ", ".join(filter(None, [trial.file, trial.trial.name]))
+        said += f"; that of {one_line(name)} {other.clock.offset_s:+.4f} s (sd {1e3 * other.offset_sd_s:.1f} ms)"
     return f"{said}."
+
+
+def used_words(study: AgreementStudy) -> list[str]:
+    """Of each joint, how many samples of the walks are compared, and where the others are."""
+    said = []
+    for joint in study.joints:
+        walks = [walk.used[joint] for walk in study.with_angles if (joint, AngleKind.RESULT) in walk.figures]
+        where = {
+            tr("{count} outside of the reference"): sum(one.outside for one in walks),
+            tr("{count} in gaps"): sum(one.in_gaps for one in walks),
+            tr("{count} after a strap slipped"): sum(one.after_slip for one in walks),
+        }
+        others = joined([words.format(count=count) for words, count in where.items() if count])
+        used, recorded = sum(one.used for one in walks), sum(one.recorded for one in walks)
+        words = tr("{joint}: {used} of {recorded} samples are used").format(
+            joint=capitalised(name_of(joint)), used=used, recorded=recorded
+        )
+        said.append(f"{words}; {others}." if others else f"{words}.")
+    return said
 
 
 def verdict_words(study: AgreementStudy) -> list[str]:

@@ -12,14 +12,22 @@ from pathlib import Path
 import numpy as np
 
 from app.recording_names import shown_names
-from core.agreement.clock import MIN_OVERLAP_S, Alignment, FoundOffset, Misfit, align, find_offset
+from core.agreement.clock import APART_S, MIN_OVERLAP_S, Alignment, FoundOffset, Misfit, align, find_offset
 from core.agreement.curves import ComparedTrial, TimedAngle, angle_at
-from core.agreement.events import EventAgreement, EventKey, Events, compare_events, compare_lengths, event_offset
+from core.agreement.events import (
+    EventAgreement,
+    EventKey,
+    Events,
+    compare_events,
+    compare_lengths,
+    event_offset,
+    joined,
+)
 from core.agreement.figures import Agreement, AgreementOverWalks, agreement_of, over_walks
 from core.body import Joint, Side
 from core.hip.results import HipAngle
 from core.results import Analysis, JointAngle, RecordingAnalysis, ZeroKind
-from core.samples import FloatArray, IntArray, Recording, RecordingKind
+from core.samples import BoolArray, FloatArray, IntArray, Recording, RecordingKind
 from devices.files.references.trial import EVENTS, ReferenceFile, ReferenceTrial
 from devices.files.refusal import FileRefusedError
 
@@ -52,21 +60,46 @@ class NamedTrial:
 
 
 @dataclass(frozen=True, slots=True)
+class UsedSamples:
+    """How many of a walk's samples of one joint a comparison uses, and why it does not use the others."""
+
+    recorded: int
+    used: int
+    outside: int
+    after_slip: int
+
+    @property
+    def in_gaps(self) -> int:
+        """Those that one of both systems has not."""
+        return self.recorded - self.used - self.outside - self.after_slip
+
+
+@dataclass(frozen=True, slots=True)
 class ComparedWalk:
     """One walk beside its reference. `reference_rad` (n,) by joint, at the walk's instants and in its sign.
 
+    `reference`, `alignment`: of the trial that fits best; `more`: of other trials of other times of this walk.
     `is_exchanged`: the reference fits clearly better with left and right exchanged.
     """
 
     recording: RecordingAnalysis
     reference: NamedTrial | None
     alignment: Alignment | None
+    more: tuple[tuple[NamedTrial, Alignment], ...] = ()
+    used: Mapping[Joint, UsedSamples] = field(default_factory=dict)
     reference_rad: Mapping[Joint, FloatArray] = field(default_factory=dict)
     figures: Mapping[JointAndKind, Agreement] = field(default_factory=dict)
     events: Mapping[EventKey, EventAgreement] = field(default_factory=dict)
     events_later_s: float = 0.0
     lengths_m: Mapping[Side, FloatArray] = field(default_factory=dict)
     is_exchanged: bool = False
+
+    @property
+    def trials(self) -> tuple[tuple[NamedTrial, Alignment], ...]:
+        """Every trial whose angles are compared."""
+        if self.reference is None or self.alignment is None:
+            return ()
+        return ((self.reference, self.alignment), *self.more)
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,23 +152,24 @@ def study_of(analysis: Analysis, files: Sequence[tuple[str, ReferenceFile]]) -> 
         raise FileRefusedError("SESSION", "it holds no walk that could be compared", "Record a walk first")
     with_angles = [one for one in trials if one.trial.angles]
     pairs, misfits = _paired(walks, with_angles)
-    order = sorted(pairs)
-    aligned = dict(
-        zip(order, align([_trial(walks[w], with_angles[t]) for w, t in order], [pairs[p] for p in order]), strict=True)
-    )
+    order = sorted(pairs, key=lambda pair: (pair[0], -pairs[pair].score))
+    aligned = align([_trial(walks[w], with_angles[t]) for w, t in order], [pairs[p] for p in order])
+    of_walks: dict[int, list[tuple[NamedTrial, Alignment]]] = {}
+    for (w, t), alignment in zip(order, aligned, strict=True):
+        of_walks.setdefault(w, []).append((with_angles[t], alignment))
     compared: dict[int, ComparedWalk] = {
         w: replace(
-            _angles_compared(analysis, walks[w], with_angles[t], aligned[w, t]),
-            is_exchanged=_is_exchanged(walks[w], with_angles[t], pairs[w, t]),
+            _angles_compared(analysis, walks[w], trials_of_walk),
+            is_exchanged=any(_is_exchanged(walks[w], with_angles[t], fit) for (v, t), fit in pairs.items() if v == w),
         )
-        for w, t in order
+        for w, trials_of_walk in of_walks.items()
     }
     for one in trials:
         for w, found in _events_compared(walks, compared, one):
             compared[w] = found
     if not compared:
         raise _refusal(walks, trials, misfits)
-    used = {id(walk.reference) for walk in compared.values()}
+    used = {id(trial) for walk in compared.values() for trial in (walk.reference, *(one for one, _ in walk.more))}
     left = [f"{one.file}{', ' * bool(one.trial.name)}{one.trial.name}" for one in with_angles if id(one) not in used]
     left += [walk.name for w, walk in enumerate(walks) if w not in compared]
     return AgreementStudy(tuple(compared[w] for w in sorted(compared)), tuple(left), analysis.is_simulated)
@@ -159,7 +193,8 @@ def _paired(
     taken: dict[tuple[int, int], FoundOffset] = {}
     for (w, t), fit in sorted(found.items(), key=lambda one: -one[1].score):
         rivals = [other for (v, u), other in taken.items() if v != w and u == t and _overlap(walks, w, fit, v, other)]
-        if w not in [v for v, _ in taken] and not rivals:
+        beside = [(trials[u], other) for (v, u), other in taken.items() if v == w]
+        if not rivals and (not beside or (fit.is_certain and _is_of_other_times(trials[t], fit, beside))):
             taken[w, t] = fit
     return taken, misfits
 
@@ -171,6 +206,20 @@ def _overlap(walks: Sequence[RecordingAnalysis], one: int, its: FoundOffset, oth
         for w, fit in ((one, its), (other, others))
     )
     return bool(min(b, d) - max(a, c) > MIN_OVERLAP_S)
+
+
+def _is_of_other_times(one: NamedTrial, its: FoundOffset, others: Sequence[tuple[NamedTrial, FoundOffset]]) -> bool:
+    """Whether a trial lies on instants of a walk that no other trial tells of, as passes through one volume do."""
+    first_s, last_s = _span_of(one, its.offset_s)
+    spans = [_span_of(other, fit.offset_s) for other, fit in others]
+    return all(last_s <= first + APART_S or last <= first_s + APART_S for first, last in spans)
+
+
+def _span_of(one: NamedTrial, offset_s: float) -> tuple[float, float]:
+    """First and last known instant of a trial, on the walk's clock."""
+    known = [time_s[np.isfinite(angle)] for time_s, angle in one.trial.angles.values()]
+    stamps = np.concatenate(known) - offset_s
+    return float(stamps.min()), float(stamps.max())
 
 
 def _trial(walk: RecordingAnalysis, named: NamedTrial) -> ComparedTrial:
@@ -191,16 +240,21 @@ def _is_exchanged(walk: RecordingAnalysis, named: NamedTrial, fit: FoundOffset) 
 
 
 def _angles_compared(
-    analysis: Analysis, walk: RecordingAnalysis, named: NamedTrial, alignment: Alignment
+    analysis: Analysis, walk: RecordingAnalysis, pairs: Sequence[tuple[NamedTrial, Alignment]]
 ) -> ComparedWalk:
-    trial = _trial(walk, named)
-    at_s = alignment.clock.at(walk.time_s)
-    references, figures = {}, {}
-    for joint in trial.joints:
-        # a joint that took no part in the alignment has no sign of its own: its likelier one is 1
-        reference = alignment.sign.get(joint, 1) * angle_at(trial.reference[joint], at_s)
+    references, figures, used = {}, {}, {}
+    joints = [joint for joint in Joint if any(joint in _trial(walk, named).joints for named, _ in pairs)]
+    for joint in joints:
+        reference, is_within = _reference_of(walk, joint, pairs)
         is_sure = walk.time_s < walk.slipped_from_s.get(joint.side, np.inf)
         references[joint] = np.where(is_sure, reference, np.nan)
+        angle_rad = walk.measured[joint].angle_rad
+        used[joint] = UsedSamples(
+            recorded=len(walk.time_s),
+            used=int(np.count_nonzero(np.isfinite(angle_rad) & np.isfinite(references[joint]))),
+            outside=int(np.count_nonzero(~is_within)),
+            after_slip=int(np.count_nonzero(is_within & ~is_sure)),
+        )
         calibration = analysis.calibrated_for(walk).get(joint)
         has_zero = joint.is_hip or (calibration is not None and calibration.zero is not ZeroKind.NONE)
         for kind, angle in _angles_of(walk.measured[joint]):
@@ -210,7 +264,27 @@ def _angles_compared(
             found = agreement_of(angle, references[joint], sd, phase, strides, has_zero=has_zero)
             if found is not None:
                 figures[joint, kind] = found
-    return ComparedWalk(walk, named, alignment, references, figures)
+    (best, alignment), *more = pairs
+    return ComparedWalk(walk, best, alignment, tuple(more), used, references, figures)
+
+
+def _reference_of(
+    walk: RecordingAnalysis, joint: Joint, pairs: Sequence[tuple[NamedTrial, Alignment]]
+) -> tuple[FloatArray, BoolArray]:
+    """The reference's angle (n,) at the walk's instants, of whichever trial tells it, and where any trial lies."""
+    reference, is_within = np.full(len(walk.time_s), np.nan), np.zeros(len(walk.time_s), dtype=bool)
+    for named, alignment in pairs:
+        if joint not in named.trial.angles:
+            continue
+        time_s, angle_rad = named.trial.angles[joint]
+        known_s, at_s = time_s[np.isfinite(angle_rad)], alignment.clock.at(walk.time_s)
+        if not len(known_s):
+            continue
+        # a joint that took no part in the alignment has no sign of its own: its likelier one is 1
+        found = alignment.sign.get(joint, 1) * angle_at(TimedAngle(time_s, angle_rad), at_s)
+        reference = np.where(np.isfinite(reference), reference, found)
+        is_within |= (at_s >= known_s[0]) & (at_s <= known_s[-1])
+    return reference, is_within
 
 
 def _angles_of(angle: JointAngle | HipAngle) -> Iterator[tuple[AngleKind, FloatArray]]:
@@ -239,7 +313,7 @@ def _events_compared(
     if not one.trial.events and not one.trial.strides:
         return []
     with_gait = [w for w, walk in enumerate(walks) if walk.gait]
-    own = [w for w in with_gait if w in compared and compared[w].reference is one]
+    own = [w for w in with_gait if w in compared and _alignment_of(compared[w], one) is not None]
     if not own and one.trial.angles:
         return []  # its angles fit no walk
     named = [w for w in with_gait if {walks[w].name, walks[w].folder} & one.names]
@@ -256,22 +330,36 @@ def _with_events(walk: RecordingAnalysis, before: ComparedWalk | None, one: Name
     base = before or ComparedWalk(walk, one, None)
     told = {(side, event): at_s for side, by_event in one.trial.events.items() for event, at_s in by_event.items()}
     ours = _events_of(walk)
-    if base.alignment is not None and (base.reference is one or not told):
-        later_s = base.alignment.clock.offset_s
+    own = _alignment_of(base, one)
+    clock_of = own or (base.alignment if not told else None)
+    if clock_of is not None:
+        later_s = clock_of.clock.offset_s
+    elif told:
+        later_s = event_offset(ours, told)
     else:
-        later_s = event_offset(ours, told) if told else base.events_later_s
+        later_s = base.events_later_s
     within = {key: at_s - later_s for key, at_s in told.items() if key[0] in walk.gait}
     lengths = {
         side: compare_lengths(walk.gait[side].strides, strides - [later_s, later_s, 0.0])
         for side, strides in one.trial.strides.items()
         if side in walk.gait
     }
+    found = dict(compare_events(ours, within))
+    if own is not None and base.more:  # of other times than what is there already
+        found |= {key: joined([base.events[key], found[key]]) for key in found if key in base.events}
+        others = {side: pairs for side, pairs in base.lengths_m.items() if side in lengths}
+        lengths |= {side: np.concatenate([pairs, lengths[side]]) for side, pairs in others.items()}
     return replace(
         base,
-        events={**base.events, **compare_events(ours, within)},
+        events={**base.events, **found},
         events_later_s=later_s,
         lengths_m={**base.lengths_m, **lengths},
     )
+
+
+def _alignment_of(walk: ComparedWalk, one: NamedTrial) -> Alignment | None:
+    """How a trial was brought to a walk; None where its angles are not compared with it."""
+    return next((alignment for trial, alignment in walk.trials if trial is one), None)
 
 
 def _events_of(walk: RecordingAnalysis) -> Events:

@@ -2,12 +2,12 @@
 
 import json
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
 
-from app.reports.agreement.study import AgreementStudy, AngleKind, ComparedWalk
+from app.reports.agreement.study import AgreementStudy, AngleKind, ComparedWalk, UsedSamples
 from app.reports.csv_report import typed_cell, write_table
 from core.agreement.events import EventAgreement, joined
 from core.agreement.figures import NAMED_PHASES, STANCE, Agreement
@@ -40,6 +40,7 @@ SHARES = {"within_1_sd": "within_1_sd", "within_2_sd": "within_2_sd"}
 PLACE = ("recording", "joint", "angle")
 CLOCK = ("sign", "offset_s", "offset_sd_s", "clock_rate_ppm", "clock_rate_sd_ppm", "rate_likeness", "rate_gain")
 STATUS = ("shape_status", "height_status")
+USED = ("recorded", "outside_reference", "in_gaps", "after_slip")
 MEANING = {
     "recording": "the walk, or over walks",
     "joint": "left_knee, left_ankle, right_knee or right_ankle",
@@ -69,6 +70,10 @@ MEANING = {
     "rate_gain": "measured rates over those of the reference",
     "shape_status": "read, care, withheld or not_measured: what may be said of range and shape",
     "height_status": "read, care, withheld or not_measured: what may be said of absolute angles",
+    "recorded": "samples of the walk; those that are not in `samples` are in one of the next three",
+    "outside_reference": "samples before or after every trial of the reference",
+    "in_gaps": "samples inside of a trial that one of both systems has not",
+    "after_slip": "samples after a strap of this leg slipped",
 }
 
 
@@ -128,7 +133,7 @@ def agreement_header() -> list[str]:
     figures: list[str] = []
     for name in DEGREES:
         figures += [name, f"{name.removesuffix('_deg')}_sd_deg"] if name in ("z_rmse_deg", "m_rmse_deg") else [name]
-    return [*PLACE, "walks", "samples", *figures, "ranges", "correlation", *SHARES, *phases, *CLOCK, *STATUS]
+    return [*PLACE, "walks", "samples", *figures, "ranges", "correlation", *SHARES, *phases, *CLOCK, *STATUS, *USED]
 
 
 def agreement_table(study: AgreementStudy) -> tuple[list[str], Iterator[list[str]]]:
@@ -145,11 +150,14 @@ def _rows(study: AgreementStudy) -> Iterator[list[str]]:
                 verdicts = walk.recording.verdicts.joint(joint)
                 status = [str(verdicts.shape.verdict), str(verdicts.height.verdict)]
                 place = [typed_cell(walk.recording.name), str(joint), str(kind)]
-                yield [*place, "1", *_figures(walk.figures[joint, kind]), *_clock(walk, joint), *status]
+                used = _used_cells([walk.used[joint]])
+                yield [*place, "1", *_figures(walk.figures[joint, kind]), *_clock(walk, joint), *status, *used]
             over = study.over_walks(joint, kind)
             if over is not None:
                 figures = _figures(over.whole, over.z_sd_rad, over.m_sd_rad)
-                yield [OVER_WALKS, str(joint), str(kind), str(over.walks), *figures, *[""] * (len(CLOCK) + len(STATUS))]
+                place = [OVER_WALKS, str(joint), str(kind), str(over.walks)]
+                used = _used_cells([walk.used[joint] for walk in study.walks if (joint, kind) in walk.figures])
+                yield [*place, *figures, *[""] * (len(CLOCK) + len(STATUS)), *used]
 
 
 def _figures(found: Agreement, z_sd_rad: float = math.nan, m_sd_rad: float = math.nan) -> list[str]:
@@ -179,6 +187,11 @@ def _clock(walk: ComparedWalk, joint: Joint) -> list[str]:
         found.gain.get(joint, math.nan),
     )
     return [str(found.sign.get(joint, "")), *map(_cell, numbers)]
+
+
+def _used_cells(walks: Sequence[UsedSamples]) -> list[str]:
+    counts = [(one.recorded, one.outside, one.in_gaps, one.after_slip) for one in walks]
+    return [str(sum(column)) for column in zip(*counts, strict=True)]
 
 
 def curve_table(walk: ComparedWalk) -> tuple[list[str], Iterator[list[str]]]:

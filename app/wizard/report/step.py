@@ -50,6 +50,7 @@ if TYPE_CHECKING:
 
 _log = logging.getLogger(__name__)
 
+MOST_LINES = 3  # of what was not written: a banner holds no more
 OTHERS = ("xlsx", "c3d", "mot", "fhir")
 
 
@@ -357,13 +358,13 @@ class ReportStep(Step):
         name = f"{session_name(stored.details.patient.code, stored.details.started)}.pdf"
         self.is_saving = True
 
-        def save(opened: "OpenedLibrary", report: Report) -> Path:
+        def save(opened: "OpenedLibrary", report: Report) -> tuple[Path, list[str]]:
             from app.exports.exports import Format, export_from_library
             from app.reports.patient_report.document import make_report
             from app.reports.patient_report.report_file import write_visits
             from app.reports.result_folder import LOG, check_place, write_results, written_beside
 
-            typed = [Typed(one) for one in sorted(kept)]
+            typed, lines = [Typed(one) for one in sorted(kept)], list[str]()
             report(0.0, tr("writing"))
             try:
                 check_place(out, opened.folder)
@@ -382,7 +383,7 @@ class ReportStep(Step):
                             write_visits(request, beside)
                     formats = [Format(name) for name in OTHERS if name in chosen]
                     if formats:
-                        export_from_library(
+                        lines = export_from_library(
                             opened,
                             session_id,
                             formats,
@@ -398,13 +399,13 @@ class ReportStep(Step):
             except OSError as problem:
                 what = tr("{folder} cannot be written").format(folder=out.name)
                 raise LibraryError(what, tr("Choose another folder; the recordings are untouched")) from problem
-            return out
+            return out, lines
 
         self._controller.run_long(save, self._on_saved, self._on_refused, None, self)
 
-    def _on_saved(self, folder: Path) -> None:
-        self.is_saving, self.saved = False, folder
-        self.told.emit("", "")
+    def _on_saved(self, found: tuple[Path, list[str]]) -> None:
+        self.is_saving, (self.saved, lines) = False, found
+        self.told.emit(tr("Not every file was written.") if lines else "", "\n".join(lines[:MOST_LINES]))
         self.changed.emit()
 
     def _on_refused(self, what: str, remedy: str) -> None:

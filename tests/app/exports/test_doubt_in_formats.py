@@ -108,9 +108,11 @@ def test_once_a_strap_slipped_a_format_without_a_status_per_row_has_no_angle(
     residuals = read["data"]["meta_points"]["residuals"][0]
     np.testing.assert_array_equal(residuals[labels.index("RKneeAngles")] < 0, ~known["RKneeAngles"])
     write_motion(slipped, False, tmp_path / "angles.mot")
-    header, *lines = (tmp_path / "angles.mot").read_text().split("endheader\n")[1].splitlines()
-    column = header.split("\t").index("knee_angle_r")
-    assert [line.split("\t")[column] == "NaN" for line in lines] == [k >= at for k in range(len(lines))]
+    whole, left = ((tmp_path / f"angles_{number}.mot").read_text().split("endheader\n") for number in (1, 2))
+    assert [len(body.splitlines()) - 1 for _, body in (whole, left)] == [at, len(walk.time_s) - at]
+    assert whole[1].splitlines()[0] == "time\tknee_angle_r\tknee_angle_l\tankle_angle_r\tankle_angle_l"
+    assert left[1].splitlines()[0] == "time\tknee_angle_l\tankle_angle_l"
+    assert "knee_angle_r is not known in this part.\nankle_angle_r is not known in this part.\n" in left[0]
 
 
 def observations(session: Session, analysis: Analysis) -> Bundled:

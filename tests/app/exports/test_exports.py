@@ -293,13 +293,18 @@ def test_files_lie_as_those_of_the_analysis(visit: tuple[Session, Analysis], tmp
     ]
 
 
-def test_a_format_that_fails_leaves_nothing(
+def test_a_format_that_fails_takes_no_other_with_it(
     visit: tuple[Session, Analysis], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("app.exports.c3d_angles.MOST_FRAMES", 100)
-    with pytest.raises(FileRefusedError, match="more than a C3D can hold"):
-        export_from_folder(*visit, [Format.XLSX, Format.C3D], tmp_path)
-    assert files_in(tmp_path) == []
+    def fail(*_: object) -> str:
+        raise RuntimeError("what its library threw")
+
+    monkeypatch.setattr("app.exports.c3d_angles.write_c3d", fail)
+    lines = export_from_folder(*visit, [Format.C3D, Format.MOT, Format.XLSX], tmp_path)
+    assert lines == ["c3d: this format could not be written (what its library threw)"]
+    assert files_in(tmp_path) == ["free_motion/angles.mot", "gaitwright.xlsx", "walk_1/angles.mot"]
+    with pytest.raises(FileRefusedError, match="could not be written"):
+        export_from_folder(*visit, [Format.C3D], tmp_path)
 
 
 def test_a_missing_library_is_told_before_anything_is_done(

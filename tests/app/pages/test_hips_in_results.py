@@ -15,6 +15,7 @@ from app.theme import ThemeNotifier, load_fonts
 from app.widgets.stride_list import HIP, KNEE
 from app.widgets.table import CellTable
 from core.body import Joint, Side, Site
+from core.reception import Reception
 from core.results import Analysis, RecordingAnalysis
 from core.verdicts.model import Verdict
 from tests.app.hip_visits import hip_analysis, hip_visit
@@ -38,10 +39,10 @@ def without_pelvis() -> Analysis:
             parameters = {k: v for k, v in one.parameters.items() if not k.startswith(("hip", "pelvis"))}
             cycles = {joint: cycle for joint, cycle in one.cycles.items() if not joint.is_hip}
             gait[side] = replace(one, parameters=parameters, cycles=cycles)
-        lost: dict[Site, float] = {
-            site: percent for site, percent in walk.lost_percent.items() if site is not Site.PELVIS
+        received: dict[Site, Reception] = {
+            site: found for site, found in walk.received.items() if site is not Site.PELVIS
         }
-        return replace(walk, hips={}, pelvis=None, turns=(), gait=gait, lost_percent=lost, leg_clock=None)
+        return replace(walk, hips={}, pelvis=None, turns=(), gait=gait, received=received, leg_clock=None)
 
     return rewalked(hip_analysis(), changed)
 

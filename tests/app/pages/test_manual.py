@@ -12,6 +12,7 @@ from babel.messages.pofile import read_po
 from app.films.film import Film
 from app.pages.help_topics import Topic, help_file, topic_title
 from app.wording import use_language
+from core.tracks import MAX_REPORTED_GAP_S
 from core.verdicts.gates import LIMITS
 from core.verdicts.measurement_error import SIGMAS, Z95, ComparisonKind, QuantityKind
 from devices.catalogue import DRIVERS
@@ -186,7 +187,9 @@ def limits() -> dict[str, str]:
         "neighbours": f"{LIMITS.pairing_margin:g}",
         "axis": f"{care:g}° {most:g}°",
         "clock": f"{clock_care:g} ms {clock_most:g} ms",
-        "lost": f"{lost_care:g} % {lost_most:g} %",
+        "lost": f"{1000 * MAX_REPORTED_GAP_S:g} ms {lost_care:g} % {lost_most:g} %",
+        "clipped": f"{LIMITS.clipped_percent[1]:g} % {LIMITS.clipped_percent[1]:g} %",
+        "rate": f"{LIMITS.rate_percent[0]:g} % {LIMITS.rate_percent[1]:g} %",
         "halves": f"{LIMITS.halves_deg:g}°, {LIMITS.halves_stance_points:g} {LIMITS.halves_time_percent:g} %",
         "thirds": f"{LIMITS.thirds_deg:g}°",
         "every second": f"{LIMITS.odd_even_ratio:g} ",

@@ -134,7 +134,7 @@ def test_a_hip_that_was_worn_and_not_found_says_so_and_one_not_worn_says_nothing
     without = rewalked(
         analysis,
         lambda one: replace(
-            one, hips={}, pelvis=None, lost_percent={s: p for s, p in one.lost_percent.items() if s is not Site.PELVIS}
+            one, hips={}, pelvis=None, received={s: r for s, r in one.received.items() if s is not Site.PELVIS}
         ),
     )
     assert Joint.LEFT_HIP not in walk_of(without).verdicts.joints

@@ -10,6 +10,7 @@ from core.body import LEG_JOINTS, Joint, Side, ankle_of, knee_of
 from core.gait.clocks import ClockTie, LegClocks
 from core.gait.spatiotemporal import parameters_of
 from core.gait.strides import Reason, Strides
+from core.reception import Reception
 from core.results import AxisSource, JointCalibration, Method, RecordingAnalysis, SideGait, ZeroKind
 from core.results import JointAngle as Angle
 from core.samples import FloatArray, RecordingKind
@@ -128,6 +129,22 @@ def walk(*, left: SideGait | None = None, right: SideGait | None = None, **chang
         clocks=SURE_CLOCKS,
     )
     return replace(sure, **changes)
+
+
+def with_gaps(percent: float, of: SideGait | None = None, each_s: float = 0.1) -> Reception:
+    """A sensor with gaps that take so much of a leg's strides used: in its middle, `each_s` long but the last."""
+    strides = (of or leg(Side.LEFT)).strides
+    used = strides.is_used
+    left_s = 0.01 * percent * float(np.sum(strides.time_s[used]))
+    gaps = []
+    for start_s, end_s in zip(strides.start_s[used], strides.end_s[used], strict=True):
+        for first_s in np.arange(start_s, end_s - each_s, 2.0 * each_s):
+            length_s = min(each_s, left_s)
+            gaps.append((first_s, first_s + length_s))
+            left_s -= length_s
+            if left_s <= 1e-9:
+                return Reception(lost_percent=percent, gaps_s=np.array(gaps))
+    raise ValueError("these strides are too few for such gaps")
 
 
 def judged_walk(recording: RecordingAnalysis | None = None, told: Told | None = None) -> RecordingAnalysis:

@@ -295,16 +295,6 @@ def test_a_strap_that_slips_costs_what_comes_after_it() -> None:
     assert GateReason("strap", Verdict.WITHHELD) in none.joint(Joint.LEFT_KNEE).shape.reasons
 
 
-@pytest.mark.parametrize(("percent", "verdict"), [(1.0, ""), (1.1, "care"), (5.0, "care"), (5.1, "withheld")])
-def test_lost_samples_hit_the_joints_of_their_sensor_and_a_foots_distances(percent: float, verdict: str) -> None:
-    shank = not_read(gates_of(walk(lost_percent={Site.LEFT_SHANK: percent, Site.LEFT_FOOT: 0.5})))
-    foot = not_read(gates_of(walk(lost_percent={Site.LEFT_FOOT: percent})))
-    both = {**hits(verdict, "loss", KNEE, *SHAPE_HEIGHT), **hits(verdict, "loss", ANKLE, *SHAPE_HEIGHT)}
-    assert shank == (both if verdict else {})
-    of_foot = {**hits(verdict, "loss", ANKLE, *SHAPE_HEIGHT), **hits(verdict, "loss", "left", "distance")}
-    assert foot == (of_foot if verdict else {})
-
-
 @pytest.mark.parametrize(("percent", "is_closed"), [(40.1, False), (39.9, True), (84.9, False), (85.1, True)])
 def test_a_stance_that_no_walk_has_puts_the_events_in_doubt(percent: float, is_closed: bool) -> None:
     found = not_read(gates_of(left(stance_percent=percent)))

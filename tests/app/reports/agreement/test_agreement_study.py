@@ -172,7 +172,7 @@ def test_left_and_right_exchanged_is_said_and_where_they_are_not_it_is_not(
 @pytest.mark.parametrize("write", [write_c3d, write_motion])
 def test_our_own_exports_agree_with_us(
     simulated: tuple[Session, SessionTruth, Analysis],
-    write: Callable[[RecordingAnalysis, bool, Path], None],
+    write: Callable[[RecordingAnalysis, bool, Path], str],
     tmp_path: Path,
 ) -> None:
     _, _, analysis = simulated
@@ -291,3 +291,96 @@ def test_both_figures_are_drawn_with_the_phases_and_say_what_they_are(study: Agr
     assert "SIMULATED" in drawn[FIGURES[JointKind.KNEE]].svg
     assert drawn[FIGURES[JointKind.KNEE]].svg.count("<path") == 2 * 4  # per side ours, published, reference and error
     assert drawn[FIGURES[JointKind.KNEE]].svg.count("<rect") > 20  # phases of some strides
+
+
+def passes(rows: list[str], *parts: tuple[float, float]) -> list[list[str]]:
+    """What a volume sees of a walk: the rows of some shares of its time."""
+    return [rows[round(first * len(rows)) : round(last * len(rows))] for first, last in parts]
+
+
+def test_every_pass_of_a_walk_is_compared_and_the_samples_used_are_said(
+    simulated: tuple[Session, SessionTruth, Analysis], tmp_path: Path
+) -> None:
+    _, truth, analysis = simulated
+    rows = rows_of(truth, "walk 1")
+    parts = passes(rows, (0.05, 0.45), (0.6, 0.95))
+    found = study_of(analysis, [trials(part, tmp_path, f"pass{k}.csv") for k, part in enumerate(parts)])
+    (walk,) = found.walks
+    assert {trial.file for trial, _ in walk.trials} == {"pass0.csv", "pass1.csv"}
+    assert found.left_over == ("walk 2",)
+    hz = 1.0 / float(np.median(np.diff(walk.recording.time_s)))
+    for joint in LEG_JOINTS:
+        used = walk.used[joint]
+        assert used.used == walk.figures[joint, AngleKind.RESULT].samples
+        assert used.used == pytest.approx(sum(map(len, parts)) / 120.0 * hz, abs=4)
+        assert used.used + used.outside + used.in_gaps + used.after_slip == used.recorded == len(walk.recording.time_s)
+        assert np.rad2deg(walk.figures[joint, AngleKind.RESULT].m_rad) < 0.6
+    used = walk.used[Joint.LEFT_KNEE]
+    said = list(printed(found, Patient()))
+    line = f"  Left knee: {used.used} of {used.recorded} samples are used; {used.outside} outside of the reference"
+    assert any(one.startswith(line) for one in said)
+    header, table = agreement_table(found)
+    row = dict(zip(header, next(table), strict=True))
+    assert [int(row[name]) for name in ("samples", "recorded", "outside_reference", "in_gaps", "after_slip")] == [
+        *(used.used, used.recorded, used.outside, used.in_gaps, used.after_slip)
+    ]
+
+
+def test_a_trial_of_times_that_another_tells_is_left_over(
+    simulated: tuple[Session, SessionTruth, Analysis], tmp_path: Path
+) -> None:
+    _, truth, analysis = simulated
+    rows = rows_of(truth, "walk 1")
+    parts = passes(rows, (0.05, 0.95), (0.4, 0.8))
+    names = ("walk 1.csv", "walk_1.csv")  # its name and its folder's, so that no other walk is tried
+    found = study_of(analysis, [trials(part, tmp_path, name) for name, part in zip(names, parts, strict=True)])
+    (walk,) = found.walks
+    assert [trial.file for trial, _ in walk.trials] == ["walk 1.csv"]
+    assert found.left_over == ("walk_1.csv", "walk 2")
+
+
+def test_gaps_of_the_reference_are_counted_and_a_strap_that_slipped_is(
+    simulated: tuple[Session, SessionTruth, Analysis], tmp_path: Path
+) -> None:
+    _, truth, analysis = simulated
+    rows = rows_of(truth, "walk 1")
+    (walk, *_) = study_of(analysis, [trials([*rows[:400], *rows[460:]], tmp_path, "gap.csv")]).walks
+    used = walk.used[Joint.LEFT_KNEE]
+    assert used.in_gaps == pytest.approx(60 / 120.0 / float(np.median(np.diff(walk.recording.time_s))), abs=3)
+    from_s = float(walk.recording.time_s[-200])
+    slipped = replace(
+        analysis, recordings=tuple(replace(one, slipped_from_s={Side.LEFT: from_s}) for one in analysis.recordings)
+    )
+    (walk, *_) = study_of(slipped, [trials(rows, tmp_path, "whole.csv")]).walks
+    left, right = walk.used[Joint.LEFT_KNEE], walk.used[Joint.RIGHT_KNEE]
+    assert 0 < left.after_slip == right.used - left.used <= 200
+    assert right.after_slip == 0
+
+
+def test_a_reference_of_twenty_samples_a_second_is_used_throughout(
+    simulated: tuple[Session, SessionTruth, Analysis], tmp_path: Path
+) -> None:
+    _, truth, analysis = simulated
+    (walk, *_) = study_of(analysis, [trials(rows_of(truth, "walk 1", hz=20.0), tmp_path, "slow.csv")]).walks
+    for joint in LEG_JOINTS:
+        assert walk.used[joint].in_gaps == 0
+        assert walk.used[joint].used > 0.9 * walk.used[joint].recorded
+
+
+def test_both_parts_of_our_own_motion_file_are_compared(
+    simulated: tuple[Session, SessionTruth, Analysis], tmp_path: Path
+) -> None:
+    _, _, analysis = simulated
+    (walk,) = [one for one in analysis.recordings if one.name == "walk 2"]
+    n = len(walk.time_s)
+    holes = {
+        joint: replace(angle, angle_rad=np.where(np.abs(np.arange(n) - n // 2) < 15, np.nan, angle.angle_rad))
+        for joint, angle in walk.joints.items()
+    }
+    write_motion(replace(walk, joints=holes), True, tmp_path / "angles.mot")
+    files = [(path.name, read_reference(path)) for path in sorted(tmp_path.glob("*.mot"))]
+    assert len(files) == 2
+    (found,) = study_of(analysis, files).walks
+    assert found.recording is walk
+    assert len(found.trials) == 2
+    assert all(found.used[joint].used >= n - 29 - 6 for joint in LEG_JOINTS)  # less an edge here and there

@@ -16,6 +16,7 @@ from core.findings import Finding, Severity
 from core.gait.strides import Reason
 from core.results import Analysis, SideGait, ZeroKind
 from tests.app.changed_analysis import recalibrated, rewalked, with_few_strides
+from tests.core.verdicts.built_walk import with_gaps
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
@@ -239,7 +240,7 @@ def test_gaps_and_slips_are_said(request_of_demonstration: ReportRequest) -> Non
     slip = Finding("strap_slipped", Severity.WARNING, "walk 1, right_shank", {"from_s": 2.0, "turn_deg": 9})
     changed = rewalked(
         replace(analysis, findings=(*analysis.findings, slip)),
-        lost_percent={Site.LEFT_FOOT: 4.2},
+        received={Site.LEFT_FOOT: with_gaps(4.2, gait_of(request_of_demonstration)[Side.LEFT])},
         slipped_from_s={Side.RIGHT: 2.0},
     )
     request = with_analysis(request_of_demonstration, changed)
@@ -248,7 +249,7 @@ def test_gaps_and_slips_are_said(request_of_demonstration: ReportRequest) -> Non
     assert "slipped: R shank" in pages[0]
     assert readable(request)["Left ankle"][:2] == [CARE, CARE]
     remarks = pages[3].split("Remarks on this recording")[1]
-    assert "4.2 % of a sensor's samples are missing (1.0 % at most)." in remarks
+    assert "Gaps over 50 ms take 4.2 % of the strides used (1.0 % at most)." in remarks
     assert "Right leg: A strap slipped from 2.0 s on" in remarks
     assert "more remark on page 4." in pages[0] or "more remarks on page 4." in pages[0]
 

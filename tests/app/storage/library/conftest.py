@@ -62,7 +62,8 @@ def session_id(opened: OpenedLibrary) -> UUID:
 def samples(count: int, seed: int = 0) -> ImuBlock:
     rng = np.random.default_rng(seed)
     time_s = np.arange(count) / 100
-    return ImuBlock(SENSOR, time_s, rng.normal(size=(count, 3)), rng.normal(size=(count, 3)))
+    gyr, noise = rng.normal(size=(count, 3)), rng.normal(size=(count, 3))
+    return ImuBlock(SENSOR, time_s, gyr, np.array([0.0, 0.0, 9.81]) + noise)
 
 
 @pytest.fixture
@@ -81,6 +82,7 @@ def record(opened: OpenedLibrary, session_id: UUID) -> Record:
         has_row: bool = True,
         is_told: bool = True,
         says_session: UUID | None = None,
+        is_simulated: bool = False,
     ) -> StoredRecording:
         library, recording_id = opened.library, uuid7()
         told = Recording(name, RecordingKind.WALKING, name.replace(" ", "_"), {})
@@ -94,7 +96,9 @@ def record(opened: OpenedLibrary, session_id: UUID) -> Record:
         if says_session is not None:
             writer.mark(Belonging(says_session, replace(told, condition="barefoot")).text())
         block = samples(count)
-        source = writer.source(SourceInfo("walker", "1", sensors=(SENSOR,)), layout_of(block))
+        source = writer.source(
+            SourceInfo("walker", "1", sensors=(SENSOR,), is_simulated=is_simulated), layout_of(block)
+        )
         writer.samples(source, 0, block, waits=True)
         summary = writer.stop()
         if is_stopped:

@@ -19,6 +19,7 @@ from app.storage.opened import OpenedLibrary, held_alone
 from app.storage.recovery import adopt, adopt_home, find_interrupted, recover
 from app.storage.stored import Action, LibraryError, RecordingState, StoredRecording
 from core.samples import Recording, RecordingKind
+from devices.files.formats import read_trial
 from devices.files.site_files import read_site
 from tests.app.storage.library.conftest import SENSOR, samples
 
@@ -131,6 +132,16 @@ def test_an_orphan_of_no_session_is_exported_and_stays(opened: OpenedLibrary, re
     noted = opened.library.audit.entries(about("recording", silent_one.id))
     assert [entry.action for entry in noted] == [Action.EXPORT] * 2  # before, and when it was done
     assert all(was_exported(opened, one) for one in found)
+
+
+@pytest.mark.parametrize("is_simulated", [True, False])
+def test_what_was_simulated_stays_so_when_its_files_are_imported(
+    opened: OpenedLibrary, record: Record, tmp_path: Path, is_simulated: bool
+) -> None:
+    record("left over", is_stopped=False, has_row=False, is_simulated=is_simulated)
+    (found,) = find_interrupted(opened)
+    export_orphan(opened, found, tmp_path / "files", {}, silent)
+    assert read_trial("csv", [tmp_path / "files" / "LT-1.csv"], None).is_simulated is is_simulated
 
 
 def test_an_export_that_was_broken_off_is_none(opened: OpenedLibrary, record: Record, tmp_path: Path) -> None:

@@ -88,14 +88,31 @@ def report_name(visit: Visit) -> str:
 
 def test_the_chosen_files_are_saved(qtbot: QtBot, step: ReportStep, visit: Visit, tmp_path: Path) -> None:
     out = tmp_path / "results"
+    told: list[tuple[str, str]] = []
+    step.told.connect(lambda what, remedy: told.append((what, remedy)))
     step.page.report.formats.choose(["csv"])
     chosen: Callable[[str], None] = step.save_in
     chosen(str(out))
     qtbot.waitUntil(lambda: step.state is StepState.DONE, timeout=WAIT_MS)
+    assert told == [("", "")]
     assert [file.name for file in out.glob("*.pdf")] == [report_name(visit)]
     assert (out / report_name(visit)).read_bytes().startswith(b"%PDF-")
     assert (out / "summary.json").exists()
     assert not (out / "session.rrd").exists()
+
+
+def test_a_file_that_was_not_written_is_named_with_its_reason(
+    qtbot: QtBot, step: ReportStep, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    lines = ["walk 1, mot: No angle of it can be given as a pose."]
+    monkeypatch.setattr("app.exports.exports.export_from_library", lambda *_, **__: lines)
+    told: list[tuple[str, str]] = []
+    step.told.connect(lambda what, remedy: told.append((what, remedy)))
+    step.page.report.formats.choose(["mot"])
+    chosen: Callable[[str], None] = step.save_in
+    chosen(str(tmp_path / "results"))
+    qtbot.waitUntil(lambda: step.state is StepState.DONE, timeout=WAIT_MS)
+    assert told == [("Not every file was written.", lines[0])]
 
 
 def dialog_of(qtbot: QtBot, step: ReportStep) -> LeavingDialog:
