@@ -269,7 +269,7 @@ def _refined(
         is_hinge=is_hinge,
         elevation_rad=elevation,
         did_flexion_dominate=decision.did_flexion_dominate or lies_flat,
-        disagreement=max(_disagreement(one, j1, j2) for one in seen),
+        disagreement=max(disagreement_about(one, j1, j2) for one in seen),
     )
 
 
@@ -287,7 +287,8 @@ def _hinge_residual(turned: list[Datasets], axis_1: FloatArray, axis_2: FloatArr
     return max((hinge_residual(one, axis_1, axis_2) for one in turned if len(one)), default=float("nan"))
 
 
-def _disagreement(data: Datasets, axis_1: FloatArray, axis_2: FloatArray) -> float:
+def disagreement_about(data: Datasets, axis_1: FloatArray, axis_2: FloatArray) -> float:
+    """What the sensors of a joint with axes (3,) feel of it differently, against all that they feel: 0 to 1."""
     some = data.thinned(DECISION_SAMPLES)
     knots = heading_from_axes(some, axis_1[None], axis_2[None])
     forces = joint_forces(some)

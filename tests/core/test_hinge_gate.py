@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from core.analysis import analyse
-from core.body import LEG_SITES, Segment, Side
+from core.body import LEG_SITES, Side
 from core.results import Analysis
-from core.samples import ImuBlock, Recording, RecordingKind, Session
-from devices.files.session_folder import read_session
+from core.samples import ImuBlock, Session
 from devices.walker import Standing, Tissue, Walk, WalkerSettings, simulate
+from tests.core.recorded_joints import recorded_people
 
 LEFT = tuple(site for site in LEG_SITES if site.side is Side.LEFT)
 
@@ -46,12 +46,4 @@ def test_a_hinge_that_rests_for_most_of_the_time_stays_one() -> None:
 
 @pytest.mark.endurance
 def test_no_joint_of_a_recorded_person_is_a_hinge(test_data: Callable[[str], Path]) -> None:
-    for folder in sorted(test_data("stroke_treadmill").glob("stroke*")):
-        assert hinges(analyse(read_session(folder))) == []
-    parts = {Segment.THIGH: "upper_leg", Segment.SHANK: "lower_leg", Segment.FOOT: "foot"}
-    with np.load(test_data("full_body_free_motion/legs_arms.npz")) as data:
-        imu = {}
-        for site in LEG_SITES:
-            name = f"{parts[site.segment]}_{site.side}"
-            imu[site] = ImuBlock(name, data["t"].astype(float), data[f"{name}_gyr"], data[f"{name}_acc"])
-    assert hinges(analyse(Session((Recording("jumps", RecordingKind.FREE_MOTION, "jumps", imu),)))) == []
+    assert [name for name, session in recorded_people(test_data) if hinges(analyse(session))] == []
