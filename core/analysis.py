@@ -406,6 +406,7 @@ def _angle(calibration: JointCalibration, found: Twist, ringing_rad_s: float | N
         range_of(found.moving_twist) if len(found.moving_twist) else 0.0,
         calibration.joint.is_knee,
         calibration.is_hinge,
+        calibration.is_prosthetic,
         ringing_rad_s,
     )
     orientation = None if found.orientation_rad is None else clinical(found.orientation_rad)

@@ -15,7 +15,7 @@ from core.calibration.identify import moving_data
 from core.datasets import Datasets
 from core.identified import Identified, clock_moved_s, identify
 from core.measure import Geometry, is_anchored, pairs_of
-from core.pair import Pair
+from core.pair import Pair, is_turning
 from core.published.angles import DEFAULT_TAU_S
 from core.published.figures import CostOverSphere, ProjectedRates, TwoWays, costs_of_both, projected_rates, two_ways
 from core.published.identify import data_sets
@@ -170,7 +170,8 @@ def _off_axis_rate(pairs: tuple[Pair, ...], geometry: Geometry) -> float:
     seen = []
     for pair in pairs:
         heading = heading_over(pair, geometry.axis_1, geometry.axis_2, geometry.unknowns)
-        seen.append(off_axis_rate(pair, geometry.axis_1, heading)[pair.is_moving & pair.is_measured].ravel())
+        is_seen = is_turning(pair.g1, pair.g2) & pair.is_measured
+        seen.append(off_axis_rate(pair, geometry.axis_1, heading)[is_seen].ravel())
     return robust_sd(np.concatenate(seen)) if seen else float("nan")
 
 

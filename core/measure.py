@@ -15,7 +15,7 @@ from core.calibration.heading import heading_over
 from core.calibration.zero import within_half_a_turn
 from core.gait.inclination import lean_about
 from core.orientation import oriented_to_north
-from core.pair import OrientedTrack, Pair, pair_up
+from core.pair import OrientedTrack, Pair, is_turning, pair_up
 from core.published.angles import angle_from_orientations, published_angle
 from core.rotations import wrap
 from core.samples import FloatArray, Recording
@@ -51,8 +51,9 @@ class Twist:
     """One joint over one recording. Angles (n,) on the recording's clock, radians, NaN where unknown, without jumps.
 
     `broken_sd_rad` (n,) is what gaps add to the uncertainty: an orientation that starts anew amid a movement has to
-    find the vertical first. The others are thinned samples (m, ...) while the joint's segments move: the angle, all of
-    the off-axis rate, what of it is above 3 Hz, and each sensor's own rate about its own axis.
+    find the vertical first. The others are thinned samples (m, ...) while the joint's segments move: the angle, and
+    each sensor's own rate about its own axis; and, of those of them at which they turn (`is_turning`), all of the
+    off-axis rate and what of it is above 3 Hz.
     `lean_1_rad`, `lean_2_rad` (n,): how both segments stand to the vertical, as `lean_about` has it; of knees only.
     """
 
@@ -155,9 +156,10 @@ def measure(
             for name, values in found.items():
                 place(angles[name], values, pair, time_s, clock_offset_s, block)
             chosen = np.flatnonzero(pair.is_moving & pair.is_measured)[:: max(1, round(WITNESS_STEP_S / pair.step_s))]
+            turning = chosen[is_turning(pair.g1, pair.g2)[chosen]]
             off_axis = off_axis_rate(pair, j1, heading)
-            rung, rates = ringing(off_axis, pair.step_s)[chosen], (pair.g1[chosen] @ j1, pair.g2[chosen] @ j2)
-            witnesses.append((found["twist"][chosen], off_axis[chosen], rung, *rates))
+            rung, rates = ringing(off_axis, pair.step_s)[turning], (pair.g1[chosen] @ j1, pair.g2[chosen] @ j2)
+            witnesses.append((found["twist"][chosen], off_axis[turning], rung, *rates))
         for pair in _north_pairs(tracks, recording, joint, block, geometry.lag_s):
             values = np.unwrap(-angle_from_orientations(pair.earth_from_1, pair.earth_from_2, j1, j2))
             place(angles["orientation"], values, pair, time_s, clock_offset_s, block)

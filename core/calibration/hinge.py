@@ -10,7 +10,7 @@ import numpy as np
 from core.calibration.coincidence import BIAS_PRIOR_M_S2
 from core.calibration.joint_axis import moved
 from core.datasets import Datasets
-from core.pair import MOVING_RAD_S, lever_acceleration
+from core.pair import is_turning, lever_acceleration
 from core.robust import robust_sd
 from core.rotations import angle_between, joint_frame
 from core.samples import FloatArray
@@ -27,13 +27,8 @@ MIN_STEP = 1e-5
 
 
 def turning(data: Datasets, count: int) -> Datasets:
-    """About `count` of the samples at which the segments turn, and not more slowly than in half of all.
-
-    Every joint is a hinge while it rests, and between the first and the last movement a person may rest most of the
-    time.
-    """
-    speed = np.sqrt(np.einsum("ni,ni->n", data.g1, data.g1) + np.einsum("ni,ni->n", data.g2, data.g2))
-    fast = np.flatnonzero(speed > max(MOVING_RAD_S, float(np.median(speed))))
+    """About `count` of the samples at which the segments turn."""
+    fast = np.flatnonzero(is_turning(data.g1, data.g2))
     few = np.linspace(0, len(fast) - 1, min(count, len(fast))).astype(np.int64)
     return data.only(fast[few])
 
