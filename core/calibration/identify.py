@@ -288,7 +288,18 @@ def _hinge_residual(turned: list[Datasets], axis_1: FloatArray, axis_2: FloatArr
 
 
 def disagreement_about(data: Datasets, axis_1: FloatArray, axis_2: FloatArray) -> float:
-    """What the sensors of a joint with axes (3,) feel of it differently, against all that they feel: 0 to 1."""
+    """What the sensors of a joint feel of it differently, against all that they feel.
+
+    Parameters
+    ----------
+    axis_1, axis_2 : (3,)
+        Unit axes of the proximal and the distal sensor, each in its own sensor's axes.
+
+    Returns
+    -------
+    float
+        0 one joint, 1 none.
+    """
     some = data.thinned(DECISION_SAMPLES)
     knots = heading_from_axes(some, axis_1[None], axis_2[None])
     forces = joint_forces(some)

@@ -73,11 +73,13 @@ def test_on_a_hinge_only_the_range_counts() -> None:
 
 @pytest.mark.parametrize(("rate", "ringing"), [(0.031, 0.0), (0.0, 0.021)])
 def test_a_hinge_that_is_not_declared_and_not_bare_may_be_a_person_s_joint(rate: float, ringing: float) -> None:
-    told = {"is_knee": False, "is_hinge": True, "ringing_rad_s": ringing}
-    doubted = angle_sd_rad(np.deg2rad([0.0, 20.0]), rate, 0.1, **told)  # type: ignore[arg-type]  # names of parameters
+    angles = np.deg2rad([0.0, 20.0])
+    doubted, declared = (
+        angle_sd_rad(angles, rate, 0.1, is_knee=False, is_hinge=True, is_prosthetic=told, ringing_rad_s=ringing)
+        for told in (False, True)
+    )
     assert np.rad2deg(doubted) == pytest.approx([0.9, np.hypot(0.3 + 4.0 * rate, 2.6)])
-    declared = angle_sd_rad(np.zeros(1), rate, 0.1, **told, is_prosthetic=True)  # type: ignore[arg-type]  # as above
-    assert np.rad2deg(declared) == pytest.approx(0.1)
+    assert np.rad2deg(declared) == pytest.approx([0.1, 0.1])
 
 
 def test_a_hinge_is_as_loose_as_its_axis_is_off(person: "Person") -> None:
