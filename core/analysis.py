@@ -203,10 +203,15 @@ def _bases(tracks: SensorTracks) -> Bases:
 def _identify(
     tracks: SensorTracks, bases: Bases, method: Method, tau_s: float, steps: _Steps
 ) -> dict[Basis, Identified]:
+    """Every joint; knees first, since they help their ankles."""
     identified: dict[Basis, Identified] = {}
-    for basis in dict.fromkeys(bases.values()):
+    for name, joint in sorted(bases, key=lambda of: not of[1].is_knee):
+        basis = bases[name, joint]
+        if basis in identified:
+            continue
         steps.tick(str(basis.joint))
-        found = identify(tracks, basis, method, tau_s)
+        knee = bases.get((name, knee_of(joint.side)))
+        found = identify(tracks, basis, method, tau_s, identified.get(knee) if knee else None)
         if found is not None:
             identified[basis] = found
     return identified
