@@ -415,5 +415,5 @@ def _angle(calibration: JointCalibration, found: Twist, ringing_rad_s: float | N
         ringing_rad_s,
     )
     orientation = None if found.orientation_rad is None else clinical(found.orientation_rad)
-    sd_rad = np.where(np.isfinite(angle), np.hypot(sd, found.broken_sd_rad), np.nan)
+    sd_rad = np.where(np.isfinite(angle), np.hypot(sd, found.added_sd_rad), np.nan)
     return JointAngle(angle, sd_rad, published, orientation)

@@ -280,7 +280,7 @@ def _is_hinge(turned: list[Datasets], fit: Candidates) -> tuple[bool, float]:
         return False, residual
     # lengths alone can agree by chance: what a hinge does not do at all is turn across its axis
     off_axis, _ = residual_scales(turned[0], fit)
-    return residual < MAX_HINGE_RESIDUAL_RAD_S and off_axis < MAX_OFF_AXIS_RAD_S, residual
+    return bool(residual < MAX_HINGE_RESIDUAL_RAD_S and off_axis < MAX_OFF_AXIS_RAD_S), residual
 
 
 def _hinge_residual(turned: list[Datasets], axis_1: FloatArray, axis_2: FloatArray) -> float:
