@@ -23,6 +23,7 @@ SCALE, SWING_HZ = 0.01, 0.05  # of the gyroscopes; slower than this, a swing is 
 MAX_ELEVATION_RAD = np.deg2rad(45.0)  # an axis that stands steeper does not show the scales
 SD_FACTOR = 2.0  # the covariance of the fit alone holds too little
 SD_STEP_S = 0.5  # it changes slowly
+CLIPPED_BEYOND_RAD_S, SAME_RAD_S = 1.5, 1e-9  # the narrowest range of a gyroscope is 125 deg/s
 CORRELATION_S = 0.1  # accelerations nearer in time tell the same
 SAMPLES_PER_S = 20.0
 MIN_SCALE_M_S2 = 0.02
@@ -93,11 +94,24 @@ def _causes(pair: Pair, j1: FloatArray, from_rates: FloatArray) -> Causes:
     return np.stack([since, swing], axis=1), np.array([SLOPE_RAD_S, SCALE])
 
 
+def _hidden_before(pair: Pair) -> IntArray:
+    """The last sample of each time that hid some turning, which turns all that follows: gaps, and rates at their end.
+
+    A gyroscope at the end of its range stays at one value. Eq 15 forgets what it lost within its time constant.
+    """
+    is_lost = ~pair.is_measured
+    for rates in (pair.g1, pair.g2):
+        low, high = rates.min(axis=0) + SAME_RAD_S, rates.max(axis=0) - SAME_RAD_S
+        at_end = ((rates < low) | (rates > high)) & (np.abs(rates) > CLIPPED_BEYOND_RAD_S)
+        is_lost[2:] |= (at_end[2:] & at_end[1:-1] & at_end[:-2]).any(axis=1)
+    return np.flatnonzero(is_lost[:-1] & ~is_lost[1:])
+
+
 def _fit_drift(
     pair: Pair, chosen: IntArray, angle: FloatArray, length: FloatArray, start: float, causes: Causes
 ) -> tuple[FloatArray, FloatArray]:
     intervals, position = knot_positions(pair)
-    over = np.flatnonzero(pair.is_measured[1:] & ~pair.is_measured[:-1])  # what a gap hid turns all that follows
+    over = _hidden_before(pair)
     courses, sizes = causes
     lines, jumps = intervals + 1, intervals + 1 + len(sizes)
     terms = jumps + len(over)

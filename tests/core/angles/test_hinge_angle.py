@@ -1,5 +1,6 @@
 """The drift of a hinge: what is left of biases and scales is taken out, and what remains is said."""
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -40,23 +41,42 @@ def test_biases_that_no_rest_has_shown_leave_no_drift(seed: int, recordings: tup
     assert np.mean(np.abs(error) < 2 * angle.sd_rad) > 0.9
 
 
-def scaled_error(person: "Person", share: float) -> FloatArray:
-    """Error (n,) of a hinge's angle, the mean removed, where both gyroscopes read a share too much."""
+def error_with(person: "Person", change: Callable[[FloatArray], FloatArray]) -> FloatArray:
+    """Error (n,) of a hinge's angle, the mean removed, where both gyroscopes read what `change` makes of the rates."""
     pair = person.exact_pair(KNEE, duration_s=12.0)
-    rates, forces = ((1 + share) * pair.g1, (1 + share) * pair.g2), (pair.a1, pair.a2)
-    orientations = tuple(one.q_earth_from_sensor for one in pair.tracks)
-    scaled = pair_of(pair.time_s, pair.step_s, rates, forces, orientations, pair.is_measured)  # type: ignore[arg-type]  # two
+    rates, forces = (change(pair.g1), change(pair.g2)), (pair.a1, pair.a2)
+    orientations = pair.tracks[0].q_earth_from_sensor, pair.tracks[1].q_earth_from_sensor
+    changed = pair_of(pair.time_s, pair.step_s, rates, forces, orientations, pair.is_measured)
     axes = [person.axis(site, KNEE) for site in SITES]
     centres = np.concatenate([*(person.centre_m(site, KNEE) for site in SITES), np.zeros(6)])
-    error = hinge_angle(scaled, axes[0], axes[1], centres)
+    error = hinge_angle(changed, axes[0], axes[1], centres)
     error = error - person.truth(RecordingKind.FREE_MOTION, KNEE, pair.time_s)
     return np.asarray(error - np.mean(error))
 
 
 def test_a_scale_of_the_gyroscopes_is_found_on_a_level_axis(person: "Person", monkeypatch: pytest.MonkeyPatch) -> None:
-    found = np.std(scaled_error(person, 0.01))
+    found = np.std(error_with(person, lambda rates: 1.01 * rates))
     monkeypatch.setattr(drifting, "SCALE", 1e-6)
-    assert found < 0.5 * np.std(scaled_error(person, 0.01))
+    assert found < 0.5 * np.std(error_with(person, lambda rates: 1.01 * rates))
+
+
+def test_what_a_gyroscope_at_its_end_has_lost_is_found_again(person: "Person", monkeypatch: pytest.MonkeyPatch) -> None:
+    """Why eq 15 was the better one in a fast roll: it forgets in seconds what a line between knots keeps."""
+
+    def clipped(rates: FloatArray) -> FloatArray:
+        return np.clip(rates, -0.85 * np.max(np.abs(rates)), 0.85 * np.max(np.abs(rates)))
+
+    found = np.std(error_with(person, clipped))
+    monkeypatch.setattr(drifting, "CLIPPED_BEYOND_RAD_S", np.inf)
+    assert found < 0.5 * np.std(error_with(person, clipped))
+
+
+def test_of_gyroscopes_within_their_range_nothing_is_taken_for_lost(
+    person: "Person", monkeypatch: pytest.MonkeyPatch
+) -> None:
+    found = error_with(person, lambda rates: rates)
+    monkeypatch.setattr(drifting, "CLIPPED_BEYOND_RAD_S", np.inf)
+    np.testing.assert_array_equal(found, error_with(person, lambda rates: rates))
 
 
 def test_a_drift_is_less_sure_where_the_accelerations_agree_less(person: "Person") -> None:
