@@ -20,7 +20,7 @@ AXIS_FLOOR_WALKING_RAD = np.deg2rad(6.0)
 ANGLE_FLOOR_KNEE_RAD, KNEE_PER_RATE_S = np.deg2rad(1.1), np.deg2rad(3.0)
 ANGLE_FLOOR_ANKLE_RAD, ANKLE_PER_RATE_S = np.deg2rad(0.3), np.deg2rad(4.0)
 ANKLE_PER_DISTANCE = 0.13
-ANGLE_FLOOR_PROSTHESIS_RAD, PROSTHESIS_PER_RATE_S = np.deg2rad(0.15), np.deg2rad(1.0)
+ANGLE_FLOOR_PROSTHESIS_RAD, PROSTHESIS_PER_RATE_S = np.deg2rad(0.2), np.deg2rad(1.1)
 # On a hinge what the sensors' scales are off by grows with the range: simulated legs, of 60 to 76 deg, are off by 0.05
 # to 0.1 deg, two mechanical hinges, of 160 deg and against optics, by 0.5.
 ANGLE_FLOOR_HINGE_RAD, MIN_HINGE_RAD = np.deg2rad(0.05), np.deg2rad(0.10)

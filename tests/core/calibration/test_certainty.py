@@ -53,7 +53,7 @@ def test_the_weaker_axis_and_direction_count_and_the_floor_is_added() -> None:
         (0.0, 0.0, False, False, 0.3),
         (0.5, 0.0, False, False, 2.3),
         (0.5, 20.0, False, False, np.hypot(2.3, 2.6)),
-        (0.5, 20.0, False, True, 0.65),
+        (0.5, 20.0, False, True, 0.75),
     ],
 )
 def test_an_angle_s_spread_goes_by_what_is_declared(
