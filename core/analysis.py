@@ -207,10 +207,15 @@ def _bases(tracks: SensorTracks) -> Bases:
 def _identify(
     tracks: SensorTracks, bases: Bases, method: Method, tau_s: float, steps: _Steps
 ) -> dict[Basis, Identified]:
+    """Every joint; knees first, since they help their ankles."""
     identified: dict[Basis, Identified] = {}
-    for basis in dict.fromkeys(bases.values()):
+    for name, joint in sorted(bases, key=lambda of: not of[1].is_knee):
+        basis = bases[name, joint]
+        if basis in identified:
+            continue
         steps.tick(str(basis.joint))
-        found = identify(tracks, basis, method, tau_s)
+        knee = bases.get((name, knee_of(joint.side)))
+        found = identify(tracks, basis, method, tau_s, identified.get(knee) if knee else None)
         if found is not None:
             identified[basis] = found
     return identified
@@ -423,8 +428,9 @@ def _angle(calibration: JointCalibration, found: Twist, ringing_rad_s: float | N
         range_of(found.moving_twist) if len(found.moving_twist) else 0.0,
         calibration.joint.is_knee,
         calibration.is_hinge,
+        calibration.is_prosthetic,
         ringing_rad_s,
     )
     orientation = None if found.orientation_rad is None else clinical(found.orientation_rad)
-    sd_rad = np.where(np.isfinite(angle), np.hypot(sd, found.broken_sd_rad), np.nan)
+    sd_rad = np.where(np.isfinite(angle), np.hypot(sd, found.added_sd_rad), np.nan)
     return JointAngle(angle, sd_rad, published, orientation)

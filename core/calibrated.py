@@ -15,6 +15,7 @@ from core.rotations import wrap
 from core.samples import FloatArray, RecordingKind, Session
 from core.sensors import SensorTracks
 from core.validity import Basis
+from core.walking import prosthetic_sides
 
 Bases = dict[tuple[str, Joint], Basis]
 """What calibrates each joint in each recording, by the recording's name."""
@@ -112,6 +113,7 @@ def _calibration(
         is_same_joint=robust.is_same_joint if robust else True,
         is_lag_at_border=robust.lag.is_at_border if robust else False,
         disagreement=robust.disagreement if robust else None,
+        is_prosthetic=joint.side in prosthetic_sides(session.patient),
     )
     return calibration, sign
 

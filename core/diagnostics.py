@@ -9,13 +9,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.angles.twist import off_axis_rate
-from core.body import Joint
+from core.body import Joint, knee_of
 from core.calibration.heading import heading_over
 from core.calibration.identify import moving_data
 from core.datasets import Datasets
 from core.identified import Identified, clock_moved_s, identify
 from core.measure import Geometry, is_anchored, pairs_of
-from core.pair import Pair
+from core.pair import Pair, is_turning
 from core.published.angles import DEFAULT_TAU_S
 from core.published.figures import CostOverSphere, ProjectedRates, TwoWays, costs_of_both, projected_rates, two_ways
 from core.published.identify import data_sets
@@ -27,7 +27,7 @@ from core.robust import robust_sd
 from core.rotations import angle_between
 from core.samples import FloatArray, Recording, Session
 from core.sensors import SensorTracks
-from core.validity import basis_of, spans_of_validity
+from core.validity import Basis, basis_of, spans_of_validity
 
 MOST_SETS = 6000  # ten minutes of data sets (eq 2)
 
@@ -106,7 +106,9 @@ def diagnostics_of(
     if not tracks.is_usable(recording, joint.proximal, joint.distal):
         return None
     basis = basis_of(span, recording, joint, tracks.is_usable)
-    found = identify(tracks, basis, calibration.method, tau_s)
+    found = identify(
+        tracks, basis, calibration.method, tau_s, _knee_above(tracks, recording, basis, calibration, tau_s)
+    )
     if found is None:
         return None
     geometry = found.geometry
@@ -135,6 +137,16 @@ def diagnostics_of(
         bias_drift_rad_s=_bias_drift(calibration),
         lag_cost_ratio=found.lag.cost_ratio if found.lag else None,
     )
+
+
+def _knee_above(
+    tracks: SensorTracks, recording: Recording, ankle: Basis, calibration: JointCalibration, tau_s: float
+) -> Identified | None:
+    """The knee that helps an ankle; None where it cannot be identified, and of knees."""
+    knee = knee_of(ankle.joint.side)
+    if ankle.joint.is_knee or not tracks.is_usable(recording, knee.proximal, knee.distal):
+        return None
+    return identify(tracks, basis_of(tracks.span, recording, knee, tracks.is_usable), calibration.method, tau_s)
 
 
 def _seen(tracks: SensorTracks, found: Identified) -> tuple[Pair, ...]:
@@ -170,7 +182,8 @@ def _off_axis_rate(pairs: tuple[Pair, ...], geometry: Geometry) -> float:
     seen = []
     for pair in pairs:
         heading = heading_over(pair, geometry.axis_1, geometry.axis_2, geometry.unknowns)
-        seen.append(off_axis_rate(pair, geometry.axis_1, heading)[pair.is_moving & pair.is_measured].ravel())
+        is_seen = is_turning(pair.g1, pair.g2) & pair.is_measured
+        seen.append(off_axis_rate(pair, geometry.axis_1, heading)[is_seen].ravel())
     return robust_sd(np.concatenate(seen)) if seen else float("nan")
 
 

@@ -4,9 +4,13 @@ A body that turns turns as a whole: over a second and more, thigh, shank and foo
 sensor whose accelerations have the wrong sign takes up for down and turns the other way round. One sensor alone cannot
 tell: a reversed accelerometer is a person seen in a mirror, who walks as anyone does. For the same reason nothing that
 we compute changes where all accelerometers are reversed alike.
+
+A joint of two axes may turn its segments against each other, so this is a suspicion only: reversed is an accelerometer
+with whose opposite both sensors agree better about what their joint feels.
 """
 
 from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -14,9 +18,12 @@ from scipy.signal import butter, sosfiltfilt
 from vqf import offlineVQF
 
 from core.body import Joint, Side, Site
+from core.calibration.identify import decide, disagreement_about, moving_data
+from core.orientation import oriented
+from core.pair import OrientedTrack, pair_up
 from core.rotations import matrix_from_quaternion
-from core.samples import FloatArray, ImuBlock
-from core.tracks import even_tracks
+from core.samples import FloatArray, ImuBlock, RateKind
+from core.tracks import Track, even_tracks
 
 LOOKED_AT_S = 60.0
 TURN_HZ, GRID_HZ, MEANS_HZ = 1.0, 10.0, 25.0
@@ -24,9 +31,22 @@ MIN_OVERLAP_S = 5.0
 MIN_TURN_RAD_S = 0.1  # rms; on people a straight walk has 0.1-0.3
 # Correlation: of neighbours on people 0.1-0.9, in free motion and turns 0.6-1.0; below zero where one is reversed
 OPPOSITE = -0.55
+# What a joint's sensors disagree on: people 0.025-0.089, and 0.08-0.27 with one accelerometer negated; hinges
+# 0.003-0.007 and 0.40
+NEGATED_SHARE = 0.6
 
-# Times and rates (n,); None where a recording is too short or too gappy
-Turn = tuple[FloatArray, FloatArray] | None
+
+@dataclass(frozen=True, slots=True)
+class Turning:
+    """The longest stretch at the start of a recording, and how fast it turns about the vertical, (n,) at `time_s`."""
+
+    track: Track
+    time_s: FloatArray
+    rate_rad_s: FloatArray
+
+
+# None where a recording is too short or too gappy
+Turn = Turning | None
 
 
 def reversed_sites(turns: Mapping[Site, Turn]) -> list[tuple[Site, ...]]:
@@ -52,20 +72,44 @@ def _agreement(turns: Mapping[Site, Turn], joint: Joint) -> bool | None:
     proximal, distal = turns.get(joint.proximal), turns.get(joint.distal)
     if proximal is None or distal is None:
         return None
-    (t1, turn1), (t2, turn2) = proximal, distal
+    t1, t2 = proximal.time_s, distal.time_s
     grid = np.arange(max(t1[0], t2[0]), min(t1[-1], t2[-1]), 1.0 / GRID_HZ)
     if len(grid) < MIN_OVERLAP_S * GRID_HZ:
         return None
-    one, other = np.interp(grid, t1, turn1), np.interp(grid, t2, turn2)
+    one, other = np.interp(grid, t1, proximal.rate_rad_s), np.interp(grid, t2, distal.rate_rad_s)
     sizes = np.sqrt(np.mean(one**2)), np.sqrt(np.mean(other**2))
     if min(sizes) < MIN_TURN_RAD_S:
         return None
     correlation = float(np.mean(one * other) / (sizes[0] * sizes[1]))
-    return False if correlation < OPPOSITE else True if correlation > 0.0 else None
+    if correlation < OPPOSITE:
+        return False if _is_one_reversed(proximal.track, distal.track) else None
+    return True if correlation > 0.0 else None
+
+
+def _is_one_reversed(proximal: Track, distal: Track) -> bool:
+    """Whether both sensors agree better about their joint with one accelerometer negated, it does not matter which."""
+    one = _oriented(proximal)
+    as_is, negated = (
+        _disagreement(one, _oriented(track)) for track in (distal, replace(distal, acc_m_s2=-distal.acc_m_s2))
+    )
+    return negated < NEGATED_SHARE * as_is
+
+
+def _oriented(track: Track) -> OrientedTrack:
+    return oriented(track, RateKind.INSTANTANEOUS, np.zeros(3))
+
+
+def _disagreement(one: OrientedTrack, two: OrientedTrack) -> float:
+    pair = pair_up(one, two, 0.0)
+    data = moving_data((pair,)) if pair is not None else None
+    if data is None:
+        return float("nan")
+    best = decide(data).best
+    return disagreement_about(data, best.axis_1[0], best.axis_2[0])
 
 
 def turn_about_vertical(block: ImuBlock) -> Turn:
-    """Times and rates (n,) about the vertical below `TURN_HZ`, of the longest stretch at the start of a recording."""
+    """How a sensor turns about the vertical, below `TURN_HZ`."""
     if not len(block):
         return None
     tracks = even_tracks(block, to_s=float(block.time_s[0]) + LOOKED_AT_S)
@@ -80,7 +124,7 @@ def turn_about_vertical(block: ImuBlock) -> Turn:
     step_s = width * track.step_s
     # a filter that does not estimate the gyroscopes' bias finds reversed accelerometers where there are none
     vertical = matrix_from_quaternion(offlineVQF(gyr, acc, None, step_s)["quat6D"])[:, 2]
-    return time_s, sosfiltfilt(_low_pass(step_s), np.sum(gyr * vertical, axis=1))
+    return Turning(track, time_s, sosfiltfilt(_low_pass(step_s), np.sum(gyr * vertical, axis=1)))
 
 
 def _means(values: FloatArray, width: int) -> FloatArray:

@@ -9,6 +9,7 @@ from core.calibration.bare_axis import Axes, bare_axes
 from core.calibration.identify import Identification, identify_joint, moving_data
 from core.calibration.joint_axis import heading_from_axes
 from core.calibration.joint_centre import MAX_SD_M, nearest_to_sensors
+from core.calibration.knees_help import helped_by_knee
 from core.calibration.lag import Lag, find_lag
 from core.measure import Geometry, pairs_of
 from core.pair import Pair
@@ -48,7 +49,9 @@ class Identified:
         return self.robust.lag if self.robust else None
 
 
-def identify(tracks: SensorTracks, basis: Basis, method: Method, tau_s: float) -> Identified | None:
+def identify(
+    tracks: SensorTracks, basis: Basis, method: Method, tau_s: float, knee: "Identified | None" = None
+) -> Identified | None:
     """Identify one joint; None where its recordings hold too little movement.
 
     Parameters
@@ -61,6 +64,8 @@ def identify(tracks: SensorTracks, basis: Basis, method: Method, tau_s: float) -
         Robust, or as published.
     tau_s
         Time constant of the fusion of Seel, Raisch and Schauer 2014, doi 10.3390/s140406891, eq 15; it is passed on.
+    knee
+        Of an ankle, the knee above as it was identified, where it was.
 
     Returns
     -------
@@ -77,7 +82,7 @@ def identify(tracks: SensorTracks, basis: Basis, method: Method, tau_s: float) -
     """
     if method is Method.PUBLISHED:
         return _as_published(tracks, basis, tau_s)
-    return _robustly(tracks, basis, tau_s)
+    return _robustly(tracks, basis, tau_s, knee)
 
 
 def _by_name(tracks: SensorTracks, names: tuple[str, ...]) -> list[Recording]:
@@ -109,7 +114,7 @@ def _source(basis: Basis, is_hinge: bool) -> AxisSource:
     return AxisSource.FREE_MOTION if basis.joint.is_knee or not basis.walks else AxisSource.POOLED
 
 
-def _robustly(tracks: SensorTracks, basis: Basis, tau_s: float) -> Identified | None:
+def _robustly(tracks: SensorTracks, basis: Basis, tau_s: float, knee: Identified | None) -> Identified | None:
     joint, names = basis.joint, identifying_recordings(basis)
     free = (basis.free_motion,) if basis.free_motion else ()
     found = identify_joint(
@@ -126,7 +131,7 @@ def _robustly(tracks: SensorTracks, basis: Basis, tau_s: float) -> Identified | 
     if joint.is_knee:
         centre_1, centre_2 = nearest_to_sensors(found.centre, found.axis_1, found.axis_2)
     bare = _bare_axes(tracks, basis, found)
-    axis_1, axis_2 = bare or (found.axis_1, found.axis_2)
+    axis_1, axis_2 = bare or _helped_axes(tracks, basis, found, knee) or (found.axis_1, found.axis_2)
     # a walking person's centre is not in the data; a hinge's is
     is_centre_known = found.centre_sd_m < MAX_SD_M and (found.is_hinge or basis.free_motion is not None)
     return Identified(
@@ -159,6 +164,19 @@ def _bare_axes(tracks: SensorTracks, basis: Basis, found: Identification) -> Axe
         return None
     walked = moving_data(_pairs(tracks, basis.joint, basis.walks, found.lag.lag_s))
     return bare_axes(walked, (found.axis_1, found.axis_2)) if walked else None
+
+
+def _helped_axes(tracks: SensorTracks, basis: Basis, found: Identification, knee: Identified | None) -> Axes | None:
+    """Axes of a person's ankle that is known from walking alone, whose knee and whose standing are known.
+
+    A free motion shows an ankle's own axis better than its knee does.
+    """
+    downs = _downs(tracks, basis)
+    if basis.joint.is_knee or basis.free_motion or found.is_hinge or knee is None or downs is None:
+        return None
+    if not found.did_flexion_dominate:
+        return None
+    return helped_by_knee((found.axis_1, found.axis_2), knee.geometry.axis_2, downs)
 
 
 def _downs(tracks: SensorTracks, basis: Basis) -> tuple[FloatArray, FloatArray] | None:

@@ -8,14 +8,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.angles.hinge_angle import hinge_angle
+from core.angles.hinge_angle import hinge_angle, hinge_angle_and_sd
 from core.angles.twist import off_axis_rate, ringing, twist
 from core.body import Joint
 from core.calibration.heading import heading_over
 from core.calibration.zero import within_half_a_turn
 from core.gait.inclination import lean_about
 from core.orientation import oriented_to_north
-from core.pair import OrientedTrack, Pair, pair_up
+from core.pair import OrientedTrack, Pair, is_turning, pair_up
 from core.published.angles import angle_from_orientations, published_angle
 from core.rotations import wrap
 from core.samples import FloatArray, Recording
@@ -50,16 +50,17 @@ class Geometry:
 class Twist:
     """One joint over one recording. Angles (n,) on the recording's clock, radians, NaN where unknown, without jumps.
 
-    `broken_sd_rad` (n,) is what gaps add to the uncertainty: an orientation that starts anew amid a movement has to
-    find the vertical first. The others are thinned samples (m, ...) while the joint's segments move: the angle, all of
-    the off-axis rate, what of it is above 3 Hz, and each sensor's own rate about its own axis.
+    `added_sd_rad` (n,) is what adds to the uncertainty here and there: a hinge's drift, and gaps, for an orientation
+    that starts anew amid a movement has to find the vertical first. The others are thinned samples (m, ...) while the
+    joint's segments move: the angle, and each sensor's own rate about its own axis; and, of those of them at which they
+    turn (`is_turning`), all of the off-axis rate and what of it is above 3 Hz.
     `lean_1_rad`, `lean_2_rad` (n,): how both segments stand to the vertical, as `lean_about` has it; of knees only.
     """
 
     twist_rad: FloatArray
     published_rad: FloatArray
     orientation_rad: FloatArray | None
-    broken_sd_rad: FloatArray
+    added_sd_rad: FloatArray
     moving_twist: FloatArray
     moving_off_axis: FloatArray
     moving_ringing: FloatArray
@@ -133,7 +134,7 @@ def measure(
     Twist
         Angles in rad at `time_s`, NaN where unknown.
     """
-    names = ("twist", "published", "orientation", "broken_sd", *(("lean_1", "lean_2") if joint.is_knee else ()))
+    names = ("twist", "published", "orientation", "added_sd", *(("lean_1", "lean_2") if joint.is_knee else ()))
     angles = {name: np.full(len(time_s), np.nan) for name in names}
     witnesses: list[tuple[FloatArray, ...]] = []
     j1, j2 = geometry.axis_1, geometry.axis_2
@@ -142,22 +143,26 @@ def measure(
         for pair in pairs:
             heading = heading_over(pair, j1, j2, geometry.unknowns)
             fused = published_angle(pair, j1, j2, geometry.centre_1_m, geometry.centre_2_m, geometry.tau_s)
-            angle = hinge_angle(pair, j1, j2, geometry.unknowns) if geometry.is_hinge else twist(pair, j1, j2, heading)
-            found = {"twist": angle, "published": -fused}
+            if geometry.is_hinge:
+                angle, added_sd = hinge_angle_and_sd(pair, j1, j2, geometry.unknowns)
+            else:
+                angle, added_sd = twist(pair, j1, j2, heading), np.zeros(len(pair))
+            found = {"twist": angle, "published": -fused, "added_sd": added_sd}
             if joint.is_knee:
                 found["lean_1"] = lean_about(j1, pair.earth_from_1[:, 2])
                 found["lean_2"] = lean_about(j2, pair.earth_from_2[:, 2])
             if len(pairs) > 1:
                 share = min(1.0, (SETTLED_S / pair.duration_s) ** 2)
-                found["broken_sd"] = np.full(len(pair), share * BROKEN_SD_RAD)
+                found["added_sd"] = np.hypot(added_sd, share * BROKEN_SD_RAD)
                 if not geometry.is_hinge:  # the joint's accelerations know better than two filters that have just begun
                     angle += share * float(np.median(wrap(hinge_angle(pair, j1, j2, geometry.unknowns) - angle)))
             for name, values in found.items():
                 place(angles[name], values, pair, time_s, clock_offset_s, block)
             chosen = np.flatnonzero(pair.is_moving & pair.is_measured)[:: max(1, round(WITNESS_STEP_S / pair.step_s))]
+            turning = chosen[is_turning(pair.g1, pair.g2)[chosen]]
             off_axis = off_axis_rate(pair, j1, heading)
-            rung, rates = ringing(off_axis, pair.step_s)[chosen], (pair.g1[chosen] @ j1, pair.g2[chosen] @ j2)
-            witnesses.append((found["twist"][chosen], off_axis[chosen], rung, *rates))
+            rung, rates = ringing(off_axis, pair.step_s)[turning], (pair.g1[chosen] @ j1, pair.g2[chosen] @ j2)
+            witnesses.append((found["twist"][chosen], off_axis[turning], rung, *rates))
         for pair in _north_pairs(tracks, recording, joint, block, geometry.lag_s):
             values = np.unwrap(-angle_from_orientations(pair.earth_from_1, pair.earth_from_2, j1, j2))
             place(angles["orientation"], values, pair, time_s, clock_offset_s, block)
@@ -168,7 +173,7 @@ def measure(
         twist_rad=angles["twist"],
         published_rad=angles["published"],
         orientation_rad=angles["orientation"] if np.isfinite(angles["orientation"]).any() else None,
-        broken_sd_rad=np.nan_to_num(angles["broken_sd"]),
+        added_sd_rad=np.nan_to_num(angles["added_sd"]),
         moving_twist=within_half_a_turn(joined[0]) if joined else np.empty(0),
         moving_off_axis=joined[1] if joined else np.empty((0, 2)),
         moving_ringing=joined[2] if joined else np.empty((0, 2)),

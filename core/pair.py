@@ -81,6 +81,26 @@ class Pair:
         return moving_mean(speed, max(1, round(MOVING_WINDOW_S / self.step_s))) > MOVING_RAD_S
 
 
+def is_turning(one_rad_s: FloatArray, other_rad_s: FloatArray) -> BoolArray:
+    """Samples (n,) at which two segments turn, and not more slowly than in half of all.
+
+    Every joint is a hinge while it rests, and between two movements a person may rest most of the time.
+
+    Parameters
+    ----------
+    one_rad_s, other_rad_s : (n, 3)
+        Angular rates, rad/s, each in its own sensor's axes.
+
+    Returns
+    -------
+    (n,)
+        True where they do.
+    """
+    squares = (np.einsum("ni,ni->n", rate, rate) for rate in (one_rad_s, other_rad_s))
+    speed = np.sqrt(sum(squares))
+    return np.asarray(speed > max(MOVING_RAD_S, float(np.median(speed))))
+
+
 def moving_mean(values: FloatArray, width: int) -> FloatArray:
     """Centred mean of (n, ...) over up to `width` samples, fewer at the borders.
 

@@ -53,6 +53,7 @@ class JointCalibration:
     `is_same_joint` is False where both sensors do not move as neighbours; its evidence is `disagreement`, what the best
     common joint leaves of their accelerations (0 nothing, 1 all), and `is_lag_at_border`, that they would coincide best
     at a lag that no clock has. `is_clock_shared`: both sensors are told to share one clock, so there is no lag to find.
+    `is_prosthetic`: its side is declared to wear a prosthesis.
     """
 
     joint: Joint
@@ -86,6 +87,7 @@ class JointCalibration:
     is_lag_at_border: bool = False
     is_clock_shared: bool = False
     disagreement: float | None = None
+    is_prosthetic: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -62,6 +62,7 @@ from devices.walker_sensors import (
     make_clock,
     record,
     sensor_poses,
+    turn_in_step,
 )
 from devices.walker_strap import on_loose_strap
 from devices.walker_treadmill import on_treadmill
@@ -228,6 +229,10 @@ def _take(
             chance = _rng(settings, 4, _index(site), number)
             ride = rides.setdefault((site, kind), draw_ride(chance))
             following, wobble = _following(legs[site.leg_side], leg, site, worn.gains), 1.0
+            if settings.tissue_turn_rad and tissue is not Tissue.RIGID:
+                of_strap = _rng(settings, 14, _index(site), worn.strapping)
+                turned = turn_in_step(leg, legs[site.leg_side], site.segment, settings.tissue_turn_rad, of_strap)
+                following = turned if following is None else turned @ following
             if pelvis is not None and tissue is Tissue.REAL and site.segment is Segment.THIGH:
                 turned = thigh_on_tissue(
                     leg, legs[site.leg_side].outward, _rng(settings, 10, _index(site), worn.strapping)

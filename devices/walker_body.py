@@ -308,6 +308,9 @@ class WalkerSettings:
         By what share of the true flexion sensors read more at the knee, as the thigh's tissue stays behind the bone:
         mean and standard deviation over legs. On people 0.09 and 0.04 in walking. What was drawn is in the session's
         truth (`JointTruth.sensor_gain`), whose angles stay those of the bones.
+    tissue_turn_rad
+        How far tissue turns a thigh's sensor about the flexion axis, to and fro in step with the gait, where there is
+        tissue; shank and foot by their share. Nothing tells it from flexion. On people it may be 2 to 4 deg.
     variation
         How gait varies beyond the walker's own small spread: `PEOPLE` is as people do.
     """
@@ -332,6 +335,7 @@ class WalkerSettings:
     mounting_sd_m: float = 0.025
     tissue_gain: float = 0.0
     tissue_gain_sd: float = 0.0
+    tissue_turn_rad: float = 0.0
     variation: Variation = Variation()
     body_seed: int | None = None
 

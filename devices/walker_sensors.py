@@ -10,8 +10,8 @@ from scipy.ndimage import gaussian_filter1d
 
 from core.body import Segment, Side, Site
 from core.samples import BoolArray, FloatArray, ImuBlock, RateKind
-from devices.walker_body import SENSOR_PLACES_M, SensorErrors, Tissue, WalkerSettings
-from devices.walker_motion import LegMotion
+from devices.walker_body import SENSOR_PLACES_M, Leg, SensorErrors, Tissue, WalkerSettings
+from devices.walker_motion import LegMotion, rotation_about
 
 GRAVITY_M_S2 = np.array([0.0, 0.0, -9.81])
 SEGMENT_ROW = {Segment.THIGH: 0, Segment.SHANK: 1, Segment.FOOT: 2}
@@ -172,6 +172,30 @@ def _tissue_motion(
         for directions in (ride.turn, ride.shift)
     )
     return _bounded(share * TISSUE_RAD * turn), REAL_SHIFT * share * TISSUE_M * shift
+
+
+def turn_in_step(
+    motion: LegMotion, leg: Leg, segment: Segment, size_rad: float, rng: np.random.Generator
+) -> FloatArray:
+    """How tissue turns a sensor about the flexion axis while its leg walks: once and twice in a stride, by chance.
+
+    Parameters
+    ----------
+    size_rad
+        Root mean square at a thigh, times the square root of two; other segments have their share of tissue.
+
+    Returns
+    -------
+    (n, 3, 3)
+        Rotation of the sensor against its segment.
+    """
+    contacts_s = motion.events.initial_contact_s
+    phase_1, phase_2 = rng.uniform(0.0, 2.0 * np.pi, 2)
+    strides = np.interp(motion.time_s, contacts_s, np.arange(len(contacts_s))) if len(contacts_s) else 0.0
+    turns = 2.0 * np.pi * strides
+    drive = 0.8 * np.sin(turns + phase_1) + 0.6 * np.sin(2.0 * turns + phase_2)
+    moving = _is_moving(motion) if len(contacts_s) > 1 else np.zeros_like(motion.time_s)
+    return rotation_about(leg.knee_axis, size_rad * TISSUE_SHARE[segment] * moving * drive)
 
 
 def _liveliness(leg: LegMotion) -> float:

@@ -13,20 +13,22 @@ AXIS_FLOOR_HINGE_RAD = np.deg2rad(0.3)
 AXIS_FLOOR_HUMAN_RAD = np.deg2rad(4.0)
 AXIS_FLOOR_WALKING_RAD = np.deg2rad(6.0)
 
-# Of an angle, measured on 66 simulated sessions of all tissues (tests/benchmarks/certainty.py): what it is off by grows
-# with the off-axis rate, and with the distance from the middle posture, for tissue acts as a gain.
-ANGLE_FLOOR_KNEE_RAD, KNEE_PER_RATE_S = np.deg2rad(0.8), np.deg2rad(2.0)
-KNEE_PER_DISTANCE = 0.12  # times the root of the rate
-ANGLE_FLOOR_ANKLE_RAD, ANKLE_PER_RATE_S = np.deg2rad(-0.1), np.deg2rad(3.0)
-ANKLE_PER_DISTANCE = 0.09
-MIN_ANKLE_RAD = np.deg2rad(0.2)
-# An ankle turns off its axis by itself. That tissue does shows above 3 Hz: 0.15 rad/s in walking without any tissue,
-# 0.2 to 0.4 under tight, 0.35 to 0.7 under loose tissue.
-LOOSE_RINGING_RAD_S, MIN_TISSUE = 0.3, 0.4
+# Of an angle. Tissue that turns about the flexion axis in step with the gait leaves no trace in the data, and turns a
+# simulated ankle as easily by 2 deg as by none. So there is no seeing that there is none: of a person's joint it is
+# taken for granted, and only a joint that is declared as a prosthesis, or that is a hinge in every sample, is without.
+# Measured on simulated sessions of all tissues, and prostheses (tests/benchmarks/certainty.py).
+ANGLE_FLOOR_KNEE_RAD, KNEE_PER_RATE_S = np.deg2rad(1.1), np.deg2rad(3.0)
+ANGLE_FLOOR_ANKLE_RAD, ANKLE_PER_RATE_S = np.deg2rad(0.3), np.deg2rad(4.0)
+ANKLE_PER_DISTANCE = 0.13
+ANGLE_FLOOR_PROSTHESIS_RAD, PROSTHESIS_PER_RATE_S = np.deg2rad(0.2), np.deg2rad(1.1)
 # On a hinge what the sensors' scales are off by grows with the range: simulated legs, of 60 to 76 deg, are off by 0.05
 # to 0.1 deg, two mechanical hinges, of 160 deg and against optics, by 0.5.
-ANGLE_FLOOR_HINGE_RAD = np.deg2rad(0.05)
+ANGLE_FLOOR_HINGE_RAD, MIN_HINGE_RAD = np.deg2rad(0.05), np.deg2rad(0.10)
 HINGE_PER_SQUARE_RANGE = 0.001  # per radian
+# A joint that passes for a hinge, and that nobody has declared to be one, is one where it turns across its axis and
+# rings no more than this; else it may be a person's
+BARE_OFF_AXIS_RAD_S, BARE_RINGING_RAD_S = 0.03, 0.02
+MIN_DOUBTED_HINGE_RAD = np.deg2rad(0.9)
 
 
 def sandwich_covariance(slope: FloatArray, value: FloatArray, weight: FloatArray, block: IntArray) -> FloatArray:
@@ -142,6 +144,7 @@ def angle_sd_rad(
     range_rad: float,
     is_knee: bool,
     is_hinge: bool,
+    is_prosthetic: bool = False,
     ringing_rad_s: float | None = None,
 ) -> FloatArray:
     """Standard deviation (n,) of a joint's angle in one recording.
@@ -151,23 +154,30 @@ def angle_sd_rad(
     distance_rad : (n,)
         Of the angle from the middle posture.
     off_axis_rate_rad_s
-        Its spread per axis in that recording, while moving.
+        Its spread per axis in that recording, while the segments turn.
     range_rad
         Of the angle; counts on a hinge only.
+    is_prosthetic
+        Declared to be on the side of a prosthesis.
     ringing_rad_s
-        Of an ankle, the part of the off-axis rate above 3 Hz in walking, root mean square; None where not known.
+        The part of the off-axis rate above 3 Hz, root mean square; None where not known.
 
     Returns
     -------
     (n,)
         rad.
     """
-    if is_hinge:
-        return np.full(np.shape(distance_rad), ANGLE_FLOOR_HINGE_RAD + HINGE_PER_SQUARE_RANGE * range_rad**2)
     rate = off_axis_rate_rad_s
     if is_knee:
-        by_distance = KNEE_PER_DISTANCE * np.sqrt(rate) * distance_rad
-        return np.hypot(ANGLE_FLOOR_KNEE_RAD + KNEE_PER_RATE_S * rate, by_distance)
-    tissue = 1.0 if ringing_rad_s is None else float(np.clip(ringing_rad_s / LOOSE_RINGING_RAD_S, MIN_TISSUE, 1.0))
-    base = max(ANGLE_FLOOR_ANKLE_RAD + ANKLE_PER_RATE_S * rate, MIN_ANKLE_RAD)
-    return tissue * np.hypot(base, ANKLE_PER_DISTANCE * distance_rad)
+        human = np.full(np.shape(distance_rad), ANGLE_FLOOR_KNEE_RAD + KNEE_PER_RATE_S * rate)
+    else:
+        human = np.hypot(ANGLE_FLOOR_ANKLE_RAD + ANKLE_PER_RATE_S * rate, ANKLE_PER_DISTANCE * distance_rad)
+    if is_hinge:
+        is_bare = rate <= BARE_OFF_AXIS_RAD_S and (ringing_rad_s or 0.0) <= BARE_RINGING_RAD_S
+        if not is_prosthetic and not is_bare:
+            return np.maximum(MIN_DOUBTED_HINGE_RAD, human)
+        hinge = max(MIN_HINGE_RAD, ANGLE_FLOOR_HINGE_RAD + HINGE_PER_SQUARE_RANGE * range_rad**2)
+        return np.full(np.shape(distance_rad), hinge)
+    if is_prosthetic and not is_knee:
+        return np.full(np.shape(distance_rad), ANGLE_FLOOR_PROSTHESIS_RAD + PROSTHESIS_PER_RATE_S * rate)
+    return human

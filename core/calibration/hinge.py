@@ -10,18 +10,27 @@ import numpy as np
 from core.calibration.coincidence import BIAS_PRIOR_M_S2
 from core.calibration.joint_axis import moved
 from core.datasets import Datasets
-from core.pair import lever_acceleration
+from core.pair import is_turning, lever_acceleration
 from core.robust import robust_sd
 from core.rotations import angle_between, joint_frame
 from core.samples import FloatArray
 
+# Both of the samples at which the segments turn (`turning`), of which there have to be some
 MAX_HINGE_RESIDUAL_RAD_S = 0.06  # mechanical hinges 0.02, human joints 0.07 to 1.0
 MAX_OFF_AXIS_RAD_S = 0.05  # mechanical hinges 0.025, simulated 0.01 to 0.02; people 0.07 and more in walking
+MIN_TURNING_SAMPLES = 50
 ACCELERATION_WEIGHT_S_M = 0.15  # rad/s per m/s2
 MIN_SCALE_RAD_S = 0.002
 MAX_MOVE_RAD = np.deg2rad(11.0)  # farther from the start it is another minimum
 STEPS = 8
 MIN_STEP = 1e-5
+
+
+def turning(data: Datasets, count: int) -> Datasets:
+    """About `count` of the samples at which the segments turn."""
+    fast = np.flatnonzero(is_turning(data.g1, data.g2))
+    few = np.linspace(0, len(fast) - 1, min(count, len(fast))).astype(np.int64)
+    return data.only(fast[few])
 
 
 def in_plane_difference(data: Datasets, axis_1: FloatArray, axis_2: FloatArray) -> FloatArray:

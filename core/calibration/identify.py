@@ -8,7 +8,14 @@ import numpy as np
 from core.calibration import certainty
 from core.calibration.coincidence import disagreement, fit_forces, joint_forces
 from core.calibration.heading import residual_scales
-from core.calibration.hinge import MAX_HINGE_RESIDUAL_RAD_S, MAX_OFF_AXIS_RAD_S, hinge_axes, hinge_residual
+from core.calibration.hinge import (
+    MAX_HINGE_RESIDUAL_RAD_S,
+    MAX_OFF_AXIS_RAD_S,
+    MIN_TURNING_SAMPLES,
+    hinge_axes,
+    hinge_residual,
+    turning,
+)
 from core.calibration.joint_axis import (
     Candidates,
     candidates,
@@ -185,7 +192,7 @@ def _with_others(data: Datasets, others: Datasets, best: Candidates) -> tuple[Da
 def _rest_of_lag(data: Datasets, others: Datasets | None, decision: Decision) -> float:
     """What a first correction has left. On a hinge nothing rings, and walks, full of sharp changes, tell it as well."""
     some, best = data.thinned(DECISION_SAMPLES), decision.best
-    if hinge_residual(some, best.axis_1[0], best.axis_2[0]) > MAX_HINGE_RESIDUAL_RAD_S:
+    if hinge_residual(turning(data, DECISION_SAMPLES), best.axis_1[0], best.axis_2[0]) > MAX_HINGE_RESIDUAL_RAD_S:
         return smoothest_lag(some, best.knots_rad[0]).best_s
     if others is None:
         return sharpest_lag(some, best.knots_rad[0]).best_s
@@ -223,11 +230,8 @@ def _refined(
     fit = polish(enough, start, steps, *residual_scales(enough, start))
     j1, j2 = fit.axis_1[0], fit.axis_2[0]
     seen = [many] if others is None else [many, others.thinned(POLISH_SAMPLES)]
-    residual = max(hinge_residual(one, j1, j2) for one in seen)
-    # lengths alone can agree by chance: what a hinge does not do at all is turn across its axis
-    scales = residual_scales(many, fit)
-    off_axis, _ = scales
-    is_hinge = residual < MAX_HINGE_RESIDUAL_RAD_S and off_axis < MAX_OFF_AXIS_RAD_S
+    turned = [turning(one, POLISH_SAMPLES) for one in ([data] if others is None else [data, others])]
+    is_hinge, residual = _is_hinge(turned, fit)
     centre = centre_by_vectors(many, fit.knots_rad[0])
     loose = certainty.looseness(many, j1, many.heading(fit.knots_rad[0]))
     better = hinge_axes(many, j1, j2, centre.unknowns) if is_hinge else None
@@ -239,10 +243,10 @@ def _refined(
         axis_sd = certainty.axis_sd_rad(covariance, certainty.hinge_floor_rad(loose))
         # the angle of a hinge needs no heading, so a centre under the axes before is as good a start
         centre = refine_on_hinge(united(seen), j1, j2, centre) or centre
-        residual = max(hinge_residual(one, j1, j2) for one in seen)
+        residual = _hinge_residual(turned, j1, j2)
     else:
         floor = certainty.AXIS_FLOOR_WALKING_RAD if is_from_walking else certainty.AXIS_FLOOR_HUMAN_RAD
-        axis_sd = certainty.axis_sd_rad(_axis_covariance(many, fit, scales), floor)
+        axis_sd = certainty.axis_sd_rad(_axis_covariance(many, fit, residual_scales(many, fit)), floor)
     if not is_hinge:
         centre = centre_by_lengths(free.thinned(POLISH_SAMPLES), centre.unknowns)
     elevation = float(_elevations(j1[None], j2[None], downs)[0].max()) if downs else None
@@ -259,11 +263,37 @@ def _refined(
         is_hinge=is_hinge,
         elevation_rad=elevation,
         did_flexion_dominate=decision.did_flexion_dominate or lies_flat,
-        disagreement=max(_disagreement(one, j1, j2) for one in seen),
+        disagreement=max(disagreement_about(one, j1, j2) for one in seen),
     )
 
 
-def _disagreement(data: Datasets, axis_1: FloatArray, axis_2: FloatArray) -> float:
+def _is_hinge(turned: list[Datasets], fit: Candidates) -> tuple[bool, float]:
+    """Whether all of `turned`, of which the first is that of the fit, is the turning of a hinge; and its residual."""
+    residual = _hinge_residual(turned, fit.axis_1[0], fit.axis_2[0])
+    if len(turned[0]) < MIN_TURNING_SAMPLES:
+        return False, residual
+    # lengths alone can agree by chance: what a hinge does not do at all is turn across its axis
+    off_axis, _ = residual_scales(turned[0], fit)
+    return bool(residual < MAX_HINGE_RESIDUAL_RAD_S and off_axis < MAX_OFF_AXIS_RAD_S), residual
+
+
+def _hinge_residual(turned: list[Datasets], axis_1: FloatArray, axis_2: FloatArray) -> float:
+    return max((hinge_residual(one, axis_1, axis_2) for one in turned if len(one)), default=float("nan"))
+
+
+def disagreement_about(data: Datasets, axis_1: FloatArray, axis_2: FloatArray) -> float:
+    """What the sensors of a joint feel of it differently, against all that they feel.
+
+    Parameters
+    ----------
+    axis_1, axis_2 : (3,)
+        Unit axes of the proximal and the distal sensor, each in its own sensor's axes.
+
+    Returns
+    -------
+    float
+        0 one joint, 1 none.
+    """
     some = data.thinned(DECISION_SAMPLES)
     knots = heading_from_axes(some, axis_1[None], axis_2[None])
     forces = joint_forces(some)

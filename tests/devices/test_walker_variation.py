@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from core.body import LEG_JOINTS, Joint, Side
+from core.body import LEG_JOINTS, Joint, Segment, Side
 from core.samples import FloatArray
 from devices.walker import (
     NO_ERRORS,
@@ -16,6 +16,7 @@ from devices.walker import (
     RecordingTruth,
     SimulatedSession,
     Standing,
+    Tissue,
     Variation,
     Walk,
     WalkerSettings,
@@ -174,3 +175,19 @@ def test_a_prosthesis_has_no_tissue_below_the_socket() -> None:
     joints = simulate(settings).truth.recordings["standing"].joints
     assert joints[Joint.LEFT_KNEE].sensor_gain == 0.0
     assert joints[Joint.RIGHT_KNEE].sensor_gain == 0.1
+
+
+def test_tissue_turns_sensors_about_the_flexion_axis_in_step_and_leaves_the_joints_as_they_are() -> None:
+    soft = replace(CLEAN, tissue=Tissue.SOFT, recordings=(Standing(), Walk(strides=4)))
+    still, turning = (simulate(replace(soft, tissue_turn_rad=size)) for size in (0.0, np.deg2rad(3.0)))
+    for before, after in zip(still.session.recordings, turning.session.recordings, strict=True):
+        turned = {site: after.imu[site].gyr_rad_s - before.imu[site].gyr_rad_s for site in after.imu}
+        sizes = {site.segment: float(np.sqrt(np.mean(np.sum(rate**2, axis=1)))) for site, rate in turned.items()}
+        if after.name == "standing":
+            assert max(sizes.values()) < 1e-9
+        else:
+            assert 0.1 < sizes[Segment.THIGH] < 0.5
+            assert sizes[Segment.FOOT] < sizes[Segment.SHANK] < sizes[Segment.THIGH]
+        for joint in LEG_JOINTS:
+            truths = [made.truth.recordings[after.name].joints[joint] for made in (still, turning)]
+            np.testing.assert_array_equal(truths[0].angle_rad, truths[1].angle_rad)

@@ -45,30 +45,41 @@ def test_the_weaker_axis_and_direction_count_and_the_floor_is_added() -> None:
 
 
 @pytest.mark.parametrize(
-    ("rate", "distance_deg", "is_knee", "ringing", "expected_deg"),
+    ("rate", "distance_deg", "is_knee", "is_prosthetic", "expected_deg"),
     [
-        (0.0, 60.0, True, None, 0.8),
-        (1.0, 0.0, True, None, 2.8),
-        (1.0, 30.0, True, None, np.hypot(2.8, 3.6)),
-        (0.5, 0.0, False, None, 1.4),
-        (0.5, 20.0, False, None, np.hypot(1.4, 1.8)),
-        (0.5, 0.0, False, 0.5, 1.4),
-        (0.5, 0.0, False, 0.15, 0.7),
-        (0.5, 0.0, False, 0.0, 0.56),
-        (0.0, 0.0, False, None, 0.2),
+        (0.0, 60.0, True, False, 1.1),
+        (1.0, 30.0, True, False, 4.1),
+        (1.0, 30.0, True, True, 4.1),
+        (0.0, 0.0, False, False, 0.3),
+        (0.5, 0.0, False, False, 2.3),
+        (0.5, 20.0, False, False, np.hypot(2.3, 2.6)),
+        (0.5, 20.0, False, True, 0.75),
     ],
 )
-def test_an_angle_s_spread_is_as_documented(
-    rate: float, distance_deg: float, is_knee: bool, ringing: float | None, expected_deg: float
+def test_an_angle_s_spread_goes_by_what_is_declared(
+    rate: float, distance_deg: float, is_knee: bool, is_prosthetic: bool, expected_deg: float
 ) -> None:
     distance = np.deg2rad([distance_deg])
-    found = angle_sd_rad(distance, rate, 1.0, is_knee, is_hinge=False, ringing_rad_s=ringing)
+    found = angle_sd_rad(distance, rate, 1.0, is_knee, is_hinge=False, is_prosthetic=is_prosthetic)
     assert np.rad2deg(found) == pytest.approx(expected_deg)
 
 
 def test_on_a_hinge_only_the_range_counts() -> None:
-    found = angle_sd_rad(np.deg2rad([0.0, 50.0]), 0.1, 2.0, is_knee=True, is_hinge=True)
+    found = angle_sd_rad(np.deg2rad([0.0, 50.0]), 0.03, 2.0, is_knee=True, is_hinge=True, ringing_rad_s=0.02)
     assert found == pytest.approx(2 * [np.deg2rad(0.05) + 0.004])
+    small = angle_sd_rad(np.zeros(1), 0.03, 0.1, is_knee=True, is_hinge=True)
+    assert np.rad2deg(small) == pytest.approx(0.1)
+
+
+@pytest.mark.parametrize(("rate", "ringing"), [(0.031, 0.0), (0.0, 0.021)])
+def test_a_hinge_that_is_not_declared_and_not_bare_may_be_a_person_s_joint(rate: float, ringing: float) -> None:
+    angles = np.deg2rad([0.0, 20.0])
+    doubted, declared = (
+        angle_sd_rad(angles, rate, 0.1, is_knee=False, is_hinge=True, is_prosthetic=told, ringing_rad_s=ringing)
+        for told in (False, True)
+    )
+    assert np.rad2deg(doubted) == pytest.approx([0.9, np.hypot(0.3 + 4.0 * rate, 2.6)])
+    assert np.rad2deg(declared) == pytest.approx([0.1, 0.1])
 
 
 def test_a_hinge_is_as_loose_as_its_axis_is_off(person: "Person") -> None:
