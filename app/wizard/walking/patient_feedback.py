@@ -220,9 +220,9 @@ def _not_measured(measure: TargetMeasure, side: Side | None, worn: tuple[Site, .
 
 
 def _is_gated(target: Target, view: "WalkingReadout", worn: Collection[Site]) -> bool:
-    """Whether a strap that slipped or a silent sensor keeps the target from being measured."""
+    """Whether a strap that slipped, a silent sensor or a doubtful foot keeps the target from being measured."""
     slipped = {slip.site for slip in view.slips}
-    doubtful = slipped | set(view.missing)
+    doubtful = slipped | set(view.missing) | set(view.doubtful)
     feet = {Site(f"{side}_{Segment.FOOT}") for side in Side}
     if target.side is None:
         heard = {site for site in feet if site in worn} - doubtful

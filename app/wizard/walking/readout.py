@@ -53,11 +53,11 @@ class WalkingReadout:
     joints
         Of every joint with a calibration, or hip that was found, whose two sensors are worn.
     lanes, strides
-        Of every side with a foot sensor; strides since the walk began.
+        Of every side with a foot sensor; strides since the walk began, of feet that their own knees never contradicted.
     cadence_steps_min
         Of both feet; NaN while nobody walks.
-    missing
-        Sites that are silent.
+    missing, doubtful
+        Sites that are silent; feet whose events disagree with their knees now.
     stride_values, values_told
         The values of the last strides in the order of telling, for a target; and how many there were of them so far,
         those that are no longer among them included.
@@ -72,6 +72,7 @@ class WalkingReadout:
     cadence_steps_min: float = math.nan
     slips: tuple[Slip, ...] = ()
     missing: tuple[Site, ...] = ()
+    doubtful: tuple[Site, ...] = ()
     stride_values: tuple[StrideValue, ...] = ()
     values_told: int = 0
     test: LiveReadout | None = None
