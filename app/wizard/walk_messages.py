@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 from app.wizard.losses import NOTHING, Message
 from app.wording import name_of, tr
 from core.body import Segment, Side, Site
+from core.live.bias import BiasCorrection
 from core.strap import Slip
 
 if TYPE_CHECKING:
@@ -24,6 +25,16 @@ def slip_message(slips: Sequence[Slip], began_s: float) -> Message:
     left = tr("Strides after it are left out; tighten it and repeat free motion for the left leg.")
     right = tr("Strides after it are left out; tighten it and repeat free motion for the right leg.")
     return what, left if slip.site.side is Side.LEFT else right
+
+
+def bias_message(corrections: Sequence[BiasCorrection]) -> Message:
+    """Tell of the latest gyroscope whose bias from standing was wrong."""
+    if not corrections:
+        return NOTHING
+    what = tr("The {site} sensor's gyroscope bias was wrong and is now corrected.")
+    return what.format(site=name_of(corrections[-1].site)), tr(
+        "The patient moved while standing: record standing again."
+    )
 
 
 def no_angles_message(worn: Collection[Site]) -> Message:

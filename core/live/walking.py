@@ -13,6 +13,7 @@ from core.gait.live import FootEvent, LiveEvent, LiveEvents, PhaseChange
 from core.gait.phases import Phase
 from core.hip.results import HipIdentification
 from core.live.angle import AngleSamples, LiveAngle
+from core.live.bias import BiasCorrection
 from core.live.foot_pitch import FootPitch, FootStrike
 from core.live.hips import LiveHips
 from core.live.knee_check import KneeCheck
@@ -61,12 +62,14 @@ class LiveFoot:
 class WalkingState:
     """What the samples since the last state have told; a side is in `feet` if a foot sensor is worn there.
 
-    `turned` are the new samples themselves, on an even clock, with their orientations.
+    `turned` are the new samples themselves, on an even clock, with their orientations. `slips` and `corrections` are
+    all so far.
     """
 
     joints: Mapping[Joint, LiveJoint] = field(default_factory=dict)
     feet: Mapping[Side, LiveFoot] = field(default_factory=dict)
     slips: tuple[Slip, ...] = ()
+    corrections: tuple[BiasCorrection, ...] = ()
     turned: Mapping[Site, OrientedSamples] = field(default_factory=dict)
 
 
@@ -147,7 +150,7 @@ class LiveWalk:
             side: foot.update(turned.get(Site(f"{side}_{Segment.FOOT}"), NOTHING), joints.get(knee_of(side)))
             for side, foot in self._feet.items()
         }
-        return WalkingState(joints, feet, self._slips, turned)
+        return WalkingState(joints, feet, self._slips, self._sensors.corrections, turned)
 
     def recalibrate(self, joint: Joint, calibration: JointCalibration) -> None:
         """Go over to another calibration of a joint without a jump: an ankle's, once STRIDES_FOR_ANKLE are in."""

@@ -139,6 +139,7 @@ class WalkingEstimator:
             strides=strides,
             cadence_steps_min=float(np.mean(cadences)) if cadences else math.nan,
             slips=told.slips,
+            corrections=told.corrections,
             missing=missing,
             doubtful=tuple(Site(f"{side}_{Segment.FOOT}") for side, foot in told.feet.items() if foot.is_doubtful),
             stride_values=tuple(self._told),

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 
 from core.body import Joint, Side, Site
 from core.gait.phases import Phase
+from core.live.bias import BiasCorrection
 from core.live.stride_values import StrideValue
 from core.samples import FloatArray
 from core.strap import Slip
@@ -71,6 +72,7 @@ class WalkingReadout:
     strides: Mapping[Side, int] = field(default_factory=dict)
     cadence_steps_min: float = math.nan
     slips: tuple[Slip, ...] = ()
+    corrections: tuple[BiasCorrection, ...] = ()
     missing: tuple[Site, ...] = ()
     doubtful: tuple[Site, ...] = ()
     stride_values: tuple[StrideValue, ...] = ()

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 from app.storage.stored import RecordingState
 from app.wizard.losses import NOTHING, Losses, Message
 from app.wizard.walk_messages import (
+    bias_message,
     few_strides_message,
     lacks_message,
     loose_message,
@@ -63,6 +64,8 @@ class WalkNotice:
         if ongoing is None or view is None:
             return NOTHING
         message = slip_message(view.slips, ongoing.began_s)
+        if message == NOTHING:
+            message = bias_message(view.corrections)
         if message == NOTHING and not view.joints and sensors.joints:
             return no_angles_message(sensors.sensor_at)
         return message

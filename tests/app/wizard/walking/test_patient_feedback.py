@@ -148,7 +148,10 @@ def test_cadence_waits_only_where_no_foot_is_heard(feedback: PatientFeedback, es
     estimator.tell(missing=(Site.RIGHT_FOOT,))
     feedback.judge(estimator.state)
     assert not feedback.view.is_waiting
-    estimator.tell(missing=(Site.RIGHT_FOOT, Site.LEFT_FOOT))
+    estimator.tell(missing=(Site.RIGHT_FOOT,), doubtful=(Site.LEFT_FOOT,))
+    feedback.judge(estimator.state)
+    assert feedback.view.is_waiting
+    estimator.tell(missing=(Site.RIGHT_FOOT, Site.LEFT_FOOT), doubtful=())
     feedback.judge(estimator.state)
     assert feedback.view.is_waiting
 
