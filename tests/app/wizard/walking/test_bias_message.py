@@ -8,7 +8,7 @@ from core.live.bias import BiasCorrection
 
 def test_the_sensor_whose_bias_was_corrected_is_named() -> None:
     what, action = bias_message([BiasCorrection(Site.LEFT_SHANK, 12.0, 0.1)])
-    assert "left shank" in what
+    assert "L shank" in what
     assert "standing again" in action
 
 

@@ -148,10 +148,16 @@ def test_cadence_waits_only_where_no_foot_is_heard(feedback: PatientFeedback, es
     estimator.tell(missing=(Site.RIGHT_FOOT,))
     feedback.judge(estimator.state)
     assert not feedback.view.is_waiting
-    estimator.tell(missing=(Site.RIGHT_FOOT,), doubtful=(Site.LEFT_FOOT,))
+    estimator.tell(missing=(Site.RIGHT_FOOT, Site.LEFT_FOOT))
     feedback.judge(estimator.state)
     assert feedback.view.is_waiting
-    estimator.tell(missing=(Site.RIGHT_FOOT, Site.LEFT_FOOT), doubtful=())
+
+
+def test_cadence_waits_where_the_only_foot_that_is_heard_disagrees_with_its_knee(
+    feedback: PatientFeedback, estimator: Told
+) -> None:
+    card_of(feedback).target_set.emit(BEAT)
+    estimator.tell(missing=(Site.RIGHT_FOOT,), doubtful=(Site.LEFT_FOOT,))
     feedback.judge(estimator.state)
     assert feedback.view.is_waiting
 
