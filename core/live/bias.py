@@ -33,7 +33,6 @@ class BiasWatch:
         self._bias_rad_s, self._step_s = bias_rad_s, step_s
         self._rest, self._look = round(REST_S / step_s), max(1, round(LOOK_S / step_s))
         self._kept: list[EvenSamples] = []
-        self._count = 0
         self._next = -1
         self.is_done = False
 
@@ -45,17 +44,19 @@ class BiasWatch:
         """Take samples up to a look at most; the samples of the first rest, if it contradicts the bias."""
         tick = even.tick
         if tick[0] != self._next or tick[-1] - tick[0] != len(even) - 1 or not even.is_measured.all():
-            self._kept, self._count = [], 0
+            self._kept = []
         self._next = int(tick[-1]) + 1
         self._kept.append(even)
-        self._count += len(even)
-        while self._count - len(self._kept[0]) >= self._rest:
-            self._count -= len(self._kept.pop(0))
-        if self._count < self._rest or self._next % self._look:
+        if self._next % self._look:
             return None
-        rest = followed(self._kept).part(slice(-self._rest, None))
+        rest = followed(self._kept)
+        if _is_moving(rest.part(slice(-self._look, None))):
+            self._kept = []
+            return None
+        rest = rest.part(slice(-self._rest, None))
+        self._kept = [rest]
         off = rest.gyr_rad_s.mean(axis=0) - self._bias_rad_s
-        if movement(rest.gyr_rad_s, rest.acc_m_s2) >= 1.0 or self._is_turning(off, rest.acc_m_s2):
+        if len(rest) < self._rest or _is_moving(rest) or self._is_turning(off, rest.acc_m_s2):
             return None
         self.is_done, self._kept = True, []
         return rest if float(np.linalg.norm(off)) > MAX_ERROR_RAD_S else None
@@ -68,3 +69,7 @@ class BiasWatch:
         size = float(by_rate @ by_rate)
         is_much = size > 0.0 and float(np.linalg.norm(rate)) > MAX_ERROR_RAD_S
         return is_much and float((after - before) @ by_rate) > TURNING_SHARE * size
+
+
+def _is_moving(even: EvenSamples) -> bool:
+    return movement(even.gyr_rad_s, even.acc_m_s2) >= 1.0
