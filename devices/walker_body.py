@@ -154,6 +154,10 @@ class Walk:
 
     Attributes
     ----------
+    turn_radius_m
+        Of the arc on which the patient turns.
+    pivot_share
+        Of what a foot turns from one stance to the next it turns so much on its ball, before its toes leave the floor.
     manner_of_side
         Sides that walk in another manner than `manner`.
     change, changed_side
@@ -173,6 +177,8 @@ class Walk:
     standing_before_s: float = 0.5
     standing_after_s: float = 0.5
     turn_rad: float = 0.0
+    turn_radius_m: float = 0.8
+    pivot_share: float = 0.0
     manner: Manner = Manner.ORDINARY
     is_restrapped_before: bool = False
     manner_of_side: Mapping[Side, Manner] = field(default_factory=dict)

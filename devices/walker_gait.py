@@ -54,6 +54,7 @@ KNEE_TURNS = 0.31  # of swing, where its peak is
 KNEE_PEAK_DEG = 59.0  # of the swing, over where the curves are scaled from
 ANKLE_AT_TOE_OFF = 0.89  # of what is added to the ankle's range: swing goes on beyond toe-off
 INVERSION_DEG = ((0.0, 2.0), (0.2, -3.5), (0.7, -1.0), (1.0, 4.0), (1.5, 2.5))  # over stance 0-1 and swing 1-2
+BALL_M = 0.12  # of the foot, before the ankle
 ROTATION_DEG = ((0.0, -1.0), (0.3, 3.0), (0.8, -2.0), (1.0, -3.0), (1.5, 1.0))
 
 
@@ -110,10 +111,13 @@ def walk_leg(leg: Leg, plan: WalkPlan, time_s: FloatArray, sway_m: FloatArray, r
     )
     path_m, heading = _path(plan.bends, plan.hip_path_m)
     place, yaw = _footholds(leg, steps, path_m, heading)
-    foot = rotation_about(Z_AXIS, _yaw_at(yaw, steps, time_s)) @ rotation_about(Y_AXIS, lean - ankle)
+    pivoted = _pivoted(plan.pivot_share * np.diff(yaw), steps, time_s)
+    foot = rotation_about(Z_AXIS, _yaw_at(yaw, steps, time_s) + pivoted) @ rotation_about(Y_AXIS, lean - ankle)
     thigh = foot @ np.swapaxes(knee_rotation(leg, angles) @ ankle_rotation(leg, angles), 1, 2)
     _, hanging = hang_from_hip(leg, thigh, np.zeros((len(time_s), 3)), angles)
-    hip = _stand(place[stance], yaw[stance], rolled_x, rolled_z) - hanging[2]
+    turned = yaw[stance] + pivoted
+    stood = place[stance] + BALL_M * (_ahead(yaw[stance]) - _ahead(turned))
+    hip = _stand(stood, turned, rolled_x, rolled_z) - hanging[2]
     for swing in swings:
         _bridge(hip, swing, step_s)
         _lift_hip(hip, foot, hanging[2], swing, gait.clearance_m)
@@ -357,7 +361,7 @@ def _footholds(leg: Leg, steps: StepPlan, path_m: FloatArray, heading: FloatArra
 
 
 def _yaw_at(yaw: FloatArray, steps: StepPlan, time_s: FloatArray) -> FloatArray:
-    """Direction of the foot (n,): it turns in swing only, with a little sway of its own."""
+    """Direction of the foot (n,) but for its pivots: it turns in swing only, with a little sway of its own."""
     total = np.full_like(time_s, yaw[0])
     for i, (off, on) in enumerate(zip(steps.toe_off_s[:-1], steps.contact_s[1:], strict=True)):
         begin, end = np.searchsorted(time_s, [off, on])
@@ -365,6 +369,20 @@ def _yaw_at(yaw: FloatArray, steps: StepPlan, time_s: FloatArray) -> FloatArray:
         total[begin:end] += (yaw[i + 1] - yaw[i]) * smooth_step(u) + np.deg2rad(4.0) * (4.0 * u * (1.0 - u)) ** 3
         total[end:] += yaw[i + 1] - yaw[i]
     return total
+
+
+def _pivoted(by_rad: FloatArray, steps: StepPlan, time_s: FloatArray) -> FloatArray:
+    """How far (n,) the foot is ahead in its turn: by so much at each toe-off, since it has pivoted on its ball."""
+    total = np.zeros_like(time_s)
+    moments = zip(by_rad, steps.heel_rise_s[:-1], steps.toe_off_s[:-1], steps.contact_s[1:], strict=True)
+    for ahead, rise, off, on in moments:
+        total += ahead * (smooth_step((time_s - rise) / (off - rise)) - smooth_step((time_s - off) / (on - off)))
+    return total
+
+
+def _ahead(yaw: FloatArray) -> FloatArray:
+    """Unit vectors over the floor (n, 2) of directions (n,)."""
+    return np.stack([np.cos(yaw), np.sin(yaw)], axis=-1)
 
 
 def _stand(place: FloatArray, yaw: FloatArray, rolled_x: FloatArray, rolled_z: FloatArray) -> FloatArray:

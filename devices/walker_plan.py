@@ -13,7 +13,6 @@ from devices.walker_motion import smooth_step
 from devices.walker_variation import NO_CHANGES, FootChanges, StepChanges
 
 HIP_AHEAD_OF_ANKLE_M = 0.03  # standing, over the middle of the foot
-TURN_RADIUS_M = 0.8
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,6 +50,7 @@ class WalkPlan:
     hip_path_m: FloatArray
     steps: dict[Side, StepPlan]
     bends: tuple[Bend, ...] = ()
+    pivot_share: float = 0.0
 
 
 def plan_walk(
@@ -109,8 +109,10 @@ def plan_walk(
         )
         for k, side in enumerate((first, first.other))
     }
-    bend = Bend(0.5 * float(hip_path.max()), walk.turn_rad, max(abs(walk.turn_rad) * TURN_RADIUS_M, 0.1))
-    return WalkPlan(gaits, float(stopped + walk.standing_after_s + 0.4 * stride_s), hip_path, plans, (bend,))
+    bend = Bend(0.5 * float(hip_path.max()), walk.turn_rad, max(abs(walk.turn_rad) * walk.turn_radius_m, 0.1))
+    duration_s = float(stopped + walk.standing_after_s + 0.4 * stride_s)
+    duration_s = float(stopped + walk.standing_after_s + 0.4 * stride_s)
+    return WalkPlan(gaits, duration_s, hip_path, plans, (bend,), walk.pivot_share)
 
 
 def plan_foot(

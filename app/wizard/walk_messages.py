@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 from app.wizard.losses import NOTHING, Message
 from app.wording import capitalised, name_of, tr
 from core.body import Joint, Segment, Side, Site
+from core.live.bias import BiasCorrection
 from core.strap import Slip
 
 if TYPE_CHECKING:
@@ -31,6 +32,16 @@ def implausible_message(joints: Sequence[Joint]) -> Message:
     names = ", ".join(name_of(joint) for joint in joints)
     what = tr("{joints}: angle beyond \N{MINUS SIGN}40\N{DEGREE SIGN} to 160\N{DEGREE SIGN}, not shown.")
     return what.format(joints=capitalised(names)), tr("Check the sensor positions, then record the free motion again.")
+
+
+def bias_message(corrections: Sequence[BiasCorrection]) -> Message:
+    """Tell of the latest gyroscope whose bias from standing was wrong."""
+    if not corrections:
+        return NOTHING
+    what = tr("The {site} sensor's gyroscope bias was wrong and is now corrected.")
+    return what.format(site=name_of(corrections[-1].site)), tr(
+        "The patient moved while standing: record standing again."
+    )
 
 
 def no_angles_message(worn: Collection[Site]) -> Message:

@@ -166,7 +166,7 @@ class LiveEvents:
         self._still = MIN_STILL_RAD_S
         self._flat_since_s = -math.inf
         self._peak = 0.0
-        self._is_rise_reported = self._is_walking = self._has_swung = False
+        self._is_rise_reported = self._is_walking = False
         self._off_s: float | None = None
         self._push = self._fastest_m_s = 0.0
         self._left_s = self._slow_s = self._contact_s = math.nan
@@ -247,6 +247,11 @@ class LiveEvents:
             self._stand(-math.inf)
         if motion.flat_s > SETTINGS.min_flat_s:
             self._rest()
+        if motion.has_turned_round:
+            self._pushes.clear()
+            self._loads.clear()
+            if motion.flat_s == 0.0:  # it leaves the floor by now
+                self._end_landing()
         if motion.pitch_axis is not None:
             self._advance((self._time_s, dot(gyr, motion.pitch_axis)), motion.speed_m_s)
             return
@@ -280,19 +285,21 @@ class LiveEvents:
         """The foot lies flat: whatever was missed, it stands."""
         if not self._pushes:
             self._motion.forget_axis()
-        elif self._motion.begin_step(self._has_swung):
-            self._pushes.clear()
-            self._loads.clear()
-        self._has_swung = False
+        else:
+            self._motion.rest()
         if self._motion.flat_s > 2.0 * SETTINGS.min_flat_s and self._phase not in (Phase.FOOT_FLAT, Phase.PRE_SWING):
-            if self._phase is Phase.SWING and self._dip:
-                self._touch_down(self._contact(self._dip, -self._peak), self._dip)
-            elif self._phase is Phase.SWING and not math.isnan(self._slow_s):
-                self._tell(FootEvent.INITIAL_CONTACT, self._slow_s)
-            if self._phase is Phase.LOADING and self._full_s is not None:
-                self._tell(FootEvent.FULL_CONTACT, self._full_s)
-            is_landing = self._phase in (Phase.SWING, Phase.LOADING)
-            self._stand(self._time_s if is_landing else self._flat_since_s)
+            self._end_landing()
+
+    def _end_landing(self) -> None:
+        """Tell what is still to be told of a foot that has come down."""
+        if self._phase is Phase.SWING and self._dip:
+            self._touch_down(self._contact(self._dip, -self._peak), self._dip)
+        elif self._phase is Phase.SWING and not math.isnan(self._slow_s):
+            self._tell(FootEvent.INITIAL_CONTACT, self._slow_s)
+        if self._phase is Phase.LOADING and self._full_s is not None:
+            self._tell(FootEvent.FULL_CONTACT, self._full_s)
+        is_landing = self._phase in (Phase.SWING, Phase.LOADING)
+        self._stand(self._time_s if is_landing else self._flat_since_s)
 
     def _stand(self, since_s: float) -> None:
         self._phase, self._path, self._flat_since_s = Phase.FOOT_FLAT, [], since_s
@@ -368,7 +375,7 @@ class LiveEvents:
         if not self._is_rise_reported:
             self._tell_rise(self._rise(self._still))
         self._tell(FootEvent.TOE_OFF, self._off_s)
-        self._phase, self._path, self._has_swung = Phase.SWING, [], True
+        self._phase, self._path = Phase.SWING, []
         self._left_s, self._slow_s, self._fastest_m_s = self._off_s, math.nan, 0.0
         self._peak, self._dip = 0.0, []
 

@@ -5,14 +5,31 @@ three alone would cost more.
 """
 
 import math
+from collections import deque
 from itertools import pairwise
 
-from core.gait.foot import CALM_M_S2, CALM_RAD_S, GRAVITY_M_S2, MIN_SWING_M_S, MOVING_RAD_S
+from core.gait.foot import (
+    CALM_FLOOR,
+    CALM_M_S2,
+    CALM_RAD_S,
+    GRAVITY_M_S2,
+    MIN_CALM_RATIO,
+    MIN_HEEL_UP_RAD,
+    MIN_SWING_M_S,
+    MOVING_RAD_S,
+)
 from core.gait.strides import MAX_STRIDE_S
 from core.samples import FloatArray
 
-RESTLESS = 10.0  # in units of CALM squared; a foot on the floor moves less, unless its sensor sits very loosely
-MAX_RESTLESS = 60.0  # a landing counts no more than this, so that the foot is found calm soon after
+RESTLESS = (
+    10.0  # in units of CALM squared; a foot on the floor moves less, unless its sensor sits loosely or it slides:
+)
+RESTLESS_RATIO, MAX_RESTLESS = 4.0, 150.0  # then less than so much the least of its last stances, at most
+STANCES = 3  # that say so
+SHOCK_RATIO = 6.0  # of what is rest: a landing counts no more, so that the foot is found calm soon after
+CALM_DEPTH = math.log(MIN_CALM_RATIO)  # a stance is so much calmer than what is before and after it,
+STEP_DEPTH = math.log(80.0)  # and than a step; feet that are moved about in the air reach 50
+LIVELY = math.log(30.0)  # a foot that moves less has not left the floor
 QUIET, QUIET_S = 1.5, 0.15  # a force of gravity's length for so long is gravity, wherever it points after a shock
 CALM_S = 0.04  # over which that is averaged,
 LEVELLING_S = 0.1  # in which a foot that lies calm shows the vertical,
@@ -21,12 +38,19 @@ UPRIGHT_S = 5.0  # in which even a foot that never lies calm shows the vertical
 FORGETTING_S = 20.0  # a strap slips; the axis follows
 AXIS_WEIGHT = 10.0  # rad2/s of turning: a pitch axis that was given weighs as much as two steps
 POWERS = 8  # the first time; afterwards one per sample follows
-FIRST_VOTE = 1.5  # of the way of walking: two steps to the contrary turn the toes round
+FIRST_VOTE = 0.5  # of the way of the first push-off: a step to the contrary turns the toes round, two once steps agreed
 VOTE_MEMORY = 0.7  # of one step's word on where the toes are, in the next
+VOTING_M_S = 2.0 * MIN_SWING_M_S  # a foot that was so fast has stepped
+SURE_M_S = 2.0  # the word of a slower step weighs less
+MIN_STEP_S = 0.3  # from stance to stance
+ROLLING_RAD = 2.0 * MIN_HEEL_UP_RAD  # of one swing; of all, half of it is enough
 
 Vector = tuple[float, float, float]
 Travelled = list[tuple[float, Vector]]  # time and velocity
 Moment = tuple[float, float, float, float, float, float]
+Turning = tuple[Vector, Vector, float]  # since a stance: how far it turned, that summed over time, and for how long
+NOT_AT_ALL: Vector = (0.0, 0.0, 0.0)
+UNTURNED: Turning = (NOT_AT_ALL, NOT_AT_ALL, 0.0)
 
 
 class LiveMotion:
@@ -42,6 +66,8 @@ class LiveMotion:
         For how long it has been calm as on the floor, though it may roll slowly; and hardly turning besides.
     travelled
         Time and velocity from the moment the foot was no longer calm, on the sample when it is calm again; else empty.
+    has_turned_round
+        On the sample that says that the toes are on the other side than was thought.
     """
 
     def __init__(self, pitch_axis: FloatArray | None) -> None:
@@ -50,16 +76,25 @@ class LiveMotion:
         self._given: Moment = (w * x * x, w * y * y, w * z * z, w * x * y, w * x * z, w * y * z)
         self._moment = self._given
         self._votes = 0.0
+        self._leasts: deque[float] = deque(maxlen=STANCES)
+        self._limit = RESTLESS
         self.pitch_axis: Vector | None = None
+        self._turning = self._calmest = UNTURNED
+        self._fastest_m_s = 0.0
         self.start_anew()
 
     def start_anew(self) -> None:
         """After a gap the foot may be anywhere."""
         self._up: Vector | None = None
-        self._restless = MAX_RESTLESS
+        self._restless = SHOCK_RATIO * self._limit
+        self._unrest = self._most = math.log(self._restless)
+        self._least: float | None = None  # in this stance; None in a swing
+        self._fastest = NOT_AT_ALL, NOT_AT_ALL  # up and velocity when the foot was fastest
         self._left_s = -math.inf
         self._quiet_s = 0.0
-        self._velocity = self._turned = self._tilted = (0.0, 0.0, 0.0)
+        self._velocity = NOT_AT_ALL
+        self._begin_step()
+        self.has_turned_round = False
         self._way: Travelled = []
         self.travelled: Travelled = []
         self.speed_m_s = self.calm_s = self.flat_s = 0.0
@@ -71,10 +106,9 @@ class LiveMotion:
         turning = x * x + y * y + z * z
         if turning > MOVING_RAD_S**2:
             self._learn(step_s, gyr)
-        tx, ty, tz = self._turned
-        self._turned = tx, ty, tz = tx + x * step_s, ty + y * step_s, tz + z * step_s
-        sx, sy, sz = self._tilted
-        self._tilted = sx + tx * step_s, sy + ty * step_s, sz + tz * step_s
+        (tx, ty, tz), (sx, sy, sz), lasted_s = self._turning
+        tx, ty, tz = tx + x * step_s, ty + y * step_s, tz + z * step_s
+        self._turning = (tx, ty, tz), (sx + tx * step_s, sy + ty * step_s, sz + tz * step_s), lasted_s + step_s
 
         ux, uy, uz = self._up or acc
         ux, uy, uz = ux + (uy * z - uz * y) * step_s, uy + (uz * x - ux * z) * step_s, uz + (ux * y - uy * x) * step_s
@@ -85,8 +119,11 @@ class LiveMotion:
         if self._up is not None and self._quiet_s < QUIET_S:
             restless = turning / CALM_RAD_S**2 + (ax * ax + ay * ay + az * az) / CALM_M_S2**2
         share = step_s / (CALM_S + step_s)
-        self._restless += share * (min(restless, MAX_RESTLESS) - self._restless)
-        calm = max(0.0, 1.0 - self._restless / RESTLESS)
+        self._restless += share * (min(restless, SHOCK_RATIO * self._limit) - self._restless)
+        self._unrest += share * (math.log(restless + CALM_FLOOR) - self._unrest)
+        self.has_turned_round = False
+        self._watch_stance()
+        calm = max(0.0, 1.0 - self._restless / self._limit)
         self.calm_s = self.calm_s + step_s if calm > 0.0 else 0.0
         self.flat_s = self.flat_s + step_s if calm > 0.0 and turning < flat_rad_s**2 else 0.0
         self.travelled = []
@@ -109,10 +146,34 @@ class LiveMotion:
             self._way = []  # it shakes, it does not step
         self._velocity = vx, vy, vz
         self.speed_m_s = math.sqrt(vx * vx + vy * vy + vz * vz)
-        share = min(1.0, step_s * (calm / LEVELLING_S + 1.0 / UPRIGHT_S))
+        if self.speed_m_s > self._fastest_m_s:
+            self._fastest_m_s, self._fastest = self.speed_m_s, ((ux, uy, uz), self._velocity)
+        still = max(0.0, 1.0 - self._restless / RESTLESS)  # a foot that slides shows more than gravity
+        share = min(1.0, step_s * (still / LEVELLING_S + 1.0 / UPRIGHT_S))
         ux, uy, uz = ux + share * ax, uy + share * ay, uz + share * az
         longer = GRAVITY_M_S2 / max(math.sqrt(ux * ux + uy * uy + uz * uz), 1e-9)
         self._up = ux * longer, uy * longer, uz * longer
+
+    def _watch_stance(self) -> None:
+        """Find every stance, however restless, by what is before and after it; the last ones say how calm the next is.
+
+        As offline, but causally: a stance is over when the foot is `MIN_CALM_RATIO` livelier again.
+        """
+        if self._least is None:
+            self._most = max(self._most, self._unrest)
+            if self._unrest >= self._most - CALM_DEPTH:
+                return
+            self._least = math.inf
+        if self._unrest < self._least:
+            self._least, self._calmest = self._unrest, self._turning
+        if self._unrest < max(self._least + CALM_DEPTH, LIVELY):
+            return
+        if self._most - self._least > STEP_DEPTH:
+            self._leasts.append(math.exp(self._least))
+            self._limit = min(max(RESTLESS, RESTLESS_RATIO * max(self._leasts)), MAX_RESTLESS)
+        self._least, self._most = None, self._unrest
+        self._vote(self._calmest)
+        self._turning = _since(self._turning, self._calmest)
 
     def _learn(self, step_s: float, gyr: Vector) -> None:
         """The principal axis of all turning, by one step of the power method per sample."""
@@ -141,11 +202,11 @@ class LiveMotion:
         """Of a foot that leaves the floor for the first time: it travels toes first, and has mostly lifted its heel."""
         if self.speed_m_s < MIN_SWING_M_S or not any(self._moment) or self._up is None:
             return None
-        axis = self._turned
+        axis = self._turning[0]
         for _ in range(POWERS):
             axis = self._powered(axis)
         forward_m_s = dot(_cross(self._up, axis), self._velocity) / GRAVITY_M_S2
-        is_agreed = dot(self._turned, axis) * forward_m_s < 0.0
+        is_agreed = dot(self._turning[0], axis) * forward_m_s < 0.0
         if not is_agreed and abs(forward_m_s) < MIN_SWING_M_S:
             return None
         x, y, z = axis
@@ -156,20 +217,40 @@ class LiveMotion:
     def forget_axis(self) -> None:
         """The foot is calm again and has not stepped: what it did was not walking."""
         self.pitch_axis, self._moment = None, self._given
-        self._turned = self._tilted = (0.0, 0.0, 0.0)
+        self._begin_step()
 
-    def begin_step(self, has_swung: bool) -> bool:
-        """The foot is flat. Its last swing, toes mostly down, says where they are; True if that is turned round."""
-        tilt = dot(self._tilted, self.pitch_axis) if self.pitch_axis is not None else 0.0
-        self._turned = self._tilted = (0.0, 0.0, 0.0)
-        if not has_swung or tilt == 0.0 or self.pitch_axis is None:
-            return False
-        self._votes = VOTE_MEMORY * self._votes - math.copysign(1.0, tilt)
-        if self._votes >= 0.0:
-            return False
-        x, y, z = self.pitch_axis
-        self.pitch_axis, self._votes = (-x, -y, -z), -self._votes
-        return True
+    def rest(self) -> None:
+        """The foot is flat: what it turns from here on is its next step."""
+        self._vote(self._turning)
+        self._begin_step()
+
+    def _begin_step(self) -> None:
+        self._turning = self._calmest = UNTURNED
+        self._fastest_m_s = 0.0
+
+    def _vote(self, step: Turning) -> None:
+        """The last step says where the toes are: its swing was mostly toes down or, if it hardly rolled, toes first."""
+        turned, tilted, lasted_s = step
+        if self._fastest_m_s < VOTING_M_S or lasted_s < MIN_STEP_S or self.pitch_axis is None:
+            return
+        weight, self._fastest_m_s = min(1.0, self._fastest_m_s / SURE_M_S), 0.0
+        # less what a rate that is off by a constant turns
+        heel_up_rad = 0.5 * dot(turned, self.pitch_axis) - dot(tilted, self.pitch_axis) / lasted_s
+        up, velocity = self._fastest
+        toes_first = dot(_cross(up, self.pitch_axis), velocity)
+        said = heel_up_rad if abs(heel_up_rad) > ROLLING_RAD else toes_first
+        self._votes = VOTE_MEMORY * self._votes + math.copysign(weight, said)
+        if self._votes < 0.0:
+            x, y, z = self.pitch_axis
+            self.pitch_axis, self._votes = (-x, -y, -z), -self._votes
+            self.has_turned_round = True
+
+
+def _since(turning: Turning, then: Turning) -> Turning:
+    """How far the foot has turned since an instant, of how far it has now and had then."""
+    ((tx, ty, tz), (sx, sy, sz), now_s), ((x, y, z), (px, py, pz), then_s) = turning, then
+    s = now_s - then_s
+    return (tx - x, ty - y, tz - z), (sx - px - x * s, sy - py - y * s, sz - pz - z * s), s
 
 
 def speeds_of(travelled: Travelled) -> list[tuple[float, float]]:

@@ -88,10 +88,23 @@ class LiveOrientation:
         self._filter = VQF(step_s, tauAcc=TAU_ACC_S, biasSigmaInit=BIAS_SD_DEG_S)
         self._next: int | None = None
         self._last_rate = np.zeros((1, 3))
+        self._must_skip = False
         self._held = NOTHING  # the last sample, whose rate the next one completes
+
+    def begin_anew(self, bias_rad_s: FloatArray, rest: EvenSamples) -> None:
+        """Go on with another bias (3,), settled in the rest that showed it: as after a gap of one sample."""
+        rates = rest.gyr_rad_s - bias_rad_s
+        self._filter.resetState()
+        self._filter.updateBatch(np.ascontiguousarray(rates), np.ascontiguousarray(rest.acc_m_s2))
+        self._bias_rad_s, self._last_rate = bias_rad_s, rates[-1:]
+        self._next, self._must_skip = int(rest.tick[-1]) + 2, True
 
     def update(self, even: EvenSamples) -> OrientedSamples:
         """Take the samples of one stream, each once and in order."""
+        if self._must_skip and len(even):
+            even, self._must_skip = even.part(slice(1, None)), False
+            if not len(even):
+                return NOTHING
         if len(even) and even.tick[-1] - even.tick[0] == len(even) - 1:
             return joined(self._stretch(even, slice(None)))
         edges = [0, *(np.flatnonzero(np.diff(even.tick) > 1) + 1).tolist(), len(even)]

@@ -174,7 +174,7 @@ class _StillnessWatch:
             window = slice(*np.searchsorted(samples.time_s, [self.judged_s, until_s]))
             gyr, acc = samples.gyr_rad_s[window], samples.acc_m_s2[window]
             self.is_stuck = len(gyr) > 2 and not (np.ptp(gyr, axis=0).any() or np.ptp(acc, axis=0).any())
-            self.movement = _movement(gyr, acc)
+            self.movement = movement(gyr, acc)
             if self.is_moving:
                 self.still_since_s = until_s
                 moved.append((self.judged_s, until_s))
@@ -198,8 +198,19 @@ class _Bouts:
         return sum(start_s >= time_s for start_s, _ in self._bouts)
 
 
-def _movement(gyr: FloatArray, acc: FloatArray) -> float:
-    """Share of the limits of rest that the samples (n, 3) of a window reach, the worst of three."""
+def movement(gyr: FloatArray, acc: FloatArray) -> float:
+    """How much a sensor moves in a window, against the limits of rest.
+
+    Parameters
+    ----------
+    gyr, acc : (n, 3)
+        rad/s and m/s2, in sensor axes.
+
+    Returns
+    -------
+    float
+        Share of the limits that is reached, the worst of three; infinite for less than two samples.
+    """
     if len(gyr) < 2:
         return float("inf")
     spread = [float(np.sqrt(np.sum(np.var(values, axis=0)))) for values in (gyr, acc)]

@@ -1,5 +1,6 @@
 """One sensor's samples on an even clock as they come in: the rules of `core.tracks`, causally."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -44,10 +45,30 @@ class EvenSamples:
     def __len__(self) -> int:
         return len(self.tick)
 
+    def part(self, which: slice) -> "EvenSamples":
+        return EvenSamples(
+            self.tick[which],
+            self.time_s[which],
+            self.gyr_rad_s[which],
+            self.acc_m_s2[which],
+            self.is_measured[which],
+        )
+
     @property
     def first(self) -> int:
         """Tick of the first sample; there has to be one."""
         return int(self.tick[0])
+
+
+def followed(parts: Sequence[EvenSamples]) -> EvenSamples:
+    """Samples that follow each other; there has to be a part."""
+    return EvenSamples(
+        np.concatenate([part.tick for part in parts]),
+        np.concatenate([part.time_s for part in parts]),
+        np.concatenate([part.gyr_rad_s for part in parts]),
+        np.concatenate([part.acc_m_s2 for part in parts]),
+        np.concatenate([part.is_measured for part in parts]),
+    )
 
 
 Placed = tuple[IntArray, FloatArray, BoolArray]

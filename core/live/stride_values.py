@@ -42,7 +42,7 @@ class StrideValue:
 
 
 class StrideValues:
-    """The values of both legs, from what `LiveWalk` tells, one state after the other."""
+    """The values of both legs, from what `LiveWalk` tells, one state after the other; none of a doubtful foot."""
 
     def __init__(self) -> None:
         self._knees: dict[Side, _KneeSwing] = {side: _KneeSwing() for side in Side}
@@ -52,7 +52,8 @@ class StrideValues:
     def update(self, state: WalkingState) -> tuple[StrideValue, ...]:
         """Give the values that a state tells, in the order of telling."""
         told: list[StrideValue] = []
-        for side, foot in state.feet.items():
+        feet = {side: foot for side, foot in state.feet.items() if not foot.is_doubtful}
+        for side, foot in feet.items():
             joint = state.joints.get(knee_of(side))
             if joint is not None:
                 told += self._knee_values(side, joint.samples, foot)
@@ -60,7 +61,7 @@ class StrideValues:
                 StrideValue(TargetMeasure.FOOT_STRIKE, side, math.degrees(one.pitch_rad), one.time_s, one.told_s)
                 for one in foot.strikes
             )
-        told += self._event_values(state.feet)
+        told += self._event_values(feet)
         return tuple(sorted(told, key=lambda one: one.told_s))
 
     def _knee_values(self, side: Side, samples: AngleSamples, foot: LiveFoot) -> Iterator[StrideValue]:

@@ -1,5 +1,6 @@
 """Angles, phases and steps of both legs of a walking patient as they happen, and straps that slip."""
 
+import math
 from collections import deque
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -12,8 +13,10 @@ from core.gait.live import FootEvent, LiveEvent, LiveEvents, PhaseChange
 from core.gait.phases import Phase
 from core.hip.results import HipIdentification
 from core.live.angle import AngleSamples, LiveAngle
+from core.live.bias import BiasCorrection
 from core.live.foot_pitch import FootPitch, FootStrike
 from core.live.hips import LiveHips
+from core.live.knee_check import KneeCheck
 from core.live.orientation import NOTHING, OrientedSamples
 from core.live.pairing import PairedSamples, joined_rows
 from core.live.sensors import LiveSensor, LiveSensors
@@ -42,7 +45,8 @@ class LiveJoint:
 class LiveFoot:
     """One foot now: what is new, its phase, its cadence (steps per minute, NaN while it does not walk), its strides.
 
-    `strikes` are the pitches at those of the new contacts that followed a flat stance.
+    `strikes` are the pitches at those of the new contacts that followed a flat stance. `is_doubtful`: its own knee
+    swings more often or less often than the foot lands, so that no figure of its events holds; cadence is NaN then.
     """
 
     events: tuple[LiveEvent, ...]
@@ -51,18 +55,21 @@ class LiveFoot:
     cadence_steps_min: float
     strides: int
     strikes: tuple[FootStrike, ...] = ()
+    is_doubtful: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class WalkingState:
     """What the samples since the last state have told; a side is in `feet` if a foot sensor is worn there.
 
-    `turned` are the new samples themselves, on an even clock, with their orientations.
+    `turned` are the new samples themselves, on an even clock, with their orientations. `slips` and `corrections` are
+    all so far.
     """
 
     joints: Mapping[Joint, LiveJoint] = field(default_factory=dict)
     feet: Mapping[Side, LiveFoot] = field(default_factory=dict)
     slips: tuple[Slip, ...] = ()
+    corrections: tuple[BiasCorrection, ...] = ()
     turned: Mapping[Site, OrientedSamples] = field(default_factory=dict)
 
 
@@ -140,9 +147,10 @@ class LiveWalk:
             known = {slip.site for slip in self._slips}
             self._slips += tuple(slip for slip in found if slip.site not in known)
         feet = {
-            side: foot.update(turned.get(Site(f"{side}_{Segment.FOOT}"), NOTHING)) for side, foot in self._feet.items()
+            side: foot.update(turned.get(Site(f"{side}_{Segment.FOOT}"), NOTHING), joints.get(knee_of(side)))
+            for side, foot in self._feet.items()
         }
-        return WalkingState(joints, feet, self._slips, turned)
+        return WalkingState(joints, feet, self._slips, self._sensors.corrections, turned)
 
     def recalibrate(self, joint: Joint, calibration: JointCalibration) -> None:
         """Go over to another calibration of a joint without a jump: an ankle's, once STRIDES_FOR_ANKLE are in."""
@@ -174,9 +182,10 @@ class _LiveFoot:
         self._events = LiveEvents(pitch_axis)
         self._clock_offset_s = clock_offset_s
         self._pitch = FootPitch()
+        self._check = KneeCheck()
         self._contacts = 0
 
-    def update(self, samples: OrientedSamples) -> LiveFoot:
+    def update(self, samples: OrientedSamples, knee: LiveJoint | None) -> LiveFoot:
         heard = samples.is_measured
         if not heard.all():
             samples = OrientedSamples(samples.tick[heard], samples.time_s[heard], samples.signals[heard], heard[heard])
@@ -184,10 +193,15 @@ class _LiveFoot:
         events = tuple(self._events.update(time_s, samples.gyr_rad_s, samples.acc_m_s2))
         axis = self._events.pitch_axis
         strikes = self._pitch.update(time_s, samples, events, None if axis is None else np.array(axis))
-        self._contacts += sum(event.event is FootEvent.INITIAL_CONTACT for event in events)
+        contacts_s = [event.time_s for event in events if event.event is FootEvent.INITIAL_CONTACT]
+        self._contacts += len(contacts_s)
+        if knee is not None:
+            self._check.update(knee.samples, contacts_s)
+        is_doubtful = self._check.is_doubtful
+        cadence_steps_min = math.nan if is_doubtful else self._events.cadence_steps_min
         changes = tuple(self._events.changes)
         strides = max(0, self._contacts - 1)
-        return LiveFoot(events, changes, self._events.phase, self._events.cadence_steps_min, strides, strikes)
+        return LiveFoot(events, changes, self._events.phase, cadence_steps_min, strides, strikes, is_doubtful)
 
 
 class _StrapWatch:

@@ -1,11 +1,14 @@
 """Are a foot's live events those of the whole walk looked at afterwards, in time, and at what cost?
 
     python -m tests.benchmarks.live_gait [--seeds 2] [--axis]
+    python -m tests.benchmarks.live_gait --turns 10
 
 Optical recordings (where GAITWRIGHT_TEST_DATA names the shared folder) and the project's own patient. For every kind of
 recording and every event: how many the whole walk has, how many were told live, how many more were told (invented), how
 far the live times are from the others, how long after it happened an event was told, and how many were late. With
-`--axis` the pitch axis is given, as a calibration would.
+`--axis` the pitch axis is given, as a calibration would. `--turns SEEDS` makes the table of contacts instead: legs
+that hang from a pelvis, half turns on arcs and on the balls of the feet, at random speeds, rates and tissues, beside
+the truth and beside the whole walk; and people after a stroke.
 """
 
 import argparse
@@ -25,8 +28,9 @@ from core.gait.foot import follow
 from core.gait.live import FootEvent, LiveEvents
 from core.orientation import oriented
 from core.pair import OrientedTrack
-from core.samples import ImuBlock, RateKind
+from core.samples import FloatArray, ImuBlock, RateKind
 from core.tracks import even_tracks
+from devices.files.session_folder import read_session
 from devices.walker import Standing, Tissue, Walk, WalkerSettings, simulate
 
 SITES = (Site.LEFT_FOOT, Site.RIGHT_FOOT)
@@ -34,6 +38,13 @@ SPEEDS_M_S = (0.3, 0.5, 0.8, 1.19, 1.6, 2.0)
 RATES_HZ = (50.0, 60.0, 100.0, 200.0)
 SAME_S = 0.25  # two times of one event are no further apart; a foot's steps are further than twice that
 BOUND_S = 0.030
+TURNS = (  # name, turn, radius of its arc, share on the ball of the foot
+    ("straight", 0.0, 0.8, 0.0),
+    ("U-turn of 0.8 m", np.pi, 0.8, 0.0),
+    ("U-turn of 0.3 m", np.pi, 0.3, 0.0),
+    ("pivot, half of the turn", np.pi, 0.3, 0.5),
+    ("pivot, most of the turn", np.pi, 0.15, 0.8),
+)
 
 
 @dataclass(slots=True)
@@ -56,15 +67,19 @@ def add(scores: dict[FootEvent, Score], foot: OrientedTrack, is_axis_given: bool
         mine = [e for e in told if e.event is event]
         score.delays += [e.told_s - e.time_s for e in mine]
         score.late += sum(e.is_late for e in mine)
-        at_s, free = np.array([e.time_s for e in mine]), np.ones(len(mine), dtype=bool)
-        expected_s = getattr(offline, f"{event}_s")
-        score.offline += len(expected_s)
-        for expected in expected_s:
-            away = np.where(free, np.abs(at_s - expected), np.inf)
-            if len(away) and away.min() < SAME_S:
-                free[np.argmin(away)] = False
-                score.differences.append(float(away.min()))
-        score.invented += int(free.sum())
+        match(score, np.array([e.time_s for e in mine]), getattr(offline, f"{event}_s"))
+
+
+def match(score: Score, at_s: FloatArray, expected_s: FloatArray) -> None:
+    """Count which of the expected instants were told, and what was told besides."""
+    free = np.ones(len(at_s), dtype=bool)
+    score.offline += len(expected_s)
+    for expected in expected_s:
+        away = np.where(free, np.abs(at_s - expected), np.inf)
+        if len(away) and away.min() < SAME_S:
+            free[np.argmin(away)] = False
+            score.differences.append(float(away.min()))
+    score.invented += int(free.sum())
 
 
 def tell(kind: str, scores: dict[FootEvent, Score]) -> None:
@@ -132,11 +147,72 @@ def cost(block: int, rate_hz: float = 200.0) -> None:
     print(f"both feet at {rate_hz:.0f} Hz in blocks of {block}: {100.0 * min(shares):.2f} % of a core")
 
 
+def kinds_of_turns(seeds: int) -> dict[str, list[WalkerSettings]]:
+    """Walks of 12 strides, half of them with both feet's sensors alone."""
+    kinds: dict[str, list[WalkerSettings]] = defaultdict(list)
+    for seed in range(seeds):
+        rng = np.random.default_rng(seed)
+        for name, turn_rad, radius_m, pivot_share in TURNS:
+            for hung, sites in (("feet", SITES), ("seven sensors", (*SITES, Site.PELVIS))):
+                walk = Walk(
+                    strides=12,
+                    speed_m_s=float(rng.choice([0.5, 0.8, 1.19, 1.6])),
+                    turn_rad=float(rng.choice([-1.0, 1.0])) * turn_rad,
+                    turn_radius_m=radius_m,
+                    pivot_share=pivot_share,
+                )
+                rate_hz, tissue = float(rng.choice([60.0, 100.0, 200.0])), list(Tissue)[int(rng.integers(3))]
+                kinds[f"{hung}, {name}"].append(
+                    WalkerSettings(
+                        seed=seed, recordings=(Standing(), walk), sites=sites, rate_hz=rate_hz, tissue=tissue
+                    )
+                )
+    return kinds
+
+
+def tell_turns(seeds: int) -> None:
+    print("| walks | of the truth | invented | of the whole walk | more than it |\n|---|---|---|---|---|")
+    for name, wanted in kinds_of_turns(seeds).items():
+        true, whole = Score(), Score()
+        for settings in wanted:
+            made = simulate(settings)
+            standing, walk = made.session.recordings
+            feet = feet_of({site: standing.imu[site] for site in SITES}, {site: walk.imu[site] for site in SITES})
+            for side, foot in zip(Side, feet, strict=True):
+                told_s = contacts_of(foot)
+                match(true, told_s, made.truth.recordings[walk.name].feet[side].events.initial_contact_s)
+                match(whole, told_s, gait_of(foot).initial_contact_s)
+        tell_row(name, true, whole)
+    told = os.environ.get("GAITWRIGHT_TEST_DATA")
+    for folder in sorted((Path(told) / "stroke_treadmill").glob("stroke*")) if told else []:
+        whole = Score()
+        (walk,) = read_session(folder).recordings
+        for site in SITES:
+            rest, (track,) = rest_of(walk.imu[site]), even_tracks(walk.imu[site])
+            foot = oriented(track, RateKind.INSTANTANEOUS, np.zeros(3) if rest is None else rest.gyr_rad_s)
+            match(whole, contacts_of(foot), gait_of(foot).initial_contact_s)
+        tell_row(folder.name, None, whole)
+
+
+def contacts_of(foot: OrientedTrack) -> FloatArray:
+    told = LiveEvents().update(foot.track.time_s, foot.track.gyr_rad_s, foot.track.acc_m_s2)
+    return np.array([e.time_s for e in told if e.event is FootEvent.INITIAL_CONTACT])
+
+
+def tell_row(name: str, true: Score | None, whole: Score) -> None:
+    of_truth = "- | -" if true is None else f"{len(true.differences)} of {true.offline} | {true.invented}"
+    print(f"| {name} | {of_truth} | {len(whole.differences)} of {whole.offline} | {whole.invented} |", flush=True)
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--seeds", type=int, default=2)
     parser.add_argument("--axis", action="store_true", help="give the pitch axis")
+    parser.add_argument("--turns", type=int, metavar="SEEDS", help="the table of contacts in turns instead")
     args = parser.parse_args()
+    if args.turns:
+        tell_turns(args.turns)
+        return
     for block in (1, 4, 40):
         cost(block)
     told = os.environ.get("GAITWRIGHT_TEST_DATA")

@@ -135,11 +135,14 @@ class WalkingEstimator:
         self._told.extend(values)
         self._values_told += len(values)
         missing = tuple(site for site in self._walking_sites() if self._is_silent(site))
-        lanes, cadences = {}, []
+        lanes, cadences, strides = {}, [], {}
         for side, foot in self._feet.items():
             site = Site(f"{side}_{Segment.FOOT}")
             foot.take(told.feet[side], worn.get(site))
             lanes[side] = foot.lane(kept_from_s, is_silent=site in missing)
+            count = foot.strides_since(self._count_from_s, kept_from_s)
+            if not foot.is_doubtful:
+                strides[side] = count
             cadence = told.feet[side].cadence_steps_min
             if np.isfinite(cadence) and site not in missing:
                 cadences.append(cadence)
@@ -147,11 +150,13 @@ class WalkingEstimator:
             now_s=self._now_s,
             joints={joint: trace for joint, trace in traces.items() if joint not in implausible},
             lanes=lanes,
-            strides={side: foot.strides_since(self._count_from_s, kept_from_s) for side, foot in self._feet.items()},
+            strides=strides,
             cadence_steps_min=float(np.mean(cadences)) if cadences else math.nan,
             slips=told.slips,
+            corrections=told.corrections,
             missing=missing,
             implausible=implausible,
+            doubtful=tuple(Site(f"{side}_{Segment.FOOT}") for side, foot in told.feet.items() if foot.is_doubtful),
             stride_values=tuple(self._told),
             values_told=self._values_told,
             test=None if test is None else test.state,
@@ -246,8 +251,10 @@ class _Foot:
         self._contacts_s: list[float] = []  # of the last seconds
         self._from_s = -np.inf
         self._passed = 0  # strides since `_from_s` whose beginning is not among them any more
+        self.is_doubtful = False  # since `_from_s`: what was lost or invented stays in the count
 
     def take(self, foot: LiveFoot, block: ImuBlock | None) -> None:
+        self.is_doubtful |= foot.is_doubtful
         if block is not None:
             before = block.time_s[:1] if self._heard_s is None else np.array([self._heard_s])
             time_s = np.concatenate([before, block.time_s])
@@ -268,6 +275,7 @@ class _Foot:
         """
         if time_s != self._from_s:
             self._from_s, self._passed = time_s, 0
+            self.is_doubtful = False
         strides = [(start, end) for start, end in pairwise(self._contacts_s) if end - start <= MAX_STRIDE_S]
         count = self._passed + sum(start >= time_s for start, _ in strides)
         self._passed += sum(time_s <= start and end < kept_from_s for start, end in strides)

@@ -231,9 +231,9 @@ def _not_measured(measure: TargetMeasure, side: Side | None, worn: tuple[Site, .
 
 
 def _is_gated(target: Target, view: "WalkingReadout", worn: Collection[Site]) -> bool:
-    """Whether a strap that slipped, a silent sensor or an angle that cannot be keeps the target from being measured."""
+    """Whether a slipped strap, a silent sensor, a doubtful foot or an implausible angle makes the target unmeasured."""
     slipped = {slip.site for slip in view.slips}
-    doubtful = slipped | set(view.missing)
+    doubtful = slipped | set(view.missing) | set(view.doubtful)
     feet = {Site(f"{side}_{Segment.FOOT}") for side in Side}
     if target.side is None:
         heard = {site for site in feet if site in worn} - doubtful

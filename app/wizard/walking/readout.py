@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 
 from core.body import Joint, Side, Site
 from core.gait.phases import Phase
+from core.live.bias import BiasCorrection
 from core.live.stride_values import StrideValue
 from core.samples import FloatArray
 from core.strap import Slip
@@ -53,11 +54,11 @@ class WalkingReadout:
     joints
         Of every joint with a calibration, or hip that was found, whose two sensors are worn and whose angle can be.
     lanes, strides
-        Of every side with a foot sensor; strides since the walk began.
+        Of every side with a foot sensor; strides since the walk began, of feet that their own knees never contradicted.
     cadence_steps_min
         Of both feet; NaN while nobody walks.
-    missing
-        Sites that are silent.
+    missing, doubtful
+        Sites that are silent; feet whose events disagree with their knees now.
     implausible
         Knees and ankles whose angle left what a joint can do within the last seconds, so that they are not in `joints`.
     stride_values, values_told
@@ -73,8 +74,10 @@ class WalkingReadout:
     strides: Mapping[Side, int] = field(default_factory=dict)
     cadence_steps_min: float = math.nan
     slips: tuple[Slip, ...] = ()
+    corrections: tuple[BiasCorrection, ...] = ()
     missing: tuple[Site, ...] = ()
     implausible: tuple[Joint, ...] = ()
+    doubtful: tuple[Site, ...] = ()
     stride_values: tuple[StrideValue, ...] = ()
     values_told: int = 0
     test: LiveReadout | None = None

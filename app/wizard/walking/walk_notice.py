@@ -6,6 +6,7 @@ from app.reports.pooled_walks import pools_of
 from app.storage.stored import RecordingState
 from app.wizard.losses import NOTHING, Losses, Message
 from app.wizard.walk_messages import (
+    bias_message,
     few_strides_message,
     implausible_message,
     lacks_message,
@@ -67,6 +68,8 @@ class WalkNotice:
         if view.implausible:
             return implausible_message(view.implausible)
         message = slip_message(view.slips, ongoing.began_s)
+        if message == NOTHING:
+            message = bias_message(view.corrections)
         if message == NOTHING and not view.joints and sensors.joints:
             return no_angles_message(sensors.sensor_at)
         return message

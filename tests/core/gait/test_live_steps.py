@@ -48,6 +48,26 @@ def test_every_step_is_told_once_near_its_true_time(speed_m_s: float, rate_hz: f
         assert np.std(off_s[1:]) < 0.02, event
 
 
+@pytest.mark.parametrize(
+    "walk",
+    [
+        Walk(strides=12, speed_m_s=1.6, standing_before_s=1.0),
+        Walk(strides=12, standing_before_s=1.0, turn_rad=np.pi),
+        Walk(strides=12, standing_before_s=1.0, turn_rad=-np.pi, turn_radius_m=0.3, pivot_share=0.5),
+    ],
+    ids=["straight", "U-turn", "pivot"],
+)
+def test_a_body_that_turns_over_its_feet_loses_and_invents_no_contact(walk: Walk) -> None:
+    """Legs that hang from one pelvis slide and sway on the floor: no stance is as calm as others are."""
+    sites = (Site.LEFT_FOOT, Site.RIGHT_FOOT, Site.PELVIS)
+    made = simulate(WalkerSettings(seed=0, recordings=(walk,), sites=sites))
+    for site in sites[:2]:
+        true_s = made.truth.recordings[walk.name].feet[site.leg_side].events.initial_contact_s
+        found_s = times_s(told_of(made.session.recordings[0].imu[site]), "initial_contact")
+        assert len(found_s) == len(true_s)
+        assert np.max(np.abs(found_s - true_s)) < 0.1
+
+
 def test_events_are_told_within_a_tenth_of_a_second_but_for_the_first_step(
     usual: tuple[ImuBlock, TrueFootEvents],
 ) -> None:

@@ -1,5 +1,7 @@
 """A walk may last as long as it likes: what is held of it does not grow, and no stride is forgotten."""
 
+from dataclasses import replace
+
 import pytest
 
 from app.wizard.walking.estimator import KEPT_S, _Foot
@@ -31,3 +33,13 @@ def test_no_stride_is_forgotten_and_no_contact_kept_for_ever(begins: int) -> Non
         if k < begins:
             foot.strides_since(-1.0, time_s - KEPT_S)
     assert len(foot._contacts_s) <= KEPT_S / 1.2 + 2
+
+
+def test_a_count_that_the_knee_has_once_contradicted_is_blank_until_the_next_walk() -> None:
+    foot = _Foot()
+    for k in range(4):
+        foot.take(replace(contact(1.2 * k), is_doubtful=k == 2), None)
+        foot.strides_since(-1.0, -KEPT_S)
+        assert foot.is_doubtful is (k >= 2)
+    foot.strides_since(4.0, -KEPT_S)
+    assert not foot.is_doubtful

@@ -152,6 +152,15 @@ def test_cadence_waits_only_where_no_foot_is_heard(feedback: PatientFeedback, es
     assert feedback.view.is_waiting
 
 
+def test_cadence_waits_where_the_only_foot_that_is_heard_disagrees_with_its_knee(
+    feedback: PatientFeedback, estimator: Told
+) -> None:
+    card_of(feedback).target_set.emit(BEAT)
+    estimator.tell(missing=(Site.RIGHT_FOOT,), doubtful=(Site.LEFT_FOOT,))
+    feedback.judge(estimator.state)
+    assert feedback.view.is_waiting
+
+
 def test_a_walk_counts_its_own_strides_for_each_target(
     qtbot: QtBot, feedback: PatientFeedback, estimator: Told
 ) -> None:

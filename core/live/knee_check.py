@@ -1,0 +1,69 @@
+"""Check the contacts of a foot against the flexion of its own knee, live.
+
+A walking knee bends once in every swing, and its foot lands once before it bends again. Where that does not hold, the
+foot's events were lost or invented, and nothing counted from them means anything.
+"""
+
+import math
+from collections import deque
+from collections.abc import Iterable
+
+import numpy as np
+
+from core.gait.strides import MAX_STRIDE_S
+from core.live.angle import AngleSamples
+
+# The bend of loading reaches 20 degrees and a third of that of swing.
+MIN_BEND_RAD, BEND_SHARE = np.deg2rad(25.0), 0.5
+STEPS = 4  # from peak to peak; the last so many are looked at,
+MOST_ODD = 1  # and so many may be odd: a shuffled step bends no knee
+
+
+class KneeCheck:
+    """One leg, fed angles and contacts as they come; both on one clock."""
+
+    def __init__(self) -> None:
+        self._contacts_s: deque[float] = deque(maxlen=32)
+        self._is_odd: deque[bool] = deque(maxlen=STEPS)
+        self._start_anew()
+
+    @property
+    def is_doubtful(self) -> bool:
+        """Whether of the last steps more than one had no contact, or several."""
+        return sum(self._is_odd) > MOST_ODD
+
+    def update(self, knee: AngleSamples, contacts_s: Iterable[float]) -> None:
+        """Take what is new of both."""
+        self._contacts_s.extend(contacts_s)
+        for time_s, angle_rad in zip(knee.time_s.tolist(), knee.angle_rad.tolist(), strict=True):
+            if math.isnan(angle_rad):
+                self._start_anew()
+            else:
+                self._follow(time_s, angle_rad)
+
+    def _start_anew(self) -> None:
+        """What the knee did meanwhile is not known."""
+        self._is_odd.clear()
+        self._highest, self._lowest = (-math.inf, -math.inf), math.inf
+        self._bend_rad, self._is_bending = MIN_BEND_RAD, False
+        self._last_s = -math.inf  # of the last peak of flexion
+
+    def _follow(self, time_s: float, angle_rad: float) -> None:
+        if self._is_bending:
+            self._highest = max(self._highest, (angle_rad, time_s))
+            if angle_rad < self._highest[0] - self._bend_rad:
+                self._bent(self._highest[1])
+                self._bend_rad = max(MIN_BEND_RAD, BEND_SHARE * (self._highest[0] - self._lowest))
+                self._is_bending, self._lowest = False, angle_rad
+            return
+        self._lowest = min(self._lowest, angle_rad)
+        if time_s - self._last_s > MAX_STRIDE_S:
+            self._is_odd.clear()  # it stands
+            self._bend_rad = MIN_BEND_RAD
+        if angle_rad > self._lowest + self._bend_rad:
+            self._is_bending, self._highest = True, (angle_rad, time_s)
+
+    def _bent(self, peak_s: float) -> None:
+        if peak_s - self._last_s <= MAX_STRIDE_S:
+            self._is_odd.append(sum(self._last_s < contact_s <= peak_s for contact_s in self._contacts_s) != 1)
+        self._last_s = peak_s
