@@ -100,7 +100,13 @@ async def reached(sensor: DotSensor, within_s: float = AWAY_S) -> None:
 
 
 def from_now_s(within_s: float) -> float:
-    """When `within_s` are over, by the clock of the links' thread."""
+    """When `within_s` are over.
+
+    Returns
+    -------
+    until_s
+        By the clock of the links' thread.
+    """
     return asyncio.get_running_loop().time() + within_s
 
 

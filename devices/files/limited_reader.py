@@ -76,6 +76,13 @@ ENDINGS = {  # refusals that lack only their place
 }
 
 
+UNANSWERED = {
+    child.MEMORY: FileRefusedError("SQL", "this takes more memory than a question is given", "Ask for less at a time"),
+    TIME: FileRefusedError("SQL", "this takes longer than a question is given", "Ask for less at a time"),
+    CRASH: FileRefusedError("SQL", "this ended early, for a reason that the log names", "Ask for less at a time"),
+}
+
+
 class ReadingEndedError(FileRefusedError):
     """A file that could not be read to its end within the limits; `cause` is memory, time, crash or unforeseen."""
 
@@ -309,11 +316,7 @@ class LimitedReading:
         try:
             return self._reader.ask(task, [path], path.name, _found_rows, self.waiting)
         except ReadingEndedError as ended:
-            what = {
-                child.MEMORY: "this takes more memory than a question is given",
-                TIME: "this takes longer than a question is given",
-            }.get(ended.cause, "this ended early, for a reason that the log names")
-            raise FileRefusedError("SQL", what, "Ask for less at a time") from ended
+            raise UNANSWERED.get(ended.cause, UNANSWERED[CRASH]) from ended
 
     def gather(self, paths: Sequence[Path]) -> Gathered:
         """As `gathering.gather` does."""

@@ -36,7 +36,15 @@ OTHERS_SOCKETS_AND_SIGNALS = 0b11
 # what libraries read of the system when they are loaded
 SYSTEMS = (
     *("/usr/lib", "/usr/lib64", "/lib", "/lib64", "/usr/share/zoneinfo", "/etc/ld.so.cache", "/etc/localtime"),
-    *("/dev/null", "/dev/urandom", "/sys/devices/system/cpu", "/proc/cpuinfo", "/proc/meminfo", "/proc/self"),
+    *(
+        "/dev/null",
+        "/dev/urandom",
+        "/sys/devices/system/cpu",
+        "/proc/cpuinfo",
+        "/proc/meminfo",
+        "/proc/self",
+        "/sys/fs/cgroup",
+    ),
 )
 
 

@@ -21,7 +21,7 @@ import pyarrow.fs
 from devices.files.refusal import FileRefusedError, one_line
 
 if TYPE_CHECKING:
-    from duckdb import DuckDBPyConnection
+    from duckdb import DuckDBPyConnection, DuckDBPyRelation
 
     from devices.files.answers import Array, Details
 
@@ -31,6 +31,10 @@ ZONED_TIME = "TIMESTAMP WITH TIME ZONE"
 KIND = re.compile(r"^[A-Z]\w*(?: \w+){0,2} Error: ")  # what DuckDB calls it, before what is wrong
 HINTS = ("Candidate bindings", "Did you mean")  # how DuckDB's second line begins where it helps
 MOST_FOUND_BYTES = 500_000_000
+WITH_ZONE = "the column {name} is a time with its zone, which has no one text"
+NO_SELECT = "{kind} is not answered here, since the table is only read"
+TOO_LARGE = "this takes more memory than a question is given ({limit})"
+LIST_COLUMNS = "gaitwright query --columns lists what the table holds"
 ASK_FOR_LESS = "Ask for less at a time"
 LOCKED: Mapping[str, str | bool | int] = {
     "autoinstall_known_extensions": False,
@@ -60,19 +64,18 @@ def answer(path: Path, sql: str, is_typed: bool, arrays: "list[Array]") -> "Deta
         try:
             if is_typed:
                 _refuse_other_than_one_select(connection, sql)
-            asked = connection.execute(sql)
-            described = [(str(name), str(kind)) for name, kind, *_ in connection.description or []]
+            asked = connection.sql(sql)
+            described = [(str(name), str(kind)) for name, kind in zip(asked.columns, asked.types, strict=True)]
             for name, kind in described:
                 if kind == ZONED_TIME:
-                    what = "the column {name} is a time with its zone, which has no one text"
-                    raise FileRefusedError("SQL", what, "Write it as {name}::VARCHAR", name=name)
+                    raise FileRefusedError("SQL", WITH_ZONE, "Write it as {name}::VARCHAR", name=name)
             arrays.append(_stream(asked))
         except (duckdb.Error, pa.ArrowException) as problem:
             raise _refused(problem) from None
     return {"columns": [name for name, _ in described]}
 
 
-def _stream(asked: "DuckDBPyConnection") -> "Array":
+def _stream(asked: "DuckDBPyRelation") -> "Array":
     reader, sink = asked.to_arrow_reader(), pa.BufferOutputStream()
     assert reader is not None  # there was a question
     with pa.ipc.new_stream(sink, reader.schema) as stream:
@@ -108,12 +111,11 @@ def _opened(file: Path) -> "Iterator[DuckDBPyConnection]":
 def _refuse_other_than_one_select(connection: "DuckDBPyConnection", sql: str) -> None:
     statements = connection.extract_statements(sql)
     if len(statements) != 1:
-        raise FileRefusedError("SQL", f"{len(statements)} statements", "One at a time is answered")
+        raise FileRefusedError("SQL", "{count} statements", "One at a time is answered", count=len(statements))
     if statements[0].type != duckdb.StatementType.SELECT:
-        what = "{kind} is not answered here, since the table is only read"
         kind = statements[0].type.name
         said = "PIVOT without IN" if kind == "MULTI" else kind
-        raise FileRefusedError("SQL", what, "Begin with SELECT", kind=said)
+        raise FileRefusedError("SQL", NO_SELECT, "Begin with SELECT", kind=said)
 
 
 def quoted_name(name: str) -> str:
@@ -132,10 +134,8 @@ def _shown(name: str, kind: str) -> str:
 
 def _refused(problem: Exception) -> FileRefusedError:
     if isinstance(problem, duckdb.OutOfMemoryException):
-        what = "this takes more memory than a question is given ({limit})"
-        return FileRefusedError("SQL", what, ASK_FOR_LESS, limit=LOCKED["memory_limit"])
-    remedy = "gaitwright query --columns lists what the table holds"
-    return FileRefusedError("SQL", "this cannot be answered: {why}", remedy, why=_reason(problem))
+        return FileRefusedError("SQL", TOO_LARGE, ASK_FOR_LESS, limit=LOCKED["memory_limit"])
+    return FileRefusedError("SQL", "this cannot be answered: {why}", LIST_COLUMNS, why=_reason(problem))
 
 
 def _reason(problem: Exception) -> str:

@@ -158,7 +158,7 @@ def test_what_cannot_be_answered_is_named_in_one_line_without_a_mark(path: Path,
 
 @pytest.mark.parametrize(
     "sql",
-    ["SELECT list(range) FROM range(1000000000)", "SELECT bit_count(bitstring('1', 2147483647) || bitstring('1', 1))"],
+    ["SELECT list(range) FROM range(1000000000)", "SELECT length(repeat('x', 4000000000))"],
 )
 def test_a_question_that_takes_too_much_memory_is_refused_and_the_next_is_answered(path: Path, sql: str) -> None:
     assert "memory" in refused(path, sql)

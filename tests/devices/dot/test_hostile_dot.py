@@ -9,7 +9,7 @@ from devices.dot.fetching import FetchedFile, Fetching
 from devices.dot.memory import list_files, record, stop
 from devices.dot.messages import RECORDING_GROUP, DotMessage, DotNotice, RecordedFile
 from devices.dot.samples import RECORDED
-from devices.dot.sensor import MOST_WAITING, DotRefusedError, DotSensor
+from devices.dot.sensor import DotRefusedError, DotSensor
 from devices.emulators.bluetooth import Notification
 from devices.emulators.dot_faults import DotFaults
 from tests.devices.dot.virtual_time import VirtualRadio
@@ -19,7 +19,7 @@ UTC_S = 1_600_000_000
 NOTICE = 0x7003
 
 
-class StoppedError(Exception):
+class StopPressedError(Exception):
     """Somebody pressed Stop."""
 
 
@@ -87,10 +87,10 @@ def test_notices_that_never_end_do_not_hold_stop(radio: VirtualRadio, monkeypatc
 
     def stopped(fetched: int, _about: int) -> None:
         if fetched:
-            raise StoppedError
+            raise StopPressedError
 
     began_s = radio.loop.time()
-    with pytest.raises(StoppedError):
+    with pytest.raises(StopPressedError):
         radio.run(Fetching(sensor, file, nobody, stopped).fetch())
     assert radio.loop.time() - began_s < 60.0
 
@@ -104,8 +104,13 @@ def test_a_sensor_that_only_talks_is_given_up(radio: VirtualRadio, monkeypatch: 
     assert radio.loop.time() - began_s < 600.0
 
 
-def test_what_nobody_fetches_does_not_pile_up(radio: VirtualRadio) -> None:
-    _, sensor, _ = recorded(radio)
-    for _ in range(MOST_WAITING + 10):
-        sensor._hear(*damaged(0))
-    assert sensor._notices.qsize() == MOST_WAITING
+def test_what_nobody_fetches_does_not_pile_up(radio: VirtualRadio, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("devices.dot.sensor.MOST_WAITING", 50)
+    wearing, sensor, _ = recorded(radio)
+    send_too(wearing, monkeypatch, lambda due: [*due, *[damaged(0)] * 1000])
+    radio.pass_s(1.0)
+    monkeypatch.undo()
+    waiting = 0
+    while radio.run(sensor.notice(0.5)):
+        waiting += 1
+    assert waiting <= 1050  # with what arrived while the first was waited for

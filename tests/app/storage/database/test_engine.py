@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 import sqlcipher3.dbapi2 as sqlite
-from sqlalchemy import Engine, event, select, text
+from sqlalchemy import Engine, select, text
 
 from app.storage.database.engine import Database, postgres_engine, refuse_old_sqlite, sqlite_engine
 from app.storage.database.models import SettingRow
@@ -262,15 +262,16 @@ def test_a_damaged_page_is_not_read_as_if_it_were_whole(encrypted: Database, fil
         ("postgresql+psycopg://gaitwright@/gaitwright?host=/tmp", None),
     ],
 )
-def test_a_server_on_the_network_has_to_prove_who_it_is(url: str, mode: str | None) -> None:
+def test_a_server_on_the_network_has_to_prove_who_it_is(
+    url: str, mode: str | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
     asked: dict[str, object] = {}
-    engine = postgres_engine(url)
 
-    def stop(_dialect: object, _record: object, _positional: object, arguments: dict[str, object]) -> None:
+    def stop(_connection: object, /, **arguments: object) -> None:
         asked.update(arguments)
         raise ConnectionAbortedError  # what would be sent is all there is to see
 
-    event.listen(engine, "do_connect", stop)
+    monkeypatch.setattr("psycopg.Connection.connect", classmethod(stop))
     with pytest.raises(ConnectionAbortedError):
-        engine.connect()
+        postgres_engine(url).connect()
     assert asked.get("sslmode") == mode
