@@ -81,11 +81,13 @@ def _in_a_copy(asked: "Details", asking: BinaryIO, answering: BinaryIO) -> None:
 
 def _load_for(task: str) -> None:
     """Import what a task needs before the copy is made, which would import it each time."""
+    import pyarrow as pa
     import pyarrow.csv
 
-    from devices.files import answers, site_files
+    from devices.files import answers, session_folder, site_files
 
-    _ = pyarrow.csv, answers, site_files
+    _ = answers, session_folder, site_files
+    pyarrow.csv.read_csv(pa.py_buffer(b"a\n1\n")).column(0).to_numpy()  # imports more when it is first used
     if task == QUESTION:
         from devices.files import parquet_questions
 
