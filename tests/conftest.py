@@ -16,6 +16,8 @@ from hypothesis import settings
 from PySide6.QtCore import QEvent, QThread, QTimer
 from PySide6.QtWidgets import QApplication, QWidget
 
+from tests.wrappers import Wrappers
+
 # a deadline fails tests on a busy machine; a new seed in every run of CI fails changes that are innocent of it
 settings.register_profile("here", deadline=None)
 settings.register_profile("ci", deadline=None, derandomize=True)
@@ -25,6 +27,8 @@ settings.load_profile("ci" if os.environ.get("CI") else "here")
 REQUIREMENTS = Path(__file__).parents[1] / "packaging" / "safety" / "requirements.toml"
 COLLECTIONS = 60  # of young objects, until the old ones are looked through: that takes a while
 _BEGUN: set[str] = set()
+_WRAPPERS = Wrappers()
+_WRAPPERS.watch()
 
 
 @pytest.hookimpl(tryfirst=True)  # before tests are chosen by their marks
@@ -76,6 +80,13 @@ def _garbage_on_one_thread(request: pytest.FixtureRequest) -> Iterator[None]:
         gc.freeze()
     yield
     gc.collect() if gc.get_count()[2] > COLLECTIONS else gc.collect(1)
+
+
+@pytest.fixture(autouse=True)
+def wrappers() -> Iterator[Wrappers]:
+    """Fail a test during which an object of Qt ended on another thread than the screen's: it would crash some day."""
+    yield _WRAPPERS
+    assert _WRAPPERS.taken() == [], "held last by another thread: let the screen's thread hold it longer"
 
 
 @pytest.fixture(autouse=True)

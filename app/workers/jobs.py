@@ -1,5 +1,10 @@
-"""Threads that do one job after the other and tell whoever asked, as long as they are still there."""
+"""Threads that do one job after the other and tell whoever asked, as long as they are still there.
 
+What a job holds of Qt, as a page that is closed meanwhile, must end on the screen's thread (`garbage.py`). So that
+thread keeps every job until the one that did it has let it go.
+"""
+
+from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
 from queue import SimpleQueue
@@ -38,18 +43,22 @@ class JobThread(QThread):
     """Does one job after the other until `finish`, and nothing after it; begins with the first."""
 
     told = Signal(object, object)  # the job, and what came of it
+    _let_go = Signal()  # the eldest job that is kept
 
     def __init__(
         self, parent: QObject, after_each: Callable[[], object] = nothing, at_end: Callable[[], object] = nothing
     ) -> None:
         super().__init__(parent)
         self._jobs: SimpleQueue[Job | None] = SimpleQueue()
+        self._kept: deque[Job] = deque()
         self._after_each, self._at_end = after_each, at_end
         self._is_over = False
+        self._let_go.connect(self._on_let_go)
 
     def ask(self, job: Job) -> None:
         if self._is_over:
             return
+        self._kept.append(job)
         self._jobs.put(job)
         if not self.isRunning():
             self.start()
@@ -77,8 +86,12 @@ class JobThread(QThread):
                 outcome = refusal_of(error)
             self.told.emit(job, outcome)
             del job, outcome  # not held until the next one comes
+            self._let_go.emit()
             self._after_each()
         self._at_end()
+
+    def _on_let_go(self) -> None:
+        self._kept.popleft()
 
 
 def weak(method: Callable[P, T] | None) -> "WeakMethod[Callable[P, T]] | None":
