@@ -341,6 +341,30 @@ PELVIS: tuple[Stop, ...] = (  # seven sensors, by keys
     Stop("63-where", offers("Save"), ("press ctrl+a", "type {home}/results", "press Return"), lingers_s=1.0),
     Stop("64-saved", says("Saved as"), lingers_s=2.0, leaves=(("results*/**/angles.csv", "left_hip_deg"),)),
 )
+SWAPPED = {"L shank": "R thigh", "R thigh": "L shank"}  # where somebody straps them by mistake
+SWAPPED_BY_KEYS = tuple(
+    key for place in PLACES.values() for key in (f"press {DIGITS[SWAPPED.get(place, place)]}", "press Down")
+)
+DEAD_ENDS: tuple[Stop, ...] = (  # what once led nowhere: swapped sensors, a key with the focus elsewhere, by keys
+    *KEYBOARD[: SOURCE + 1],
+    Stop("51-sensors", offers("Movement decides"), SWAPPED_BY_KEYS, lingers_s=5.0),
+    Stop("52-placed", says("All six are worn"), ("press Return",), lingers_s=1.0),
+    Stop("53-stand-still", at_step("StandStillStep"), ("press space",), lingers_s=1.0),
+    Stop("54-standing", is_recording, lingers_s=1.5),
+    Stop("55-swapped", offers("Use detected positions"), ("press Return",), lingers_s=1.0, patience_s=90.0),
+    Stop("56-put-right", at_step("FreeMotionStep"), lingers_s=3.0),
+    # the focus is on another button: the key that the bar shows belongs to the bar
+    *(
+        replace(stop, name=f"57{stop.name[2:]}")
+        for stop in walk(1, ("press 1", "to Step 2", "press space"), "press space")
+    ),
+    Stop("58-keep", offers("Keep 1"), ("press k",), lingers_s=1.0),
+    Stop("59-kept", offers("Results"), ("press Return",), lingers_s=1.0),
+    Stop("60-results", offers("Legs", "Data"), ("press ctrl+7",), lingers_s=2.0, patience_s=60.0),
+    Stop("61-report", at_step("ReportStep"), ("press ctrl+s",), lingers_s=2.0),
+    Stop("62-where", offers("Save"), ("press ctrl+a", "type {home}/results", "press Return"), lingers_s=1.0),
+    Stop("63-saved", says("Saved as"), lingers_s=2.0, leaves=(("results*/**/angles.csv", "left_knee_deg"),)),
+)
 TOURS = {
     "keyboard": (*KEYBOARD, *SECOND_BY_KEYS),
     "mouse": (*MOUSE, *SECOND_BY_MOUSE),
@@ -348,4 +372,5 @@ TOURS = {
     "timed": TIMED,
     "review": REVIEWED,
     "pelvis": PELVIS,
+    "dead-ends": DEAD_ENDS,
 }
