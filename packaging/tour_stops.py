@@ -208,7 +208,7 @@ MOUSE: tuple[Stop, ...] = (
 )
 SECOND_BY_KEYS: tuple[Stop, ...] = (  # the same patient comes back: nothing is typed, one condition is walked
     Stop("21-second-visit", offers("New session"), ("press Return",), lingers_s=1.0),
-    Stop("22-patient", offers("Same set-up"), ("to Same set-up", "press Return"), lingers_s=1.0),
+    Stop("22-patient", offers("Same set-up"), ("to Same set-up", "press space"), lingers_s=1.0),
     Stop("23-source", at_step("SensorsStep"), ("press Return",), lingers_s=1.0),
     Stop("23a-placed", says("All six are worn"), ("press Return",), lingers_s=1.0),
     Stop("24a-stand-still", at_step("StandStillStep"), ("press space",), lingers_s=1.0),
