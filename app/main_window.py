@@ -243,7 +243,9 @@ class MainWindow(QWidget):
 
     @property
     def _takes_folders(self) -> bool:
-        """Whether a folder may take the place of what is in sight: not of a visit, nor of the cover."""
+        """Whether a folder may take the place of what is in sight: not of a visit, nor of the cover or a question."""
+        if self.entry is not None and self.entry.is_settling:
+            return False
         return not self.is_covered and (self._wizard is None or self._wizard.visit is None)
 
     @property
@@ -413,7 +415,7 @@ class MainWindow(QWidget):
     def lock(self) -> None:
         """Cover what the library shows; a recording goes on under it."""
         state = self.controller.state
-        if self.entry is None or state is None or state.is_demonstration or self.entry.is_showing_key:
+        if self.entry is None or state is None or state.is_demonstration:
             self.idle.unlock()
             return
         self._covered = self.screens.currentWidget()

@@ -283,7 +283,7 @@ class SettingsController(QObject):
             assert opened.data_key is not None  # hidden in the demonstration
             slots = _slots(opened)
             # the slot first: without one an operator could not log in
-            slots.add(opened.data_key, code, passphrase, (name, _clinic_of(opened)))
+            slots.add(opened.data_key, code, passphrase, (name, _clinic_of(opened)), is_given=True)
             try:
                 operators = opened.library.operators
                 known = next((one for one in operators.list() if one.code == code.casefold()), None)
