@@ -35,6 +35,7 @@ from app.storage.idle_lock import IdleLock
 from app.theme import ThemeNotifier, load_fonts
 from app.widgets.accessible_role import tell_roles
 from app.widgets.focus_ring import FocusRing
+from app.widgets.folder_dialog import keep_no_visited_folders
 from app.wording import PURPOSE, tr, use_language
 from app.workers.background import Background
 from app.workers.garbage import GarbageCollector
@@ -419,6 +420,8 @@ class MainWindow(QWidget):
             self.idle.unlock()
             return
         self._covered = self.screens.currentWidget()
+        if self._home is not None:
+            self._home.deleting.close_dialog()
         if self._wizard is not None:
             self._wizard.asked.cover(is_covered=True)
         self.entry.cover(state.operator.code, self._is_recording, is_asked_for=self.idle.is_asked_for)
@@ -532,6 +535,7 @@ def open_window(argv: list[str], language: str = "") -> int:
     log_qt_messages()
     app = QApplication([sys.argv[0], *argv])
     app.setApplicationName("Gaitwright")
+    keep_no_visited_folders()
     app.setStyle("Fusion")
     load_fonts()
     tell_roles()
@@ -540,6 +544,7 @@ def open_window(argv: list[str], language: str = "") -> int:
     settings.language_changed.connect(partial(app.exit, IN_ANOTHER_LANGUAGE))
     while (code := _show_window(app, settings, folders)) == IN_ANOTHER_LANGUAGE:
         folders = []
+    keep_no_visited_folders()
     return code
 
 

@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from app.passphrases import Strength, refusal_of_passphrase, strength_of
-from app.storage.data_key import KEY_BYTES, DataKey, KeyMaterial
+from app.storage.data_key import KEY_BYTES, DataKey, KeyMaterial, Secret
 from app.storage.files import held, replace_file
 from app.storage.slots import COST, FIRST_FORMAT, FORMAT, Cost, Slot, whole
 from app.wording import tr
@@ -252,7 +252,7 @@ class KeySlots:
             if slots.pop(KEYRING + _normal(code), None) is not None:
                 self._write(slots)
 
-    def _opened(self, slot: Slot, secret: bytes) -> DataKey | None:
+    def _opened(self, slot: Slot, secret: KeyMaterial) -> DataKey | None:
         data_key = slot.opened(secret)
         if data_key is not None and slot.is_first_format:
             with suppress(KeyRefusedError, OSError), self._changing() as slots:  # else the next time
@@ -400,13 +400,13 @@ def _checked_code(code: str) -> str:
     return code
 
 
-def _checked(passphrase: str, known: Iterable[str]) -> bytes:
+def _checked(passphrase: str, known: Iterable[str]) -> Secret:
     known = tuple(known)
     if strength_of(passphrase or "-", MIN_PASSPHRASE, known) not in (Strength.FAIR, Strength.STRONG):
         raise KeyRefusedError(*refusal_of_passphrase(passphrase, MIN_PASSPHRASE, known))
     return _secret(passphrase)
 
 
-def _secret(passphrase: str) -> bytes:
+def _secret(passphrase: str) -> Secret:
     # the same letters from another keyboard may come as other code points
-    return unicodedata.normalize("NFKC", passphrase.strip()).encode()
+    return Secret(unicodedata.normalize("NFKC", passphrase.strip()), "utf-8")

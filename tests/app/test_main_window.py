@@ -297,6 +297,7 @@ def test_who_was_given_a_passphrase_chooses_an_own_one_before_anything_is_shown(
     qtbot.waitUntil(page.new_passphrase.isVisible, timeout=WAIT_MS)
     for passphrase in ("the first one she got", own):
         assert window.screens.currentWidget() is page
+        page.new_passphrase.set_wrong("")
         page.new_passphrase.set_text(passphrase)
         page.again.set_text(passphrase)
         page.go.click()
