@@ -9,8 +9,8 @@ if TYPE_CHECKING:
     from app.storage.opened import OpenedLibrary
 
 
-def deleted_by_another(opened: "OpenedLibrary", patient_id: UUID, session_id: UUID | None = None) -> str:
-    """The operator, another than the one here, who deleted a patient, or this one session; empty where nobody did."""
+def deleted_by(opened: "OpenedLibrary", patient_id: UUID, session_id: UUID | None = None) -> str:
+    """The operator who deleted a patient, or this one session; empty where nobody did."""
     from app.storage.audit import about  # not before a library is open
 
     library = opened.library
@@ -21,8 +21,7 @@ def deleted_by_another(opened: "OpenedLibrary", patient_id: UUID, session_id: UU
     else:
         return ""
     entry = library.audit.deletions([subject]).get(subject)
-    own = library.operator.code if library.operator is not None else ""
-    return entry.operator if entry is not None and entry.operator != own else ""
+    return entry.operator if entry is not None else tr("somebody else")
 
 
 def deletion_message(what: str, by: str) -> tuple[str, str]:

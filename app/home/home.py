@@ -494,7 +494,7 @@ class Home(Themed):
     def _on_deleted(self, words: str) -> None:
         self.toast.offer(words)
         self._fit()
-        self.patients.read()
+        self.patients.read(is_deleted_here=True)
 
     # what comes in
 

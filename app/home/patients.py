@@ -7,7 +7,7 @@ from uuid import UUID
 
 from PySide6.QtCore import QObject, Signal
 
-from app.deleted_elsewhere import deleted_by_another, deletion_message
+from app.deleted_elsewhere import deleted_by, deletion_message
 from app.home.patient_reading import PatientReading, read_patient
 from app.pages.home_page import HomePage
 from app.patient_words import patient_line, person
@@ -66,16 +66,19 @@ class PatientsAtHome(QObject):
         """Those of the patient in sight."""
         return self._reading.visits(_now()) if self._reading is not None else ()
 
-    def read(self, wanted: UUID | None = None) -> None:
-        """Read the patients anew, and choose one of them, else the one that was chosen."""
+    def read(self, wanted: UUID | None = None, *, is_deleted_here: bool = False) -> None:
+        """Read the patients anew, and choose one of them, else the one that was chosen.
+
+        Where that one was deleted, it is said by whom, but for `is_deleted_here`.
+        """
         self._is_forgotten = False
-        shown = self.patient
+        shown = None if is_deleted_here else self.patient
 
         def read(opened: "OpenedLibrary") -> _Patients:
             undecided = frozenset(walk.patient_id for walk in opened.library.recordings.undecided())
             every = opened.library.patients.search()
             is_gone = shown is not None and all(one.id != shown.id for one in every)
-            by = deleted_by_another(opened, shown.id) if shown is not None and is_gone else ""
+            by = deleted_by(opened, shown.id) if shown is not None and is_gone else ""
             return _Patients(every, undecided, wanted, by)
 
         self._controller.run(read, self._on_read, self._on_refused, self)

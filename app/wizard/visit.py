@@ -13,7 +13,7 @@ from uuid import UUID
 from PySide6.QtCore import QObject, Signal
 
 from app.acquisition.live_sensors import live_sensors
-from app.deleted_elsewhere import deleted_by_another, deletion_message
+from app.deleted_elsewhere import deleted_by, deletion_message
 from app.storage.stored import StoredSession
 from app.wizard.edit_question import EditQuestion
 from app.wizard.evaluation import Evaluation
@@ -255,7 +255,7 @@ class Visit(QObject):
         session_id, patient_id = self.session.id, self.session.patient_id
 
         def read(opened: "OpenedLibrary") -> tuple[StoredSession, str]:
-            return opened.library.sessions.get(session_id), deleted_by_another(opened, patient_id, session_id)
+            return opened.library.sessions.get(session_id), deleted_by(opened, patient_id, session_id)
 
         self._controller.run(read, self._on_looked, self._on_not_looked, self)
 
@@ -411,11 +411,11 @@ class Visit(QObject):
         self.evaluate()
 
     def _on_looked(self, looked: tuple[StoredSession, str]) -> None:
-        found, deleted_by = looked
-        is_news, self._deleted_by = deleted_by != self._deleted_by, deleted_by
-        if deleted_by:
+        found, by = looked
+        is_news, self._deleted_by = by != self._deleted_by, by
+        if by:
             if is_news:
-                self.deleted_elsewhere.emit(*deletion_message(self.patient.details.code, deleted_by))
+                self.deleted_elsewhere.emit(*deletion_message(self.patient.details.code, by))
             return
         is_settled = self.record.is_settled and self.recordings.is_idle
         if self.session is None or not is_settled:
