@@ -456,6 +456,18 @@ def test_five_minutes_without_anybody_cover_the_library(qtbot: QtBot, open_windo
     assert SECRET_CODE in words_in_sight(window)
 
 
+def test_the_lock_leaves_no_question_about_a_patient_in_sight(qtbot: QtBot, open_window: Open, folder: Path) -> None:
+    window = open_window(folder)
+    logged_in(qtbot, window)
+    home = window.home
+    assert home is not None
+    home.page.panel.delete_patient.trigger()
+    qtbot.waitUntil(lambda: home.deleting.dialog is not None, timeout=WAIT_MS)
+    window.lock()
+    assert home.deleting.dialog is None
+    assert SECRET_CODE not in words_in_sight(window)
+
+
 def test_the_cover_says_that_a_recording_goes_on(qtbot: QtBot, open_window: Open, folder: Path) -> None:
     window = open_window(folder)
     logged_in(qtbot, window)
