@@ -35,6 +35,7 @@ from app.storage.idle_lock import IdleLock
 from app.theme import ThemeNotifier, load_fonts
 from app.widgets.accessible_role import tell_roles
 from app.widgets.focus_ring import FocusRing
+from app.widgets.folder_dialog import keep_no_visited_folders
 from app.wording import PURPOSE, tr, use_language
 from app.workers.background import Background
 from app.workers.garbage import GarbageCollector
@@ -243,7 +244,9 @@ class MainWindow(QWidget):
 
     @property
     def _takes_folders(self) -> bool:
-        """Whether a folder may take the place of what is in sight: not of a visit, nor of the cover."""
+        """Whether a folder may take the place of what is in sight: not of a visit, nor of the cover or a question."""
+        if self.entry is not None and self.entry.is_settling:
+            return False
         return not self.is_covered and (self._wizard is None or self._wizard.visit is None)
 
     @property
@@ -413,10 +416,12 @@ class MainWindow(QWidget):
     def lock(self) -> None:
         """Cover what the library shows; a recording goes on under it."""
         state = self.controller.state
-        if self.entry is None or state is None or state.is_demonstration or self.entry.is_showing_key:
+        if self.entry is None or state is None or state.is_demonstration:
             self.idle.unlock()
             return
         self._covered = self.screens.currentWidget()
+        if self._home is not None:
+            self._home.deleting.close_dialog()
         if self._wizard is not None:
             self._wizard.asked.cover(is_covered=True)
         self.entry.cover(state.operator.code, self._is_recording, is_asked_for=self.idle.is_asked_for)
@@ -530,6 +535,7 @@ def open_window(argv: list[str], language: str = "") -> int:
     log_qt_messages()
     app = QApplication([sys.argv[0], *argv])
     app.setApplicationName("Gaitwright")
+    keep_no_visited_folders()
     app.setStyle("Fusion")
     load_fonts()
     tell_roles()
@@ -538,6 +544,7 @@ def open_window(argv: list[str], language: str = "") -> int:
     settings.language_changed.connect(partial(app.exit, IN_ANOTHER_LANGUAGE))
     while (code := _show_window(app, settings, folders)) == IN_ANOTHER_LANGUAGE:
         folders = []
+    keep_no_visited_folders()
     return code
 
 

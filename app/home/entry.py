@@ -44,6 +44,7 @@ class Entry(QObject):
         self._controller, self._settings, self._folder = controller, settings, folder
         self._place: LibraryPlace | None = None
         self._new: OpenedState | None = None  # whose recovery key is shown or asked for
+        self._given: OpenedState | None = None  # whose operator has to choose an own passphrase first
         self._key = ""  # as long as it is shown
         self._cover_of = self._tried = ""
         self._delay: LoginDelay | None = None
@@ -64,8 +65,9 @@ class Entry(QObject):
         return bool(self._cover_of)
 
     @property
-    def is_showing_key(self) -> bool:
-        return bool(self._key)
+    def is_settling(self) -> bool:
+        """Whether a library is open, and something has to be answered before it is entered."""
+        return self._new is not None or self._given is not None
 
     def begin(self) -> None:
         """Show the page that comes first: where there is no library yet, how to make one.
@@ -73,7 +75,7 @@ class Entry(QObject):
         One that was opened here before is missing, rather than to be made: its disk may not be connected. Where the
         environment names the clinic's server, its library is joined.
         """
-        self._new, self._key, self._cover_of, self._tried = None, "", "", ""
+        self._new, self._given, self._key, self._cover_of, self._tried = None, None, "", "", ""
         if not (self._folder / KEYS).exists():
             if os.environ.get(DATABASE_VARIABLE):
                 self._join_by_itself()
@@ -99,8 +101,14 @@ class Entry(QObject):
             self.begin()
 
     def cover(self, code: str, is_recording: bool, *, is_asked_for: bool = False) -> None:
-        """Show nothing but the way back, for the operator who is logged in."""
+        """Show nothing but the way back, for the operator who is logged in.
+
+        A recovery key that was in sight is forgotten: behind the cover it is asked for, or made again.
+        """
         self._cover_of = code
+        if self._key:
+            self._key = ""
+            self.first_start.ask_for_recovery_key()
         if self._delay is None:  # of a library that was just made
             from app.storage.login_delay import LoginDelay
 
@@ -150,6 +158,7 @@ class Entry(QObject):
         log_in.recovered.connect(self._on_recovery_wished)
         log_in.remembered.connect(self._on_remembered_wished)
         log_in.away_wished.connect(self._on_away_wished)
+        log_in.own_chosen.connect(self._on_own_chosen)
         log_in.left.connect(self.left)
         controller.opened.connect(self._on_opened)
         controller.not_opened.connect(self._on_not_opened)
@@ -243,6 +252,8 @@ class Entry(QObject):
     def _on_checked(self, _nothing: object) -> None:
         self._cover_of = ""
         self.log_in.forget_typed()
+        if self._given is not None:
+            self.log_in.ask_for_own(self._given.operator.code)
         self.uncovered.emit()
 
     def _on_check_failed(self, what: str, remedy: str) -> None:
@@ -255,6 +266,36 @@ class Entry(QObject):
         if not state.is_demonstration:
             self._settings.latest_operator = state.operator.code
             self._settings.latest_library = str(self._folder)
+        if state.is_passphrase_given:
+            self._given = state
+            self.log_in.ask_for_own(state.operator.code)
+            self._show(self.log_in)
+            return
+        self._go_on(state)
+
+    def _on_own_chosen(self, passphrase: str) -> None:
+        def change(opened: "OpenedLibrary") -> None:
+            from app.storage.opened import slots_of
+
+            operator = opened.library.operator
+            assert operator is not None  # whoever opens a library is logged in
+            assert opened.data_key is not None  # the demonstration has no passphrase
+            slots_of(opened.folder).set_passphrase(opened.data_key, operator.code, passphrase, (operator.name,))
+
+        self.log_in.show_busy(True)
+        self._controller.run(change, self._on_own_set, self._on_own_refused, self)
+
+    def _on_own_set(self, _nothing: object) -> None:
+        state, self._given = self._given, None
+        self.log_in.forget_typed()
+        if state is not None:
+            self._go_on(state)
+
+    def _on_own_refused(self, what: str, remedy: str) -> None:
+        self.log_in.refuse(f"{what} {remedy}")
+
+    def _go_on(self, state: OpenedState) -> None:
+        """See that somebody has the recovery key, then enter."""
         if state.recovery_key:
             self._new = state
             self._on_renewed(state.recovery_key)
@@ -301,6 +342,8 @@ class Entry(QObject):
         self._controller.run(renew, self._on_renewed, self._on_confirm_failed, self)
 
     def _on_renewed(self, key: str) -> None:
+        if self.is_covering:  # then it is asked for, or made again
+            return
         self._key = key
         self.first_start.show_recovery_key(key)
 

@@ -1,7 +1,6 @@
 """Home: whose sessions are in the library, what begins from here, what comes in, what goes out of sight for 30 days."""
 
 from pathlib import Path
-from uuid import UUID
 
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QColor, QKeySequence, QPainter, QPaintEvent, QResizeEvent, QShortcut
@@ -69,7 +68,7 @@ class Home(Themed):
         self.working = WorkingPage(look)
         self.bar = ActionBar(look)
         self.toast = Toast(look, self)
-        self.deleting = Deleting(controller, self)
+        self.deleting = Deleting(look, controller, self)
         self.computing = ComputingCourses(controller, self)
         self.filling = FillingDemonstration(look, controller, self)
         self.patients = PatientsAtHome(controller, self.page, self.filling.is_awaited, self)
@@ -252,7 +251,7 @@ class Home(Themed):
         page.computing_wished.connect(self._on_computing_wished)
         page.panel.analysing_wished.connect(self._begin_again)
         page.panel.goals_wished.connect(self._begin_goals)
-        page.patient_deleted.connect(self._on_patient_deleted)
+        page.patient_deleted.connect(self.deleting.patient)
         page.session_deleted.connect(self.deleting.session)
         self.rail.step_pressed.connect(self._on_rail_pressed)
         self.rail.below_pressed.connect(self._on_below_pressed)
@@ -282,15 +281,16 @@ class Home(Themed):
         self.deleting.done.connect(self._on_deleted)
         self.deleting.undone.connect(self.patients.read)
         self.deleting.refused.connect(self.banner.tell)
-        for keys, slot in (
-            ("Ctrl+F", self._on_find),
-            ("Ctrl+N", self._on_new_patient),
-            ("Ctrl+S", self._on_save),
-            ("Ctrl+Z", self.toast.undo),
-            ("F1", self._on_help),
+        here, in_sight = Qt.ShortcutContext.WidgetWithChildrenShortcut, Qt.ShortcutContext.WindowShortcut
+        for keys, slot, context in (
+            ("Ctrl+F", self._on_find, here),
+            ("Ctrl+N", self._on_new_patient, here),
+            ("Ctrl+S", self._on_save, here),
+            ("Ctrl+Z", self.toast.undo, in_sight),  # wherever the focus went from what is gone now
+            ("F1", self._on_help, here),
         ):
             shortcut = QShortcut(QKeySequence(keys), self)
-            shortcut.setContext(Qt.ShortcutContext.WidgetWithChildrenShortcut)
+            shortcut.setContext(context)
             shortcut.activated.connect(slot)
 
     def _go_to(self, page: QWidget) -> None:
@@ -491,14 +491,10 @@ class Home(Themed):
 
     # what is deleted can be had back
 
-    def _on_patient_deleted(self, patient_id: UUID) -> None:
-        if (patient := self.patients.known(patient_id)) is not None:
-            self.deleting.patient(patient)
-
     def _on_deleted(self, words: str) -> None:
         self.toast.offer(words)
         self._fit()
-        self.patients.read()
+        self.patients.read(is_deleted_here=True)
 
     # what comes in
 

@@ -7,6 +7,7 @@ from uuid import UUID
 
 from PySide6.QtCore import QObject, Signal
 
+from app.deleted_elsewhere import deleted_by, deletion_message
 from app.home.patient_reading import PatientReading, read_patient
 from app.pages.home_page import HomePage
 from app.patient_words import patient_line, person
@@ -24,12 +25,14 @@ if TYPE_CHECKING:
 class _Patients:
     """All patients, and which of them have a walk that was recovered and is not decided yet.
 
-    `wanted` is to be chosen now that they are read; None: who is chosen then.
+    `wanted` is to be chosen now that they are read; None: who is chosen then. `deleted_by`: who deleted the patient
+    that was in sight, if another did.
     """
 
     every: "tuple[stored.StoredPatient, ...]"
     undecided: frozenset[UUID]
     wanted: UUID | None
+    deleted_by: str = ""
 
 
 class PatientsAtHome(QObject):
@@ -63,13 +66,20 @@ class PatientsAtHome(QObject):
         """Those of the patient in sight."""
         return self._reading.visits(_now()) if self._reading is not None else ()
 
-    def read(self, wanted: UUID | None = None) -> None:
-        """Read the patients anew, and choose one of them, else the one that was chosen."""
+    def read(self, wanted: UUID | None = None, *, is_deleted_here: bool = False) -> None:
+        """Read the patients anew, and choose one of them, else the one that was chosen.
+
+        Where that one was deleted, it is said by whom, but for `is_deleted_here`.
+        """
         self._is_forgotten = False
+        shown = None if is_deleted_here else self.patient
 
         def read(opened: "OpenedLibrary") -> _Patients:
             undecided = frozenset(walk.patient_id for walk in opened.library.recordings.undecided())
-            return _Patients(opened.library.patients.search(), undecided, wanted)
+            every = opened.library.patients.search()
+            is_gone = shown is not None and all(one.id != shown.id for one in every)
+            by = deleted_by(opened, shown.id) if shown is not None and is_gone else ""
+            return _Patients(every, undecided, wanted, by)
 
         self._controller.run(read, self._on_read, self._on_refused, self)
 
@@ -85,6 +95,9 @@ class PatientsAtHome(QObject):
     def _on_read(self, patients: _Patients) -> None:
         if self._is_forgotten:  # the library was left meanwhile
             return
+        before = self.patient
+        if patients.deleted_by and before is not None:
+            self.refused.emit(*deletion_message(before.details.code, patients.deleted_by))
         self._patients = {patient.id: patient for patient in patients.every}
         lines = [patient_line(patient, _now(), patient.id in patients.undecided) for patient in patients.every]
         self._page.show_patients(lines, patients.wanted)

@@ -10,6 +10,8 @@ from uuid import UUID
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QWidget
 
+from app.dates import date
+from app.edit_words import by_words
 from app.home.clinic_settings import ClinicSettings
 from app.home.entry import ADMINISTRATOR, SHORTEST
 from app.home.error_report import ErrorReport
@@ -18,11 +20,12 @@ from app.pages.operators_card import OperatorLine
 from app.pages.settings_page import DeletedLine, SettingsPage
 from app.patient_words import person, when
 from app.settings import Scheme, Settings
+from app.storage.audit import about
 from app.storage.backup import back_up
 from app.storage.keys import KeyRefusedError, KeySlots
 from app.storage.opened import slots_of
 from app.storage.operators import CLINIC
-from app.storage.stored import Operator, Role
+from app.storage.stored import KEPT_DELETED, Operator, Role
 from app.theme import ThemeNotifier
 from app.widgets.folder_dialog import ask_for_folder
 from app.wording import tr
@@ -283,7 +286,7 @@ class SettingsController(QObject):
             assert opened.data_key is not None  # hidden in the demonstration
             slots = _slots(opened)
             # the slot first: without one an operator could not log in
-            slots.add(opened.data_key, code, passphrase, (name, _clinic_of(opened)))
+            slots.add(opened.data_key, code, passphrase, (name, _clinic_of(opened)), is_given=True)
             try:
                 operators = opened.library.operators
                 known = next((one for one in operators.list() if one.code == code.casefold()), None)
@@ -352,12 +355,35 @@ def _deleted_in(opened: "OpenedLibrary") -> tuple[DeletedLine, ...]:
     now = datetime.datetime.now().astimezone()
     patients = opened.library.patients.search(is_deleted=True)
     sessions = opened.library.sessions.list(is_deleted=True)
+    subjects = [about("patient", one.id) for one in patients] + [about("session", one.id) for one in sessions]
+    by = {subject: entry.operator for subject, entry in opened.library.audit.deletions(subjects).items()}
+
+    def details(subject: str, at: datetime.datetime | None) -> str:
+        if at is None:  # restored since it was listed
+            return ""
+        until = date((at + KEPT_DELETED).astimezone().date())
+        who = by_words(by.get(subject, ""), at, now)
+        return tr("Deleted: {who}. Can be restored until {day}.").format(who=who, day=until)
+
     return (
         *(
-            DeletedLine(one.id, ", ".join(filter(None, [one.details.code, person(one.details)])), True)
+            DeletedLine(
+                one.id,
+                ", ".join(filter(None, [one.details.code, person(one.details)])),
+                True,
+                details(about("patient", one.id), one.deleted_at),
+            )
             for one in patients
         ),
-        *(DeletedLine(one.id, f"{one.patient_code}, {when(one.started, now)}", False) for one in sessions),
+        *(
+            DeletedLine(
+                one.id,
+                f"{one.patient_code}, {when(one.started, now)}",
+                False,
+                details(about("session", one.id), one.deleted_at),
+            )
+            for one in sessions
+        ),
     )
 
 

@@ -137,6 +137,7 @@ class FirstStartPage(EntryPage):
     def ask_for_recovery_key(self) -> None:
         """Let the key be typed back that was shown earlier."""
         self.recovery_key, self._is_asking = "", True
+        self._key_words.show_groups([])
         self.typed.set_text("")
         self._show()
         self.focus()

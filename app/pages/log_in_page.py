@@ -30,7 +30,8 @@ class LogInPage(EntryPage):
     recovered = Signal(str, str, str)  # operator, recovery key, new passphrase
     remembered = Signal(str)  # operator, whom this computer remembers
     away_wished = Signal(str, str)  # operator, passphrase: to work without the clinic's server
-    left = Signal()  # another operator, from the cover
+    own_chosen = Signal(str)  # an own passphrase, by whom somebody else gave one
+    left = Signal()  # another operator, from the cover or instead of choosing an own passphrase
     demonstration_wished = Signal()
 
     def __init__(self, look: ThemeNotifier, shortest: int) -> None:
@@ -38,10 +39,16 @@ class LogInPage(EntryPage):
         self._shortest, self._left_s = shortest, 0.0
         self._is_cover = self._is_recording = self._is_recovering = self._is_busy = self._can_remember = False
         self._is_asked_for = False  # the cover, by whoever is logged in
-        self._can_work_away = False
+        self._can_work_away = self._must_choose_own = False
         self._remembered: tuple[str, ...] = ()
         self._title = Text(look, size=26, weight=SEMIBOLD, wraps=True)
         self.library = Text(look, tone="ink2", wraps=True)
+        self._why_own = Text(
+            look,
+            tr("Somebody else chose your passphrase and knows it. Choose one that only you know."),
+            tone="ink2",
+            wraps=True,
+        )
         self._recording = QWidget()
         self._recording_words = Text(look, tr("Recording goes on"), size=20, weight=SEMIBOLD, wraps=True)
         self.operator_label = Text(look, tr("Operator"), weight=MEDIUM)
@@ -100,7 +107,7 @@ class LogInPage(EntryPage):
         for code in codes:
             self.operator.addItem(code, code)
         self.operator.setCurrentIndex(max(self.operator.findData(latest), 0))
-        self._is_cover = self._is_recovering = False
+        self._is_cover = self._is_recovering = self._must_choose_own = False
         self._show()
 
     def show_library(self, words: str) -> None:
@@ -115,6 +122,13 @@ class LogInPage(EntryPage):
         self.forget_typed()
         self.show_recording(is_recording)
 
+    def ask_for_own(self, code: str) -> None:
+        """Ask the operator who is logged in for a passphrase in place of the one that somebody else chose."""
+        self.show_operators((code,))
+        self._must_choose_own = True
+        self.forget_typed()
+        self.focus()
+
     def show_recording(self, is_recording: bool) -> None:
         self._is_recording = is_recording
         self._show()
@@ -127,8 +141,7 @@ class LogInPage(EntryPage):
     def refuse(self, sentence: str, left_s: float = 0.0) -> None:
         """Say why it does not open, and for how long no other try is taken."""
         self._left_s = left_s
-        field = self.recovery_key if self._is_recovering else self.passphrase
-        field.set_wrong(sentence)
+        self._first_field.set_wrong(sentence)
         self._is_busy = False
         if left_s > 0:
             self._second.start()
@@ -153,7 +166,13 @@ class LogInPage(EntryPage):
         self._show()
 
     def focus(self) -> None:
-        (self.recovery_key if self._is_recovering else self.passphrase).setFocus()
+        self._first_field.setFocus()
+
+    @property
+    def _first_field(self) -> Field:
+        if self._must_choose_own:
+            return self.new_passphrase
+        return self.recovery_key if self._is_recovering else self.passphrase
 
     def _build(self) -> None:
         row = QHBoxLayout(self._recording)
@@ -183,6 +202,7 @@ class LogInPage(EntryPage):
             self._quiet.addLayout(line)
         self.column.addWidget(self._title)
         self.column.addWidget(self.library)
+        self.column.addWidget(self._why_own)
         self.column.addWidget(self._recording)
         self.column.addWidget(self._card)
         self.column.addLayout(self._quiet)
@@ -201,32 +221,35 @@ class LogInPage(EntryPage):
         self._second.timeout.connect(self._on_second)
 
     def _show(self) -> None:
-        is_recovering = self._is_recovering
+        is_recovering, must_choose = self._is_recovering, self._must_choose_own
+        is_setting = is_recovering or must_choose
+        self._why_own.setVisible(must_choose)
         if self._is_cover and self._is_asked_for:
             self._title.setText(tr("Locked by {user}").format(user=self.code))
         elif self._is_cover:
             self._title.setText(tr("Locked, because nobody worked here for five minutes"))
         else:
-            self._title.setText(tr("A new passphrase") if is_recovering else tr("Log in"))
+            self._title.setText(tr("A new passphrase") if is_setting else tr("Log in"))
         self._recording.setVisible(self._is_cover and self._is_recording)
-        has_choice = self.operator.count() > 1 or self._is_cover
+        has_choice = self.operator.count() > 1 or self._is_cover or must_choose
         self.operator_label.setVisible(has_choice)
         self.operator.setVisible(has_choice)
         self.operator.setEnabled(self.operator.count() > 1)
         self.recovery_key.setVisible(is_recovering)
-        self.passphrase.setVisible(not is_recovering)
-        self.new_passphrase.setVisible(is_recovering)
-        self._strength.setVisible(is_recovering)
-        self.again.setVisible(is_recovering)
+        self.passphrase.setVisible(not is_setting)
+        self.new_passphrase.setVisible(is_setting)
+        self._strength.setVisible(is_setting)
+        self.again.setVisible(is_setting)
         self._strength.setText(strength_in_words(self.new_passphrase.text, self._shortest, (self.code,)))
         is_remembered = self.code in self._remembered
-        self.remember.setVisible(self._can_remember and not is_recovering and not is_remembered and not self._is_cover)
-        self.use_remembered.setVisible(is_remembered and not is_recovering and not self._is_cover)
-        self.work_away.setVisible(self._can_work_away and not is_recovering and not self._is_cover)
+        is_closed = not is_setting and not self._is_cover
+        self.remember.setVisible(self._can_remember and is_closed and not is_remembered)
+        self.use_remembered.setVisible(is_remembered and is_closed)
+        self.work_away.setVisible(self._can_work_away and is_closed)
         self.use_recovery.setText(tr("Use the passphrase") if is_recovering else tr("Use the recovery key"))
-        self.use_recovery.setVisible(not self._is_cover)
-        self.demonstration.setVisible(not self._is_cover)
-        self.leave.setVisible(self._is_cover and not self._is_recording)
+        self.use_recovery.setVisible(not self._is_cover and not must_choose)
+        self.demonstration.setVisible(not self._is_cover and not must_choose)
+        self.leave.setVisible(must_choose or (self._is_cover and not self._is_recording))
         self._show_go()
 
     def _show_go(self) -> None:
@@ -237,6 +260,8 @@ class LogInPage(EntryPage):
             words = tr("Go on")
         if self._is_recovering:
             words = tr("Set it and open")
+        if self._must_choose_own:
+            words = tr("Set it and go on")
         if self._is_busy:
             words = tr("Opening")
         if is_waiting:
@@ -249,7 +274,7 @@ class LogInPage(EntryPage):
     def _on_go(self) -> None:
         if not self.go.isEnabled():
             return
-        if not self._is_recovering:
+        if not self._is_recovering and not self._must_choose_own:
             if not self.passphrase.text:
                 self.passphrase.set_wrong(tr("Type the passphrase."))
                 return
@@ -262,6 +287,8 @@ class LogInPage(EntryPage):
             self.new_passphrase.set_wrong(strength_in_words(new, self._shortest, known))
         elif self.new_passphrase.text != self.again.text:
             self.again.set_wrong(tr("The two are not the same. Type the second one again."))
+        elif self._must_choose_own:
+            self.own_chosen.emit(self.new_passphrase.text)
         else:
             self.recovered.emit(self.code, self.recovery_key.text, self.new_passphrase.text)
 

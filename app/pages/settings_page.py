@@ -29,11 +29,15 @@ AS_SYSTEM, LESS_MOTION = "system", "less"
 
 @dataclass(frozen=True, slots=True)
 class DeletedLine:
-    """What was deleted and can still be had back: a patient with all sessions, or one session."""
+    """What was deleted and can still be had back: a patient with all sessions, or one session.
+
+    `details`: by whom and when, and until when it can be had back.
+    """
 
     id: UUID
     words: str
     is_patient: bool
+    details: str = ""
 
 
 class SettingsPage(TallPage):
@@ -393,9 +397,14 @@ class _DeletedRow(QWidget):
         self._line = line
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
-        row.addWidget(Text(look, line.words, size=15, wraps=True), 1)
+        words = QVBoxLayout()
+        words.setSpacing(0)
+        words.addWidget(Text(look, line.words, size=15, wraps=True))
+        words.addWidget(Text(look, line.details, size=14, tone="ink2", wraps=True))
+        row.addLayout(words, 1)
         self.button = Button(look, tr("Restore"), height=44)
         self.button.setAccessibleName(f"{self.button.text()}, {line.words}")
+        self.button.setAccessibleDescription(line.details)
         self.button.clicked.connect(self._on_clicked)
         row.addWidget(self.button)
 

@@ -124,6 +124,12 @@ class Audit:
                     latest[ids[row.subject]] = not details.get("is_broken_off", False)
         return frozenset(session_id for session_id, is_written in latest.items() if is_written)
 
+    def deletions(self, subjects: Collection[str]) -> dict[str, AuditEntry]:
+        """The latest deletion of each subject that was ever deleted."""
+        wanted = select(AuditRow).where(AuditRow.subject.in_(subjects), AuditRow.action == Action.DELETE)
+        with self._unit.reading() as session:
+            return {row.subject: entry_of(row) for row in session.scalars(wanted.order_by(AuditRow.number))}
+
     def verify(self, checkpoint: Checkpoint = BEGINNING) -> AuditReport:
         """Check every link, and that the chain still holds what `checkpoint` tells of."""
         with self._unit.reading() as session:

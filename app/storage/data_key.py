@@ -14,11 +14,11 @@ class LibraryLockedError(LibraryError):
     """The key was taken out of memory; the passphrase brings it back."""
 
 
-class DataKey(bytearray):
-    """The key, or nothing once it was wiped."""
+class Secret(bytearray):
+    """A key or what opens it, or nothing once it was wiped: when it is let go of at the latest."""
 
     def __repr__(self) -> str:
-        return "DataKey()"  # whatever prints this must not print the key
+        return f"{type(self).__name__}()"  # whatever prints this must not print the key
 
     __str__ = __repr__
 
@@ -26,9 +26,13 @@ class DataKey(bytearray):
         self.wipe()
 
     def wipe(self) -> None:
-        """Overwrite the key where it stands."""
+        """Overwrite it where it stands."""
         self[:] = bytes(len(self))  # of the same length, so in place
         self.clear()
+
+
+class DataKey(Secret):
+    """The key, or nothing once it was wiped."""
 
     def refill(self, other: "DataKey") -> None:
         """Take the key out of `other`, which is wiped."""

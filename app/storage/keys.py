@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from app.passphrases import Strength, refusal_of_passphrase, strength_of
-from app.storage.data_key import KEY_BYTES, DataKey, KeyMaterial
+from app.storage.data_key import KEY_BYTES, DataKey, KeyMaterial, Secret
 from app.storage.files import held, replace_file
 from app.storage.slots import COST, FIRST_FORMAT, FORMAT, Cost, Slot, whole
 from app.wording import tr
@@ -31,6 +31,7 @@ MISREAD = str.maketrans({"I": "1", "L": "1", "O": "0"})
 BUSY_S = 5.0  # another program's change takes a tenth of it
 RECOVERY = "recovery"
 CONFIRMED = "is_recovery_key_confirmed"
+GIVEN = "given_passphrases"  # codes of those whose passphrase somebody else chose; files without it name nobody
 KEYRING = "keyring-"  # stands before an operator's code; no code that is typed has a dash
 
 
@@ -125,8 +126,10 @@ class KeySlots:
             raise KeyRefusedError("This recovery key belongs to another library", "Look for the sheet of this one")
         return data_key
 
-    def add(self, data_key: KeyMaterial, code: str, passphrase: str, known: Iterable[str] = ()) -> None:
-        """Give an operator a slot.
+    def add(
+        self, data_key: KeyMaterial, code: str, passphrase: str, known: Iterable[str] = (), *, is_given: bool = False
+    ) -> None:
+        """Give an operator a slot; `is_given`: somebody else chose the passphrase, so it is marked as to be changed.
 
         Raises
         ------
@@ -137,7 +140,12 @@ class KeySlots:
             if _checked_code(code) in slots:
                 raise KeyRefusedError(tr("{code} is taken").format(code=_normal(code)), "Choose another code")
             own = Slot.wrapping(data_key, _normal(code), _checked(passphrase, (code, *known)), self._cost)
-            self._write({**slots, own.code: own})
+            given = self._given()
+            self._write({**slots, own.code: own}, given=given | {own.code} if is_given else given - {own.code})
+
+    def is_given(self, code: str) -> bool:
+        """Whether somebody else chose this operator's passphrase, and so knows it."""
+        return _normal(code) in self._given()
 
     def set_passphrase(self, data_key: KeyMaterial, code: str, passphrase: str, known: Iterable[str] = ()) -> None:
         """Give an operator a new passphrase; until the file is replaced the old one opens, from then on the new one.
@@ -145,15 +153,19 @@ class KeySlots:
         Raises
         ------
         KeyRefusedError
-            No such operator, or the passphrase is too short or weak; `known` are names that it must not rest on.
+            No such operator, or the passphrase is too short or weak, or the one that somebody else chose; `known` are
+            names that it must not rest on.
         """
         with self._changing() as slots:
             if _checked_code(code) not in slots:
                 raise KeyRefusedError(
                     tr("{code} has no key to this library").format(code=_normal(code)), "Add the operator first"
                 )
-            own = Slot.wrapping(data_key, _normal(code), _checked(passphrase, (code, *known)), self._cost)
-            self._write({**slots, own.code: own})
+            secret = _checked(passphrase, (code, *known))
+            if self.is_given(code) and slots[_normal(code)].opened(secret) is not None:
+                raise KeyRefusedError("This is the passphrase that somebody else chose", "Choose another one")
+            own = Slot.wrapping(data_key, _normal(code), secret, self._cost)
+            self._write({**slots, own.code: own}, given=self._given() - {own.code})
 
     def remove(self, code: str) -> None:
         """Take an operator's slot away, and that of their keyring.
@@ -211,7 +223,7 @@ class KeySlots:
         if not any(_is_operators(code) for code in kept):
             raise KeyRefusedError("Nobody would have a key to the library any more", "Log in with the passphrase once")
         left_out = sorted(code for code in codes if code in slots and code not in kept)
-        return SealedAnew(_file(kept, is_confirmed), text, tuple(left_out))
+        return SealedAnew(_file(kept, is_confirmed, self._given()), text, tuple(left_out))
 
     def keyring_slot(self, code: str) -> Slot | None:
         """The slot that an operator's keyring opens; None when it was not asked to."""
@@ -240,7 +252,7 @@ class KeySlots:
             if slots.pop(KEYRING + _normal(code), None) is not None:
                 self._write(slots)
 
-    def _opened(self, slot: Slot, secret: bytes) -> DataKey | None:
+    def _opened(self, slot: Slot, secret: KeyMaterial) -> DataKey | None:
         data_key = slot.opened(secret)
         if data_key is not None and slot.is_first_format:
             with suppress(KeyRefusedError, OSError), self._changing() as slots:  # else the next time
@@ -314,14 +326,25 @@ class KeySlots:
         what = tr("{file} is damaged").format(file=self._path.name)
         return KeyRefusedError(what, "Restore it from a backup of this library")
 
-    def _write(self, slots: dict[str, Slot], *, is_confirmed: bool | None = None) -> None:
+    def _given(self) -> frozenset[str]:
+        return frozenset(map(str, self._content().get(GIVEN, ())))
+
+    def _write(
+        self, slots: dict[str, Slot], *, is_confirmed: bool | None = None, given: frozenset[str] | None = None
+    ) -> None:
+        """Keep the slots and what is said beside them; None: as it is."""
         if is_confirmed is None:
             is_confirmed = self.is_recovery_key_confirmed
-        self._save(json.dumps(_file(slots, is_confirmed), indent=1).encode())
+        if given is None:
+            given = self._given() if self.exists else frozenset()
+        self._save(json.dumps(_file(slots, is_confirmed, given), indent=1).encode())
 
 
-def _file(slots: dict[str, Slot], is_confirmed: bool) -> dict[str, object]:
-    return {"format": FORMAT, CONFIRMED: is_confirmed, "slots": [asdict(slot) for slot in slots.values()]}
+def _file(slots: dict[str, Slot], is_confirmed: bool, given: frozenset[str]) -> dict[str, object]:
+    content: dict[str, object] = {"format": FORMAT, CONFIRMED: is_confirmed}
+    if left := sorted(given & slots.keys()):
+        content[GIVEN] = left
+    return content | {"slots": [asdict(slot) for slot in slots.values()]}
 
 
 def new_recovery_key() -> str:
@@ -377,13 +400,13 @@ def _checked_code(code: str) -> str:
     return code
 
 
-def _checked(passphrase: str, known: Iterable[str]) -> bytes:
+def _checked(passphrase: str, known: Iterable[str]) -> Secret:
     known = tuple(known)
     if strength_of(passphrase or "-", MIN_PASSPHRASE, known) not in (Strength.FAIR, Strength.STRONG):
         raise KeyRefusedError(*refusal_of_passphrase(passphrase, MIN_PASSPHRASE, known))
     return _secret(passphrase)
 
 
-def _secret(passphrase: str) -> bytes:
+def _secret(passphrase: str) -> Secret:
     # the same letters from another keyboard may come as other code points
-    return unicodedata.normalize("NFKC", passphrase.strip()).encode()
+    return Secret(unicodedata.normalize("NFKC", passphrase.strip()), "utf-8")

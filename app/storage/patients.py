@@ -4,12 +4,13 @@ import datetime
 from dataclasses import replace
 from uuid import UUID
 
-from sqlalchemy import delete, select
+from sqlalchemy import delete, func, select
 from sqlalchemy.orm import Session as OrmSession
 
 from app.storage.audit import about, entry_of, note
 from app.storage.corrections import apply, corrections_of_patient, differences, unchanged
-from app.storage.database.models import AuditRow, PatientRow, ResultRow, SessionRow, folded
+from app.storage.database.engine import changed_meanwhile
+from app.storage.database.models import AuditRow, PatientRow, RecordingRow, ResultRow, SessionRow, folded
 from app.storage.database.values import (
     patient_in_row,
     stored_patient,
@@ -20,12 +21,23 @@ from app.storage.database.values import (
 )
 from app.storage.edited_fields import PATIENT_CORRECTABLE
 from app.storage.sessions import refuse_early
-from app.storage.stored import Action, Change, LibraryError, PatientFile, Role, StoredPatient
+from app.storage.stored import (
+    Action,
+    Change,
+    LibraryError,
+    PatientFile,
+    RecordingState,
+    Role,
+    StoredPatient,
+    WhatGoes,
+)
 from app.storage.unit_of_work import UnitOfWork
 from app.wording import tr
 from core.goals import brought_together, goals_text
 from core.samples import Patient
 from devices.files.session_toml import PATIENT
+
+AT_IT = datetime.timedelta(hours=12)  # a working day: who opened a patient within it may have it open still
 
 
 class Patients:
@@ -128,9 +140,26 @@ class Patients:
             session.flush()
             return stored_patient(session, row)
 
-    def delete(self, patient: StoredPatient) -> StoredPatient:
-        """Take a patient and all sessions out of sight; they can be restored for 30 days."""
-        return self._set_deleted(patient, self._unit.now(), Action.DELETE)
+    def what_goes(self, patient_id: UUID) -> WhatGoes:
+        """What `delete` takes out of sight, and who works with it, for somebody who may delete.
+
+        Raises
+        ------
+        LibraryError
+            There is no such patient, or the operator may not delete.
+        """
+        with self._unit.writing(Role.CLINICIAN) as session:
+            return self._what_goes(session, existing_patient(session, patient_id))
+
+    def delete(self, patient: StoredPatient, agreed: WhatGoes | None = None) -> StoredPatient:
+        """Take a patient and all sessions out of sight; they can be restored for 30 days.
+
+        Raises
+        ------
+        ChangedMeanwhileError
+            `patient` or what was `agreed` is not what the library holds any more.
+        """
+        return self._set_deleted(patient, self._unit.now(), Action.DELETE, agreed)
 
     def restore(self, patient: StoredPatient) -> StoredPatient:
         return self._set_deleted(patient, None, Action.EDIT)
@@ -181,9 +210,43 @@ class Patients:
                 tuple(entry_of(row) for row in entries),
             )
 
-    def _set_deleted(self, patient: StoredPatient, at: datetime.datetime | None, action: Action) -> StoredPatient:
+    def _what_goes(self, session: OrmSession, row: PatientRow) -> WhatGoes:
+        visits = [
+            *session.scalars(
+                select(SessionRow.id).where(SessionRow.patient_id == row.id, SessionRow.deleted_at.is_(None))
+            )
+        ]
+        count = select(func.count()).select_from(RecordingRow)
+        counted = count.where(RecordingRow.session_id.in_(visits), RecordingRow.state != RecordingState.DISCARDED)
+        running = counted.where(RecordingRow.state == RecordingState.OPEN)
+        by_others = (
+            select(AuditRow)
+            .where(AuditRow.subject.in_([about("patient", row.id), *(about("session", one) for one in visits)]))
+            .where(AuditRow.operator != self._unit.code)
+            .where(AuditRow.action.in_([Action.VIEW, Action.CREATE, Action.EDIT]))
+            .order_by(AuditRow.number.desc())
+            .limit(1)
+        )
+        last = session.scalars(by_others).first()
+        at = datetime.datetime.fromisoformat(last.at) if last is not None else None
+        is_at_it = at is not None and self._unit.now() - at < AT_IT
+        return WhatGoes(
+            row.id,
+            row.code,
+            len(visits),
+            session.scalar(counted) or 0,
+            bool(session.scalar(running)),
+            last.operator if last is not None and is_at_it else "",
+            at if is_at_it else None,
+        )
+
+    def _set_deleted(
+        self, patient: StoredPatient, at: datetime.datetime | None, action: Action, agreed: WhatGoes | None = None
+    ) -> StoredPatient:
         with self._unit.writing(Role.CLINICIAN) as session:
             row = _current(session, patient)
+            if agreed is not None and agreed != self._what_goes(session, row):
+                raise changed_meanwhile()
             row.deleted_at = at
             note(self._unit, session, action, about("patient", patient.id), is_deleted=at is not None)
             session.flush()

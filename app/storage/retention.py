@@ -23,8 +23,7 @@ from app.storage.files import sync_folder
 from app.storage.journal.header import HEADER_BYTES, JournalRefusedError, destroy_key
 from app.storage.library import now_utc
 from app.storage.opened import OpenedLibrary
-from app.storage.sessions import KEPT_DELETED
-from app.storage.stored import RecordingState, StoredRecording, StoredSession
+from app.storage.stored import KEPT_DELETED, RecordingState, StoredRecording, StoredSession
 
 UNUSED = datetime.timedelta(days=7)  # a longer time without use may be a clock that was set
 SETTLED = datetime.timedelta(days=1)  # in which somebody notices that the date is wrong

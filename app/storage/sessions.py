@@ -23,6 +23,7 @@ from app.storage.database.values import SENSOR_FIELDS, SESSION_FIELDS, placement
 from app.storage.edited_fields import SESSION_CORRECTABLE
 from app.storage.recordings import current_recording
 from app.storage.stored import (
+    KEPT_DELETED,
     Action,
     Change,
     LibraryError,
@@ -40,7 +41,6 @@ from core.body import LEG_JOINTS, Joint, Site
 from core.samples import Session
 from devices.files.session_toml import SIGN, ZERO
 
-KEPT_DELETED = datetime.timedelta(days=30)
 NO_LIMITS = Limits()
 SEARCHED = (SessionRow.notes, SessionRow.operator, SessionRow.surface, SessionRow.comment, PatientRow.code)
 

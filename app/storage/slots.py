@@ -20,7 +20,7 @@ from cryptography.hazmat.primitives.hashes import SHA256
 from cryptography.hazmat.primitives.kdf.argon2 import Argon2id
 from cryptography.hazmat.primitives.kdf.hkdf import HKDF
 
-from app.storage.data_key import KEY_BYTES, DataKey, KeyMaterial, checked
+from app.storage.data_key import KEY_BYTES, DataKey, KeyMaterial, Secret, checked
 
 FIRST_FORMAT, FORMAT = "gaitwright-keys/1", "gaitwright-keys/2"
 SALT_BYTES, NONCE_BYTES, TAG_BYTES = 16, 12, 16
@@ -61,7 +61,7 @@ class Slot:
     def is_first_format(self) -> bool:
         return not self.public
 
-    def opened(self, secret: bytes) -> DataKey | None:
+    def opened(self, secret: KeyMaterial) -> DataKey | None:
         """The data key; None when `secret` is not this slot's."""
         inner = DataKey(KEY_BYTES)
         try:
@@ -88,7 +88,7 @@ class Slot:
         return replace(self, sealed=_text(public + nonce + sealed), mark=_text(self._mark_under(data_key)))
 
     @classmethod
-    def wrapping(cls, data_key: KeyMaterial, code: str, secret: bytes, cost: Cost) -> "Slot":
+    def wrapping(cls, data_key: KeyMaterial, code: str, secret: KeyMaterial, cost: Cost) -> "Slot":
         private = X25519PrivateKey.generate()
         salt, nonce = _text(secrets.token_bytes(SALT_BYTES)), _text(secrets.token_bytes(NONCE_BYTES))
         public = _text(private.public_key().public_bytes_raw())
@@ -105,7 +105,7 @@ class Slot:
         AESGCM(self._sealing_key(shared, public)).decrypt_into(nonce, content, self._bound(), data_key)
         return data_key
 
-    def _wrapping_key(self, secret: bytes) -> bytes:
+    def _wrapping_key(self, secret: KeyMaterial) -> Secret:
         kdf = Argon2id(
             salt=_bytes(self.salt),
             length=KEY_BYTES,
@@ -113,7 +113,9 @@ class Slot:
             lanes=1,
             memory_cost=self.memory_kib,
         )
-        return kdf.derive(secret)
+        key = Secret(KEY_BYTES)
+        kdf.derive_into(secret, key)  # type: ignore[arg-type]  # its types know bytes only
+        return key
 
     def _sealing_key(self, shared: bytes, public: bytes) -> bytes:
         info = b"gaitwright slot 2" + public + _bytes(self.public)

@@ -5,7 +5,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from datetime import datetime
+from datetime import datetime, timedelta
 from enum import StrEnum
 from typing import Self
 from uuid import UUID
@@ -13,6 +13,8 @@ from uuid import UUID
 from app.storage.layout import segment_name
 from core.body import Joint, Side, Site
 from core.samples import Patient, Recording, RecordingKind, SensorInfo, Session
+
+KEPT_DELETED = timedelta(days=30)  # and can be restored
 
 
 class LibraryError(Exception):
@@ -102,6 +104,23 @@ class StoredPatient:
     deleted_at: datetime | None
     sessions: int
     last_session: str
+
+
+@dataclass(frozen=True, slots=True)
+class WhatGoes:
+    """What goes out of sight with a patient, and what speaks for somebody who works with the patient now.
+
+    `seen_by`: the operator, another than the one who asks, who opened or changed something of the patient within some
+    hours; empty where nobody did.
+    """
+
+    patient_id: UUID
+    code: str
+    sessions: int
+    recordings: int
+    is_being_recorded: bool
+    seen_by: str
+    seen_at: datetime | None
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,10 +1,28 @@
 """Which folder or files are meant? The system's own dialog, which holds up nothing meanwhile."""
 
+import os
+import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QSettings, Qt
 from PySide6.QtWidgets import QFileDialog, QWidget
+
+VISITED = ("FileDialog/history", "FileDialog/lastVisited")  # as Qt has them, for all programs of the user
+
+
+def keep_no_visited_folders() -> None:
+    """Let Qt not write down which folders its dialogs were in: their names may hold a patient's code.
+
+    To be called at the start and at the end. Where Qt keeps it in a file, from then on it has none; where it is the
+    system's registry or its like, what stands there is removed.
+    """
+    if sys.platform in ("win32", "darwin"):
+        own = QSettings(QSettings.Scope.UserScope, "QtProject")
+        for name in VISITED:
+            own.remove(name)
+    else:
+        QSettings.setPath(QSettings.Format.NativeFormat, QSettings.Scope.UserScope, os.devnull)
 
 
 def ask_for_folder(parent: QWidget, title: str, on_chosen: Callable[[str], None]) -> QFileDialog:

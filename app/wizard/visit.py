@@ -13,6 +13,7 @@ from uuid import UUID
 from PySide6.QtCore import QObject, Signal
 
 from app.acquisition.live_sensors import live_sensors
+from app.deleted_elsewhere import deleted_by, deletion_message
 from app.storage.stored import StoredSession
 from app.wizard.edit_question import EditQuestion
 from app.wizard.evaluation import Evaluation
@@ -75,6 +76,7 @@ class Visit(QObject):
 
     changed = Signal()
     changed_elsewhere = Signal()  # by another station of the clinic: what stands here is as it was before
+    deleted_elsewhere = Signal(str, str)
     resumed = Signal()
     earlier_read = Signal(object)
     refused = Signal(str, str)
@@ -112,6 +114,7 @@ class Visit(QObject):
         self._began_s: float | None = None
         self._ended_s: float | None = None
         self._is_of_another_day = self._must_look = False
+        self._deleted_by = ""  # who deleted it at another station
         self._questions = 0
         for part in (self.patient, self.record, self.recordings):
             part.merged.connect(self.merged)
@@ -248,13 +251,11 @@ class Visit(QObject):
         """Find out whether another station changed the session; `changed_elsewhere` follows where it did."""
         if self.session is None:
             return
-        self._must_look = not self.recordings.is_idle  # then once what is recorded has been read back
-        if self._must_look:
-            return
-        session_id = self.session.id
+        self._must_look = not self.recordings.is_idle  # then again once what is recorded has been read back
+        session_id, patient_id = self.session.id, self.session.patient_id
 
-        def read(opened: "OpenedLibrary") -> StoredSession:
-            return opened.library.sessions.get(session_id)
+        def read(opened: "OpenedLibrary") -> tuple[StoredSession, str]:
+            return opened.library.sessions.get(session_id), deleted_by(opened, patient_id, session_id)
 
         self._controller.run(read, self._on_looked, self._on_not_looked, self)
 
@@ -409,7 +410,13 @@ class Visit(QObject):
         self.changed.emit()
         self.evaluate()
 
-    def _on_looked(self, found: StoredSession) -> None:
+    def _on_looked(self, looked: tuple[StoredSession, str]) -> None:
+        found, by = looked
+        is_news, self._deleted_by = by != self._deleted_by, by
+        if by:
+            if is_news:
+                self.deleted_elsewhere.emit(*deletion_message(self.patient.details.code, by))
+            return
         is_settled = self.record.is_settled and self.recordings.is_idle
         if self.session is None or not is_settled:
             return

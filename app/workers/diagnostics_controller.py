@@ -127,7 +127,7 @@ class DiagnosticsController(QObject):
     def _on_save_wished(self) -> None:
         if self._found is None or self._session is None:
             return
-        name = session_name(self._session.patient.code, self._session.started, WHAT)
+        name = session_name("", "", WHAT)  # its files name no patient, so neither does their folder
         self._dialog = ask_for_new_folder(
             self._page,
             tr("Save these figures into a new folder"),

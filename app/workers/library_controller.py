@@ -387,7 +387,7 @@ class LibraryController(QObject):
         elif isinstance(outcome, OpenedState | NotOpened) and job is not self._opening:
             pass  # another was asked for meanwhile, or none: it is closed again, or will be at once
         elif isinstance(outcome, OpenedState):
-            self._state = outcome
+            self._state, self._opening = outcome, None  # which held the passphrase
             self._begin_watch(outcome)
             self.opened.emit(outcome)
         elif isinstance(outcome, _Progress):
@@ -400,6 +400,7 @@ class LibraryController(QObject):
         elif isinstance(outcome, Reopened):
             self._on_reopened(job, outcome)
         elif isinstance(outcome, NotOpened):
+            self._opening = None
             self.not_opened.emit(outcome.what, outcome.remedy, outcome.is_key)
             if outcome.can_work_away:
                 self.can_work_away.emit()

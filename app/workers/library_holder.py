@@ -87,7 +87,12 @@ class LibraryHolder:
 
         def opening() -> Opening:
             with delay.trying(code) if delay is not None else nullcontext():
-                data_key = slots_of(folder).open(code, passphrase)
+                slots = slots_of(folder)
+                data_key = slots.open(code, passphrase)
+            if slots.is_given(code):  # keys are changed on the server
+                raise KeyRefusedError(
+                    tr("Somebody else chose this passphrase"), tr("Choose your own once the clinic's server answers")
+                )
             return open_away(folder, data_key, code), ""
 
         return self._open(opening)
@@ -294,6 +299,7 @@ def _look_through(library: OpenedLibrary, ends: ExitStack) -> OpenedState:
         is_away=library.away_from is not None,
         brought_from_away=from_away,
         still_away=still_away,
+        is_passphrase_given=_is_passphrase_given(library, operator),
     )
 
 
@@ -301,6 +307,12 @@ def _is_recovery_key_confirmed(library: OpenedLibrary) -> bool:
     if library.data_key is None or library.away_from is not None:
         return True
     return slots_of(library.folder).is_recovery_key_confirmed
+
+
+def _is_passphrase_given(library: OpenedLibrary, operator: Operator) -> bool:
+    if library.data_key is None or library.away_from is not None:  # then it was refused before
+        return False
+    return slots_of(library.folder).is_given(operator.code)
 
 
 def _begin_station(library: OpenedLibrary) -> tuple[int, Refusal | None]:

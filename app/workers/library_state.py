@@ -39,6 +39,8 @@ class OpenedState:
         How many sessions that were made without the clinic's server are on it now.
     still_away
         Why sessions that were made without the clinic's server are still on this computer alone.
+    is_passphrase_given
+        Whether somebody else chose the operator's passphrase: an own one comes before anything else.
     """
 
     library: "OpenedLibrary"
@@ -52,6 +54,7 @@ class OpenedState:
     is_away: bool = False
     brought_from_away: int = 0
     still_away: Refusal | None = None
+    is_passphrase_given: bool = False
 
     @property
     def is_demonstration(self) -> bool:

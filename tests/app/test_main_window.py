@@ -239,6 +239,79 @@ def test_a_recovery_key_that_is_lost_is_made_anew(qtbot: QtBot, open_window: Ope
     qtbot.waitUntil(lambda: slots.is_recovery_key_confirmed, timeout=WAIT_MS)
 
 
+def test_a_new_recovery_key_is_covered_by_the_lock_and_not_shown_again(
+    qtbot: QtBot, open_window: Open, folder: Path
+) -> None:
+    slots = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64))
+    slots.renew_recovery_key(slots.open("hk", PASSPHRASE))
+    window = open_window(folder)
+    assert window.entry is not None
+    page, log_in = window.entry.first_start, window.entry.log_in
+    qtbot.waitUntil(lambda: log_in.operator.count() == 1, timeout=WAIT_MS)
+    log_in.passphrase.set_text(PASSPHRASE)
+    QTest.keyClick(log_in.passphrase.line_edit, Qt.Key.Key_Return)
+    qtbot.waitUntil(page.renew.isVisible, timeout=WAIT_MS)
+    page.renew.click()
+    qtbot.waitUntil(lambda: bool(page.recovery_key), timeout=WAIT_MS)
+    key = page.recovery_key
+    window.idle.lock_now()
+    assert window.is_covered
+    assert log_in.isVisible()
+    assert key[:4] not in words_in_sight(window)
+    log_in.passphrase.set_text(PASSPHRASE)
+    QTest.keyClick(log_in.passphrase.line_edit, Qt.Key.Key_Return)
+    qtbot.waitUntil(lambda: not window.is_covered, timeout=WAIT_MS)
+    assert page.recovery_key == ""
+    assert key[:4] not in words_in_sight(window)
+    assert page.renew.isVisible()  # or the old one is typed from its sheet
+    page.typed.set_text(key)
+    page.go.click()
+    qtbot.waitUntil(lambda: window.screens.currentWidget() is window.home, timeout=WAIT_MS)
+    assert slots.is_recovery_key_confirmed
+
+
+def test_who_was_given_a_passphrase_chooses_an_own_one_before_anything_is_shown(
+    qtbot: QtBot, open_window: Open, folder: Path
+) -> None:
+    slots, own = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64)), "seven other quiet words"
+    data_key = slots.open("hk", PASSPHRASE)
+    slots.add(data_key, "ab", "the first one she got", is_given=True)
+    with Library.open(folder, data_key) as library:
+        library.log_in("hk")
+        library.operators.add(Operator("ab", "A. Berg", Role.CLINICIAN))
+    window = open_window(folder)
+    assert window.entry is not None
+    page = window.entry.log_in
+    qtbot.waitUntil(lambda: page.operator.count() == 2, timeout=WAIT_MS)
+    page.operator.setCurrentIndex(page.operator.findData("ab"))
+    page.passphrase.set_text("the first one she got")
+    page.go.click()
+    qtbot.waitUntil(page.new_passphrase.isVisible, timeout=WAIT_MS)
+    assert not page.passphrase.isVisible()
+    for key in (Qt.Key.Key_O, Qt.Key.Key_D, Qt.Key.Key_Escape):
+        QTest.keyClick(window, key, Qt.KeyboardModifier.ControlModifier)
+    window.idle.lock_now()  # which asks for the passphrase, and then for an own one again
+    assert page.passphrase.isVisible()
+    page.passphrase.set_text("the first one she got")
+    page.go.click()
+    qtbot.waitUntil(page.new_passphrase.isVisible, timeout=WAIT_MS)
+    for passphrase in ("the first one she got", own):
+        assert window.screens.currentWidget() is page
+        page.new_passphrase.set_wrong("")
+        page.new_passphrase.set_text(passphrase)
+        page.again.set_text(passphrase)
+        page.go.click()
+        qtbot.waitUntil(
+            lambda: page.new_passphrase.is_wrong or window.screens.currentWidget() is window.home, timeout=WAIT_MS
+        )
+        assert page.new_passphrase.is_wrong is (passphrase != own)
+    assert page.new_passphrase.text == ""
+    assert not slots.is_given("ab")
+    slots.open("ab", own)
+    with pytest.raises(KeyRefusedError):
+        slots.open("ab", "the first one she got")
+
+
 def test_the_passphrase_opens_home_and_nothing_of_it_is_kept(qtbot: QtBot, open_window: Open, folder: Path) -> None:
     window = open_window(folder)
     logged_in(qtbot, window)
@@ -381,6 +454,18 @@ def test_five_minutes_without_anybody_cover_the_library(qtbot: QtBot, open_windo
     QTest.keyClick(page.passphrase.line_edit, Qt.Key.Key_Return)
     qtbot.waitUntil(lambda: not window.is_covered, timeout=WAIT_MS)
     assert SECRET_CODE in words_in_sight(window)
+
+
+def test_the_lock_leaves_no_question_about_a_patient_in_sight(qtbot: QtBot, open_window: Open, folder: Path) -> None:
+    window = open_window(folder)
+    logged_in(qtbot, window)
+    home = window.home
+    assert home is not None
+    home.page.panel.delete_patient.trigger()
+    qtbot.waitUntil(lambda: home.deleting.dialog is not None, timeout=WAIT_MS)
+    window.lock()
+    assert home.deleting.dialog is None
+    assert SECRET_CODE not in words_in_sight(window)
 
 
 def test_the_cover_says_that_a_recording_goes_on(qtbot: QtBot, open_window: Open, folder: Path) -> None:

@@ -4,6 +4,7 @@ from pathlib import Path
 
 from pytestqt.qtbot import QtBot
 
+from app.home.deletion_dialog import DeletionDialog
 from app.home.home import Home
 from app.workers.library_controller import LibraryController
 from app.workers.library_state import OpenedState
@@ -19,3 +20,15 @@ def open_library(qtbot: QtBot, controller: LibraryController, home: Home, folder
     assert isinstance(state, OpenedState)
     home.show_library(state)
     qtbot.waitUntil(lambda: bool(home.page.patients.lines), timeout=WAIT_MS)
+
+
+def deletion_dialog(qtbot: QtBot, home: Home) -> DeletionDialog:
+    """What is asked before the patient in sight is deleted."""
+    home.page.panel.delete_patient.trigger()
+    qtbot.waitUntil(lambda: home.deleting.dialog is not None, timeout=WAIT_MS)
+    assert home.deleting.dialog is not None
+    return home.deleting.dialog
+
+
+def delete_patient(qtbot: QtBot, home: Home) -> None:
+    deletion_dialog(qtbot, home).delete.click()

@@ -40,7 +40,7 @@ from core.body import Site
 from core.samples import ImuBlock, Patient, Recording, RecordingKind, SensorInfo, Session
 from devices.files.session_folder import write_session
 from devices.source import SourceInfo
-from tests.app.home.home_library import PASSPHRASE, WAIT_MS, open_library
+from tests.app.home.home_library import PASSPHRASE, WAIT_MS, delete_patient, open_library
 
 ANY_ROOM = Room(start_bytes=0, kept_bytes=0)
 
@@ -111,7 +111,7 @@ def test_a_session_is_opened_by_a_click_and_by_enter(qtbot: QtBot, home: Home) -
 
 
 def test_a_deleted_patient_comes_back_by_undo(qtbot: QtBot, home: Home) -> None:
-    home.page.panel.delete_patient.trigger()
+    delete_patient(qtbot, home)
     qtbot.waitUntil(lambda: codes(home) == ["P-0147"], timeout=WAIT_MS)
     assert home.toast.text == "P-0163 is deleted, for good in 30 days."
     home.toast.undo()
@@ -122,7 +122,7 @@ def test_a_deleted_patient_comes_back_by_undo(qtbot: QtBot, home: Home) -> None:
 def test_what_is_taken_back_while_the_settings_are_in_sight_is_not_listed_there_any_more(
     qtbot: QtBot, home: Home
 ) -> None:
-    home.page.panel.delete_patient.trigger()
+    delete_patient(qtbot, home)
     qtbot.waitUntil(lambda: codes(home) == ["P-0147"], timeout=WAIT_MS)
     home.show_settings()
     rows = home.settings.page.deleted_rows
@@ -136,7 +136,7 @@ def test_what_was_deleted_earlier_is_restored_in_the_settings(qtbot: QtBot, home
     home.page.sessions.setFocus()
     QTest.keyClick(home.page.sessions, Qt.Key.Key_Delete)
     qtbot.waitUntil(lambda: len(sessions(home)) == 2, timeout=WAIT_MS)
-    home.page.panel.delete_patient.trigger()
+    delete_patient(qtbot, home)
     qtbot.waitUntil(lambda: codes(home) == ["P-0147"], timeout=WAIT_MS)
     home.show_settings()
     patient, session = "Restore, P-0163, 1951, female · right affected", "Restore, P-0163, 20 May 2026"
@@ -162,7 +162,7 @@ def test_of_two_deletions_the_last_comes_back_by_its_keys_also_from_the_search(q
     qtbot.waitUntil(lambda: len(sessions(home)) == 3, timeout=WAIT_MS)
     home.page.sessions.setFocus()
     QTest.keyClick(home.page.sessions, Qt.Key.Key_Delete)
-    home.page.panel.delete_patient.trigger()
+    delete_patient(qtbot, home)
     qtbot.waitUntil(lambda: codes(home) == ["P-0147"], timeout=WAIT_MS)
     assert home.toast.text == "P-0163 is deleted, for good in 30 days."
     home.page.search.setFocus()

@@ -49,6 +49,23 @@ def test_the_passphrase_and_the_recovery_key_give_the_same_key(slots: KeySlots) 
     assert slots.codes == ("hk",)
 
 
+def test_a_passphrase_that_somebody_else_chose_is_marked_until_its_operator_chooses_another(slots: KeySlots) -> None:
+    data_key, _ = slots.create("hk", OLD)
+    slots.add(data_key, "AB", NEW, is_given=True)
+    assert slots.is_given("ab")
+    assert not slots.is_given("hk")
+    slots.set_keyring_slot(data_key, "ab", b"any other change of the file")
+    slots.set_passphrase(data_key, "hk", "words that nobody else knows")
+    assert slots.is_given("ab")
+    changed = slots.sealed_anew(data_key, bytes(32), ("hk", "ab"))
+    assert changed.content["given_passphrases"] == ["ab"]
+    with pytest.raises(KeyRefusedError, match="somebody else chose"):
+        slots.set_passphrase(data_key, "ab", f" {NEW} ")
+    slots.set_passphrase(data_key, "ab", OLD)
+    assert not slots.is_given("ab")
+    assert slots.open("ab", OLD) == data_key
+
+
 def test_no_other_passphrase_code_or_recovery_key_opens(slots: KeySlots, tmp_path: Path) -> None:
     _, recovery = slots.create("hk", OLD)
     for code, passphrase in (("hk", NEW), ("hk", ""), ("xx", OLD), ("recovery", recovery)):

@@ -14,8 +14,8 @@ from app.storage.database.engine import Database
 from app.storage.database.ids import uuid7
 from app.storage.database.models import Base
 from app.storage.library import Library
-from app.storage.sessions import KEPT_DELETED
 from app.storage.stored import (
+    KEPT_DELETED,
     Action,
     AnalysisInputs,
     ChangedMeanwhileError,

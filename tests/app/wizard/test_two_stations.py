@@ -129,6 +129,28 @@ def settle(qtbot: QtBot, visit: Visit, other: OtherStation, is_so: Callable[[], 
     other.refuse_broken_audit()
 
 
+def test_a_patient_who_is_deleted_at_another_station_is_missed_here_with_one_word(
+    qtbot: QtBot, ours: Visit, wizard: Wizard, other: OtherStation
+) -> None:
+    heard: list[tuple[str, str]] = []
+    ours.deleted_elsewhere.connect(lambda what, then: heard.append((what, then)))
+    with qtbot.assertNotEmitted(ours.deleted_elsewhere, wait=100):
+        wizard.look_for_changes()
+    other.library.patients.delete(other.library.patients.get(other.patient.id))
+    for _ in range(3):  # as the watch has it done
+        wizard.look_for_changes()
+    qtbot.waitUntil(lambda: bool(heard), timeout=WAIT_MS)
+    assert wizard.shell.banner.text.startswith("hk deleted DEMO-9 at another workstation.")
+    other.library.patients.restore(other.library.patients.get(other.patient.id))
+    visit = other.library.sessions.get(other.session_id)
+    wizard.look_for_changes()
+    other.library.sessions.delete(visit)
+    wizard.look_for_changes()
+    qtbot.waitUntil(lambda: len(heard) > 1, timeout=WAIT_MS)
+    assert {what for what, _ in heard} == {"hk deleted DEMO-9 at another workstation."}
+    other.refuse_broken_audit()
+
+
 @pytest.mark.parametrize("is_ours", [True, False])
 def test_a_height_typed_at_both_stations_is_asked_about_and_what_is_chosen_holds(
     qtbot: QtBot, wizard: Wizard, ours: Visit, other: OtherStation, is_ours: bool

@@ -1,12 +1,15 @@
 """The thread that asks the library: in order, answered on the screen's thread, refused in words."""
 
+import gc
 import shutil
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
+from contextlib import suppress
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from threading import Event, current_thread, main_thread
+from types import CellType
 
 import pytest
 from PySide6.QtCore import QObject
@@ -54,6 +57,29 @@ def controller(qtbot: QtBot) -> Iterator[LibraryController]:
     controller = LibraryController()
     yield controller
     controller.finish()
+
+
+def test_the_passphrase_is_not_held_by_a_library_that_is_open(
+    qtbot: QtBot, controller: LibraryController, folder: Path
+) -> None:
+    slots, own = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64)), "words that only this test types"
+    slots.set_passphrase(slots.open("hk", PASSPHRASE), "hk", own)
+    for passphrase, signal in ((own, controller.opened), ("words of somebody else", controller.not_opened)):
+        with qtbot.waitSignal(signal, timeout=WAIT_MS):
+            controller.open(folder, passphrase, "hk")
+        # the thread may be about to let go of it
+        qtbot.waitUntil(lambda text=passphrase: not is_held(text), timeout=WAIT_MS)  # type: ignore[misc]  # pytest-qt's types
+
+
+def is_held(text: str) -> bool:
+    """Whether a function that is kept would pass this text on."""
+    gc.collect()
+    for one in gc.get_objects():
+        if type(one) is CellType:
+            with suppress(ValueError):  # it is empty
+                if type(one.cell_contents) is str and one.cell_contents == text:
+                    return True
+    return False
 
 
 class Asker(QObject):
