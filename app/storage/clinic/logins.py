@@ -52,7 +52,8 @@ def let_in(server: Database, own: Station) -> None:
         assert connection is not None
         name, password = str(url.username).encode(), str(url.password).encode()
         sealed = connection.pgconn.encrypt_password(password, name, b"scram-sha-256")  # the server logs statements
-        statement = sql.SQL("CREATE ROLE {} LOGIN PASSWORD {} IN ROLE {}").format(
-            sql.Identifier(name.decode()), sql.Literal(sealed.decode()), sql.Identifier(ROLE)
-        )
-        connection.execute(statement)
+        role, sealed_password = sql.Identifier(name.decode()), sql.Literal(sealed.decode())
+        # a move that was broken off had made it already
+        is_known = session.scalar(text("SELECT true FROM pg_roles WHERE rolname = :name"), {"name": url.username})
+        made = "ALTER ROLE {} LOGIN PASSWORD {}" if is_known else "CREATE ROLE {} LOGIN PASSWORD {} IN ROLE {}"
+        connection.execute(sql.SQL(made).format(role, sealed_password, sql.Identifier(ROLE)))
