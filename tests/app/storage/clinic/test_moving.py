@@ -62,7 +62,9 @@ def test_a_library_is_the_same_on_the_server_and_opens_there_with_the_same_passp
     assert not (folder / DATABASE).exists()
     assert not (folder / MOVING).exists()
     with open_library(folder, PASSPHRASE, "hk") as opened:
-        assert opened.library.station == moved
+        station = opened.library.station
+        assert station is not None
+        assert (station.id, station.journals) == (moved.id, moved.journals)  # by a login of its own
         assert everything_of(opened) == before
         assert opened.library.audit.verify().faults == ()
 
