@@ -60,7 +60,7 @@ def test_a_library_goes_to_the_server_and_comes_back_while_somebody_is_logged_in
     assert controller.state.operator.code == "hk"
     assert is_station(folder)
     controller.bring_back(listener.on_done, listener.on_failed, listener.on_progressed, listener)
-    qtbot.waitUntil(lambda: len(listener.told) == 3, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: len(listener.told) == 2, timeout=WAIT_MS)
     assert controller.state is not None
     opened = controller.state.library
     assert opened.shared is None
@@ -94,7 +94,7 @@ def test_a_station_joins_and_a_place_that_is_missing_here_is_told_as_such(
     listener = Listener()
     for place in (str(tmp_path / "no"), "", moved.journals):
         controller.join(tmp_path / "new", moved.database, "", place, listener.on_done, listener.on_failed, listener)
-    qtbot.waitUntil(lambda: len(listener.told) == 2, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: len(listener.told) == 3, timeout=WAIT_MS)
     missing, unconfirmed, joined = listener.told
     assert isinstance(missing, Joined)
     assert missing.is_place
