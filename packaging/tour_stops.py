@@ -356,7 +356,7 @@ DEAD_ENDS: tuple[Stop, ...] = (  # what once led nowhere: swapped sensors, a key
     # the focus is on another button: the key that the bar shows belongs to the bar
     *(
         replace(stop, name=f"57{stop.name[2:]}")
-        for stop in walk(1, ("press 1", "to Step 2", "press space"), "press space")
+        for stop in walk(1, ("press 1", "to Back", "press space"), "press space")
     ),
     Stop("58-keep", offers("Keep 1"), ("press k",), lingers_s=1.0),
     Stop("59-kept", offers("Results"), ("press Return",), lingers_s=1.0),
