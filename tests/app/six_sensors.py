@@ -1,7 +1,8 @@
 """Sessions of six sensors and the bytes of their results, which a seventh sensor must not change.
 
 `OPENBLAS_NUM_THREADS=1 python -m tests.app.six_sensors`, as the tests have it, writes tests/golden/six_sensors.json
-anew, which is to be done on purpose only: the file says what was written before there was a pelvis. What a processor
+again, which is to be done on purpose only (last when axes, certainty, stairs and full contact changed). What a
+processor
 writes that calculates otherwise than those in it is put beside theirs; the code of before has to be run on it, too.
 """
 
