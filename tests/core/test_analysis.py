@@ -165,7 +165,7 @@ def test_turning_the_sensors_turns_what_lies_in_them_and_nothing_else(
     plain = analyse(make_person(seed=7).visit(duration_s=6.0))
     turned = analyse(make_person(seed=7, extra_turn=turn).visit(duration_s=6.0))
     for name in ("free motion", "walk"):
-        assert np.rad2deg(np.abs(angle(plain, name) - angle(turned, name)).max()) < 0.05
+        assert np.rad2deg(np.abs(angle(plain, name) - angle(turned, name)).max()) < 0.1
     one, other = of(plain), of(turned)
     sign = one.clinical_sign * other.clinical_sign
     for plain_axis, turned_axis in ((one.axis_proximal, other.axis_proximal), (one.axis_distal, other.axis_distal)):
