@@ -96,7 +96,8 @@ def has_walked(strides: int) -> Callable[[Seen], bool]:
         if not seen.is_recording or "Strides" not in seen.words:
             return False
         behind = seen.words[seen.words.index("Strides") :]
-        return int(next((words for words in behind if words.isdigit()), 0)) >= strides
+        count = behind[1] if len(behind) > 1 else ""  # a dash while it is not known
+        return count.isdigit() and int(count) >= strides
 
     return counted
 

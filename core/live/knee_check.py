@@ -24,13 +24,21 @@ class KneeCheck:
 
     def __init__(self) -> None:
         self._contacts_s: deque[float] = deque(maxlen=32)
-        self._is_odd: deque[bool] = deque(maxlen=STEPS)
+        self._odd_s: deque[float] = deque(maxlen=STEPS)  # when each step was over; NaN of one that was as it should be
         self._start_anew()
 
     @property
     def is_doubtful(self) -> bool:
         """Whether of the last steps more than one had no contact, or several."""
-        return sum(self._is_odd) > MOST_ODD
+        return len(self._odd()) > MOST_ODD
+
+    @property
+    def doubtful_from_s(self) -> float:
+        """When the first of those steps was over; NaN while there is no doubt."""
+        return self._odd()[0] if self.is_doubtful else math.nan
+
+    def _odd(self) -> list[float]:
+        return [time_s for time_s in self._odd_s if not math.isnan(time_s)]
 
     def update(self, knee: AngleSamples, contacts_s: Iterable[float]) -> None:
         """Take what is new of both."""
@@ -43,7 +51,7 @@ class KneeCheck:
 
     def _start_anew(self) -> None:
         """What the knee did meanwhile is not known."""
-        self._is_odd.clear()
+        self._odd_s.clear()
         self._highest, self._lowest = (-math.inf, -math.inf), math.inf
         self._bend_rad, self._is_bending = MIN_BEND_RAD, False
         self._last_s = -math.inf  # of the last peak of flexion
@@ -58,12 +66,13 @@ class KneeCheck:
             return
         self._lowest = min(self._lowest, angle_rad)
         if time_s - self._last_s > MAX_STRIDE_S:
-            self._is_odd.clear()  # it stands
+            self._odd_s.clear()  # it stands
             self._bend_rad = MIN_BEND_RAD
         if angle_rad > self._lowest + self._bend_rad:
             self._is_bending, self._highest = True, (angle_rad, time_s)
 
     def _bent(self, peak_s: float) -> None:
         if peak_s - self._last_s <= MAX_STRIDE_S:
-            self._is_odd.append(sum(self._last_s < contact_s <= peak_s for contact_s in self._contacts_s) != 1)
+            contacts = sum(self._last_s < contact_s <= peak_s for contact_s in self._contacts_s)
+            self._odd_s.append(math.nan if contacts == 1 else peak_s)
         self._last_s = peak_s

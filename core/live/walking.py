@@ -47,6 +47,7 @@ class LiveFoot:
 
     `strikes` are the pitches at those of the new contacts that followed a flat stance. `is_doubtful`: its own knee
     swings more often or less often than the foot lands, so that no figure of its events holds; cadence is NaN then.
+    `doubtful_from_s`: when the first of those steps was over, NaN while there is no doubt.
     """
 
     events: tuple[LiveEvent, ...]
@@ -56,6 +57,7 @@ class LiveFoot:
     strides: int
     strikes: tuple[FootStrike, ...] = ()
     is_doubtful: bool = False
+    doubtful_from_s: float = math.nan
 
 
 @dataclass(frozen=True, slots=True)
@@ -201,7 +203,8 @@ class _LiveFoot:
         cadence_steps_min = math.nan if is_doubtful else self._events.cadence_steps_min
         changes = tuple(self._events.changes)
         strides = max(0, self._contacts - 1)
-        return LiveFoot(events, changes, self._events.phase, cadence_steps_min, strides, strikes, is_doubtful)
+        from_s = self._check.doubtful_from_s
+        return LiveFoot(events, changes, self._events.phase, cadence_steps_min, strides, strikes, is_doubtful, from_s)
 
 
 class _StrapWatch:

@@ -254,7 +254,7 @@ class _Foot:
         self.is_doubtful = False  # since `_from_s`: what was lost or invented stays in the count
 
     def take(self, foot: LiveFoot, block: ImuBlock | None) -> None:
-        self.is_doubtful |= foot.is_doubtful
+        self.is_doubtful |= foot.is_doubtful and foot.doubtful_from_s >= self._from_s
         if block is not None:
             before = block.time_s[:1] if self._heard_s is None else np.array([self._heard_s])
             time_s = np.concatenate([before, block.time_s])

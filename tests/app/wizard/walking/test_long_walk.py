@@ -38,8 +38,18 @@ def test_no_stride_is_forgotten_and_no_contact_kept_for_ever(begins: int) -> Non
 def test_a_count_that_the_knee_has_once_contradicted_is_blank_until_the_next_walk() -> None:
     foot = _Foot()
     for k in range(4):
-        foot.take(replace(contact(1.2 * k), is_doubtful=k == 2), None)
+        foot.take(replace(contact(1.2 * k), is_doubtful=k == 2, doubtful_from_s=1.2 * k), None)
         foot.strides_since(-1.0, -KEPT_S)
         assert foot.is_doubtful is (k >= 2)
     foot.strides_since(4.0, -KEPT_S)
     assert not foot.is_doubtful
+
+
+def test_steps_that_were_odd_before_the_walk_began_leave_its_count() -> None:
+    """As those of a leg that circled in the free motion, a second before."""
+    foot = _Foot()
+    foot.strides_since(4.0, -KEPT_S)
+    foot.take(replace(contact(4.5), is_doubtful=True, doubtful_from_s=2.0), None)
+    assert not foot.is_doubtful
+    foot.take(replace(contact(5.7), is_doubtful=True, doubtful_from_s=4.6), None)
+    assert foot.is_doubtful
