@@ -93,8 +93,11 @@ def _load_for(task: str) -> None:
 
         _ = parquet_questions
     if task in (TRIAL, GATHER, REFERENCE):
+        import mimetypes
+
         from devices.files import formats
 
+        mimetypes.init()  # reads the system's tables, which a spreadsheet's reader asks for
         _ = formats
 
 

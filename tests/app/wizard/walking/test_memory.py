@@ -181,13 +181,13 @@ def test_at_the_live_rate_they_are_ready_at_once_and_live_again_for_a_timed_test
     assert texts(step.bar()) == ("Start walk", ["Patient's screen"])
     step.page.next.test.chosen.emit(TimedProtocol.UP_AND_GO.value)
     assert "Timed tests need what the sensors send live" in step.bar().note
-    assert texts(step.bar()) == ("Start walk", ["Send walks live", "Patient's screen"])
+    assert texts(step.bar()) == ("Start timed up and go", ["Send walks live", "Patient's screen"])
     step.on_intent(RUN)
     assert not visit.recordings.is_recording
     step.on_quiet(0)
     qtbot.waitUntil(lambda: not visit.sensors.are_in_memory and visit.sensors.sync.is_idle, timeout=WAIT_MS)
     assert all(dot.is_streaming and dot.is_synchronised for dot in radio.dots)
-    assert texts(step.bar()) == ("Start walk", ["Patient's screen"])
+    assert texts(step.bar()) == ("Start timed up and go", ["Patient's screen"])
     assert "Timed tests need" not in step.bar().note
 
 
