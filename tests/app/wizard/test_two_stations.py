@@ -130,7 +130,7 @@ def settle(qtbot: QtBot, visit: Visit, other: OtherStation, is_so: Callable[[], 
 
 
 def test_a_patient_who_is_deleted_at_another_station_is_missed_here_with_one_word(
-    qtbot: QtBot, ours: Visit, wizard: Wizard, other: OtherStation
+    qtbot: QtBot, controller: LibraryController, ours: Visit, wizard: Wizard, other: OtherStation
 ) -> None:
     heard: list[tuple[str, str]] = []
     ours.deleted_elsewhere.connect(lambda what, then: heard.append((what, then)))
@@ -144,6 +144,7 @@ def test_a_patient_who_is_deleted_at_another_station_is_missed_here_with_one_wor
     other.library.patients.restore(other.library.patients.get(other.patient.id))
     visit = other.library.sessions.get(other.session_id)
     wizard.look_for_changes()
+    asked(qtbot, controller, lambda library: library.folder)  # after the look
     other.library.sessions.delete(visit)
     wizard.look_for_changes()
     qtbot.waitUntil(lambda: len(heard) > 1, timeout=WAIT_MS)
