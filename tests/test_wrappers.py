@@ -1,4 +1,4 @@
-"""Is an object of Qt that ends off the screen's thread seen, and none that ends on it?"""
+"""Objects of Qt that end off the screen's thread are seen, and none that end on it."""
 
 import gc
 import os

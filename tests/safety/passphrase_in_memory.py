@@ -1,4 +1,4 @@
-"""How often do a passphrase and a patient's code stand in the window's memory, open and locked?
+"""Count a passphrase and a patient's code in the memory of the window, open and locked.
 
     QT_QPA_PLATFORM=offscreen python -m tests.safety.passphrase_in_memory --locks 3
 

@@ -1,4 +1,4 @@
-"""Does OpenSim itself read every row of our motion files, whatever is missing?"""
+"""Read our motion files with OpenSim itself: every row, whatever is missing."""
 
 from dataclasses import replace
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Does an export leave out what is not known without leaving a hole, an empty file or a silence?"""
+"""Exports leave out what is not known without a hole, an empty file or a silence."""
 
 from dataclasses import replace
 from pathlib import Path

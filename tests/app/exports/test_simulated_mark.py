@@ -1,4 +1,4 @@
-"""Does what was simulated stay so through every file that we write and can read again, and nothing else become so?"""
+"""What was simulated stays so through every file that we write and read again, and nothing else becomes so."""
 
 from dataclasses import replace
 from pathlib import Path

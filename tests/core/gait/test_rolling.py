@@ -1,4 +1,4 @@
-"""Do heel rise and full contact scatter little, however a foot is put down?"""
+"""Heel rise and full contact scatter little, however a foot is put down."""
 
 from collections.abc import Callable, Mapping
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Are strides on stairs told from level ones, whatever a sensor makes of single strides?"""
+"""Strides on stairs and level ones, whatever a sensor makes of single strides."""
 
 from dataclasses import replace
 

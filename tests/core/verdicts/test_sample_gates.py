@@ -1,4 +1,4 @@
-"""Does what the sensors delivered reach the verdicts it touches, and no other?
+"""What the sensors delivered reaches the verdicts it touches, and no other.
 
 Every limit is written out here, as TRUTH has it, never taken from the gates.
 """

@@ -53,6 +53,7 @@ def test_nothing_that_a_login_holds_open_that_only_looks_keeps_a_station_waiting
         connection.execute(text("SELECT note_reading('x', 'view', 'patient:1', '{}')"))
         connection.execute(text("SELECT * FROM audit, settings, patients"))
         station.library.operators.add(Operator("cd", "C. Diehl", Role.CLINICIAN))
+        assert "cd" in {operator.code for operator in station.library.operators.list()}
 
 
 def test_what_a_login_that_only_looks_has_viewed_is_in_the_audit_with_its_name(
