@@ -364,7 +364,18 @@ DEAD_ENDS: tuple[Stop, ...] = (  # what once led nowhere: swapped sensors, a key
     Stop("60-results", offers("Legs", "Data"), ("press ctrl+7",), lingers_s=2.0, patience_s=60.0),
     Stop("61-report", at_step("ReportStep"), ("press ctrl+s",), lingers_s=2.0),
     Stop("62-where", offers("Save"), ("press ctrl+a", "type {home}/results", "press Return"), lingers_s=1.0),
-    Stop("63-saved", says("Saved as"), lingers_s=2.0, leaves=(("results*/**/angles.csv", "left_knee_deg"),)),
+    Stop(
+        "63-saved",
+        says("Saved as"),
+        ("to Step 7", "press Down", "press Return"),
+        lingers_s=2.0,
+        leaves=(("results*/**/angles.csv", "left_knee_deg"),),
+    ),
+    *(stop for stop in SECOND_BY_KEYS if stop.name < "26a"),
+    Stop("71-report", shows_pages, ("to Compare with", "press Down"), lingers_s=2.0, patience_s=60.0),
+    Stop("72-compared", shows_pages, ("press ctrl+s",), lingers_s=6.0, patience_s=60.0),
+    Stop("73-where", offers("Save"), ("press ctrl+a", "type {home}/second", "press Return"), lingers_s=1.0),
+    Stop("74-saved", says("Saved as"), lingers_s=2.0, leaves=(("second*/**/angles.csv", "left_knee_deg"),)),
 )
 TOURS = {
     "keyboard": (*KEYBOARD, *SECOND_BY_KEYS),
