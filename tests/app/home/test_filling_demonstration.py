@@ -18,6 +18,7 @@ from app.theme import ThemeNotifier, load_fonts
 from app.workers.library_controller import LibraryController
 from core.samples import Patient, Session
 from devices.walker import Standing, Walk, WalkerSettings
+from tests.app.home.home_library import delete_patient
 
 WAIT_MS = 20_000
 STARTED = datetime.datetime(2026, 11, 20, 11, 20, tzinfo=datetime.UTC)
@@ -158,7 +159,7 @@ def test_what_fails_is_said_and_the_others_are_made(qtbot: QtBot, home: Home) ->
 @pytest.mark.endurance
 def test_a_visit_of_a_patient_who_was_deleted_meanwhile_stays_out(qtbot: QtBot, home: Home) -> None:
     (held,) = HELD
-    home.page.patient_deleted.emit(home.page.patient_id)
+    delete_patient(qtbot, home)
     qtbot.waitUntil(lambda: len(home.page.patients.lines) == 1, timeout=WAIT_MS)
     held.go_on()
     held.go_on()
