@@ -166,17 +166,17 @@ def append(
         )
         return end_of_audit(session)
     if connection.dialect.name == "postgresql":
-        _add_readings(session, key)
+        _add_readings(session, key, at)
     return _append(session, key, at, operator, action, subject, details)
 
 
-def _add_readings(session: OrmSession, key: bytes) -> None:
+def _add_readings(session: OrmSession, key: bytes, at: datetime.datetime) -> None:
     """Add what logins that only look have noted, each with its own time and login among its details."""
     # a login that only looks writes its readings itself, so nothing in them is taken at its word
     waiting = session.scalars(select(ReadingRow).order_by(ReadingRow.at).limit(MANY)).all()
     for row in waiting:
         details = {"read_at": row.at, "login": row.login, "as": row.action, "details": row.details}
-        _append(session, key, datetime.datetime.now(datetime.UTC), row.operator, Action.VIEW, row.subject, details)
+        _append(session, key, at, row.operator, Action.VIEW, row.subject, details)
         session.delete(row)
 
 

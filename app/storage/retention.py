@@ -6,9 +6,8 @@ the file is removed; after a kill in between the next start goes on.
 A clock that is wrong destroys nothing. Stations go by their server's. A library in a folder goes by its audit: a time
 without an entry counts for a week at most, and after such a time nothing is destroyed for a day.
 
-A disk that writes elsewhere than it is told to
-(flash, snapshots) may keep the old bytes, and backups hold what was deleted until they are themselves removed, ninety
-days later (`app.storage.backup`). Whoever is asked to delete for good has to be told so.
+A disk that writes elsewhere (flash, snapshots) may keep the old bytes, and backups hold what was deleted until they are
+themselves removed, ninety days later (`app.storage.backup`). Whoever is asked to delete for good has to know that.
 """
 
 import datetime

@@ -73,8 +73,10 @@ def _in_a_copy(asked: "Details", asking: BinaryIO, answering: BinaryIO) -> None:
         os._exit(0)
     _, status = os.waitpid(copy, 0)
     if os.WIFSIGNALED(status):
-        signal.signal(os.WTERMSIG(status), signal.SIG_DFL) if os.WTERMSIG(status) != signal.SIGKILL else None
-        os.kill(os.getpid(), os.WTERMSIG(status))
+        number = os.WTERMSIG(status)
+        if number != signal.SIGKILL:
+            signal.signal(number, signal.SIG_DFL)
+        os.kill(os.getpid(), number)
     if status != 0:
         os._exit(1)
 
@@ -82,12 +84,13 @@ def _in_a_copy(asked: "Details", asking: BinaryIO, answering: BinaryIO) -> None:
 def _load_for(task: str) -> None:
     """Import what a task needs before the copy is made, which would import it each time."""
     import pyarrow as pa
-    import pyarrow.csv
+    import pyarrow.csv as pcsv
 
     from devices.files import answers, session_folder, site_files
 
     _ = answers, session_folder, site_files
-    pyarrow.csv.read_csv(pa.py_buffer(b"a\n1\n")).column(0).to_numpy()  # imports more when it is first used
+    # imports more when it is first used; no threads, of which a copy has none
+    pcsv.read_csv(pa.py_buffer(b"a\n1\n"), pcsv.ReadOptions(use_threads=False)).column(0).to_numpy()
     if task == QUESTION:
         from devices.files import parquet_questions
 

@@ -2,8 +2,7 @@
 
 `OPENBLAS_NUM_THREADS=1 python -m tests.app.six_sensors`, as the tests have it, writes tests/golden/six_sensors.json
 again, which is to be done on purpose only (last when axes, certainty, stairs and full contact changed). What a
-processor writes that calculates otherwise than those in it is put beside theirs; the code of before has to be run on
-it, too.
+processor writes that calculates otherwise than those in it is put beside theirs, by the code of before as well.
 """
 
 import hashlib
