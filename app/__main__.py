@@ -15,7 +15,7 @@ def begin() -> int:
     """Be what the arguments say, and give the exit code."""
     if getattr(sys, "frozen", False):
         begin_frozen()
-    from app.cli import main
+    from app.cli.main import main
 
     return main()
 

@@ -25,18 +25,18 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QApplication, QStackedWidget, QVBoxLayout, QWidget
 
-from app.home.entry import Entry
+from app.cli.library import default_folder
+from app.home.login.controller import Entry
 from app.home.session_screen import SessionScreen
-from app.library_commands import default_folder
-from app.logs import log_qt_messages
-from app.qt_words import qt_speaks
-from app.settings import Scheme, Settings
 from app.storage.idle_lock import IdleLock
-from app.theme import ThemeNotifier, load_fonts
+from app.system.logs import log_qt_messages
+from app.system.settings import Scheme, Settings
+from app.theme.notifier import ThemeNotifier, load_fonts
 from app.widgets.accessible_role import tell_roles
 from app.widgets.focus_ring import FocusRing
 from app.widgets.folder_dialog import keep_no_visited_folders
-from app.wording import PURPOSE, tr, use_language
+from app.wording.qt import qt_speaks
+from app.wording.translation import PURPOSE, tr, use_language
 from app.workers.background import Background
 from app.workers.garbage import GarbageCollector
 from app.workers.library_controller import LibraryController
@@ -44,8 +44,8 @@ from app.workers.library_state import OpenedState
 from app.workers.preload import preload
 
 if TYPE_CHECKING:  # needed when a library is open; the window must not wait for them
+    from app.help.help_page import HelpPage
     from app.home.home import Home
-    from app.pages.help_page import HelpPage
     from app.storage.stored import StoredPatient
     from app.wizard.wizard import Wizard
 
@@ -255,8 +255,8 @@ class MainWindow(QWidget):
 
     def _show_help(self, topic: str) -> None:
         """Open the manual at a topic; Back leads to where it was opened, and what is recorded there goes on."""
-        from app.pages.help_page import HelpPage
-        from app.pages.help_topics import Topic
+        from app.help.help_page import HelpPage
+        from app.help.help_topics import Topic
 
         if self._help is None:
             self._help = HelpPage(self._look)

@@ -8,25 +8,24 @@ from dataclasses import replace
 
 import numpy as np
 
+from core.angles.measure import Twist, measure
 from core.body import LEG_JOINTS, Joint, Segment, Side, Site, ankle_of, knee_of
-from core.calibrated import Bases, calibrate
 from core.calibration import certainty
+from core.calibration.calibrated import Bases, calibrate
 from core.calibration.clinical_sign import range_of
+from core.calibration.identified import Identified, clock_moved_s, identify
+from core.calibration.rate_kind import tracks_of_kind
+from core.calibration.strap import slips_in_walks
+from core.calibration.validity import Basis, basis_of, spans_of_validity
 from core.calibration.zero import wrapped_to_zero
-from core.chosen_strides import leave_out
-from core.clock_drift import about_clocks, clock_drifts
 from core.findings import Finding, Severity
+from core.gait.chosen_strides import leave_out
 from core.gait.inclination import inclination
 from core.gait.strides import Reason
+from core.gait.walking import clocks_in, gait_in, prosthetic_sides, site_of_events
 from core.hip.analysis import HipsOfSpan, find_hips, with_hips
-from core.identified import Identified, clock_moved_s, identify
-from core.joint_findings import about_angles, about_joint, about_missing_joints, about_session
-from core.measure import Twist, measure
 from core.placement.labels import doubted_labels
 from core.published.angles import DEFAULT_TAU_S
-from core.quality import look_at
-from core.rate_kind import tracks_of_kind
-from core.reception import receptions
 from core.results import (
     Analysis,
     Calibration,
@@ -36,16 +35,17 @@ from core.results import (
     RecordingAnalysis,
     SideGait,
 )
-from core.robust import robust_sd
 from core.samples import FloatArray, Patient, Recording, RecordingKind, Session
-from core.sensors import SensorTracks
-from core.strap import slips_in_walks
+from core.signal.clock_drift import about_clocks, clock_drifts
+from core.signal.reception import receptions
+from core.signal.robust import robust_sd
+from core.signal.sensors import SensorTracks
 from core.timed.protocols import DEFINITIONS
 from core.timed.timing import time_test
-from core.validity import Basis, basis_of, spans_of_validity
 from core.verdicts.gates import verdicts_of
-from core.walk_findings import about_prosthesis, about_turns, about_walk
-from core.walking import clocks_in, gait_in, prosthetic_sides, site_of_events
+from core.verdicts.joint_findings import about_angles, about_joint, about_missing_joints, about_session
+from core.verdicts.quality import look_at
+from core.verdicts.walk_findings import about_prosthesis, about_turns, about_walk
 
 Progress = Callable[[float, str], None]
 """Called with the share done (0 to 1) and what is being done. May raise to stop the analysis."""

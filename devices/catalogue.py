@@ -3,25 +3,25 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from devices.csv_serial import DRIVER as CSV
-from devices.csv_serial import CsvSerial
 from devices.dot.decoder import DotDecoder
 from devices.dot.samples import DRIVER as MOVELLA_DOT
-from devices.lsl import DRIVER as LSL
-from devices.shimmer3 import DRIVER as SHIMMER3
-from devices.shimmer3 import KNOCK as KNOCK_SHIMMER3
-from devices.shimmer3 import Shimmer3
+from devices.drivers.csv_serial import DRIVER as CSV
+from devices.drivers.csv_serial import CsvSerial
+from devices.drivers.lsl import DRIVER as LSL
+from devices.drivers.shimmer3 import DRIVER as SHIMMER3
+from devices.drivers.shimmer3 import KNOCK as KNOCK_SHIMMER3
+from devices.drivers.shimmer3 import Shimmer3
+from devices.drivers.witmotion import DRIVER as WITMOTION
+from devices.drivers.witmotion import WitMotion
+from devices.drivers.witmotion_ble import DRIVER as WITMOTION_BLE
+from devices.drivers.witmotion_ble import WitBle
+from devices.drivers.ximu3 import DRIVER as XIMU3
+from devices.drivers.ximu3 import Ximu3
+from devices.drivers.xsens_mti import DRIVER as XSENS_MTI
+from devices.drivers.xsens_mti import KNOCK as KNOCK_XSENS_MTI
+from devices.drivers.xsens_mti import XsensMti
 from devices.source import StreamDecoder
 from devices.stream import Decoder, SensorProtocol
-from devices.witmotion import DRIVER as WITMOTION
-from devices.witmotion import WitMotion
-from devices.witmotion_ble import DRIVER as WITMOTION_BLE
-from devices.witmotion_ble import WitBle
-from devices.ximu3 import DRIVER as XIMU3
-from devices.ximu3 import Ximu3
-from devices.xsens_mti import DRIVER as XSENS_MTI
-from devices.xsens_mti import KNOCK as KNOCK_XSENS_MTI
-from devices.xsens_mti import XsensMti
 
 
 @dataclass(frozen=True, slots=True)

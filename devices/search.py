@@ -10,25 +10,25 @@ from functools import partial
 from pathlib import Path
 from types import MappingProxyType
 
-from devices.bluetooth import Radio
 from devices.catalogue import DRIVERS, Driver
-from devices.channels import Channel, TcpChannel, UdpChannel
-from devices.csv_serial import DRIVER as CSV
-from devices.csv_serial import Columns, CsvSerial
 from devices.dot.samples import DRIVER as MOVELLA_DOT
 from devices.dot.sensor import DotSensor, is_dot
 from devices.dot.source import DotGroup, DotSource
-from devices.lines import LinesAt, columns_in
+from devices.drivers.csv_serial import DRIVER as CSV
+from devices.drivers.csv_serial import Columns, CsvSerial
+from devices.drivers.lines import LinesAt, columns_in
+from devices.drivers.lsl import DRIVER as LSL
+from devices.drivers.lsl import LslSource, OtherStreamError, announced_sensors, find_streams
+from devices.drivers.witmotion_ble import DRIVER as WITMOTION_BLE
+from devices.drivers.witmotion_ble import WitBleSource, is_wit, wit_name
+from devices.drivers.ximu3 import DRIVER as XIMU3
+from devices.drivers.ximu3 import Ximu3
 from devices.live import LiveSource, SourceLostError, SourceRefusedError
-from devices.lsl import DRIVER as LSL
-from devices.lsl import LslSource, OtherStreamError, announced_sensors, find_streams
-from devices.ports import PortInfo, SerialPort, list_ports
 from devices.source import SourceInfo
 from devices.stream import ByteSource
-from devices.witmotion_ble import DRIVER as WITMOTION_BLE
-from devices.witmotion_ble import WitBleSource, is_wit, wit_name
-from devices.ximu3 import DRIVER as XIMU3
-from devices.ximu3 import Ximu3
+from devices.transport.bluetooth import Radio
+from devices.transport.channels import Channel, TcpChannel, UdpChannel
+from devices.transport.ports import PortInfo, SerialPort, list_ports
 
 LISTEN_S = 0.4  # ten samples of the slowest rate that is of use, and a sensor's whole burst
 LEAST = 3  # messages
@@ -259,7 +259,7 @@ def _announced(at_port: int) -> list[FoundSensor]:
 
 
 def search_streams(address: str) -> SearchResult:
-    """Ask for the sensors among the streams of Lab Streaming Layer; see `devices.lsl.ask_in`.
+    """Ask for the sensors among the streams of Lab Streaming Layer; see `devices.drivers.lsl.ask_in`.
 
     Raises
     ------

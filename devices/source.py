@@ -63,7 +63,7 @@ class SensorCounts:
 
 @dataclass(frozen=True, slots=True)
 class SharedClock:
-    """A sensor's samples by a clock that it shares with others; what puts them right together: `devices.shared_clock`.
+    """A sensor's samples by a clock that it shares with others; what puts them right together: `clocks.shared_clock`.
 
     Attributes
     ----------

@@ -14,12 +14,12 @@ from typing import Protocol
 import numpy as np
 
 from core.samples import FloatArray, ImuBlock, RecordingKind
-from devices.channels import Channel
-from devices.clock import Ordered, put_in_order
-from devices.host_clock import host_time_ns
+from devices.clocks.clock import Ordered, put_in_order
+from devices.clocks.host_clock import host_time_ns
+from devices.clocks.live_clock import LiveClock
 from devices.live import Keep, SensorDetails
-from devices.live_clock import LiveClock
 from devices.source import DecodedSensor, SharedClock, SourceInfo
+from devices.transport.channels import Channel
 
 Row = tuple[float, ...]
 """Seconds of the sensor's clock, then angular rate in rad/s (3) and specific force in m/s2 (3)."""

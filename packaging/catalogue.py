@@ -19,7 +19,7 @@ from babel.messages.pofile import read_po, write_po
 
 ROOT = Path(__file__).resolve().parents[1]
 TEMPLATE = ROOT / "resources" / "locale" / "gaitwright.pot"
-TAKERS = {"tr": 1, "tr_n": 2, "later": 1}  # of app.wording, with the number of sentences each takes
+TAKERS = {"tr": 1, "tr_n": 2, "later": 1}  # of app.wording.translation, with the number of sentences each takes
 # which are put into the user's language where they are shown: what, remedy; of some the first says where
 REFUSALS = {
     "SourceRefusedError": 0,
@@ -87,12 +87,12 @@ def gathered() -> Catalog:
     for file in sorted((ROOT / "devices").rglob("*.py")):
         for message in (said for _, both in refused(file) for said in both):
             catalogue.add(message, locations=[(file.relative_to(ROOT).as_posix(), 0)])
-    from app.wording import NAMES, SENTENCES
+    from app.wording.translation import NAMES, SENTENCES
     from devices.catalogue import DRIVERS
 
     words = [word for names in NAMES.values() for word in names.values()]
     for message in (*SENTENCES.values(), *words):
-        catalogue.add(message, locations=[("app/wording.py", 0)])
+        catalogue.add(message, locations=[("app/wording/translation.py", 0)])
     for driver in DRIVERS:
         catalogue.add(driver.name, locations=[("devices/catalogue.py", 0)])
     return catalogue

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from PIL.Image import Image
 
     from app.films.film import Film
-    from app.tokens import Theme
+    from app.theme.theme import Theme
 
 FRAMES_PER_S = 12.5
 WIDTH = 640
@@ -30,8 +30,8 @@ def main(arguments: list[str]) -> None:
     from PySide6.QtWidgets import QApplication
 
     from app.films.film import Film
-    from app.theme import ThemeNotifier, load_fonts
-    from app.wording import use_language
+    from app.theme.notifier import ThemeNotifier, load_fonts
+    from app.wording.translation import use_language
 
     application = QApplication([])
     load_fonts()

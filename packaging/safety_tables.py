@@ -63,7 +63,7 @@ class Risk:
 class UseError:
     """What somebody may do wrong, how it is noticed, what is then said, and the tests of both.
 
-    `messages` are keys of findings in `app.wording.SENTENCES`, or sentences of the catalogue as the code has them.
+    `messages` are keys of findings in `app.wording`'s SENTENCES, or sentences of the catalogue as the code has them.
     """
 
     id: str
@@ -222,7 +222,7 @@ def said() -> dict[str, str]:
     """Give every sentence of the screen as the code has it; a finding's by its key, too."""
     if str(ROOT) not in sys.path:
         sys.path.insert(0, str(ROOT))  # a script sees its own folder only
-    from app.wording import SENTENCES
+    from app.wording.translation import SENTENCES
 
     with TEMPLATE.open("rb") as file:  # which tests/app/test_translation.py keeps current
         ids = [message.id for message in read_po(file) if message.id]

@@ -94,7 +94,7 @@ def _first_sentence(script: Path) -> str:
 
 def columns_page() -> str:
     """What each column of each table means, as `columns.csv` has it; of left and right the left one stands for both."""
-    from app.reports.columns import KNOWN
+    from app.exports.columns import KNOWN
 
     head = (
         "# What every column means\n\nAs `columns.csv` says it beside the tables. A column that begins with `left_` "
@@ -105,7 +105,7 @@ def columns_page() -> str:
 
 
 def _table(file: str) -> str:
-    from app.reports.columns import KNOWN, UNITS
+    from app.exports.columns import KNOWN, UNITS
 
     def rows() -> Iterator[str]:
         for name, meaning in KNOWN[file].items():

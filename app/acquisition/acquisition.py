@@ -20,9 +20,9 @@ from app.acquisition.reader import Reader
 from app.storage.journal.writer import JournalSummary, JournalWriter
 from core.alignment import NetChange
 from core.samples import ImuBlock, RecordingKind
-from devices.host_clock import host_time_ns
+from devices.clocks.host_clock import host_time_ns
 from devices.live import LiveSource, SourceRefusedError
-from devices.prosthesis_user import ProsthesisUser
+from devices.simulation.prosthesis_user import ProsthesisUser
 
 if TYPE_CHECKING:
     from app.acquisition.sensor_memory import MemoryRecording

@@ -7,10 +7,10 @@ import numpy as np
 
 from app.acquisition.motion_memory import KEPT_S, Looks, MotionMemory, tracks_in_steps
 from core.live.sensors import LiveSensor
-from core.pair import MOVING_RAD_S, MOVING_WINDOW_S, moving_mean
 from core.placement.chains import LIFTED_RAD_S, USUAL_SITES, Chain, Chains, chains_in_steps
 from core.samples import FloatArray, ImuBlock
-from core.tracks import nominal_step_s
+from core.signal.pair import MOVING_RAD_S, MOVING_WINDOW_S, moving_mean
+from core.signal.tracks import nominal_step_s
 
 LOOK_S = 1.0
 SURE_AFTER = 2  # looks that say the same

@@ -16,13 +16,13 @@ from enum import StrEnum
 from typing import Any, TypeVar
 
 from app.acquisition.acquisition import Acquisition
-from devices.bluetooth import Radio, Tick
 from devices.dot.fetching import reached
 from devices.dot.memory import RECORD_HZ, stop
 from devices.dot.messages import EMULATED, DotAnswer
 from devices.dot.sensor import DotSensor
 from devices.dot.source import GENERAL, LIVE_HZ, DotGroup
 from devices.live import SourceLostError
+from devices.transport.bluetooth import Radio, Tick
 
 Result = TypeVar("Result")
 

@@ -13,7 +13,6 @@ from app.storage.journal.decoding import decode
 from app.storage.journal.writer import JournalWriter
 from app.storage.opened import OpenedLibrary
 from app.storage.stored import StoredRecording
-from devices.bluetooth import Tick
 from devices.decoders import DECODERS
 from devices.dot.fetching import reached
 from devices.dot.memory import erase_kept, list_files
@@ -21,6 +20,7 @@ from devices.dot.messages import RecordedFile
 from devices.dot.sensor import DotSensor
 from devices.dot.source import DotGroup
 from devices.live import SourceLostError, SourceRefusedError
+from devices.transport.bluetooth import Tick
 
 Told = Callable[[str], None]
 """Takes the name of the sensor that it is about now; what it raises ends the work."""

@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from devices.host_clock import host_time_ns
+from devices.clocks.host_clock import host_time_ns
 
 BEAT_S = 0.1
 STOOD_S = 0.5  # a beat so late counts as no time at all: shorter than what makes a disk late

@@ -12,7 +12,6 @@ from types import MappingProxyType
 from app.storage.data_key import KeyMaterial
 from app.storage.journal.decoding import decode
 from app.storage.journal.writer import JournalWriter
-from devices.bluetooth import Radio, Tick
 from devices.decoders import DECODERS
 from devices.dot.decoder import FileOrders, file_settings
 from devices.dot.fetching import FetchedFile, Fetching, reached
@@ -22,6 +21,7 @@ from devices.dot.samples import DRIVER, RECORDED, VERSION
 from devices.dot.sensor import DotRefusedError, DotSensor
 from devices.live import SourceLostError, SourceRefusedError
 from devices.source import SourceInfo
+from devices.transport.bluetooth import Radio, Tick
 
 FETCHED = "fetched "  # how the mark begins
 

@@ -10,10 +10,10 @@ from collections.abc import Callable, Generator, Iterable, Mapping
 import numpy as np
 
 from core.live.sensors import LiveSensor
-from core.orientation import oriented
-from core.pair import OrientedTrack
 from core.samples import FloatArray, ImuBlock, RateKind
-from core.tracks import even_tracks
+from core.signal.orientation import oriented
+from core.signal.pair import OrientedTrack
+from core.signal.tracks import even_tracks
 
 KEPT_S = 30.0
 WAIT_S = 1.0  # for a sensor that is behind the others; longer, and it is left out

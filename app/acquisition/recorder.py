@@ -33,8 +33,8 @@ from devices.decoders import DECODERS
 if TYPE_CHECKING:  # sensors with memories are few, and what they need is imported with them
     from app.acquisition.memory_fetching import Lack, Progress
     from app.storage.data_key import KeyMaterial
-    from devices.bluetooth import Tick
     from devices.live import SourceLostError, SourceRefusedError
+    from devices.transport.bluetooth import Tick
 
 ROW_WAIT_S = 1.0
 

@@ -11,10 +11,10 @@ from pathlib import Path
 from app.acquisition.memory_fetching import Lack, MemoryFetching, OrderedFile, Progress, WantedFile
 from app.storage.data_key import KeyMaterial
 from app.storage.journal.writer import JournalWriter
-from devices.bluetooth import Tick
 from devices.dot.memory import Begun, OwnClockError, record, stop
 from devices.dot.source import DotGroup
 from devices.live import SourceLostError, SourceRefusedError
+from devices.transport.bluetooth import Tick
 
 EARLY_S = 2.0  # a file that is shorter by less ended when it was told to: beginnings and clocks differ so much
 

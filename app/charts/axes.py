@@ -4,7 +4,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from app.wording import capitalised, figure_text, later, name_of, tr
+from app.wording.translation import capitalised, figure_text, later, name_of, tr
 from core.body import JointKind, Side
 from core.samples import FloatArray
 

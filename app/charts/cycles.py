@@ -5,8 +5,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from core.gait.cycles import POINTS, MeanCycle
-from core.norms import MIN_STRIDES_FOR_MEAN, MIN_STRIDES_FOR_SD
 from core.samples import FloatArray
+from core.verdicts.norms import MIN_STRIDES_FOR_MEAN, MIN_STRIDES_FOR_SD
 
 PERCENT = np.arange(POINTS, dtype=np.float64)
 

@@ -6,7 +6,7 @@ from html import escape
 
 import numpy as np
 
-from app.colours import PAPER
+from app.theme.colours import PAPER
 from core.body import Side
 from core.samples import FloatArray
 

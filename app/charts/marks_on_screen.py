@@ -12,8 +12,8 @@ from app.charts.frame import Frame
 from app.charts.marks import Deviation, Gap, Point
 from app.charts.places import USUAL_EMPTY_PERCENT, Box, Ground, MarkPlace, ground_of, place_mark
 from app.charts.stride_chart import StrideChart
-from app.icons import Icon, paint_icon
-from app.tokens import Theme
+from app.theme.icons import Icon, paint_icon
+from app.theme.theme import Theme
 from core.body import Side
 
 BAR_PX, HAIRLINE_PX, DOT_RADIUS, DOT_EDGE_PX = 2.5, 1.0, 5.0, 2.0

@@ -29,9 +29,9 @@ from app.charts.frame import Frame
 from app.charts.marks import Deviation
 from app.charts.places import USUAL_EMPTY_PERCENT, Box, MarkPlace, ground_of, place_mark
 from app.charts.stride_chart import Axis, StrideChart, StrideCurve, toe_offs_in_order
-from app.colours import PAPER
-from app.gates_in_words import verdict_word
-from app.wording import capitalised, tr
+from app.theme.colours import PAPER
+from app.wording.translation import capitalised, tr
+from app.wording.verdicts import verdict_word
 from core.body import Side
 from core.gait.cycles import POINTS
 from core.samples import FloatArray

@@ -13,8 +13,8 @@ from app.charts.cycles import PERCENT
 from app.charts.frame import Frame
 from app.charts.marks_on_screen import paint_deviation, paint_gap_bars, paint_gaps, places_of
 from app.charts.stride_chart import StrideChart, StrideCurve, toe_off_labels, toe_offs_in_order
-from app.tokens import Theme
-from app.wording import later, tr
+from app.theme.theme import Theme
+from app.wording.translation import later, tr
 from core.body import Side
 from core.samples import FloatArray
 

@@ -8,7 +8,7 @@ import numpy as np
 from app.charts.axes import ABOUT_MEAN_DEG, USUAL_DEG
 from app.charts.cycles import Band, SideCycle, is_mean_enough, is_spread_enough
 from app.charts.marks import Deviation, Gap
-from app.wording import tr
+from app.wording.translation import tr
 from core.body import JointKind, Side
 from core.gait.cycles import POINTS
 from core.samples import FloatArray

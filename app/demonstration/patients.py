@@ -9,15 +9,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from app.storage.stored import Limits
-from app.wording import tr
+from app.wording.translation import tr
 from core.alignment import AlignmentChange, PartChange, ProsthesisPart, net_of
 from core.body import Side, Site
 from core.goals import Goal, GoalOf, ordered
 from core.samples import Patient
 from core.timed.protocols import TimedProtocol
-from devices.fitted_prosthesis import BUILT, setting_of
-from devices.fitted_prosthesis import SPEED_M_S as PROSTHESIS_SPEED_M_S
-from devices.walker_body import (
+from devices.simulation.fitted_prosthesis import BUILT, setting_of
+from devices.simulation.fitted_prosthesis import SPEED_M_S as PROSTHESIS_SPEED_M_S
+from devices.simulation.walker_body import (
     PEOPLE,
     CourseKind,
     FreeMotion,

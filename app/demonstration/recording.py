@@ -6,11 +6,11 @@ from dataclasses import replace
 from uuid import UUID
 
 from app.demonstration.patients import BY, SimulatedPatient, SimulatedVisit, ToldOfWalk
-from app.logs import version_of
 from app.storage.audit import REPORT_FORMAT, about
 from app.storage.exchange import import_session
 from app.storage.opened import OpenedLibrary
 from app.storage.stored import Action
+from app.system.logs import version_of
 from core.samples import Recording, Session
 from core.timed.protocols import PlannedTest
 
@@ -20,8 +20,8 @@ BETWEEN_WALKS = datetime.timedelta(minutes=2)
 
 def record_visit(visit: SimulatedVisit) -> Session:
     """Let the patient move, and give what the sensors send, with what was said of it."""
-    from devices.replay import labelled  # scipy takes a second that home is not to wait for
-    from devices.walker import simulate
+    from devices.simulation.replay import labelled  # scipy takes a second that home is not to wait for
+    from devices.simulation.walker import simulate
 
     moved = labelled(simulate(visit.settings).session)
     recordings = tuple(

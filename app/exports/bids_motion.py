@@ -18,7 +18,7 @@ import numpy as np
 
 from app.exports.figures import SIMULATED, software
 from app.storage.pseudonyms import AGE, age_in_words
-from app.wording import PURPOSE, tr
+from app.wording.translation import PURPOSE, tr
 from core.body import Site
 from core.samples import FloatArray, ImuBlock, Recording, RecordingKind, SensorInfo, Session
 

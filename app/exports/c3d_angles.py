@@ -18,14 +18,14 @@ import ezc3d
 import numpy as np
 
 from app.exports.figures import SIMULATED, status_in_ascii, told_abduction_deg, told_deg
+from app.exports.gait_csv import events_of
 from app.exports.parts import part_paths
-from app.reports.gait_csv import events_of
-from app.reports.status import NO_ZERO, WITH_HEIGHT, joint_status, why_status
-from app.wording import PURPOSE, tr
+from app.summary.status import NO_ZERO, WITH_HEIGHT, joint_status, why_status
+from app.wording.translation import PURPOSE, tr
 from core.body import Joint, JointKind, Side
 from core.results import RecordingAnalysis
 from core.samples import FloatArray, IntArray
-from core.tracks import nominal_step_s
+from core.signal.tracks import nominal_step_s
 
 POINTS = {
     Joint.LEFT_KNEE: "LKneeAngles",

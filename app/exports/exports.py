@@ -18,7 +18,7 @@ from app.storage.journal.decoding import Decoders
 from app.storage.opened import OpenedLibrary, Report
 from app.storage.pseudonyms import Pseudonyms, Typed
 from app.storage.stored import Action
-from app.wording import filled
+from app.wording.translation import filled
 from core.analysis import analyse
 from core.results import Analysis, RecordingAnalysis
 from core.samples import Session

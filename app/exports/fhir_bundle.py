@@ -15,11 +15,11 @@ from typing import Any
 from uuid import NAMESPACE_URL, uuid5
 
 from app.exports.figures import SIMULATED, WalkFigure, reason_of, software, unit_of, walk_figures
-from app.gates_in_words import gate_sentence
-from app.measure_names import goal_in_words
-from app.reports.agreed import agreed_with
 from app.storage.pseudonyms import AGE
-from app.wording import PURPOSE
+from app.summary.agreed import agreed_with
+from app.wording.measures import goal_in_words
+from app.wording.translation import PURPOSE
+from app.wording.verdicts import gate_sentence
 from core.body import Side
 from core.goals import Goal
 from core.results import Analysis

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from app.reports.csv_report import DECIMALS
-from app.reports.status import is_slipped, joint_status, why, why_status
-from app.reports.summary import summarise
+from app.exports.csv_report import DECIMALS
+from app.exports.summary import summarise
+from app.summary.status import is_slipped, joint_status, why, why_status
 from core.body import Joint, Side
 from core.results import Analysis, RecordingAnalysis
 from core.samples import FloatArray

@@ -16,12 +16,12 @@ import numpy as np
 
 from app.exports.figures import SIMULATED, as_in_csv_deg, status_in_ascii, told_abduction_deg, told_deg
 from app.exports.parts import part_paths
-from app.reports.status import WITH_HEIGHT, joint_status, why_status
-from app.wording import PURPOSE, tr
+from app.summary.status import WITH_HEIGHT, joint_status, why_status
+from app.wording.translation import PURPOSE, tr
 from core.body import Joint
 from core.results import RecordingAnalysis
 from core.samples import FloatArray
-from core.tracks import nominal_step_s
+from core.signal.tracks import nominal_step_s
 
 COORDINATES = {
     Joint.RIGHT_KNEE: "knee_angle_r",

@@ -8,11 +8,11 @@ from collections.abc import Collection
 from dataclasses import replace
 from uuid import UUID
 
-from app.alignment_words import since_in_words
-from app.measure_names import goal_in_words
 from app.storage.pseudonyms import AGE, Pseudonyms, Typed
-from app.timed_words import planned_words
-from app.wording import later
+from app.wording.alignment import since_in_words
+from app.wording.measures import goal_in_words
+from app.wording.timed_tests import planned_words
+from app.wording.translation import later
 from core.goals import Goal, held
 from core.hip.results import HipAngle
 from core.results import Analysis, Calibration, JointCalibration

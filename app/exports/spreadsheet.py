@@ -19,14 +19,14 @@ from openpyxl.cell.cell import ILLEGAL_CHARACTERS_RE
 from openpyxl.styles import Font
 from openpyxl.worksheet._write_only import WriteOnlyWorksheet
 
-from app.alignment_words import since_in_words
 from app.exports.figures import SIMULATED, reason_of, software, unit_of, walk_figures
+from app.exports.gait_csv import gait_tables
 from app.exports.pseudonymised import what_is_said
-from app.reports.condition_figures import condition_figures
-from app.reports.conditions import conditions_of
-from app.reports.gait_csv import gait_tables
-from app.reports.status import WITHHELD, all_that_is_said, why
-from app.wording import PURPOSE, sentence
+from app.summary.condition_figures import condition_figures
+from app.summary.conditions import conditions_of
+from app.summary.status import WITHHELD, all_that_is_said, why
+from app.wording.alignment import since_in_words
+from app.wording.translation import PURPOSE, sentence
 from core.body import Side, hip_of
 from core.results import Analysis, RecordingAnalysis
 from core.samples import Session

@@ -10,9 +10,9 @@ from PySide6.QtGui import QColor, QFont, QFontMetrics, QPainter
 
 from app.films.free_motion import paint_seated
 from app.films.sensor_placement import paint_strapping
-from app.tokens import Theme
+from app.theme.theme import Theme
 from app.widgets.text import REGULAR, SEMIBOLD
-from app.wording import later, tr
+from app.wording.translation import later, tr
 
 SHAPE = 0.5  # height by width of a frame
 ROWS_OF_STILLS, STILLS_SHAPE = 2, 0.84

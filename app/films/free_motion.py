@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QPainter, QPolygonF, QTransform
 
-from app.tokens import Theme
+from app.theme.theme import Theme
 from app.widgets.limb import limb_outline
 from core.body import Side
 

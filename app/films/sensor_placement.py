@@ -5,7 +5,7 @@ import math
 from PySide6.QtCore import QPointF, QRectF
 from PySide6.QtGui import QColor, QPainter, QPainterPath, QTransform
 
-from app.tokens import Theme
+from app.theme.theme import Theme
 from app.widgets.body_figure import paint_legs, placing_of_legs
 from app.widgets.body_shapes import body_shapes
 from core.body import LEG_SEGMENTS, LEG_SITES, Side, Site

@@ -6,26 +6,26 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QColor, QKeySequence, QPainter, QPaintEvent, QResizeEvent, QShortcut
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QStackedWidget, QVBoxLayout, QWidget
 
-from app.home.analysing_again import AnalysingAgain
-from app.home.computing_courses import ComputingCourses
-from app.home.deleting import Deleting
-from app.home.filling_demonstration import FillingDemonstration
-from app.home.goals import GoalsOfPatient
-from app.home.importing import Importing
-from app.home.library_notices import LibraryNotices
-from app.home.patients import PatientsAtHome
-from app.home.questions import Questions
-from app.home.recovering import Recovering
-from app.home.settings_controller import SettingsController
-from app.icons import Icon
-from app.pages.analyse_again_page import AnalyseAgainPage
-from app.pages.goals_page import GoalsPage
-from app.pages.home_page import HomePage
-from app.pages.import_page import ImportPage
-from app.pages.questions_page import QuestionsPage
-from app.pages.settings_page import SettingsPage
-from app.settings import Scheme, Settings
-from app.theme import ThemeNotifier
+from app.home.again.analyse_again_page import AnalyseAgainPage
+from app.home.again.controller import AnalysingAgain
+from app.home.cohort.cohort_page import QuestionsPage
+from app.home.cohort.controller import Questions
+from app.home.goals.controller import GoalsOfPatient
+from app.home.goals.goals_page import GoalsPage
+from app.home.importing.controller import Importing
+from app.home.importing.import_page import ImportPage
+from app.home.patients.controller import PatientsAtHome
+from app.home.patients.courses import ComputingCourses
+from app.home.patients.deleting import Deleting
+from app.home.patients.demonstration import FillingDemonstration
+from app.home.patients.home_page import HomePage
+from app.home.patients.notices import LibraryNotices
+from app.home.patients.recovering import Recovering
+from app.home.settings.controller import SettingsController
+from app.home.settings.settings_page import SettingsPage
+from app.system.settings import Scheme, Settings
+from app.theme.icons import Icon
+from app.theme.notifier import ThemeNotifier
 from app.widgets.action_bar import ActionBar, BarAction, BarState
 from app.widgets.banner import Banner
 from app.widgets.rail_row import RailForm, RailRow, StepState
@@ -33,7 +33,7 @@ from app.widgets.start_pages import WorkingPage
 from app.widgets.step_rail import StepRail, home_below
 from app.widgets.themed import Themed
 from app.widgets.toast import Toast
-from app.wording import place, tr
+from app.wording.translation import place, tr
 from app.workers.library_controller import LibraryController
 from app.workers.library_state import OpenedState
 

@@ -18,8 +18,9 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.icons import Icon
-from app.theme import ThemeNotifier
+from app.results.detail_pages import BehindResults
+from app.theme.icons import Icon
+from app.theme.notifier import ThemeNotifier
 from app.widgets.banner import Banner
 from app.widgets.button import Button, ButtonKind
 from app.widgets.folder_dialog import ask_for_folder
@@ -28,15 +29,14 @@ from app.widgets.page_stack import PageStack
 from app.widgets.start_pages import EmptyPage, WorkingPage
 from app.widgets.text import Text
 from app.widgets.themed import Themed
-from app.wording import PURPOSE, filled, later, place, side_name, tr
+from app.wording.translation import PURPOSE, filled, later, place, side_name, tr
 from app.workers.background import Background, Work
-from app.workers.behind_results import BehindResults
 from app.workers.opening import opening_demonstration, opening_folder
 from core.body import Side
 from devices.files.refusal import FileRefusedError
 
 if TYPE_CHECKING:  # their imports take a second; the window must not wait for them
-    from app.pages.result_page import ResultPage
+    from app.results.result_page import ResultPage
     from app.workers.opening import Opened
     from core.samples import Patient
 
@@ -220,10 +220,10 @@ class SessionScreen(Themed):
         self.working.show_progress(share, words[:1].upper() + words[1:])
 
     def _on_done(self, opened: "Opened") -> None:
-        from app.reports.patient_report.request import AnalysedVisit
+        from app.summary.request import AnalysedVisit
 
         if self._results is None:
-            from app.pages.result_page import ResultPage
+            from app.results.result_page import ResultPage
 
             self._results = ResultPage(self._look)
             self.pages.addWidget(self._results)
@@ -270,7 +270,7 @@ class SessionScreen(Themed):
         self.behind.show_saved(self._saved_in)
 
     def _on_figures_not_saved(self, error: Exception) -> None:
-        from app.workers.diagnostics_controller import cannot_write
+        from app.results.diagnostics_controller import cannot_write
 
         if not isinstance(error, OSError):
             _log.error("the figures were not saved", exc_info=error)

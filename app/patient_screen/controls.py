@@ -6,15 +6,15 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QKeyEvent, QResizeEvent
 from PySide6.QtWidgets import QBoxLayout, QSizePolicy, QWidget
 
-from app.icons import Icon
 from app.patient_screen.metronome import LEAST, MOST
-from app.theme import ThemeNotifier
+from app.theme.icons import Icon
+from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.field import NumberField
 from app.widgets.notice import Notice
 from app.widgets.segmented import Segmented
-from app.wording import tr
+from app.wording.translation import tr
 from core.body import Side
 from core.targets import Target, TargetMeasure
 

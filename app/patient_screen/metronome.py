@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 from PySide6.QtCore import QObject, Qt, QTimer, Signal
 
-from app import sounds
-from app.sounds import Sound
+from app.system import sounds
+from app.system.sounds import Sound
 
 LEAST, MOST = 30, 200  # steps per minute
 LATE_S = 0.12  # a tick that comes later than this would sound like one of another rate

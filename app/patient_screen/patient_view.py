@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from app.wording import tr, tr_n
+from app.wording.translation import tr, tr_n
 from core.body import Side
 from core.targets import Target, TargetMeasure
 

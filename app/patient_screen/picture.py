@@ -9,7 +9,6 @@ from typing import NamedTuple
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QBrush, QColor, QFont, QFontMetricsF, QPainter, QPainterPath, QPen, QPolygonF
 
-from app.icons import Icon, paint_icon
 from app.patient_screen.patient_view import (
     MINUS,
     NO_VALUE,
@@ -23,11 +22,12 @@ from app.patient_screen.patient_view import (
     tone_words,
     unit_words,
 )
-from app.theme import ThemeNotifier
-from app.tokens import Theme
+from app.theme.icons import Icon, paint_icon
+from app.theme.notifier import ThemeNotifier
+from app.theme.theme import Theme
 from app.widgets.chip import CHIP, paint_chip
 from app.widgets.text import MEDIUM, SEMIBOLD
-from app.wording import tr
+from app.wording.translation import tr
 from core.body import Side
 from core.targets import Target
 

@@ -6,8 +6,8 @@ from PySide6.QtWidgets import QWidget
 
 from app.patient_screen.patient_view import PatientView
 from app.patient_screen.picture import HEIGHT, WIDTH, paint_patient_view
-from app.theme import ThemeNotifier
-from app.wording import tr
+from app.theme.notifier import ThemeNotifier
+from app.wording.translation import tr
 
 
 class PatientWindow(QWidget):

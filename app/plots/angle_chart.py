@@ -11,8 +11,8 @@ from PySide6.QtWidgets import QStyleOptionGraphicsItem, QWidget
 
 from app.charts.axes import AXIS_WIDTH, RIGHT_MARGIN, range_for
 from app.plots.thinning import envelope, thin
-from app.theme import ThemeNotifier
-from app.wording import figure_text
+from app.theme.notifier import ThemeNotifier
+from app.wording.translation import figure_text
 from core.body import Side
 from core.samples import FloatArray
 

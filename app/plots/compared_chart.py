@@ -9,15 +9,15 @@ from PySide6.QtWidgets import QHBoxLayout, QSizePolicy
 
 from app.charts.axes import degrees_in_words, part_in_words, range_for, range_in_words, sign_in_words, title_in_words
 from app.charts.stride_chart import StrideCurve
-from app.icons import VERDICT_ICONS, Icon
 from app.plots.cycle_chart import CycleChart
-from app.theme import ThemeNotifier
+from app.theme.icons import VERDICT_ICONS, Icon
+from app.theme.notifier import ThemeNotifier
 from app.widgets.card import Card
 from app.widgets.chip import Chip
 from app.widgets.icons import IconMark
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.verdict_chip import BRIEF
-from app.wording import tr
+from app.wording.translation import tr
 from core.body import JointKind, Side
 from core.verdicts.model import Verdict
 

@@ -11,10 +11,10 @@ from PySide6.QtCore import QPointF, QRectF, QSize
 from PySide6.QtGui import QAccessible, QColor, QFont, QImage, QPainter, QPaintEvent, QPolygonF, QResizeEvent
 from PySide6.QtWidgets import QSizePolicy
 
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from app.widgets.painted_text import LEFT, RIGHT, PaintedText
 from app.widgets.themed import Themed
-from app.wording import figure_text, tr
+from app.wording.translation import figure_text, tr
 from core.body import Side
 from core.published.figures import CostOverSphere
 from core.samples import BoolArray, FloatArray

@@ -34,10 +34,10 @@ from app.charts.stride_chart import (
     curves_of_walk,
     usual_range_deg,
 )
-from app.icons import Icon
-from app.reports.comparison import Comparison
-from app.reports.walk_figures import MAY_BE_MIRRORED, NO_HEIGHT, NO_ZERO, WITHHELD, doubt_in, verdict_of, why_in_words
-from app.theme import ThemeNotifier
+from app.summary.comparison import Comparison
+from app.summary.walk_figures import MAY_BE_MIRRORED, NO_HEIGHT, NO_ZERO, WITHHELD, doubt_in, verdict_of, why_in_words
+from app.theme.icons import Icon
+from app.theme.notifier import ThemeNotifier
 from app.widgets.card import Card
 from app.widgets.chip import LETTERS
 from app.widgets.icons import IconMark
@@ -45,11 +45,11 @@ from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.themed import Themed
 from app.widgets.verdict_chip import VerdictChip
 from app.widgets.withheld_panel import WithheldPanel
-from app.wording import capitalised, joined, later, tr
+from app.wording.translation import capitalised, joined, later, tr
 from core.body import Joint, JointKind, Side
-from core.norms import ReferenceCurves
 from core.samples import FloatArray
 from core.verdicts.model import JointVerdicts, Verdict
+from core.verdicts.norms import ReferenceCurves
 
 LEAST_SIZE, TIGHT_SIZE = (284, 144), (160, 100)  # of two charts, or of three where there is little room
 EARLIER = (0, 2)  # the thin one of two curves, as in every comparison

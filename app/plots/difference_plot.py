@@ -9,8 +9,8 @@ from PySide6.QtGui import QAccessible, QColor, QFont, QFontMetrics, QPainter, QP
 from PySide6.QtWidgets import QSizePolicy
 
 from app.charts.on_screen import DOT, paint_letter
-from app.icons import Icon, paint_icon
-from app.theme import ThemeNotifier
+from app.theme.icons import Icon, paint_icon
+from app.theme.notifier import ThemeNotifier
 from app.widgets.chip import CHIP, paint_chip
 from app.widgets.painted_text import CENTRE, PaintedText
 from app.widgets.text import SEMIBOLD

@@ -8,11 +8,11 @@ from PySide6.QtCore import QEvent, QPointF, QRectF, QSize, Qt
 from PySide6.QtGui import QAccessible, QColor, QFontMetrics, QHelpEvent, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QToolTip
 
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from app.widgets.painted_text import CENTRE, LEFT, RIGHT, PaintedText
 from app.widgets.text import MEDIUM
 from app.widgets.themed import Themed
-from app.wording import figure_text
+from app.wording.translation import figure_text
 
 ROW, AXIS, GAP = 32, 44, 16  # px
 LEAST_PLOT = 180

@@ -16,16 +16,16 @@ from app.charts.axes import (
     sign_in_words,
     title_in_words,
 )
-from app.icons import Icon
 from app.plots.angle_chart import AngleChart, Curve
 from app.plots.phase_lanes import PhaseFrame
-from app.theme import ThemeNotifier
+from app.theme.icons import Icon
+from app.theme.notifier import ThemeNotifier
 from app.widgets.card import Card
 from app.widgets.chip import SideKey
 from app.widgets.icons import IconMark
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.themed import Themed
-from app.wording import figure_text, later, name_of, tr
+from app.wording.translation import figure_text, later, name_of, tr
 from core.body import Joint, JointKind, Side
 from core.results import SideGait
 from core.samples import FloatArray, IntArray

@@ -10,14 +10,14 @@ from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QFontMetrics, QMouseEvent, QPainter, QPaintEvent, QPen, QPolygonF
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.measure_names import least_span
-from app.reports.course_lanes import CourseLane, CourseVisit, LaneLine, LanePoint
-from app.reports.course_words import day_of
-from app.theme import ThemeNotifier
-from app.tokens import Theme
+from app.summary.course_lanes import CourseLane, CourseVisit, LaneLine, LanePoint
+from app.summary.course_words import day_of
+from app.theme.notifier import ThemeNotifier
+from app.theme.theme import Theme
 from app.widgets.painted_text import CENTRE, RIGHT, PaintedText
 from app.widgets.themed import Themed
-from app.wording import figure_text
+from app.wording.measures import least_span
+from app.wording.translation import figure_text
 from core.body import Side
 
 AXIS, INSET = 40, 10  # px: for the figures of the values, and from the plot's edges to the first and last visit

@@ -7,10 +7,10 @@ from PySide6.QtCore import QPointF, QRectF, QSize, Qt, QTimer, Signal
 from PySide6.QtGui import QAccessible, QColor, QHideEvent, QKeyEvent, QMouseEvent, QPainter, QPaintEvent
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy
 
-from app.icons import Icon
-from app.review.drawn_legs import HALF_WIDTHS_M
-from app.review.mean_legs import MeanLegs
-from app.theme import ThemeNotifier
+from app.summary.drawn_legs import HALF_WIDTHS_M
+from app.summary.mean_legs import MeanLegs
+from app.theme.icons import Icon
+from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.chip import CHIP, LETTERS, paint_chip
@@ -18,7 +18,7 @@ from app.widgets.limb import limb_outline
 from app.widgets.segmented import Segmented
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.themed import Themed
-from app.wording import later, side_name, tr
+from app.wording.translation import later, side_name, tr
 from core.body import Side
 
 LEAST_SIZE = (300, 136)

@@ -13,13 +13,13 @@ from PySide6.QtGui import QAccessible, QColor, QMouseEvent, QPainter, QPaintEven
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QSizePolicy, QWidget
 
 from app.charts.axes import AXIS_WIDTH, RIGHT_MARGIN
-from app.theme import ThemeNotifier
-from app.tokens import Theme
+from app.theme.notifier import ThemeNotifier
+from app.theme.theme import Theme
 from app.widgets.card import Card
 from app.widgets.chip import CHIP, Chip, paint_chip
 from app.widgets.heard_order import hear_as_laid_out
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
-from app.wording import joined, later, tr, tr_n
+from app.wording.translation import joined, later, tr, tr_n
 from core.body import Side
 from core.gait.phases import PHASES, Phase
 from core.results import SideGait

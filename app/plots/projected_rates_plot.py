@@ -6,12 +6,12 @@ from PySide6.QtCore import QPointF, QRectF, QSize, Qt
 from PySide6.QtGui import QAccessible, QColor, QFont, QPainter, QPaintEvent, QPen, QPolygonF, QResizeEvent
 from PySide6.QtWidgets import QSizePolicy
 
-from app.reports.diagnostics import parts_deg_s
-from app.theme import ThemeNotifier
+from app.summary.diagnostics import parts_deg_s
+from app.theme.notifier import ThemeNotifier
 from app.widgets.painted_text import CENTRE, PaintedText
 from app.widgets.text import MEDIUM
 from app.widgets.themed import Themed
-from app.wording import tr
+from app.wording.translation import tr
 from core.body import Side
 from core.published.figures import ProjectedRates
 from core.samples import ComplexArray, FloatArray

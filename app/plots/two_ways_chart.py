@@ -11,10 +11,10 @@ from PySide6.QtWidgets import QSizePolicy
 from app.charts.axes import AXIS_WIDTH, KNEE_DEG, RIGHT_MARGIN, USUAL_DEG, angle_in_words, range_for
 from app.plots.angle_chart import DENSE_FROM, runs
 from app.plots.thinning import thin
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from app.widgets.painted_text import CENTRE, RIGHT, PaintedText
 from app.widgets.themed import Themed
-from app.wording import figure_text, tr
+from app.wording.translation import figure_text, tr
 from core.body import Joint, Side
 from core.samples import FloatArray
 

@@ -2,13 +2,13 @@
 
 from collections.abc import Collection, Iterator
 
-from app.gates_in_words import verdict_word
-from app.reports.patient_report.answer import answer_of
-from app.reports.patient_report.facts import Facts
-from app.reports.patient_report.request import AnalysedVisit
-from app.reports.status import WITH_HEIGHT, joint_status, why
-from app.reports.walk_figures import MAY_BE_MIRRORED, doubt_in, reason_in_words, verdict_of
-from app.wording import capitalised, later, name_of, side_name, tr
+from app.summary.answer import answer_of
+from app.summary.facts import Facts
+from app.summary.request import AnalysedVisit
+from app.summary.status import WITH_HEIGHT, joint_status, why
+from app.summary.walk_figures import MAY_BE_MIRRORED, doubt_in, reason_in_words, verdict_of
+from app.wording.translation import capitalised, later, name_of, side_name, tr
+from app.wording.verdicts import verdict_word
 from core.body import Joint, Side
 from core.results import Analysis, RecordingAnalysis
 from core.samples import RecordingKind, Session

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from app.review.may_be_read import Place, pieces_of
+from app.review.data_quality_panel import Place, pieces_of
 from core.body import Joint
 from core.gait.phases import PHASES, Phase
 from core.results import RecordingAnalysis

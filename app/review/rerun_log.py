@@ -24,10 +24,12 @@ from rerun import ComponentColumnList
 from rerun.chunk import Chunk, RrdReader
 from rerun_bindings import PyMemorySinkStorage, new_blueprint, save
 
-from app.colours import DARK
-from app.reports.gait_csv import events_of
+from app.exports.gait_csv import events_of
 from app.review.answer_panel import panel
-from app.review.drawn_legs import (
+from app.review.data_quality_panel import Place, document, is_pose, name_of_view, pieces_of, places
+from app.review.phase_lane import lanes_of
+from app.review.rrd_file import remove_chance
+from app.summary.drawn_legs import (
     HALF_WIDTHS_M,
     HIPS,
     SHANK,
@@ -38,9 +40,7 @@ from app.review.drawn_legs import (
     height_of,
     how_drawn,
 )
-from app.review.may_be_read import Place, document, is_pose, name_of_view, pieces_of, places
-from app.review.phase_lane import lanes_of
-from app.review.rrd_file import remove_chance
+from app.theme.colours import DARK
 from core.body import Joint, JointKind, Side, Site, ankle_of, knee_of
 from core.gait.phases import PHASES, Phase
 from core.hip.results import PelvisAngles

@@ -20,7 +20,7 @@ from pathlib import Path
 import platformdirs
 
 from app.storage.files import held
-from app.wording import tr
+from app.wording.translation import tr
 from core.results import Analysis
 from core.samples import Session
 

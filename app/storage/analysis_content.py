@@ -19,7 +19,6 @@ from core.gait.clocks import ClockTie, LegClocks
 from core.gait.events import FootEvents
 from core.gait.strides import Reason, Strides
 from core.hip.results import ClockStatus, HipAngle, HipIdentification, LegClock, PelvisAngles, PelvisTurn
-from core.reception import Reception
 from core.results import (
     Analysis,
     AxisSource,
@@ -32,6 +31,7 @@ from core.results import (
     ZeroKind,
 )
 from core.samples import RecordingKind
+from core.signal.reception import Reception
 from core.timed.found import NotMeasured, Rise, Silence, StairStride, TimedPart, TimedTest, Turn
 from core.timed.protocols import TimedProtocol
 from core.verdicts.model import Assessment, GateReason, JointVerdicts, LegVerdicts, Verdict, Verdicts

@@ -34,7 +34,7 @@ from app.storage.layout import DATABASE, KEYS, RECORDINGS, SUFFIX
 from app.storage.library import Library, now_utc
 from app.storage.opened import OpenedLibrary, Report, made_beside
 from app.storage.stored import Action, AuditFault, Checkpoint, LibraryError
-from app.wording import tr
+from app.wording.translation import tr
 
 FORMAT = "gaitwright-backup/1"
 LIST = "backup.json"

@@ -6,10 +6,10 @@ from uuid import UUID
 
 from sqlalchemy import select
 
-from app.reports.course import Course, course_from_json, course_in_json
 from app.storage.database.models import CourseRow, SessionRow
 from app.storage.stored import LibraryError, Role
 from app.storage.unit_of_work import UnitOfWork
+from app.summary.course import Course, course_from_json, course_in_json
 
 _log = logging.getLogger(__name__)
 

@@ -32,7 +32,7 @@ from app.storage.stored import (
     StoredRecording,
     StoredSession,
 )
-from app.wording import tr
+from app.wording.translation import tr
 from core.body import Site
 from core.findings import Finding, Severity
 from core.samples import ImuBlock, Recording, SensorInfo, Session

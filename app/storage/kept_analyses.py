@@ -31,7 +31,7 @@ FIGURES_FROM = ("gaitwright", "numpy", "scipy", "vqf")  # whose next version may
 def bare(session: Session) -> Session:
     """The session with all that an analysis reads, and without what was said to people: names, notes, conditions.
 
-    Nor with the strides that were left out by hand: they are left out of what was found (`core.chosen_strides`).
+    Nor with the strides that were left out by hand: they are left out of what was found (`core.gait.chosen_strides`).
     """
     patient, told = session.patient, session.sensors
     return Session(

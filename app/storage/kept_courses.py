@@ -16,8 +16,8 @@ from app.storage.stored import LibraryError, Placement, StoredRecording
 from core.samples import Session
 
 if TYPE_CHECKING:  # the database takes long to load
-    from app.reports.course import Course
     from app.storage.courses import Courses
+    from app.summary.course import Course
 
 _log = logging.getLogger(__name__)
 

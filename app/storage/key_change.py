@@ -32,7 +32,7 @@ from app.storage.layout import DATABASE, KEYS, NEW_DATABASE, NEW_KEYS, RECORDING
 from app.storage.opened import OpenedLibrary, Report
 from app.storage.recovery import find_interrupted
 from app.storage.stored import Action, LibraryBusyError, LibraryError
-from app.wording import tr
+from app.wording.translation import tr
 
 PIECE_BYTES = 1 << 20
 PAGES = 256  # of the database, copied between two reports

@@ -17,11 +17,11 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
-from app.passphrases import Strength, refusal_of_passphrase, strength_of
 from app.storage.data_key import KEY_BYTES, DataKey, KeyMaterial, Secret
 from app.storage.files import held, replace_file
 from app.storage.slots import COST, FIRST_FORMAT, FORMAT, Cost, Slot, whole
-from app.wording import tr
+from app.system.passphrases import Strength, refusal_of_passphrase, strength_of
+from app.wording.translation import tr
 
 MIN_PASSPHRASE = 10
 RECOVERY_BYTES = 20

@@ -23,7 +23,7 @@ from app.storage.keys import KeyRefusedError, KeySlots
 from app.storage.layout import IN_USE, KEYS, RECORDINGS
 from app.storage.library import Library
 from app.storage.stored import LibraryError, Operator, StoredJournal
-from app.wording import tr
+from app.wording.translation import tr
 
 Report = Callable[[float, str], None]
 """Called with the share done (0 to 1) and what is being done. What it raises ends the work."""

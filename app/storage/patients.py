@@ -32,7 +32,7 @@ from app.storage.stored import (
     WhatGoes,
 )
 from app.storage.unit_of_work import UnitOfWork
-from app.wording import tr
+from app.wording.translation import tr
 from core.goals import brought_together, goals_text
 from core.samples import Patient
 from devices.files.session_toml import PATIENT

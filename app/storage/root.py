@@ -13,7 +13,7 @@ import platformdirs
 
 from app.storage.files import replace_file
 from app.storage.stored import LibraryFaultError
-from app.wording import later, tr
+from app.wording.translation import later, tr
 
 if TYPE_CHECKING:
     from app.storage.database.engine import Database

@@ -11,7 +11,7 @@ from app.storage.clinic.server_state import refuse_closed
 from app.storage.database.engine import Database
 from app.storage.database.models import OperatorRow, PatientRow, RecordingRow, SessionRow
 from app.storage.stored import BEGINNING, Checkpoint, LibraryError, NotAllowedError, Operator, Role
-from app.wording import tr
+from app.wording.translation import tr
 
 END = "end_of_audit"  # by this name a session keeps how far its entries go
 ADDED = "entries_added"  # and by this one how many it added

@@ -18,14 +18,14 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.icons import Icon, paint_icon
-from app.theme import ThemeNotifier
+from app.theme.icons import Icon, paint_icon
+from app.theme.notifier import ThemeNotifier
 from app.widgets.button import HEIGHT, Button, ButtonKind
 from app.widgets.grid import LEAST, NARROW_BELOW, side_margin
 from app.widgets.painted_text import PaintedText
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed
-from app.wording import tr
+from app.wording.translation import tr
 
 BAR = 72
 STOP_HEIGHT = 56  # what stops a recording is found first

@@ -4,12 +4,12 @@ from PySide6.QtCore import QPointF, QRectF, Signal
 from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QColor, QPainter, QPaintEvent
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout
 
-from app.icons import Icon, paint_icon
-from app.theme import ThemeNotifier
+from app.theme.icons import Icon, paint_icon
+from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed
-from app.wording import tr
+from app.wording.translation import tr
 
 HEIGHT = 64
 MARK = 36

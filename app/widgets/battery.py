@@ -3,7 +3,7 @@
 from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QColor, QPainter
 
-from app.tokens import Theme
+from app.theme.theme import Theme
 
 WIDTH, HEIGHT = 26, 14  # px
 LOW = 0.15  # of a full charge; below it the sensor is charged after this patient

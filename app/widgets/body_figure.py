@@ -7,12 +7,12 @@ from PySide6.QtCore import QPointF, QRectF, QSize, Qt
 from PySide6.QtGui import QAccessible, QColor, QFontMetrics, QPainter, QPaintEvent, QTransform
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.theme import ThemeNotifier
-from app.tokens import Theme
+from app.theme.notifier import ThemeNotifier
+from app.theme.theme import Theme
 from app.widgets.body_shapes import BARE_LEGS, LEGS, WHOLE, body_shapes
 from app.widgets.chip import LETTERS
 from app.widgets.text import SEMIBOLD
-from app.wording import name_of, tr
+from app.wording.translation import name_of, tr
 from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site
 
 MIDDLE = WHOLE.center().x()

@@ -7,11 +7,11 @@ from PySide6.QtCore import QSize, Qt
 from PySide6.QtGui import QKeyEvent
 from PySide6.QtWidgets import QPushButton, QSizePolicy, QStyle, QStyleOptionButton, QWidget
 
-from app.icons import Icon
-from app.style import ButtonFace
-from app.style import ButtonKind as ButtonKind
-from app.theme import ThemeNotifier
-from app.wording import tr
+from app.theme.icons import Icon
+from app.theme.notifier import ThemeNotifier
+from app.theme.style import ButtonFace
+from app.theme.style import ButtonKind as ButtonKind
+from app.wording.translation import tr
 
 HEIGHT = 48
 CHOICES = (ButtonKind.SEGMENT, ButtonKind.CHIP)  # Enter belongs to the page they are on

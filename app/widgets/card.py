@@ -4,8 +4,8 @@ from PySide6.QtCore import QRectF
 from PySide6.QtGui import QPainter, QPaintEvent
 from PySide6.QtWidgets import QVBoxLayout
 
-from app.theme import ThemeNotifier
-from app.tokens import CARD_RADIUS
+from app.theme.notifier import ThemeNotifier
+from app.theme.theme import CARD_RADIUS
 from app.widgets.themed import Themed
 
 

@@ -4,10 +4,10 @@ from PySide6.QtCore import QRectF, QSize, Qt
 from PySide6.QtGui import QAccessible, QColor, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.theme import ThemeNotifier
-from app.tokens import CHIP_RADIUS, Theme
+from app.theme.notifier import ThemeNotifier
+from app.theme.theme import CHIP_RADIUS, Theme
 from app.widgets.text import SEMIBOLD
-from app.wording import tr
+from app.wording.translation import tr
 from core.body import Side
 
 CHIP = 20

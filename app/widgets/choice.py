@@ -6,7 +6,7 @@ from PySide6.QtCore import QEvent, QPoint, QSize, Qt
 from PySide6.QtGui import QWheelEvent
 from PySide6.QtWidgets import QComboBox, QSizePolicy
 
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 
 
 class Choice(QComboBox):

@@ -6,12 +6,12 @@ from PySide6.QtCore import QRectF, QSize, Qt
 from PySide6.QtGui import QFontMetrics, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy
 
-from app.icons import VERDICT_ICONS, Icon, paint_icon
-from app.theme import ThemeNotifier
+from app.theme.icons import VERDICT_ICONS, Icon, paint_icon
+from app.theme.notifier import ThemeNotifier
 from app.widgets.painted_button import PaintedButton
 from app.widgets.painted_text import LEFT, RIGHT, PaintedText
 from app.widgets.text import SEMIBOLD
-from app.wording import tr
+from app.wording.translation import tr
 from core.verdicts.model import Verdict
 
 HEIGHT = 44

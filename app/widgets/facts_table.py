@@ -6,12 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.body_words import joint_name
-from app.icons import Icon
+from app.theme.icons import Icon
 from app.widgets.table import TableColumn, TableRow
 from app.widgets.table_cells import RIGHT, TextCell
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD
-from app.wording import figure_text, later, name_of, tr
+from app.wording.body import joint_name
+from app.wording.translation import figure_text, later, name_of, tr
 from core.body import Joint
 from core.hip.results import HipAngle, HipIdentification
 from core.results import AxisSource, JointCalibration, ZeroKind

@@ -18,14 +18,14 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QHBoxLayout, QLineEdit, QSizePolicy, QVBoxLayout
 
-from app.icons import Icon
-from app.style import IS_WRONG
-from app.theme import ThemeNotifier
+from app.theme.icons import Icon
+from app.theme.notifier import ThemeNotifier
+from app.theme.style import IS_WRONG
 from app.widgets.chip import paint_chip
 from app.widgets.icons import IconMark
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD, Text
 from app.widgets.themed import Themed
-from app.wording import short_figure, tr, within_sentence
+from app.wording.translation import short_figure, tr, within_sentence
 from core.body import Side
 
 HEIGHT = 48

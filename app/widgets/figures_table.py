@@ -4,13 +4,13 @@ import math
 from collections.abc import Mapping, Sequence
 
 from app.charts.cycles import is_mean_enough, is_spread_enough
-from app.gates_in_words import verdict_word
-from app.reports.walk_figures import Figure
+from app.summary.walk_figures import Figure
 from app.widgets.chip import LETTERS
 from app.widgets.table import TableColumn, TableRow
 from app.widgets.table_cells import CENTRE, EMPTY, RIGHT, TextCell
 from app.widgets.text import SEMIBOLD
-from app.wording import capitalised, figure_text, later, side_name, tr, tr_n, within_sentence
+from app.wording.translation import capitalised, figure_text, later, side_name, tr, tr_n, within_sentence
+from app.wording.verdicts import verdict_word
 from core.body import Side
 from core.gait.spatiotemporal import MeanAndSd
 from core.verdicts.model import Verdict

@@ -6,11 +6,11 @@ from PySide6.QtCore import QSize, Qt
 from PySide6.QtGui import QAccessible
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
 
-from app.icons import SEVERITY_ICONS, Icon
-from app.theme import ThemeNotifier
+from app.theme.icons import SEVERITY_ICONS, Icon
+from app.theme.notifier import ThemeNotifier
 from app.widgets.icons import IconMark
 from app.widgets.text import SEMIBOLD, Text
-from app.wording import later, sentence, tr
+from app.wording.translation import later, sentence, tr
 from core.findings import Finding, Severity
 
 ORDER = (Severity.GRAVE, Severity.WARNING, Severity.INFO)

@@ -5,8 +5,8 @@ from PySide6.QtGui import QPainter, QPaintEvent, QRegion
 from PySide6.QtWidgets import QAbstractScrollArea, QApplication, QWidget
 from shiboken6 import isValid
 
-from app.theme import ThemeNotifier
-from app.tokens import CONTROL_RADIUS
+from app.theme.notifier import ThemeNotifier
+from app.theme.theme import CONTROL_RADIUS
 
 DISTANCE = 3
 WIDTH = 2

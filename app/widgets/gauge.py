@@ -8,13 +8,13 @@ from PySide6.QtCore import QPointF, QRect, QRectF, QSize, Qt
 from PySide6.QtGui import QAccessible, QColor, QFont, QFontMetrics, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.body_words import joint_name
-from app.icons import Icon, paint_icon
-from app.theme import ThemeNotifier
-from app.tokens import CARD_RADIUS
+from app.theme.icons import Icon, paint_icon
+from app.theme.notifier import ThemeNotifier
+from app.theme.theme import CARD_RADIUS
 from app.widgets.chip import paint_chip
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD
-from app.wording import capitalised, figure_text, name_of, tr
+from app.wording.body import joint_name
+from app.wording.translation import capitalised, figure_text, name_of, tr
 from core.body import Joint, Side
 from core.calibration.certainty import AXIS_FLOOR_HUMAN_RAD
 from core.live.excitation import ExcitationState, Wanted

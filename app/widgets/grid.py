@@ -1,6 +1,6 @@
 """Where does the content begin? The same margin for header, tiles, page and bar, so that their edges line up."""
 
-from app.tokens import Theme
+from app.theme.theme import Theme
 
 COMPACT_BELOW = (1180, 720)  # of the window, px of the design
 WIDE_FROM = 1920

@@ -4,14 +4,14 @@ from PySide6.QtCore import QPoint, QPointF, QRect, QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.theme import ThemeNotifier
-from app.tokens import CHIP_RADIUS
+from app.theme.notifier import ThemeNotifier
+from app.theme.theme import CHIP_RADIUS
 from app.widgets.grid import LEAST, side_margin
 from app.widgets.stopwatch import Stopwatch
 from app.widgets.strip_button import StripButton
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed
-from app.wording import tr
+from app.wording.translation import tr
 from core.body import Side
 
 HEIGHT = 56

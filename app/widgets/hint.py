@@ -6,11 +6,11 @@ from PySide6.QtCore import QRectF, QSize, Qt
 from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QColor, QFontMetrics, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.icons import Icon, paint_icon
-from app.theme import ThemeNotifier
-from app.tokens import CARD_RADIUS
+from app.theme.icons import Icon, paint_icon
+from app.theme.notifier import ThemeNotifier
+from app.theme.theme import CARD_RADIUS
 from app.widgets.text import MEDIUM, SEMIBOLD
-from app.wording import tr
+from app.wording.translation import tr
 
 HEIGHT, COMPACT_HEIGHT, LARGE_HEIGHT = 112, 84, 144
 SENTENCE, COMPACT_SENTENCE, LARGE_SENTENCE = 56, 40, 72

@@ -7,15 +7,15 @@ from PySide6.QtCore import QRectF, QSize, Qt
 from PySide6.QtGui import QAccessible, QColor, QFontMetrics, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.body_words import joint_name
-from app.icons import Icon, paint_icon
-from app.theme import ThemeNotifier
-from app.tokens import CARD_RADIUS
+from app.theme.icons import Icon, paint_icon
+from app.theme.notifier import ThemeNotifier
+from app.theme.theme import CARD_RADIUS
 from app.widgets.chip import paint_chip
 from app.widgets.gauge import DASH, DASHES, UNKNOWN, GaugeMeasure, gauge_measure
 from app.widgets.painted_text import RIGHT, PaintedText, height_for
 from app.widgets.text import MEDIUM, SEMIBOLD
-from app.wording import capitalised, name_of, tr
+from app.wording.body import joint_name
+from app.wording.translation import capitalised, name_of, tr
 from core.body import Joint, Side
 from core.hip.measure import MAX_3D_SD_RAD
 from core.live.hip_heading import HipHeadingState

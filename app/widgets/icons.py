@@ -4,8 +4,8 @@ from PySide6.QtCore import QRectF, QSize
 from PySide6.QtGui import QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.icons import Icon, paint_icon
-from app.theme import ThemeNotifier
+from app.theme.icons import Icon, paint_icon
+from app.theme.notifier import ThemeNotifier
 
 
 class IconMark(QWidget):

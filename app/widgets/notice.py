@@ -4,8 +4,8 @@ from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QPainter, QPaintEvent
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout
 
-from app.icons import Icon, paint_icon
-from app.theme import ThemeNotifier
+from app.theme.icons import Icon, paint_icon
+from app.theme.notifier import ThemeNotifier
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed
 

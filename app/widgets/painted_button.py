@@ -4,8 +4,8 @@ from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QKeyEvent, QPainter
 from PySide6.QtWidgets import QAbstractButton, QWidget
 
-from app.theme import ThemeNotifier
-from app.tokens import CONTROL_RADIUS
+from app.theme.notifier import ThemeNotifier
+from app.theme.theme import CONTROL_RADIUS
 
 
 class PaintedButton(QAbstractButton):

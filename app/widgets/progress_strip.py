@@ -4,10 +4,10 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QPainter, QPaintEvent
 from PySide6.QtWidgets import QHBoxLayout, QProgressBar, QSizePolicy
 
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from app.widgets.text import Text
 from app.widgets.themed import Themed
-from app.wording import tr
+from app.wording.translation import tr
 
 HEIGHT, BAR = 36, (160, 6)
 

@@ -16,12 +16,12 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QAbstractButton, QSizePolicy
 
-from app.icons import Icon, paint_icon
-from app.theme import ThemeNotifier
-from app.tokens import CHIP_RADIUS, CONTROL_RADIUS
+from app.theme.icons import Icon, paint_icon
+from app.theme.notifier import ThemeNotifier
+from app.theme.theme import CHIP_RADIUS, CONTROL_RADIUS
 from app.widgets.painted_text import CENTRE, PaintedText, height_for
 from app.widgets.text import MEDIUM, SEMIBOLD
-from app.wording import tr
+from app.wording.translation import tr
 
 RING = 26
 BAR = 4

@@ -6,7 +6,7 @@ from PySide6.QtCore import QElapsedTimer, QRect, QRectF, Qt, QTimer, Signal
 from PySide6.QtGui import QAccessible, QColor, QPainter, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import QSizePolicy
 
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from app.widgets.body_figure import paint_legs
 from app.widgets.chip import LETTERS
 from app.widgets.grid import LEAST, side_margin
@@ -15,7 +15,7 @@ from app.widgets.sensor_tile import SensorTile, marks
 from app.widgets.text import SEMIBOLD
 from app.widgets.themed import Themed
 from app.widgets.tile_widget import TileWidget
-from app.wording import tr
+from app.wording.translation import tr
 from core.body import LEG_SEGMENTS, LEG_SITES, Side, Site
 
 TILE = 56

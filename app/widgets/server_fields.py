@@ -3,9 +3,9 @@
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QWidget
 
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from app.widgets.field import Field
-from app.wording import tr
+from app.wording.translation import tr
 
 ADDRESS = "postgresql://user@server/database"
 

@@ -6,9 +6,9 @@ from PySide6.QtCore import QBuffer, QPointF, QRectF, QSize, Qt, QTimer, Signal
 from PySide6.QtGui import QAccessible, QColor, QImage, QImageReader, QKeyEvent, QMouseEvent, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QVBoxLayout, QWidget
 
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from app.widgets.themed import Themed
-from app.wording import tr, tr_n
+from app.wording.translation import tr, tr_n
 
 PAGE_WIDTH = 560  # a page of A4 that can be read
 PAPER_INCH = 8.27  # how wide A4 is

@@ -11,15 +11,15 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QFrame, QScrollArea, QSizePolicy, QVBoxLayout, QWidget
 
-from app.icons import Icon
-from app.theme import ThemeNotifier
-from app.tokens import CONTROL_RADIUS
+from app.theme.icons import Icon
+from app.theme.notifier import ThemeNotifier
+from app.theme.theme import CONTROL_RADIUS
 from app.widgets.header import ProductMark
 from app.widgets.heard_order import hear_as_laid_out
 from app.widgets.rail_row import BelowRow, RailButton, RailForm, RailRow
 from app.widgets.text import REGULAR, SEMIBOLD, Text
 from app.widgets.themed import Themed
-from app.wording import tr
+from app.wording.translation import tr
 
 
 def wizard_below() -> tuple[BelowRow, ...]:

@@ -8,13 +8,13 @@ from PySide6.QtCore import QPointF, QRect, QRectF, QSize, Qt
 from PySide6.QtGui import QAccessible, QColor, QFontMetrics, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.body_words import segment_name
-from app.icons import Icon, paint_icon
-from app.theme import ThemeNotifier
-from app.tokens import CHIP_RADIUS
+from app.theme.icons import Icon, paint_icon
+from app.theme.notifier import ThemeNotifier
+from app.theme.theme import CHIP_RADIUS
 from app.widgets.chip import CHIP, paint_chip
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD
-from app.wording import figure_text, tr
+from app.wording.body import segment_name
+from app.wording.translation import figure_text, tr
 from core.body import Site
 
 ONE_TURN = 360 * 16  # as Qt counts

@@ -4,11 +4,11 @@ from PySide6.QtCore import QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QFontMetrics, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from app.widgets.action_bar import clock_time
 from app.widgets.painted_text import RIGHT, PaintedText
 from app.widgets.text import SEMIBOLD
-from app.wording import tr
+from app.wording.translation import tr
 
 TARGET_S = 300  # from the first sensor to the first stride
 LINE = 96

@@ -8,14 +8,14 @@ import numpy as np
 from PySide6.QtCore import QModelIndex, QPointF, QRectF, Qt, Signal
 from PySide6.QtGui import QColor, QFontMetrics, QKeyEvent, QPainter, QPolygonF
 
-from app.icons import Icon, paint_icon
-from app.theme import ThemeNotifier
-from app.tokens import Theme
+from app.theme.icons import Icon, paint_icon
+from app.theme.notifier import ThemeNotifier
+from app.theme.theme import Theme
 from app.widgets.chip import CHIP, paint_chip
 from app.widgets.table import CellTable, TableColumn, TableRow
 from app.widgets.table_cells import EMPTY, LEFT, RIGHT, TableCell, TextCell
 from app.widgets.text import MEDIUM
-from app.wording import capitalised, figure_text, later, side_name, tr
+from app.wording.translation import capitalised, figure_text, later, side_name, tr
 from core.body import JointKind, Side
 from core.samples import FloatArray
 

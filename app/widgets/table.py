@@ -26,7 +26,7 @@ from PySide6.QtWidgets import (
     QTableView,
 )
 
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from app.widgets.table_cells import EMPTY, TableCell
 
 ROW, HEAD, PADDING = 28, 32, 6

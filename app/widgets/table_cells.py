@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFont, QFontMetrics, QPainter
 
-from app.icons import Icon, paint_icon
-from app.tokens import Theme
+from app.theme.icons import Icon, paint_icon
+from app.theme.theme import Theme
 from app.widgets.chip import CHIP, LETTERS, paint_chip
 from app.widgets.text import REGULAR
 from core.body import Side

@@ -6,7 +6,7 @@ from PySide6.QtCore import QEvent, Qt
 from PySide6.QtGui import QColor, QFont, QPalette
 from PySide6.QtWidgets import QLabel, QWidget
 
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 
 REGULAR = QFont.Weight.Normal
 MEDIUM = QFont.Weight.Medium

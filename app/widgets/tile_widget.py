@@ -4,17 +4,17 @@ from PySide6.QtCore import QRectF, Qt, Signal
 from PySide6.QtGui import QAccessible, QColor, QFont, QFontMetrics, QKeyEvent, QPainter, QPaintEvent
 from PySide6.QtWidgets import QWidget
 
-from app.body_words import segment_name
-from app.icons import Icon, paint_icon
-from app.theme import ThemeNotifier
-from app.tokens import CONTROL_RADIUS
+from app.theme.icons import Icon, paint_icon
+from app.theme.notifier import ThemeNotifier
+from app.theme.theme import CONTROL_RADIUS
 from app.widgets.battery import WIDTH as BATTERY_WIDTH
 from app.widgets.battery import paint_battery
 from app.widgets.chip import CHIP, paint_chip
 from app.widgets.painted_text import PaintedText, height_for
 from app.widgets.sensor_tile import SensorTile, TileState, rate_and_loss
 from app.widgets.text import MEDIUM, SEMIBOLD
-from app.wording import capitalised, name_of, tr
+from app.wording.body import segment_name
+from app.wording.translation import capitalised, name_of, tr
 from core.body import Site
 
 PADDING = 10

@@ -11,12 +11,12 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QWidget
 
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from app.widgets.action_bar import BarAction, VerbButton
 from app.widgets.button import ButtonKind
 from app.widgets.text import Text
 from app.widgets.themed import Themed
-from app.wording import tr
+from app.wording.translation import tr
 
 WIDTH = 320
 HEIGHT = 56

@@ -2,7 +2,7 @@
 
 from PySide6.QtCore import QSignalBlocker
 
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 
 HEIGHT = 52  # as high as the controls beside it

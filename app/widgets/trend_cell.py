@@ -8,7 +8,7 @@ from itertools import pairwise
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QPainter, QPainterPath
 
-from app.tokens import Theme
+from app.theme.theme import Theme
 from app.widgets.table_cells import TableCell
 from core.body import Side
 

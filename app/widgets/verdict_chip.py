@@ -4,14 +4,14 @@ from PySide6.QtCore import QRectF, QSize
 from PySide6.QtGui import QAccessible, QFontMetrics, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy
 
-from app.gates_in_words import verdict_word
-from app.icons import VERDICT_ICONS, paint_icon
-from app.theme import ThemeNotifier
+from app.theme.icons import VERDICT_ICONS, paint_icon
+from app.theme.notifier import ThemeNotifier
 from app.widgets.chip import CHIP, LINE, leg_name, paint_chip
 from app.widgets.painted_text import LEFT, PaintedText
 from app.widgets.text import SEMIBOLD
 from app.widgets.themed import Themed
-from app.wording import later, tr
+from app.wording.translation import later, tr
+from app.wording.verdicts import verdict_word
 from core.body import Side
 from core.verdicts.model import Verdict
 

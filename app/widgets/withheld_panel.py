@@ -4,13 +4,13 @@ from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QAccessible, QBrush, QColor, QPainter, QPaintEvent
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy
 
-from app.gates_in_words import verdict_word
-from app.theme import ThemeNotifier
-from app.tokens import CONTROL_RADIUS
+from app.theme.notifier import ThemeNotifier
+from app.theme.theme import CONTROL_RADIUS
 from app.widgets.chip import Chip
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed
-from app.wording import capitalised
+from app.wording.translation import capitalised
+from app.wording.verdicts import verdict_word
 from core.body import Side
 from core.verdicts.model import Verdict
 

@@ -6,9 +6,9 @@ from collections.abc import Callable
 from PySide6.QtCore import QObject
 from PySide6.QtWidgets import QWidget
 
-from app.theme import ThemeNotifier
-from app.wizard.edit_dialog import EditDialog
-from app.wizard.edit_question import EditQuestion
+from app.editing.dialog import EditDialog
+from app.editing.question import EditQuestion
+from app.theme.notifier import ThemeNotifier
 from app.wizard.visit import Visit
 
 

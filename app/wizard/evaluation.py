@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject, Signal
 
 from app.storage.kept_analyses import bare, is_same_question
-from app.wording import tr
+from app.wording.translation import tr
 from app.workers.background import Background, Report, Work
 from core.analysis import analyse
 from core.body import Joint, Side
-from core.chosen_strides import leave_out
+from core.calibration.validity import spans_of_validity
+from core.gait.chosen_strides import leave_out
 from core.hip.measure import is_trusted
-from core.validity import spans_of_validity
 
 if TYPE_CHECKING:
     from core.hip.results import HipIdentification

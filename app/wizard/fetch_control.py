@@ -5,11 +5,11 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Signal
 
-from app.icons import Icon
+from app.theme.icons import Icon
 from app.widgets.action_bar import BarAction, BarState
 from app.widgets.sensors_progress import LineState, ProgressShown, SensorLine
 from app.wizard.sensor_sync import SOON_S
-from app.wording import tr, tr_n
+from app.wording.translation import tr, tr_n
 
 if TYPE_CHECKING:
     from app.wizard.memory_fetches import FetchView

@@ -4,9 +4,9 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject
 
-from app.reports.course import course_of
 from app.storage.kept_analyses import keep_analysis
 from app.storage.kept_courses import course_key, keep_course
+from app.summary.course import course_of
 from app.wizard.evaluation import Evaluation
 from app.wizard.recordings import SessionRecordings
 from app.workers.library_controller import LibraryController

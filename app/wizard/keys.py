@@ -28,7 +28,7 @@ from PySide6.QtWidgets import (
 )
 from shiboken6 import isValid
 
-from app.wording import tr
+from app.wording.translation import tr
 
 
 class KeyAction(Enum):

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 
-from app.wording import capitalised, name_of, tr
+from app.wording.translation import capitalised, name_of, tr
 from core.body import Joint, Segment, Side, Site
 
 TOLD_AFTER_S = 2.0

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject, Signal
 
 from app.acquisition.recorder import Recorder
-from app.wording import filled, tr
+from app.wording.translation import filled, tr
 from app.workers.background import Background, Report
 from devices.live import SourceRefusedError
 

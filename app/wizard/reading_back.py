@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, NamedTuple
 from PySide6.QtCore import QObject, QTimer, Signal, Slot
 
 from app.acquisition.recorder import Recorder
+from app.editing.session_recording import SessionRecording
 from app.storage.stored import StoredRecording
 from app.wizard.journal_words import unread_message
 from app.wizard.memory_fetches import MemoryFetches
-from app.wizard.session_recording import SessionRecording
 from app.workers.library_controller import LibraryController
 from core.body import Side
 from core.samples import Recording, RecordingKind

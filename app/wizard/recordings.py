@@ -11,7 +11,8 @@ from uuid import UUID
 from PySide6.QtCore import QObject, QTimer, Signal, Slot
 
 from app.acquisition.recorder import Recorder
-from app.recording_names import OWN_NAMES, ShownName, shown_names
+from app.editing.recordings import RecordingEdits
+from app.editing.session_recording import Ongoing, SessionRecording, counted
 from app.storage.edited_fields import recording_fields
 from app.storage.journal.disk import TOLD, Trouble
 from app.storage.stored import StoredRecording, StoredSession
@@ -25,9 +26,8 @@ from app.wizard.journal_words import (
 from app.wizard.losses import NOTHING, Message
 from app.wizard.memory_fetches import MemoryFetches
 from app.wizard.reading_back import ReadingBack, StoppedRecording
-from app.wizard.recording_edits import RecordingEdits
-from app.wizard.session_recording import Ongoing, SessionRecording, counted
-from app.wording import tr
+from app.wording.recordings import OWN_NAMES, ShownName, shown_names
+from app.wording.translation import tr
 from app.workers.library_controller import LibraryController
 from core.body import Side
 from core.samples import Recording, RecordingKind

@@ -5,21 +5,21 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 from uuid import UUID
 
-from app.reports.course import Course, course_of
-from app.reports.course_lanes import CourseVisit
-from app.reports.patient_report.dates import date_of
+from app.editing.session_recording import SessionRecording, counted
 from app.storage.analysis_content import FORMAT, unpacked
 from app.storage.exchange import recording_with_samples
 from app.storage.kept_analyses import bare, find_analysis, inputs_of, keep_analysis
 from app.storage.kept_courses import course_key, keep_course
 from app.storage.stored import Limits, RecordingState, ResultKind, StoredPatient, StoredSession
-from app.wizard.session_recording import SessionRecording, counted
+from app.summary.course import Course, course_of
+from app.summary.course_lanes import CourseVisit
+from app.summary.report_dates import date_of
 from app.workers.background import Report
 from core.analysis import analyse
 from core.body import LEG_JOINTS
 from core.calibration.rest import rest_of
-from core.chosen_strides import leave_out
 from core.findings import Finding, Severity
+from core.gait.chosen_strides import leave_out
 from core.samples import RecordingKind, Session
 from devices.decoders import DECODERS
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject, QTimer, Signal
 
 from app.review.viewer import Viewer, ViewerRefusedError, default_root, viewer_program, why_not
-from app.wording import tr
+from app.wording.translation import tr
 from app.workers.background import Background, Report
 
 if TYPE_CHECKING:

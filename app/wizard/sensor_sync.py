@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject, Signal
 
 from app.widgets.sensors_progress import LineState, ProgressShown, SensorLine
-from app.wording import filled, later, tr
+from app.wording.translation import filled, later, tr
 from app.workers.background import Background, Report
 from devices.dot.synchronising import NotSynchronisedError, SyncFailure, SyncStage
 from devices.live import SourceLostError, SourceRefusedError

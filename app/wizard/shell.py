@@ -7,8 +7,8 @@ from PySide6.QtCore import QEvent, QObject, QPoint, QRect, Qt, QTimer, QVariantA
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPixmap, QResizeEvent, QShowEvent
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
 
-from app.motion import duration_ms
-from app.theme import ThemeNotifier
+from app.theme.motion import duration_ms
+from app.theme.notifier import ThemeNotifier
 from app.widgets.action_bar import ActionBar
 from app.widgets.banner import Banner
 from app.widgets.grid import COMPACT_BELOW, CONTENT, LEAST, WIDE_FROM, side_margin

@@ -13,13 +13,15 @@ from uuid import UUID
 from PySide6.QtCore import QObject, Signal
 
 from app.acquisition.live_sensors import live_sensors
-from app.deleted_elsewhere import deleted_by, deletion_message
+from app.editing.deleted_elsewhere import deleted_by, deletion_message
+from app.editing.patient import PatientRecord
+from app.editing.question import EditQuestion
+from app.editing.session import SessionRecord, current_time
+from app.editing.session_recording import SessionRecording
 from app.storage.stored import StoredSession
-from app.wizard.edit_question import EditQuestion
 from app.wizard.evaluation import Evaluation
 from app.wizard.fetch_control import FetchControl
 from app.wizard.kept_results import KeptResults
-from app.wizard.patient_record import PatientRecord
 from app.wizard.recordings import SessionRecordings
 from app.wizard.resuming import (
     USABLE,
@@ -32,11 +34,9 @@ from app.wizard.resuming import (
     with_limits,
 )
 from app.wizard.reviewing import Reviewing
-from app.wizard.session_record import SessionRecord, current_time
-from app.wizard.session_recording import SessionRecording
 from app.wizard.worn_corrections import WornCorrections
 from app.wizard.worn_sensors import SourceChoice, WornSensors
-from app.wording import tr
+from app.wording.translation import tr
 from app.workers.background import Background, Report
 from app.workers.library_controller import LibraryController
 from core.body import Joint, Side, Site

@@ -4,10 +4,10 @@ from collections.abc import Collection, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from app.wizard.losses import NOTHING, Message
-from app.wording import capitalised, name_of, tr
+from app.wording.translation import capitalised, name_of, tr
 from core.body import Joint, Segment, Side, Site
+from core.calibration.strap import Slip
 from core.live.bias import BiasCorrection
-from core.strap import Slip
 
 if TYPE_CHECKING:
     from app.acquisition.memory_fetching import Lack

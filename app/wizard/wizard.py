@@ -7,14 +7,13 @@ from uuid import UUID
 from PySide6.QtCore import QTimer, Signal
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
-from app import sounds
-from app.patient_words import about_and_device
-from app.settings import Settings
-from app.theme import ThemeNotifier
+from app.editing.question import EditQuestion
+from app.system import sounds
+from app.system.settings import Settings
+from app.theme.notifier import ThemeNotifier
 from app.widgets.action_bar import BarState
 from app.widgets.rail_row import RailRow, StepState
 from app.wizard.asked_edits import AskedEdits
-from app.wizard.edit_question import EditQuestion
 from app.wizard.free_motion.step import FreeMotionStep
 from app.wizard.keys import Intent, KeyAction, Keys
 from app.wizard.losses import NOTHING, Message
@@ -29,7 +28,8 @@ from app.wizard.step import Step
 from app.wizard.visit import DEMO, Visit
 from app.wizard.walking.step import WalkingStep
 from app.wizard.worn_tiles import worn_tiles
-from app.wording import tr
+from app.wording.patients import about_and_device
+from app.wording.translation import tr
 from app.workers.library_controller import LibraryController
 from app.workers.preload import is_preloaded
 from core.samples import Patient

@@ -7,14 +7,14 @@ from uuid import UUID
 
 from PySide6.QtCore import QObject, Signal, Slot
 
+from app.editing.question import EditQuestion
+from app.editing.session_recording import SessionRecording
 from app.storage.stored import PlacedSensor, StoredSession
 from app.storage.three_way import Edited
-from app.wizard.edit_question import EditQuestion
 from app.wizard.recordings import SessionRecordings
 from app.wizard.resuming import read_recordings
-from app.wizard.session_recording import SessionRecording
 from app.wizard.worn_sensors import WornSensors
-from app.wording import tr
+from app.wording.translation import tr
 from app.workers.library_controller import LibraryController
 from core.body import Site
 

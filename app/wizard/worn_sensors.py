@@ -12,7 +12,7 @@ from PySide6.QtCore import QObject, Signal
 from app.storage.stored import PlacedSensor
 from app.widgets.sensor_tile import SILENT_FROM_S
 from app.wizard.sensor_sync import SensorSync
-from app.wording import capitalised, filled, later, name_of, tr
+from app.wording.translation import capitalised, filled, later, name_of, tr
 from app.workers.background import Background, Report, Work
 from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site, hip_of
 from core.placement.labels import groups_of
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from app.acquisition.acquisition import Acquisition, SensorStatus
     from app.acquisition.dot_fleet import DotFleet
     from devices.dot.source import DotGroup
-    from devices.lines import LinesAt
+    from devices.drivers.lines import LinesAt
 
 _log = logging.getLogger(__name__)
 

@@ -16,7 +16,7 @@ from weakref import WeakMethod, ref
 
 from PySide6.QtCore import QObject, Signal
 
-from app.wording import tr, tr_n
+from app.wording.translation import tr, tr_n
 from app.workers.background import Background, Report
 from app.workers.jobs import Failed, Job, JobThread, nothing, weak
 from app.workers.library_state import Closed, Joined, LibraryPlace, NotOpened, OpenedState, Reopened, Unlocked

@@ -8,7 +8,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.wording import tr
+from app.wording.translation import tr
 from app.workers.background import Report, Work
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ def opening_folder(folder: Path) -> Work:
     def work(report: Report) -> Opened:
         what = tr("reading {folder}").format(folder=folder.name)
         report(0.0, what)
-        from app.foreign_files import read_foreign_session
+        from app.importing.untrusted_files import read_foreign_session
 
         return _analysed(read_foreign_session(folder, lambda: report(0.0, what)), report)
 
@@ -44,7 +44,7 @@ def opening_demonstration() -> Work:
 
     def work(report: Report) -> Opened:
         report(0.0, tr("simulating a patient"))
-        from devices.walker import DEMONSTRATION, simulate
+        from devices.simulation.walker import DEMONSTRATION, simulate
 
         return _analysed(simulate(DEMONSTRATION).session, report)
 
@@ -55,7 +55,7 @@ def _analysed(session: "Session", report: Report) -> Opened:
     from core.analysis import analyse
 
     report(READING_SHARE / 2, tr("preparing the curves"))
-    import_module("app.pages.result_page")  # the page itself is made later, on the thread of the screen
+    import_module("app.results.result_page")  # the page itself is made later, on the thread of the screen
     report(READING_SHARE, tr("looking at the samples"))
     analysis = analyse(session, progress=lambda share, what: report(READING_SHARE + (1 - READING_SHARE) * share, what))
     report(1.0, "")

@@ -21,7 +21,7 @@ MODULES = (
     "app.wizard.sensors.page",
     "app.acquisition.acquisition",
     "app.wizard.sensors.estimator",
-    "devices.replay",
+    "devices.simulation.replay",
     "app.acquisition.recorder",
     "app.wizard.standing.page",
     "app.wizard.standing.estimator",
@@ -30,8 +30,8 @@ MODULES = (
     "core.analysis",
     "app.wizard.walking.page",
     "app.wizard.walking.estimator",
-    "app.pages.result_page",
-    "app.pages.help_page",
+    "app.results.result_page",
+    "app.help.help_page",
 )
 
 

@@ -3,7 +3,7 @@
 import logging
 from typing import NamedTuple
 
-from app.wording import capitalised, filled, tr
+from app.wording.translation import capitalised, filled, tr
 
 _log = logging.getLogger(__name__)
 

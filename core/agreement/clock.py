@@ -16,8 +16,8 @@ from scipy.signal import correlate
 
 from core.agreement.curves import GRID_HZ, ComparedTrial, RateStretch, rates_of
 from core.body import Joint
-from core.robust import robust_sd
 from core.samples import BoolArray, FloatArray
+from core.signal.robust import robust_sd
 
 MIN_OVERLAP_S = 2.0  # of motion known to both: two strides, which is what a small optical volume sees
 MIN_RATE_RAD_S = np.deg2rad(8.0)  # root mean square; a walking ankle has 60 degrees a second, standing under 2

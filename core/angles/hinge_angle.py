@@ -9,12 +9,12 @@ wanders there is what is left of the gyroscopes' biases, a slope, and of their s
 import numpy as np
 from scipy.signal import butter, sosfiltfilt
 
-from core.datasets import knot_positions, knot_products, knot_sums
-from core.pair import Pair, lever_acceleration
 from core.published.angles import angle_from_rates
-from core.robust import robust_sd
-from core.rotations import in_plane, wrap
 from core.samples import FloatArray, IntArray
+from core.signal.datasets import knot_positions, knot_products, knot_sums
+from core.signal.pair import Pair, lever_acceleration
+from core.signal.robust import robust_sd
+from core.signal.rotations import in_plane, wrap
 
 DRIFT_WALK_RAD = np.deg2rad(0.3)  # per square root of a second
 GAP_RAD = np.deg2rad(5.0)  # how far interpolated rates may be off after a gap

@@ -8,9 +8,9 @@ from functools import lru_cache
 import numpy as np
 from scipy.signal import butter, sosfiltfilt
 
-from core.pair import Pair
-from core.rotations import joint_frame, turn_about_vertical
 from core.samples import FloatArray
+from core.signal.pair import Pair
+from core.signal.rotations import joint_frame, turn_about_vertical
 
 RINGING_HZ = 3.0
 

@@ -9,10 +9,10 @@ import numpy as np
 
 from core.angles.twist import ringing
 from core.calibration.joint_axis import Candidates, heading_from_axes, polish
-from core.datasets import Datasets
-from core.pair import MOVING_RAD_S
-from core.rotations import joint_frame, turn_about_vertical
 from core.samples import FloatArray
+from core.signal.datasets import Datasets
+from core.signal.pair import MOVING_RAD_S
+from core.signal.rotations import joint_frame, turn_about_vertical
 
 MAX_RINGING_RAD_S = 0.21  # above 3 Hz, root mean square; simulated rigid feet have 0.17 to 0.20, people 0.5 to 0.7
 FAST_SHARE_S2 = 0.1  # fast parts count less, by 1 / (1 + 0.1 |w|^2)

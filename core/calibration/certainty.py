@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from core.datasets import Datasets
-from core.rotations import turn_about_vertical
 from core.samples import FloatArray, IntArray
+from core.signal.datasets import Datasets
+from core.signal.rotations import turn_about_vertical
 
 BLOCK_S = 1.0  # residuals nearer in time than this are not independent
 # What no recording shows of itself: scale and misalignment of the sensors on a hinge; functional against anatomical

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.datasets import Datasets
-from core.pair import lever_matrix
 from core.samples import FloatArray, IntArray
+from core.signal.datasets import Datasets
+from core.signal.pair import lever_matrix
 
 CENTRE_PRIOR_M = 0.3  # a sensor sits within a segment's length of the joint
 BIAS_PRIOR_M_S2 = 0.05

@@ -15,10 +15,10 @@ from core.calibration.joint_axis import (
     residuals,
     sample_information,
 )
-from core.datasets import Datasets, gather, knot_positions, knot_products, knot_sums
-from core.pair import Pair, lever_acceleration
-from core.robust import robust_sd
 from core.samples import BoolArray, FloatArray, IntArray
+from core.signal.datasets import Datasets, gather, knot_positions, knot_products, knot_sums
+from core.signal.pair import Pair, lever_acceleration
+from core.signal.robust import robust_sd
 
 SAMPLES_PER_S = 10.0  # residuals are correlated over half a second
 STEPS = 6

@@ -9,11 +9,11 @@ import numpy as np
 
 from core.calibration.coincidence import BIAS_PRIOR_M_S2
 from core.calibration.joint_axis import moved
-from core.datasets import Datasets
-from core.pair import is_turning, lever_acceleration
-from core.robust import robust_sd
-from core.rotations import angle_between, joint_frame
 from core.samples import FloatArray
+from core.signal.datasets import Datasets
+from core.signal.pair import is_turning, lever_acceleration
+from core.signal.robust import robust_sd
+from core.signal.rotations import angle_between, joint_frame
 
 # Both of the samples at which the segments turn (`turning`), of which there have to be some
 MAX_HINGE_RESIDUAL_RAD_S = 0.06  # mechanical hinges 0.02, human joints 0.07 to 1.0

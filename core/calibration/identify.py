@@ -29,10 +29,10 @@ from core.calibration.joint_centre import JointCentre, centre_by_lengths, centre
 from core.calibration.lag import Lag, find_lag, sharpest_lag, smoothest_lag
 from core.calibration.refinement import refine_on_hinge
 from core.calibration.same_joint import most_disagreement
-from core.datasets import Datasets, gather, moving_indices, slow_ones, united
-from core.pair import FAST_RAD_S, Pair
-from core.rotations import wrap
 from core.samples import FloatArray
+from core.signal.datasets import Datasets, gather, moving_indices, slow_ones, united
+from core.signal.pair import FAST_RAD_S, Pair
+from core.signal.rotations import wrap
 
 CANDIDATE_SAMPLES = 200
 DECISION_SAMPLES = 400

@@ -11,10 +11,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.datasets import HEADING_WALK_RAD, Datasets
-from core.pair import FAST_RAD_S
-from core.rotations import joint_frame, turn_about_vertical
 from core.samples import FloatArray, IntArray
+from core.signal.datasets import HEADING_WALK_RAD, Datasets
+from core.signal.pair import FAST_RAD_S
+from core.signal.rotations import joint_frame, turn_about_vertical
 
 SCAN_STEP_RAD = np.deg2rad(5.0)
 SCAN_S = 60.0  # over longer stretches one constant heading blurs the minima

@@ -14,10 +14,10 @@ from core.calibration.coincidence import (
     relative_rotation,
     solve_robustly,
 )
-from core.datasets import Datasets
-from core.robust import robust_sd
-from core.rotations import cross, cross_matrix, joint_frame
 from core.samples import FloatArray
+from core.signal.datasets import Datasets
+from core.signal.robust import robust_sd
+from core.signal.rotations import cross, cross_matrix, joint_frame
 
 MIN_SCALE_M_S2 = 0.02
 NORM_STEPS = 10

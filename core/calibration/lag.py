@@ -17,8 +17,8 @@ from core.calibration.coincidence import (
     relative_rotation,
     solve_robustly,
 )
-from core.datasets import Datasets
 from core.samples import FloatArray, IntArray
+from core.signal.datasets import Datasets
 
 SEARCH_S = 0.08
 COARSE_S = 0.02

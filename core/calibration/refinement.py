@@ -11,11 +11,11 @@ from core.angles.hinge_angle import DRIFT_WALK_RAD, hinge_angle
 from core.calibration.coincidence import CENTRE_PRIOR_M, force_design
 from core.calibration.joint_axis import knot_weights
 from core.calibration.joint_centre import MIN_SCALE_M_S2, JointCentre
-from core.datasets import Datasets
-from core.pair import lever_matrix
-from core.robust import robust_sd
-from core.rotations import joint_frame
 from core.samples import FloatArray
+from core.signal.datasets import Datasets
+from core.signal.pair import lever_matrix
+from core.signal.robust import robust_sd
+from core.signal.rotations import joint_frame
 
 BIAS_PRIOR_M_S2 = 0.1
 STEPS = 6

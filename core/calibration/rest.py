@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.pair import moving_mean
 from core.samples import FloatArray, ImuBlock
-from core.tracks import BLOCK_S, is_heard, nominal_step_s
+from core.signal.pair import moving_mean
+from core.signal.tracks import BLOCK_S, is_heard, nominal_step_s
 
 WINDOW_S = 0.5
 MAX_SPREAD_RAD_S = 0.06  # sway and trembling of a standing person; a step is ten times that

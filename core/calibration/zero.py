@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from core.rotations import joint_frame, wrap
 from core.samples import FloatArray
+from core.signal.rotations import joint_frame, wrap
 
 
 def standing_twist(down_1: FloatArray, down_2: FloatArray, axis_1: FloatArray, axis_2: FloatArray) -> float:

@@ -13,7 +13,7 @@ import numpy as np
 
 from core.body import Joint, Side, Site
 from core.samples import FloatArray, Recording, Session
-from core.tracks import nominal_step_s
+from core.signal.tracks import nominal_step_s
 
 READ_S, CARE_S = 0.005, 0.020  # of what the clocks may still be apart
 MAX_LAG_S = 0.005  # found inside of a leg: the sensors' clocks are not what they seem

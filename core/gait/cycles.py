@@ -7,7 +7,7 @@ import numpy as np
 
 from core.body import JointKind
 from core.samples import BoolArray, FloatArray
-from core.tracks import MAX_REPORTED_GAP_S, nominal_step_s
+from core.signal.tracks import MAX_REPORTED_GAP_S, nominal_step_s
 
 POINTS = 101
 

@@ -26,10 +26,10 @@ from core.gait.crossings import Onset, first_crossing, last_crossing, onset
 from core.gait.foot import FootMotion, follow
 from core.gait.rolling import LANDING_SHARES, LEAST_SWINGS, landing_marks, leaving_marks, sharpest, timed_by
 from core.gait.sole import SoleTravel, travel_of
-from core.pair import OrientedTrack
-from core.robust import robust_sd
 from core.samples import BoolArray, FloatArray, IntArray
-from core.tracks import MAX_REPORTED_GAP_S
+from core.signal.pair import OrientedTrack
+from core.signal.robust import robust_sd
+from core.signal.tracks import MAX_REPORTED_GAP_S
 
 TOE_OFF_SHARE = 0.88
 CONTACT_SHARE = 0.69

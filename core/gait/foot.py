@@ -11,8 +11,8 @@ from itertools import pairwise
 import numpy as np
 from scipy.signal import find_peaks
 
-from core.pair import OrientedTrack, moving_mean
 from core.samples import FloatArray, IntArray
+from core.signal.pair import OrientedTrack, moving_mean
 
 GRAVITY_M_S2 = 9.81
 CALM_RAD_S, CALM_M_S2 = 0.3, 0.6  # how much a foot still moves in the middle of an ordinary stance

@@ -7,8 +7,8 @@ patient who stands with the shank 5 degrees forward these figures put it 5 degre
 
 import numpy as np
 
-from core.rotations import joint_frame, wrap
 from core.samples import FloatArray
+from core.signal.rotations import joint_frame, wrap
 
 
 def lean_about(axis: FloatArray, up: FloatArray) -> FloatArray:

@@ -38,7 +38,7 @@ from core.gait.live_motion import LiveMotion, Travelled, Vector, dot, speeds_of,
 from core.gait.phases import Phase
 from core.gait.strides import MAX_STRIDE_S
 from core.samples import FloatArray
-from core.tracks import MAX_REPORTED_GAP_S
+from core.signal.tracks import MAX_REPORTED_GAP_S
 
 Sample = tuple[float, float]  # time, rate
 

@@ -8,8 +8,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from core.gait.crossings import first_crossing, last_crossing
-from core.robust import robust_sd
 from core.samples import BoolArray, FloatArray
+from core.signal.robust import robust_sd
 
 LEAVING_SHARE = 0.2  # of the lowest pitch on leaving: where its passing is sharp
 LANDING_SHARES = (0.25, 0.5)  # and of the extreme on landing; the first serves heels that land first

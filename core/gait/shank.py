@@ -11,9 +11,9 @@ from scipy.signal import find_peaks
 from core.gait.crossings import first_crossing
 from core.gait.events import SD_S, SOURCES, EventSource, FootEvents
 from core.gait.foot import MOVING_RAD_S
-from core.pair import OrientedTrack
-from core.rotations import matrix_from_quaternion
 from core.samples import FloatArray, IntArray
+from core.signal.pair import OrientedTrack
+from core.signal.rotations import matrix_from_quaternion
 
 SMOOTH_S = 0.05  # soft tissue rings at 9 Hz and more
 MIN_SWING_RATE_RAD_S = 0.8

@@ -13,8 +13,8 @@ from itertools import pairwise
 import numpy as np
 
 from core.body import Side
-from core.robust import robust_sd
 from core.samples import FloatArray, IntArray
+from core.signal.robust import robust_sd
 
 LEAST_CLIMB_M = 0.1  # steps of stairs rise by 0.14 to 0.2 m
 LEAST_SLOPE = 0.125  # ramps rise by up to 1 in 8, stairs by half; the first swing onto them comes from the level floor

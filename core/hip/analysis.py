@@ -15,7 +15,7 @@ from core.hip.pelvis import hip_parameters, pelvis_parameters, rotation_of, turn
 from core.hip.results import ClockStatus, LegClock
 from core.results import RecordingAnalysis, SideGait
 from core.samples import FloatArray, Recording, RecordingKind
-from core.sensors import SensorTracks
+from core.signal.sensors import SensorTracks
 
 
 @dataclass(frozen=True, slots=True)

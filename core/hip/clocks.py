@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from core.angles.measure import pairs_of
 from core.body import Side, Site, hip_of
 from core.gait.clocks import stamps_residual_s
 from core.hip.leg_clock import (
@@ -15,9 +16,8 @@ from core.hip.leg_clock import (
     thigh_clock,
 )
 from core.hip.results import MIN_APPLIED_S, ClockStatus, LegClock
-from core.measure import pairs_of
 from core.samples import Recording
-from core.sensors import SensorTracks
+from core.signal.sensors import SensorTracks
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from core.rotations import cross, turn_about_vertical
 from core.samples import FloatArray
+from core.signal.rotations import cross, turn_about_vertical
 
 
 def segment_frame(up: FloatArray, left: FloatArray) -> FloatArray:

@@ -22,10 +22,10 @@ from core.calibration.coincidence import (
     turned_about_vertical,
 )
 from core.calibration.joint_axis import heading_prior
-from core.datasets import Datasets, gather, knot_positions, moving_indices
-from core.pair import Pair
-from core.rotations import wrap
 from core.samples import FloatArray
+from core.signal.datasets import Datasets, gather, knot_positions, moving_indices
+from core.signal.pair import Pair
+from core.signal.rotations import wrap
 
 SAMPLES_PER_S = 20.0  # of motion below 4 Hz
 MOST_SAMPLES, SCANNED_SAMPLES = 1500, 240

@@ -11,8 +11,8 @@ import numpy as np
 from core.calibration.coincidence import distal_terms
 from core.hip.heading import Forces, fit_knots, forces_of, mean_cost, scan_heading
 from core.hip.results import ClockStatus, LegClock
-from core.pair import Pair
 from core.samples import FloatArray
+from core.signal.pair import Pair
 
 SEARCH_S, COARSE_S, FINE_S = 0.150, 0.025, 0.005
 MIN_MOVING_S, LONG_S = 20.0, 40.0

@@ -5,19 +5,19 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from core.angles.measure import pairs_of, place, unwrap_over_gaps
 from core.body import Joint, Side, Site, hip_of, knee_of
+from core.calibration.validity import in_force
 from core.hip.clocks import HipClocks
 from core.hip.frames import heading_of, hip_cardan, pitch_and_roll, seen_from_pelvis, segment_frame
 from core.hip.heading import HipFit, fit_hip
 from core.hip.results import HipAngle, HipIdentification, PelvisAngles
-from core.measure import pairs_of, place, unwrap_over_gaps
-from core.pair import Pair
 from core.results import JointCalibration
-from core.rotations import wrap
 from core.samples import FloatArray, Recording, RecordingKind
-from core.sensors import SensorTracks
-from core.tracks import Block, at_positions
-from core.validity import in_force
+from core.signal.pair import Pair
+from core.signal.rotations import wrap
+from core.signal.sensors import SensorTracks
+from core.signal.tracks import Block, at_positions
 
 MAX_3D_SD_RAD = np.deg2rad(6.0)
 MIN_MARGIN, MAX_DISAGREEMENT = 1.5, 0.2

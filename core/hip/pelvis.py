@@ -8,9 +8,9 @@ from scipy.ndimage import gaussian_filter1d
 from core.body import Side
 from core.gait.strides import Strides
 from core.hip.results import HipAngle, PelvisAngles, PelvisTurn
-from core.pair import moving_mean
 from core.samples import FloatArray
-from core.tracks import nominal_step_s
+from core.signal.pair import moving_mean
+from core.signal.tracks import nominal_step_s
 
 TURN_RAD_S = np.deg2rad(15.0)  # about the vertical, below
 TURN_HZ = 1.0

@@ -18,11 +18,11 @@ from core.live.integral import BIAS_RAD_S, BIAS_WALK_RAD_S, Integral
 from core.live.joint_frames import JointFrames, JointGeometry
 from core.live.orientation import OrientedSamples
 from core.live.pairing import NO_PAIRS, PairedSamples, Pairing
-from core.pair import MOVING_RAD_S, MOVING_WINDOW_S
 from core.results import AxisSource, JointCalibration
-from core.robust import robust_sd
-from core.rotations import wrap
 from core.samples import FloatArray, IntArray
+from core.signal.pair import MOVING_RAD_S, MOVING_WINDOW_S
+from core.signal.robust import robust_sd
+from core.signal.rotations import wrap
 
 BEAT_S = 0.1  # what moves slowly is looked at once in this time, on the proximal grid
 WITNESS_STEP_S = 0.05

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.robust import robust_sd
-from core.rotations import wrap
 from core.samples import FloatArray
+from core.signal.robust import robust_sd
+from core.signal.rotations import wrap
 
 MEMORY = 100  # looks whose scatter says what a look is worth
 MIN_LOOKS = 20

@@ -21,9 +21,9 @@ from core.calibration.joint_centre import IN_STEP_M, MIN_SCALE_M_S2, MIN_SD_HING
 from core.live.heading_profile import HeadingProfile, profile_headings
 from core.live.orientation import OrientedSamples
 from core.live.sample_sets import NODE_S, SPACING_S, SetCollector, Sets, parabola
-from core.pair import MOVING_RAD_S
-from core.robust import robust_sd
 from core.samples import FloatArray
+from core.signal.pair import MOVING_RAD_S
+from core.signal.robust import robust_sd
 
 MIN_SETS = 10  # a second of movement; before, nothing is known
 REFIT_SETS, SELDOM_SETS = 10, 20  # the best hypothesis is found anew each second, later each other second

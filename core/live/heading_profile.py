@@ -13,8 +13,8 @@ from core.calibration.coincidence import BIAS_PRIOR_M_S2, CENTRE_PRIOR_M, SCALE_
 from core.calibration.identify import ACCELERATION_COST_FLOOR, RIVAL_HEADING_RAD
 from core.calibration.joint_axis import NEUTRAL_SCALE_RAD, RATE_SCALE_RAD_S
 from core.live.sample_sets import Sets, parabola
-from core.rotations import cross_matrix, wrap
 from core.samples import FloatArray
+from core.signal.rotations import cross_matrix, wrap
 
 STEP_RAD = np.deg2rad(7.5)
 HEADINGS = np.arange(0.0, 2 * np.pi, STEP_RAD)

@@ -27,9 +27,9 @@ from core.live.hip_heading import HipHeadingState
 from core.live.joint_frames import orientation_map
 from core.live.orientation import OrientedSamples
 from core.live.pairing import PairedSamples, Pairing
-from core.pair import MOVING_RAD_S
-from core.rotations import wrap
 from core.samples import ComplexArray, FloatArray
+from core.signal.pair import MOVING_RAD_S
+from core.signal.rotations import wrap
 
 BEAT_S = 0.5  # heading and posture are looked at once in this time, on the pelvis's grid
 BEHIND_S = 1.5  # the heading of an instant is known by then, however the samples were cut into blocks

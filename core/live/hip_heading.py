@@ -14,9 +14,9 @@ from core.calibration.coincidence import BIAS_PRIOR_M_S2, CENTRE_PRIOR_M, GRAVIT
 from core.hip.heading import MIN_MOVING_S, RIVAL_RAD, SCAN_RAD, SD_FACTOR
 from core.hip.measure import MAX_3D_SD_RAD, MAX_DISAGREEMENT, MIN_MARGIN
 from core.live.joint_force import NO_FORCES, SPACING_S, FeltForces, joined_forces
-from core.pair import MOVING_RAD_S, MOVING_WINDOW_S
-from core.rotations import wrap
 from core.samples import FloatArray
+from core.signal.pair import MOVING_RAD_S, MOVING_WINDOW_S
+from core.signal.rotations import wrap
 
 PER_BATCH = 20  # instants: the heading is looked at once a second
 MEMORY_S = 30.0  # of movement: two orientation filters part by a degree or two in it

@@ -11,10 +11,10 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from core.live.pairing import PairedSamples
-from core.pair import angular_acceleration, lever_matrix
 from core.results import JointCalibration
-from core.rotations import in_plane, joint_frame, wrap
 from core.samples import ComplexArray, FloatArray
+from core.signal.pair import angular_acceleration, lever_matrix
+from core.signal.rotations import in_plane, joint_frame, wrap
 
 
 def frame_map(axis: FloatArray) -> ComplexArray:

@@ -7,10 +7,10 @@ from enum import StrEnum
 import numpy as np
 
 from core.calibration.lag import find_lag
-from core.datasets import gather, moving_indices
 from core.live.orientation import OrientedSamples, joined
 from core.live.pairing import PairedSamples, Pairing, joined_rows
-from core.pair import FAST_RAD_S, pair_of
+from core.signal.datasets import gather, moving_indices
+from core.signal.pair import FAST_RAD_S, pair_of
 
 KEPT_LOOKS = 4
 SAMPLES = 150

@@ -1,6 +1,6 @@
 """Orientation of each sensor as its samples come in, by the causal filter VQF, without magnetometer.
 
-VQF as in `core.orientation` (Laidig & Seel 2023, doi 10.1016/j.inffus.2022.10.014), whose offline form knows the
+VQF as in `core.signal.orientation` (Laidig & Seel 2023, doi 10.1016/j.inffus.2022.10.014), whose offline form knows the
 future. Two of its settings are our own, measured on simulated walks against the offline result.
 """
 
@@ -11,8 +11,8 @@ import numpy as np
 from vqf import VQF
 
 from core.live.streams import EvenSamples
-from core.orientation import interval_rates
 from core.samples import BoolArray, FloatArray, IntArray, RateKind
+from core.signal.orientation import interval_rates
 
 TAU_ACC_S = 2.0  # walking needs more than a step; with the customary 3 s the ankle is off by a third more
 # Of the bias that standing gave, for warming up; with more, a walk from its first second on pulls the bias away.

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.live.orientation import NOTHING, OrientedSamples, joined
-from core.pair import FAST_RAD_S, MOVING_RAD_S, MOVING_WINDOW_S, lever_matrix
-from core.rotations import cross_matrix
 from core.samples import FloatArray
+from core.signal.pair import FAST_RAD_S, MOVING_RAD_S, MOVING_WINDOW_S, lever_matrix
+from core.signal.rotations import cross_matrix
 
 SPACING_S = 0.1
 # Rates are read this far apart: 30 ms damp their noise in angular accelerations tenfold against neighbouring samples

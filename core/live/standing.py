@@ -13,7 +13,7 @@ import numpy as np
 
 from core.calibration.rest import MAX_ACC_SPREAD_M_S2, MAX_BIAS_RAD_S, MAX_SPREAD_RAD_S, Rest, rest_of
 from core.samples import BoolArray, FloatArray, ImuBlock
-from core.tracks import is_possible
+from core.signal.tracks import is_possible
 
 WANTED_S = 3.0
 WINDOW_S = 0.25  # how soon a movement is told

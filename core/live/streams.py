@@ -1,4 +1,4 @@
-"""One sensor's samples on an even clock as they come in: the rules of `core.tracks`, causally."""
+"""One sensor's samples on an even clock as they come in: the rules of `core.signal.tracks`, causally."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.samples import BoolArray, FloatArray, ImuBlock, IntArray
-from core.tracks import (
+from core.signal.tracks import (
     MAX_BRIDGED_GAP_S,
     MAX_FORCE_M_S2,
     MAX_HELD_S,

@@ -17,8 +17,8 @@ from core.gait.strides import MAX_STRIDE_S
 from core.live.angle import AngleSamples
 from core.live.walking import LiveFoot, WalkingState
 from core.samples import FloatArray
+from core.signal.tracks import MAX_REPORTED_GAP_S
 from core.targets import TargetMeasure
-from core.tracks import MAX_REPORTED_GAP_S
 
 # A walking knee falls by as much within 0.04 s of its peak; noise and its filters' steps stay below a tenth of it.
 PASSED_RAD = np.deg2rad(2.0)

@@ -9,6 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from core.body import Joint, Segment, Side, Site, ankle_of, knee_of
+from core.calibration.strap import WINDOW_S, Slip, Turns, slips, turns_over
 from core.gait.live import FootEvent, LiveEvent, LiveEvents, PhaseChange
 from core.gait.phases import Phase
 from core.hip.results import HipIdentification
@@ -20,10 +21,9 @@ from core.live.knee_check import KneeCheck
 from core.live.orientation import NOTHING, OrientedSamples
 from core.live.pairing import PairedSamples, joined_rows
 from core.live.sensors import LiveSensor, LiveSensors
-from core.pair import pair_of
 from core.results import JointCalibration
 from core.samples import FloatArray, ImuBlock
-from core.strap import WINDOW_S, Slip, Turns, slips, turns_over
+from core.signal.pair import pair_of
 
 KEPT_WINDOWS = 24  # two minutes say what is usual
 MIN_SHARE_OF_WINDOW = 0.8

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.body import LEG_SEGMENTS, LEG_SITES, Segment, Side, Site, ankle_of, knee_of
-from core.pair import MOVING_WINDOW_S, OrientedTrack, moving_mean
 from core.placement.arrangements import Arrangement, Arrangements, Neighbours, Stature, neighbours_in_steps, statures
 from core.placement.smoothed_tracks import Tracks, smoothed_in_steps
 from core.placement.steps import at_once
 from core.samples import FloatArray
+from core.signal.pair import MOVING_WINDOW_S, OrientedTrack, moving_mean
 
 MIN_MARGIN = 1.7  # wrong sensors at a joint had 1.5 at most, in motions of two seconds; right ones seldom under 2
 MIN_UPRIGHTNESS = 0.5  # flatter, the patient lay, and the vertical does not tell which end is up

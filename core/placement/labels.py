@@ -17,7 +17,7 @@ from core.placement.chains import MIN_MARGIN, MIN_UPRIGHTNESS
 from core.placement.smoothed_tracks import Tracks, smoothed_in_steps
 from core.placement.steps import at_once
 from core.samples import FloatArray, Recording, RecordingKind
-from core.sensors import SensorTracks
+from core.signal.sensors import SensorTracks
 
 SHARED_COST = 0.2  # two sensors that disagree on less may share a joint, though in a small motion others may as well
 

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.placement.smoothed_tracks import SmoothedTrack
-from core.rotations import turn_about_vertical
 from core.samples import FloatArray, IntArray
+from core.signal.rotations import turn_about_vertical
 
 HEADING_STEP_RAD = np.deg2rad(30.0)  # from so near the exact heading is found in closed form
 SCALE_M_S2 = 0.5

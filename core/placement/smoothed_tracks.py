@@ -10,10 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.joint_force import JointForce
-from core.pair import FAST_RAD_S, OrientedTrack
+from core.calibration.joint_force import JointForce
 from core.samples import FloatArray, IntArray
-from core.tracks import at_positions
+from core.signal.pair import FAST_RAD_S, OrientedTrack
+from core.signal.tracks import at_positions
 
 STEP_S = 0.05
 MEAN_S = 0.15  # twice over: longer than tissue rings, shorter than a leg swings

@@ -6,9 +6,9 @@ angle about the proximal joint axis from the distal to the proximal x axis, the 
 
 import numpy as np
 
-from core.pair import Pair, lever_acceleration
-from core.rotations import in_plane, joint_frame, wrap
 from core.samples import FloatArray
+from core.signal.pair import Pair, lever_acceleration
+from core.signal.rotations import in_plane, joint_frame, wrap
 
 MIN_IN_PLANE_M_S2 = 2.0  # below, the direction of the shifted acceleration means nothing
 DEFAULT_TAU_S = 2.0

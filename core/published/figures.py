@@ -8,13 +8,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.datasets import Datasets
-from core.pair import Pair
 from core.published.angles import angle_from_accelerations, angle_from_rates, fused_angle
 from core.published.signs import MIN_IN_PLANE_RAD_S, USED_SHARE
-from core.robust import robust_sd
-from core.rotations import angle_between, in_plane, joint_frame, wrap
 from core.samples import ComplexArray, FloatArray
+from core.signal.datasets import Datasets
+from core.signal.pair import Pair
+from core.signal.robust import robust_sd
+from core.signal.rotations import angle_between, in_plane, joint_frame, wrap
 
 GRID_STEP_RAD = np.deg2rad(5.0)  # finer than any valley of eq 6, which is a sum of smooth terms
 CHUNK = 500  # data sets at a time, so that long recordings need no more memory than short ones

@@ -9,13 +9,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.datasets import Datasets, moving_indices
-from core.pair import Pair
 from core.published.joint_axis import constraint, identify_axes
 from core.published.joint_centre import identify_centres
 from core.published.signs import signs_match
-from core.robust import robust_sd
 from core.samples import FloatArray
+from core.signal.datasets import Datasets, moving_indices
+from core.signal.pair import Pair
+from core.signal.robust import robust_sd
 
 DATA_SET_STEP_S = 0.1  # "about every tenth of a second" (eq 2)
 

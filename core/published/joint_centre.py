@@ -5,8 +5,8 @@ Seel, Raisch and Schauer 2014, doi 10.3390/s140406891, section 3.1.3, equations 
 
 import numpy as np
 
-from core.pair import lever_matrix
 from core.samples import FloatArray
+from core.signal.pair import lever_matrix
 
 MAX_STEPS = 30
 CONVERGED_M = 1e-7

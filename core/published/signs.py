@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from core.rotations import in_plane
 from core.samples import FloatArray
+from core.signal.rotations import in_plane
 
 WINDOW_S = 0.5  # in which the joint hardly bends
 MIN_IN_PLANE_RAD_S = 0.2  # less movement than this draws no curve

@@ -14,15 +14,15 @@ import numpy as np
 
 from core.body import Segment, Side, Site
 from core.live.orientation import NOTHING, OrientedSamples, joined
-from core.orientation import oriented
-from core.pair import OrientedTrack
 from core.samples import FloatArray, RateKind
+from core.signal.orientation import oriented
+from core.signal.pair import OrientedTrack
+from core.signal.tracks import Track
 from core.timed.found import NotMeasured, TimedTest
 from core.timed.protocols import DEFINITIONS, KeyMeaning, PlannedTest, TimedProtocol
 from core.timed.seat import NO_SEAT, STEP_S, SeatMotions, motions_of_tilt
 from core.timed.timing import origin_of, timed
 from core.timed.way import BodyWay, FootSwings, HeardFoot, moving_pieces, swings_of, way_of
-from core.tracks import Track
 
 LOOK_S = 0.25  # between one look and the next
 SETTLED_S = 3.0  # a swing that ended so long ago has another stance and more behind it: nothing changes it

@@ -14,7 +14,7 @@ import numpy as np
 
 from core.body import Segment, Side, Site
 from core.samples import BoolArray, FloatArray, Recording, RecordingKind
-from core.sensors import SensorTracks
+from core.signal.sensors import SensorTracks
 from core.timed.found import Rise
 
 STEP_S = 0.01

@@ -11,7 +11,7 @@ import numpy as np
 
 from core.gait.stairs import FootClimbs, on_stairs
 from core.samples import Recording
-from core.sensors import SensorTracks
+from core.signal.sensors import SensorTracks
 from core.timed.found import NotMeasured, StairStride, TimedPart, TimedTest
 from core.timed.protocols import DEFINITIONS, Definition, PlannedTest
 from core.timed.seat import NO_SEAT, SeatMotions, seat_motions

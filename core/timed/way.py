@@ -15,11 +15,11 @@ from core.body import Segment, Side, Site
 from core.gait.events import FootEvents, detect_events
 from core.gait.foot import FootMotion, follow
 from core.gait.strides import MAX_STRIDE_S
-from core.pair import OrientedTrack, moving_mean
+from core.gait.walking import prosthetic_sides
 from core.samples import BoolArray, FloatArray, Recording
-from core.sensors import SensorTracks
+from core.signal.pair import OrientedTrack, moving_mean
+from core.signal.sensors import SensorTracks
 from core.timed.found import Silence, Turn
-from core.walking import prosthetic_sides
 
 STEP_S = 0.02
 SILENCE_S = 0.3  # shorter gaps are bridged or cost no step

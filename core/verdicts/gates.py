@@ -14,7 +14,6 @@ from core.calibration.same_joint import most_disagreement
 from core.gait.clocks import CARE_S, READ_S, ClockGate, LegClocks
 from core.gait.cycles import mean_cycle, range_of_cycles
 from core.hip.results import HipIdentification
-from core.norms import MIN_STRIDES_FOR_MEAN, MIN_STRIDES_FOR_SD
 from core.results import Analysis, JointCalibration, RecordingAnalysis, SideGait, ZeroKind
 from core.samples import FloatArray, RecordingKind
 from core.verdicts.model import (
@@ -29,6 +28,7 @@ from core.verdicts.model import (
     Verdicts,
     assess,
 )
+from core.verdicts.norms import MIN_STRIDES_FOR_MEAN, MIN_STRIDES_FOR_SD
 from core.verdicts.sample_gates import clipped, lost, off_rate
 
 

@@ -12,8 +12,8 @@ from enum import StrEnum
 from typing import NamedTuple
 
 from core.gait.cycles import EXCURSIONS
-from core.norms import MIN_STRIDES_FOR_MEAN, MIN_STRIDES_FOR_SD
 from core.verdicts.model import Assessment
+from core.verdicts.norms import MIN_STRIDES_FOR_MEAN, MIN_STRIDES_FOR_SD
 from core.verdicts.stride_means import MeanOfStrides
 
 Z95 = 1.96

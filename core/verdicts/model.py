@@ -30,7 +30,7 @@ class GateReason:
     """One gate that was not passed: what was found, what would have passed, both in `unit`.
 
     `value` and `limit` are None where the evidence is no figure. `verdict` is what this gate alone decides. The
-    sentence of each gate stands in `app.gates_in_words`.
+    sentence of each gate stands in `app.wording.verdicts`.
     """
 
     gate: str

@@ -5,9 +5,9 @@ from collections.abc import Collection, Iterator
 import numpy as np
 
 from core.body import Side, Site
-from core.reception import LEAST_PAUSE_S, is_half
 from core.results import RecordingAnalysis
 from core.samples import FloatArray
+from core.signal.reception import LEAST_PAUSE_S, is_half
 from core.verdicts.model import GateReason, Verdict
 
 Limits = tuple[float, float]

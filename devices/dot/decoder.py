@@ -2,7 +2,7 @@
 
 How the host's clock follows from a file's is known by its orders alone, for nothing arrived as it was taken: its first
 sample came after it was told to begin, its last before it said that it had ended. Sensors on one clock bound it
-together, to some hundredths of a second (`devices.shared_clock`); to one another they are as exact as their clock.
+together, to some hundredths of a second (`clocks/shared_clock.py`); to one another they are as exact as their clock.
 """
 
 from collections.abc import Mapping

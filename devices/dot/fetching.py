@@ -28,7 +28,7 @@ from devices.dot.messages import (
 from devices.dot.samples import CHOSEN, MOST_SAMPLES, FileFramer
 from devices.dot.sensor import DotRefusedError, DotSensor
 from devices.live import Keep, SourceLostError
-from devices.notifications import framed
+from devices.transport.notifications import framed
 
 LOOKS = 2  # behind the last sample: the one that comes again may be lost again
 OVERTAKEN_S = 0.1  # so long after its end something may come that the end has overtaken

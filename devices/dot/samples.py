@@ -1,7 +1,7 @@
 """Samples of a Movella DOT: what its modes send, and how both its streams and its files lie in a journal.
 
-Everything that arrives is kept as it came (`devices/notifications.py`). Stamps are the sensor's own microseconds, which
-begin anew every 71 minutes; there is no counter, so that loss shows in the stamps.
+Everything that arrives is kept as it came (`transport/notifications.py`). Stamps are the sensor's own microseconds,
+which begin anew every 71 minutes; there is no counter, so that loss shows in the stamps.
 """
 
 import math
@@ -9,11 +9,11 @@ import struct
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from devices.clock import Unwrapping
+from devices.clocks.clock import Unwrapping
 from devices.dot.messages import Characteristic, DotMessage, DotMessageError, DotNotice
-from devices.notifications import NotificationFrames
 from devices.source import SourceInfo
 from devices.stream import Heard, Row
+from devices.transport.notifications import NotificationFrames
 
 DRIVER, VERSION = "movella-dot", "1"
 KNOWN = frozenset(Characteristic)

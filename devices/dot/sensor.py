@@ -10,7 +10,6 @@ from collections import deque
 from collections.abc import Callable
 from typing import TypeVar
 
-from devices.bluetooth import Announced, BluetoothLink, Radio
 from devices.dot.messages import (
     COMPANY,
     HEADING_RESET,
@@ -35,7 +34,8 @@ from devices.dot.messages import (
 )
 from devices.dot.samples import FULL, MODES, PLAIN, StreamMode
 from devices.live import SourceLostError, SourceRefusedError
-from devices.notifications import framed
+from devices.transport.bluetooth import Announced, BluetoothLink, Radio
+from devices.transport.notifications import framed
 
 Said = TypeVar("Said")
 

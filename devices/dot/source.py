@@ -9,8 +9,7 @@ from enum import StrEnum
 import numpy as np
 
 from core.samples import ImuBlock, RecordingKind
-from devices.bluetooth import Radio, Tick
-from devices.channels import READ_S
+from devices.clocks.live_clock import LiveClock, LiveLine
 from devices.dot.fetching import reached
 from devices.dot.memory import RECORD_HZ
 from devices.dot.messages import EMULATED
@@ -28,9 +27,10 @@ from devices.dot.synchronising import (
     synchronise,
 )
 from devices.live import Keep, SensorDetails, SourceLostError, SourceRefusedError, SourceRestartedError
-from devices.live_clock import LiveClock, LiveLine
 from devices.quiet import Quiet
 from devices.source import SourceInfo
+from devices.transport.bluetooth import Radio, Tick
+from devices.transport.channels import READ_S
 
 LIVE_HZ = 60
 GENERAL = 0

@@ -17,7 +17,7 @@ from bleak.backends.descriptor import BleakGATTDescriptor
 from bleak.backends.service import BleakGATTService, BleakGATTServiceCollection
 from bleak.exc import BleakError
 
-from devices.bluetooth import Announced
+from devices.transport.bluetooth import Announced
 
 INTERVAL_S = 0.015  # of a connection
 CONNECTS_S = 0.3

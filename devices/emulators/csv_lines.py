@@ -2,8 +2,8 @@
 
 from collections.abc import Callable, Sequence
 
-from devices.csv_serial import Columns
-from devices.host_clock import host_time_ns
+from devices.clocks.host_clock import host_time_ns
+from devices.drivers.csv_serial import Columns
 
 Motion = Callable[[int], Sequence[float]]
 """Rate in deg/s (3) and force in g (3) of the sample of this number."""

@@ -7,10 +7,10 @@ import numpy as np
 
 from core.body import Site
 from core.samples import FloatArray
+from devices.clocks.host_clock import host_time_ns
 from devices.emulators.bluetooth import Air
 from devices.emulators.dot import EmulatedDot
 from devices.emulators.patient import EmulatedPatient
-from devices.host_clock import host_time_ns
 
 CORRECTED = 0.02  # share of the tilt that each sample's force corrects
 

@@ -1,6 +1,7 @@
 """A patient who is not there wears emulated sensors, and does what is asked.
 
-The motion is that of `devices.walker`; each sensor measures it whenever its own clock says so, and the truth is known.
+The motion is that of `simulation/walker.py`; each sensor measures it whenever its own clock says so. The truth is
+known.
 """
 
 from collections.abc import Callable, Sequence
@@ -11,20 +12,20 @@ import numpy as np
 
 from core.body import LEG_SITES, Joint, Site
 from core.samples import FloatArray, ImuBlock, Recording, RecordingKind
+from devices.clocks.host_clock import host_time_ns
+from devices.drivers.shimmer3 import EMULATED as SHIMMER3
+from devices.drivers.shimmer3 import calibrating
+from devices.drivers.witmotion import EMULATED as WITMOTION
+from devices.drivers.ximu3 import EMULATED as XIMU3
+from devices.drivers.ximu3 import G
+from devices.drivers.xsens_mti import EMULATED as XSENS_MTI
 from devices.emulators.csv_lines import LineVoice
 from devices.emulators.shimmer3 import ACC_CALIBRATION, GYR_CALIBRATION, Shimmer3Voice
 from devices.emulators.transports import Voice
 from devices.emulators.witmotion import WitVoice
 from devices.emulators.ximu3 import Ximu3Voice
 from devices.emulators.xsens_mti import MtiVoice
-from devices.host_clock import host_time_ns
-from devices.shimmer3 import EMULATED as SHIMMER3
-from devices.shimmer3 import calibrating
-from devices.walker import FreeMotion, Motion, SimulatedSession, Standing, Walk, WalkerSettings, simulate
-from devices.witmotion import EMULATED as WITMOTION
-from devices.ximu3 import EMULATED as XIMU3
-from devices.ximu3 import G
-from devices.xsens_mti import EMULATED as XSENS_MTI
+from devices.simulation.walker import FreeMotion, Motion, SimulatedSession, Standing, Walk, WalkerSettings, simulate
 
 KINDS = ("ximu3", "witmotion", "csv", "xsens-mti", "shimmer3")
 AVERAGING, AVERAGED_OVER = frozenset({"xsens-mti"}), 6  # sensors that tell how far they turned since the last sample

@@ -3,8 +3,8 @@
 import struct
 from collections.abc import Callable, Sequence
 
-from devices.host_clock import host_time_ns
-from devices.shimmer3 import (
+from devices.clocks.host_clock import host_time_ns
+from devices.drivers.shimmer3 import (
     ACC,
     BATTERY,
     CALIBRATION_SHAPE,

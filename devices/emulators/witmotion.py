@@ -3,8 +3,8 @@
 from collections.abc import Callable, Sequence
 from datetime import datetime, timedelta
 
-from devices.host_clock import host_time_ns
-from devices.witmotion import (
+from devices.clocks.host_clock import host_time_ns
+from devices.drivers.witmotion import (
     ANGLES,
     AXES,
     CLOCK,

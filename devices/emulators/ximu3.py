@@ -4,8 +4,8 @@ import json
 from collections.abc import Callable, Sequence
 from struct import pack
 
-from devices.host_clock import host_time_ns
-from devices.ximu3 import BASE_HZ, EMULATED, END, stuffed
+from devices.clocks.host_clock import host_time_ns
+from devices.drivers.ximu3 import BASE_HZ, EMULATED, END, stuffed
 
 Motion = Callable[[int], Sequence[float]]
 """Rate in deg/s (3) and force in g (3) of the sample of this number."""

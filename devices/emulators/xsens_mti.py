@@ -3,9 +3,9 @@
 import struct
 from collections.abc import Callable, Sequence
 
-from devices.host_clock import host_time_ns
-from devices.xbus import REQUESTS, Item, Message, Mid, XbusFramer, item, message
-from devices.xsens_mti import ALWAYS, EMULATED, FINE_HZ, SETTING
+from devices.clocks.host_clock import host_time_ns
+from devices.drivers.xbus import REQUESTS, Item, Message, Mid, XbusFramer, item, message
+from devices.drivers.xsens_mti import ALWAYS, EMULATED, FINE_HZ, SETTING
 
 Motion = Callable[[int], Sequence[float]]
 """Rate in rad/s (3), force in m/s2 (3) and orientation (4) of the sample of this number."""

@@ -8,7 +8,7 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
-from devices.csv_serial import FORCE_UNITS, RATE_UNITS
+from devices.drivers.csv_serial import FORCE_UNITS, RATE_UNITS
 from devices.files.refusal import FileRefusedError
 
 

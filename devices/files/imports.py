@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from core.body import Site
-from core.clock_jumps import jump_of, spans_of
 from core.findings import Finding, Severity
 from core.samples import ImuBlock, Recording, RecordingKind, SensorInfo, Session
+from core.signal.clock_jumps import jump_of, spans_of
 from devices.files.clock_repair import SPLIT_IT
 from devices.files.refusal import FileRefusedError, quoted
 from devices.files.site_files import sensor_changes

@@ -1,6 +1,6 @@
 """Streams of an Xsens MTi kept as they came: bytes of the Xbus protocol, one file for each sensor.
 
-What a message holds is read as by the live driver (`devices.xbus`), which was held against recorded streams and another
+What a message holds is read as by the live driver, `drivers/xbus.py`, held against recorded streams and another
 program's reading of them. Times are those of the sensor's fine clock, else of its packet counter. Rates are means over
 the interval before their stamps. Where rates or acceleration were not sent, they are made of what was: the turns and
 velocities of each interval, or the orientation, with gravity added to free acceleration; the latter two are said.
@@ -15,14 +15,19 @@ from scipy.spatial.transform import Rotation
 
 from core.findings import Finding, Severity
 from core.samples import BoolArray, FloatArray, ImuBlock, RateKind, SensorInfo
-from devices.files.clock_repair import FileClock, RepairedClock, repaired
-from devices.files.magnitudes import check_magnitudes
-from devices.files.orientation_rates import Numbers, derive_rates, with_gravity
-from devices.files.own_clocks import with_own_clocks
-from devices.files.refusal import FileRefusedError
-from devices.files.trial import ImportedSensor, ImportedTrial, read_each
-from devices.xbus import AXES_MASK, ITEM_MASK, NORTH_EAST_DOWN, PREAMBLE, Item, Items, Message, Mid, XbusFramer, values
-from devices.xsens_mti import (
+from devices.drivers.xbus import (
+    AXES_MASK,
+    ITEM_MASK,
+    NORTH_EAST_DOWN,
+    PREAMBLE,
+    Item,
+    Items,
+    Message,
+    Mid,
+    XbusFramer,
+    values,
+)
+from devices.drivers.xsens_mti import (
     COUNTER_BITS,
     DRIVER,
     FINE_BITS,
@@ -31,6 +36,12 @@ from devices.xsens_mti import (
     MOST_RAD_S,
     upward,
 )
+from devices.files.clock_repair import FileClock, RepairedClock, repaired
+from devices.files.magnitudes import check_magnitudes
+from devices.files.orientation_rates import Numbers, derive_rates, with_gravity
+from devices.files.own_clocks import with_own_clocks
+from devices.files.refusal import FileRefusedError
+from devices.files.trial import ImportedSensor, ImportedTrial, read_each
 
 OLD_DATA = 0x32  # MTData, which MTi sensors sent before MTData2
 MOST_BEFORE = 4096  # bytes of noise before the first message

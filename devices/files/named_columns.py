@@ -13,7 +13,7 @@ from scipy.spatial.transform import Rotation
 
 from core.findings import Finding, Severity
 from core.samples import BoolArray, FloatArray, ImuBlock, SensorInfo
-from devices.csv_serial import FORCE_UNITS, RATE_UNITS
+from devices.drivers.csv_serial import FORCE_UNITS, RATE_UNITS
 from devices.files.column_names import (
     SCALES,
     Quantity,

@@ -23,11 +23,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.samples import FloatArray, ImuBlock, SensorInfo
+from devices.drivers.shimmer3 import CALIBRATION_SIZE, TICK_HZ, TURN, calibrating
 from devices.files.clock_repair import FileClock, repaired, without_turns
 from devices.files.magnitudes import check_magnitudes
 from devices.files.refusal import FileRefusedError
 from devices.files.trial import ImportedSensor
-from devices.shimmer3 import CALIBRATION_SIZE, TICK_HZ, TURN, calibrating
 
 HEAD, BLOCK, STAMP = 256, 512, 9  # bytes
 PERIOD, SWITCHES, SETTINGS, BOARD, REAL_TIME, START = 0, 3, 16, 30, 44, 251

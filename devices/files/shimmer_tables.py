@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 
 from core.samples import ImuBlock, SensorInfo
-from devices.csv_serial import FORCE_UNITS, RATE_UNITS
+from devices.drivers.csv_serial import FORCE_UNITS, RATE_UNITS
 from devices.files.clock_repair import FileClock, repaired
 from devices.files.column_names import Quantity, unit_of
 from devices.files.magnitudes import check_magnitudes

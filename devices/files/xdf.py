@@ -16,6 +16,7 @@ import numpy as np
 
 from core.findings import Finding, Severity
 from core.samples import FloatArray
+from devices.drivers.lsl import sensors_of
 from devices.files.clock_repair import FileClock, repaired, steps_back
 from devices.files.column_names import XYZ, listed, sensor_columns
 from devices.files.named_columns import trial_of_tables
@@ -25,7 +26,6 @@ from devices.files.refusal import FileRefusedError
 from devices.files.trial import ImportedSensor, ImportedTrial
 from devices.files.xdf_streams import SIGNATURE, XdfStream, read_xdf
 from devices.live import SourceRefusedError
-from devices.lsl import sensors_of
 
 NOT_MEASURED = "clock_not_measured"
 LABEL_THEM = (

@@ -13,7 +13,8 @@ import numpy as np
 
 from core.findings import Finding, Severity
 from core.samples import FloatArray, ImuBlock, SensorInfo
-from devices.clock import BACK_S
+from devices.clocks.clock import BACK_S
+from devices.drivers.ximu3 import DRIVER, MODEL, G, Ximu3Framer, heard_in
 from devices.files.clock_repair import FileClock, repaired
 from devices.files.magnitudes import check_magnitudes
 from devices.files.own_clocks import with_own_clocks
@@ -21,7 +22,6 @@ from devices.files.refusal import FileRefusedError
 from devices.files.tables import read_csv
 from devices.files.trial import ImportedSensor, ImportedTrial, read_each
 from devices.stream import decoded
-from devices.ximu3 import DRIVER, MODEL, G, Ximu3Framer, heard_in
 
 INERTIAL, QUATERNION = "Inertial.csv", "Quaternion.csv"
 TIME = "Timestamp (us)"

@@ -9,7 +9,7 @@ import numpy as np
 from core.body import Site
 from core.samples import ImuBlock, Patient, Recording, RecordingKind, Session
 from devices.files.session_folder import write_session
-from devices.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
 
 SECONDS, RATE_HZ = 4, 50
 NOBODY = Patient()

@@ -4,14 +4,14 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import Any
 
-from app.reports.patient_report.request import AnalysedVisit
-from app.reports.reference_bands import NOBODY
+from app.summary.reference_bands import NOBODY
+from app.summary.request import AnalysedVisit
 from core.body import LEG_JOINTS, Joint, Side
 from core.gait.strides import Reason
-from core.norms import AgeAndHeight
 from core.results import Analysis, RecordingAnalysis
 from core.samples import RecordingKind, Session
 from core.verdicts.gates import judged
+from core.verdicts.norms import AgeAndHeight
 
 
 def recalibrated(analysis: Analysis, joints: Iterable[Joint] = LEG_JOINTS, **change: Any) -> Analysis:

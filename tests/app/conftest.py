@@ -7,9 +7,9 @@ from PySide6.QtCore import QEvent
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.pages.result_page import ResultPage
-from app.theme import ThemeNotifier, load_fonts
-from app.wording import use_language
+from app.results.result_page import ResultPage
+from app.theme.notifier import ThemeNotifier, load_fonts
+from app.wording.translation import use_language
 from tests.app.watchdog import Watchdog
 
 

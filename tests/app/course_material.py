@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from app.reports.course import Course, course_of
+from app.summary.course import Course, course_of
 from core.body import Joint, Side
 from core.results import Analysis, Calibration, Method, RecordingAnalysis, SideGait
 from core.samples import Recording

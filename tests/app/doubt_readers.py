@@ -11,8 +11,8 @@ from enum import StrEnum
 
 import pypdf
 
-from app.pages.result_page import ResultPage
-from app.reports.walk_figures import MAY_BE_MIRRORED, NO_HEIGHT, NO_ZERO, WITHHELD
+from app.results.result_page import ResultPage
+from app.summary.walk_figures import MAY_BE_MIRRORED, NO_HEIGHT, NO_ZERO, WITHHELD
 from app.widgets.figures_table import CARE_MARK
 from app.widgets.table import CellTable
 from app.widgets.table_cells import EMPTY, TextCell

@@ -3,8 +3,8 @@
 from dataclasses import replace
 from datetime import UTC, datetime
 
-from app.reports.patient_report.facts import Facts
-from app.reports.patient_report.request import AnalysedVisit, ReportRequest
+from app.summary.facts import Facts
+from app.summary.request import AnalysedVisit, ReportRequest
 from core.results import Analysis
 from core.samples import Session
 from tests.app.changed_analysis import visit_of

@@ -15,11 +15,11 @@ from typing import Any
 
 import numpy as np
 
-from app.reports.result_folder import write_results
+from app.exports.result_folder import write_results
 from core.analysis import analyse
 from core.body import Side, Site
 from core.samples import Session
-from devices.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
 
 GOLDEN = Path(__file__).parents[1] / "golden" / "six_sensors.json"
 RIGHT_LATE = dict.fromkeys((Site.RIGHT_THIGH, Site.RIGHT_SHANK, Site.RIGHT_FOOT), 0.04)

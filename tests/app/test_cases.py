@@ -14,14 +14,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app import foreign_files
-from app.cli import main
+from app.cli.main import main
+from app.importing import untrusted_files as foreign_files
 from core.body import Site
 from core.samples import ImuBlock
 from devices.files.formats import read_trial
 from devices.files.references.reading import read_reference
 from devices.files.session_folder import read_session, write_session
-from devices.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
 from tests.benchmarks.long import repeated
 
 CASES = "cases"

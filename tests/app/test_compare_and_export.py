@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from app.cli import main
-from app.compare_command import DIFFERENCES, FLAGS, _table
-from app.reports.comparison import Contrast
-from app.reports.differences import Row, comparisons_of, rows_of, without_common_condition
+from app.cli.compare import DIFFERENCES, FLAGS, _table
+from app.cli.main import main
+from app.summary.comparison import Contrast
+from app.summary.differences import Row, comparisons_of, rows_of, without_common_condition
 from core.analysis import analyse
 from core.body import Side
 from core.results import Analysis, ZeroKind
@@ -20,7 +20,7 @@ from core.verdicts.gates import judged
 from core.verdicts.measurement_error import Judgement
 from core.verdicts.quantities import PARAMETERS
 from devices.files.session_folder import read_session, write_session
-from devices.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 

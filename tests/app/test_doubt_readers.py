@@ -5,15 +5,15 @@ from datetime import UTC, datetime
 import numpy as np
 import pytest
 
-from app.pages.result_page import ResultPage
-from app.reports.patient_report.document import make_report
-from app.reports.patient_report.request import AnalysedVisit, ReportRequest
+from app.reports.patient.document import make_report
+from app.results.result_page import ResultPage
+from app.summary.request import AnalysedVisit, ReportRequest
 from core.analysis import analyse
 from core.body import Joint, Side
 from core.results import Analysis, ZeroKind
 from core.samples import Session
 from core.verdicts.quantities import QUANTITIES, QuantityClass
-from devices.walker import DEMONSTRATION, simulate
+from devices.simulation.walker import DEMONSTRATION, simulate
 from tests.app.changed_analysis import recalibrated, with_few_strides
 from tests.app.doubt_readers import Doubts, Said, said_in_report, said_on_screen
 

@@ -20,17 +20,17 @@ from fhir.resources.R4B.bundle import Bundle
 from rerun.chunk import RrdReader
 
 from app.exports.exports import Format, export_from_folder
-from app.pages.result_page import ResultPage
-from app.reports.patient_report.document import make_report
-from app.reports.patient_report.request import AnalysedVisit, ReportRequest
-from app.reports.result_folder import LOG, write_results
+from app.exports.result_folder import LOG, write_results
+from app.reports.patient.document import make_report
+from app.results.result_page import ResultPage
 from app.review.rerun_log import write_log
+from app.summary.request import AnalysedVisit, ReportRequest
 from core.analysis import analyse
 from core.body import LEG_SITES, Side, Site
 from core.results import Analysis
 from core.samples import Recording, Session
-from devices.walker import Standing, Walk, WalkerSettings, simulate
-from devices.walker_body import GaitChange
+from devices.simulation.walker import Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker_body import GaitChange
 from tests.app.doubt_readers import Said, said_in_report, said_on_screen
 
 NUMBER = (int, float)

@@ -65,7 +65,7 @@ def test_any_other_word_is_a_command(is_frozen: bool, monkeypatch: pytest.Monkey
     monkeypatch.setattr(sys, "frozen", is_frozen, raising=False)
     monkeypatch.setattr(sys, "argv", ["gaitwright", "demo"])
     monkeypatch.setattr(child, "main", lambda: pytest.fail("it is no child"))
-    monkeypatch.setattr("app.cli.main", lambda: 7)
+    monkeypatch.setattr("app.cli.main.main", lambda: 7)
     assert opening.begin() == 7
 
 
@@ -75,7 +75,7 @@ def test_other_programs_get_the_systems_libraries_and_ours_begin_anew(
 ) -> None:
     monkeypatch.setattr(sys, "frozen", True, raising=False)
     monkeypatch.setattr(sys, "argv", ["gaitwright", "demo"])
-    monkeypatch.setattr("app.cli.main", lambda: 0)
+    monkeypatch.setattr("app.cli.main.main", lambda: 0)
     monkeypatch.setenv("LD_LIBRARY_PATH", "/opt/gaitwright/_internal")
     monkeypatch.setenv("PYINSTALLER_RESET_ENVIRONMENT", "")
     if before:
@@ -87,7 +87,7 @@ def test_other_programs_get_the_systems_libraries_and_ours_begin_anew(
 
 
 def test_the_word_is_no_subcommand_and_no_option() -> None:
-    from app.cli import SUBCOMMANDS
+    from app.cli.main import SUBCOMMANDS
 
     assert child.WORD not in SUBCOMMANDS
     assert not child.WORD.startswith("-")

@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 from babel.messages.pofile import read_po
 
-from app.pages.compared_words import unit_behind
-from app.reports.measures import MEASURES
-from app.reports.patient_report.numbers_in_words import fixed, signed
-from app.wording import (
+from app.results.compared_words import unit_behind
+from app.summary.measures import MEASURES
+from app.summary.numbers_in_words import fixed, signed
+from app.wording.translation import (
     SENTENCES,
     capitalised,
     figure_text,
@@ -225,14 +225,14 @@ def test_a_fraction_has_a_comma_and_what_only_looks_like_one_its_point() -> None
 
 
 WITH_POINTS = (  # files, drawings and what a terminal prints: read by programs, or English throughout
-    *("app/batch/", "app/exports/", "app/review/", "app/charts/drawing.py", "app/charts/on_paper.py"),
+    *("app/cohort/", "app/exports/", "app/review/", "app/charts/drawing.py", "app/charts/on_paper.py"),
     *(
-        "app/reports/patient_report/trend_chart.py",
+        "app/reports/patient/trend_chart.py",
         "app/reports/agreement/printed.py",
         "app/reports/agreement/tables.py",
     ),
-    *("app/reports/csv_report.py", "app/reports/targets.py", "app/compare_command.py", "app/reports/alignments.py"),
-    "app/study/groups.py",
+    *("app/exports/csv_report.py", "app/summary/targets.py", "app/cli/compare.py", "app/summary/alignments.py"),
+    "app/cohort/study/groups.py",
 )
 
 

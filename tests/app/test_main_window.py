@@ -16,13 +16,11 @@ from PySide6.QtWidgets import QAbstractButton, QApplication, QComboBox, QLabel, 
 from pytestqt.qtbot import QtBot
 
 from app import main_window
-from app.colours import DARK, LIGHT
+from app.cli.library import default_folder
 from app.home import session_screen
-from app.home.entry import SHORTEST
-from app.library_commands import default_folder
+from app.home.login.controller import SHORTEST
+from app.home.settings.settings_page import SettingsPage
 from app.main_window import MainWindow
-from app.pages.settings_page import SettingsPage
-from app.settings import Scheme, Settings
 from app.storage import keys
 from app.storage.database.ids import uuid7
 from app.storage.journal.disk import Room
@@ -34,9 +32,11 @@ from app.storage.library import Library
 from app.storage.login_delay import LoginDelay
 from app.storage.slots import Cost
 from app.storage.stored import Operator, Role
-from app.theme import ThemeNotifier
+from app.system.settings import Scheme, Settings
+from app.theme.colours import DARK, LIGHT
+from app.theme.notifier import ThemeNotifier
 from app.wizard.keys import Intent, KeyAction
-from app.wording import use_language
+from app.wording.translation import use_language
 from app.workers.background import Report
 from core.samples import Patient, Recording, RecordingKind, Session
 
@@ -828,7 +828,7 @@ def test_where_the_environment_names_no_server_that_answers_it_is_said_and_tried
 def test_the_environment_leads_to_a_folder_of_its_own_unless_the_own_one_is_a_station(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("app.library_commands.platformdirs.user_data_path", lambda *_, **__: tmp_path)
+    monkeypatch.setattr("app.cli.library.platformdirs.user_data_path", lambda *_, **__: tmp_path)
     assert default_folder() == tmp_path / "library"
     monkeypatch.setenv(DATABASE_VARIABLE, "postgresql://station@server/clinic")
     assert default_folder() == tmp_path / "clinic"

@@ -2,7 +2,7 @@
 
 import pytest
 
-from devices.lsl import GROUP, PORT
+from devices.drivers.lsl import GROUP, PORT
 from tests.safety.no_network import OWN_ADDRESS, calls_in, lead_session, search_sensors, why_not
 
 LINES = """\

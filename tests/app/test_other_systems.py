@@ -19,18 +19,19 @@ from typing import Any
 
 import pytest
 
-from app import cli, motion
-from app.batch import executors
-from app.reports.proposed_names import DEVICES, session_name
+from app.cli import main as cli
+from app.cohort.batch import executors
+from app.exports.proposed_names import DEVICES, session_name
 from app.review import viewer
-from app.sounds import Loudspeaker, Sound
 from app.storage import files
 from app.storage.journal.disk import JournalFile
-from app.tokens import Theme
-from devices import networks, ports
+from app.system.sounds import Loudspeaker, Sound
+from app.theme import motion
+from app.theme.theme import Theme
 from devices.emulators.transports import PseudoTerminal
 from devices.files import limits
 from devices.live import SourceRefusedError
+from devices.transport import networks, ports
 
 
 @pytest.fixture

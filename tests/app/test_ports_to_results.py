@@ -3,7 +3,7 @@
 import pytest
 from PySide6.QtWidgets import QApplication
 
-from devices.ports import MORE_PORTS
+from devices.transport.ports import MORE_PORTS
 from tests.safety.ports_to_results import run
 
 pytestmark = pytest.mark.endurance  # more than a minute

@@ -10,8 +10,8 @@ from string import Formatter
 
 import pytest
 
-from app.pseudo_language import lengthened
-from app.wording import SENTENCES, later, name_of, sentence, tr, tr_n, use_language
+from app.wording.pseudo_language import lengthened
+from app.wording.translation import SENTENCES, later, name_of, sentence, tr, tr_n, use_language
 from core.body import Joint
 from core.findings import Finding, Severity
 

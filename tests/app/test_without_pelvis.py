@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from devices.walker import Walk, simulate
+from devices.simulation.walker import Walk, simulate
 from tests.app.six_sensors import GOLDEN, SESSIONS, digests, machine, structure, vectors, written
 
 TOLD = json.loads(GOLDEN.read_text(encoding="utf-8"))

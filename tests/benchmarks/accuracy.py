@@ -15,14 +15,14 @@ from functools import partial
 import numpy as np
 
 from core.analysis import analyse
+from core.angles.measure import Geometry, measure
 from core.body import LEG_JOINTS, LEG_SITES, Joint, Segment
 from core.calibration.zero import standing_twist, wrapped_to_zero
-from core.measure import Geometry, measure
 from core.results import Analysis, JointCalibration, Method, ZeroKind
-from core.rotations import angle_between
 from core.samples import RateKind, RecordingKind
-from core.sensors import SensorTracks
-from devices.walker import (
+from core.signal.rotations import angle_between
+from core.signal.sensors import SensorTracks
+from devices.simulation.walker import (
     FreeMotion,
     JointTruth,
     Motion,

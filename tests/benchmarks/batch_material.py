@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from devices.files.session_folder import write_session
-from devices.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
 
 
 def write_walks(folder: Path, count: int, different: int, strides: int, walks: int) -> None:

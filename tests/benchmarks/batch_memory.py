@@ -12,12 +12,12 @@ import tempfile
 from collections import defaultdict
 from pathlib import Path
 
-from app.analysed_folder import AnalysisChoices
-from app.batch.done import batch_at
-from app.batch.executors import MOST_TRIES, PRELOADED, ProcessExecutor
-from app.batch.run import Batch
-from app.batch.sources import SessionFolders
-from app.batch.spread import Workers
+from app.cohort.batch.analysed_folder import AnalysisChoices
+from app.cohort.batch.done import batch_at
+from app.cohort.batch.executors import MOST_TRIES, PRELOADED, ProcessExecutor
+from app.cohort.batch.run import Batch
+from app.cohort.batch.sources import SessionFolders
+from app.cohort.batch.spread import Workers
 from core.results import Method
 from tests.benchmarks.batch_material import write_walks
 

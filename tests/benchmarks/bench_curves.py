@@ -28,7 +28,7 @@ from app.storage.layout import KEYS
 from app.storage.library import Library
 from app.storage.slots import Cost
 from app.storage.stored import Operator, Role
-from app.theme import ThemeNotifier, load_fonts
+from app.theme.notifier import ThemeNotifier, load_fonts
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.visit import Visit
 from app.wizard.walking.step import WalkingStep
@@ -36,8 +36,8 @@ from app.wizard.worn_sensors import SourceChoice
 from app.workers.library_controller import LibraryController
 from core.body import LEG_SITES, Side
 from core.samples import Patient, RecordingKind
-from devices.replay import ReplaySource
-from devices.walker import FreeMotion, ProsthesisSetting, Standing, Tissue, Walk, WalkerSettings, simulate
+from devices.simulation.replay import ReplaySource
+from devices.simulation.walker import FreeMotion, ProsthesisSetting, Standing, Tissue, Walk, WalkerSettings, simulate
 
 PASSPHRASE = "four short words here"
 PATIENCE_S = 60.0

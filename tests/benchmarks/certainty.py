@@ -16,7 +16,7 @@ import numpy as np
 from core.analysis import analyse
 from core.body import Joint, Side
 from core.samples import Patient
-from devices.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
 
 SETTINGS = {
     "free motion, walk": WalkerSettings(recordings=(Standing(), FreeMotion(), Walk(strides=12))),

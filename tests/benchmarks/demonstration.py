@@ -33,8 +33,8 @@ def measure(*, is_prepared: bool) -> None:
     from PySide6.QtWidgets import QApplication
 
     from app.main_window import MainWindow
-    from app.settings import Settings
-    from app.theme import ThemeNotifier, load_fonts
+    from app.system.settings import Settings
+    from app.theme.notifier import ThemeNotifier, load_fonts
     from tests.app.watchdog import Watchdog
 
     application = QApplication([])

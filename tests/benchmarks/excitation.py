@@ -20,16 +20,16 @@ from pathlib import Path
 import numpy as np
 
 from core.body import Joint, Site
+from core.calibration.identified import identify
 from core.calibration.rest import rest_of
-from core.identified import identify
+from core.calibration.validity import basis_of
 from core.live.excitation import HUMAN, Excitation, ExcitationState
 from core.live.orientation import LiveOrientation, OrientedSamples
 from core.live.streams import EvenStream
 from core.results import Method
 from core.samples import FloatArray, RateKind, Session
-from core.sensors import SensorTracks
-from core.validity import basis_of
-from devices.walker import (
+from core.signal.sensors import SensorTracks
+from devices.simulation.walker import (
     FreeMotion,
     JointTruth,
     Motion,

@@ -33,14 +33,14 @@ import numpy as np
 from PySide6.QtCore import QEvent, QEventLoop, QObject, QTimer
 from PySide6.QtWidgets import QApplication
 
-from app import sounds
 from app.acquisition.acquisition import Acquisition
 from app.acquisition.live_sensors import live_sensors
 from app.acquisition.preview import EVERY_S, LEAST_PAUSE_S
 from app.main_window import SWITCH_S
-from app.sounds import Sound
 from app.storage.journal.writer import JournalWriter
-from app.theme import ThemeNotifier, load_fonts
+from app.system import sounds
+from app.system.sounds import Sound
+from app.theme.notifier import ThemeNotifier, load_fonts
 from app.wizard.walking.estimator import WalkingEstimator
 from app.wizard.walking.page import WalkingPage
 from app.wizard.walking.patient_feedback import PatientFeedback
@@ -53,8 +53,8 @@ from core.live.sensors import LiveSensor
 from core.live.stride_values import StrideValue
 from core.samples import ImuBlock, RecordingKind
 from core.targets import Target, TargetMeasure
-from devices.replay import POLL_S, ReplaySource
-from devices.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
+from devices.simulation.replay import POLL_S, ReplaySource
+from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
 from tests.benchmarks.live_road import stood
 from tests.safety.journal_material import KEY, NO_ROOM_ASKED
 

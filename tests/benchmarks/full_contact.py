@@ -15,7 +15,7 @@ import numpy as np
 from core.body import Side
 from core.gait.events import FootEvents, gait_of
 from core.samples import FloatArray
-from devices.walker import PEOPLE, FootTruth, Manner, Standing, Tissue, Treadmill, Walk, WalkerSettings
+from devices.simulation.walker import PEOPLE, FootTruth, Manner, Standing, Tissue, Treadmill, Walk, WalkerSettings
 from tests.benchmarks.gait_simulated import walks_of
 from tests.core.gait.test_stroke_walks import COUNTED, events_of
 

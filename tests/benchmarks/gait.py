@@ -24,11 +24,11 @@ from core.body import Side, Site
 from core.calibration.rest import rest_of
 from core.gait.events import gait_of
 from core.gait.strides import strides_of
-from core.orientation import oriented
-from core.pair import OrientedTrack
 from core.samples import BoolArray, FloatArray, ImuBlock, RateKind
-from core.tracks import even_tracks
-from devices.walker import Standing, Walk, WalkerSettings, simulate
+from core.signal.orientation import oriented
+from core.signal.pair import OrientedTrack
+from core.signal.tracks import even_tracks
+from devices.simulation.walker import Standing, Walk, WalkerSettings, simulate
 from tests.benchmarks.foot_scoring import (
     EventScore,
     FoundEvents,

@@ -20,11 +20,11 @@ from core.calibration.rest import rest_of
 from core.gait.events import FootEvents, gait_of
 from core.gait.spatiotemporal import both_feet, parameters_of
 from core.gait.strides import Strides, strides_of
-from core.orientation import oriented
-from core.pair import OrientedTrack
 from core.samples import FloatArray, ImuBlock, RateKind
-from core.tracks import even_tracks
-from devices.walker import FootTruth, Manner, Standing, Tissue, Walk, WalkerSettings, simulate
+from core.signal.orientation import oriented
+from core.signal.pair import OrientedTrack
+from core.signal.tracks import even_tracks
+from devices.simulation.walker import FootTruth, Manner, Standing, Tissue, Walk, WalkerSettings, simulate
 
 FEET = {Side.LEFT: Site.LEFT_FOOT, Side.RIGHT: Site.RIGHT_FOOT}
 EVENTS = {"IC": "initial_contact_s", "FC": "full_contact_s", "HR": "heel_rise_s", "TO": "toe_off_s"}

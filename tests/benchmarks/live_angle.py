@@ -24,7 +24,7 @@ from core.live.orientation import LiveOrientation
 from core.live.streams import EvenStream
 from core.results import JointCalibration
 from core.samples import FloatArray, ImuBlock, RateKind, Recording, RecordingKind, Session
-from devices.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
 from tests.benchmarks.trials import HINGES
 
 SCORED_FROM_S = 3.0

@@ -26,12 +26,12 @@ from core.calibration.rest import rest_of
 from core.gait.events import gait_of
 from core.gait.foot import follow
 from core.gait.live import FootEvent, LiveEvents
-from core.orientation import oriented
-from core.pair import OrientedTrack
 from core.samples import FloatArray, ImuBlock, RateKind
-from core.tracks import even_tracks
+from core.signal.orientation import oriented
+from core.signal.pair import OrientedTrack
+from core.signal.tracks import even_tracks
 from devices.files.session_folder import read_session
-from devices.walker import Standing, Tissue, Walk, WalkerSettings, simulate
+from devices.simulation.walker import Standing, Tissue, Walk, WalkerSettings, simulate
 
 SITES = (Site.LEFT_FOOT, Site.RIGHT_FOOT)
 SPEEDS_M_S = (0.3, 0.5, 0.8, 1.19, 1.6, 2.0)

@@ -31,8 +31,8 @@ from core.analysis import analyse
 from core.body import LEG_SITES, Side
 from core.live.sensors import LiveSensor
 from core.samples import FloatArray, ImuBlock, RecordingKind
-from devices.replay import ReplaySource
-from devices.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
+from devices.simulation.replay import ReplaySource
+from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
 from tests.safety.journal_material import KEY, NO_ROOM_ASKED
 
 RATE_HZ = 200.0

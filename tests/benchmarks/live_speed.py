@@ -27,8 +27,8 @@ from core.live.free_motion import LiveFreeMotion
 from core.live.sensors import LiveSensor
 from core.live.walking import LiveWalk
 from core.samples import ImuBlock, Session
-from devices.walker import FreeMotion as FreeMotionRecording
-from devices.walker import Standing, Tissue, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion as FreeMotionRecording
+from devices.simulation.walker import Standing, Tissue, Walk, WalkerSettings, simulate
 
 RATE_HZ = 200.0
 BLOCK_S = 0.033

@@ -96,8 +96,8 @@ def _source(rate_hz: float, seconds: float) -> "SourceChoice":
     from app.acquisition.acquisition import Acquisition
     from app.wizard.sensors.sources import DEMONSTRATION
     from app.wizard.worn_sensors import SourceChoice
-    from devices.replay import DEMONSTRATION_SESSION, demonstration
-    from devices.walker import Walk
+    from devices.simulation.replay import DEMONSTRATION_SESSION, demonstration
+    from devices.simulation.walker import Walk
 
     walk = Walk(strides=round((seconds + 10.0) / STRIDE_S), standing_before_s=2.0)
     recordings = (*(one for one in DEMONSTRATION_SESSION.recordings if not isinstance(one, Walk)), walk)

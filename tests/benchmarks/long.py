@@ -20,7 +20,7 @@ import numpy as np
 
 from core.samples import ImuBlock
 from devices.files.session_folder import write_session
-from devices.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
 
 ROOT = Path(__file__).parents[2]
 STRIDES = 54  # about a minute

@@ -18,13 +18,13 @@ from pathlib import Path
 
 import numpy as np
 
-from app.reports.differences import comparisons_of, rows_of
+from app.summary.differences import comparisons_of, rows_of
 from core.analysis import analyse
 from core.body import Site
 from core.samples import ImuBlock, Recording, RecordingKind, Session
 from core.verdicts.measurement_error import Judgement
 from devices.files.session_folder import read_session
-from devices.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
 from tests.benchmarks.cuts import cut
 
 JUDGED = (Judgement.EXCEEDS_ERROR, Judgement.INSIDE_ERROR)

@@ -26,7 +26,6 @@ os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
 from PySide6.QtCore import QEvent, QObject, QSettings
 from PySide6.QtWidgets import QApplication, QStackedWidget, QWidget
 
-from app.settings import Settings
 from app.storage.exchange import import_session
 from app.storage.keys import KeySlots
 from app.storage.layout import KEYS
@@ -34,11 +33,12 @@ from app.storage.library import Library
 from app.storage.opened import OpenedLibrary, open_library
 from app.storage.slots import Cost
 from app.storage.stored import Operator, Role
-from app.theme import ThemeNotifier, load_fonts
+from app.system.settings import Settings
+from app.theme.notifier import ThemeNotifier, load_fonts
 from app.wizard.wizard import Wizard
 from app.workers.library_controller import LibraryController
 from core.samples import Session
-from devices.walker import DEMONSTRATION, simulate
+from devices.simulation.walker import DEMONSTRATION, simulate
 
 PASSPHRASE = "four short words here"
 WALKS = 3

@@ -21,8 +21,8 @@ from core.placement.chains import Chains, find_chains
 from core.placement.labels import doubted_labels
 from core.placement.smoothed_tracks import Tracks
 from core.samples import FloatArray, RateKind, RecordingKind, Session
-from core.sensors import SensorTracks
-from devices.walker import FreeMotion, Motion, SensorErrors, Standing, Tissue, Walk, WalkerSettings, simulate
+from core.signal.sensors import SensorTracks
+from devices.simulation.walker import FreeMotion, Motion, SensorErrors, Standing, Tissue, Walk, WalkerSettings, simulate
 
 MAX_LATE_S = 0.03
 POOR_SENSORS = SensorErrors(gyro_bias_sd_rad_s=np.deg2rad(1.5), acc_bias_sd_m_s2=0.1)

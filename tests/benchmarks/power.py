@@ -16,15 +16,15 @@ from functools import partial
 
 import numpy as np
 
-from app.reports.differences import comparisons_of, rows_of
+from app.summary.differences import comparisons_of, rows_of
 from core.analysis import analyse
 from core.body import Side
 from core.samples import FloatArray
 from core.verdicts.measurement_error import ComparisonKind, Judgement, compare, sigma_of
 from core.verdicts.model import READ
 from core.verdicts.stride_means import mean_of_strides
-from devices.walker import PEOPLE, FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
-from devices.walker_body import GaitChange
+from devices.simulation.walker import PEOPLE, FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
+from devices.simulation.walker_body import GaitChange
 
 STRIDES = 20
 CORRELATION = 0.3

@@ -21,8 +21,8 @@ import pandas as pd
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from app.study.groups import Grouping, GroupQuestion, answer
-from app.study.parameter_table import ParameterTable
+from app.cohort.study.groups import Grouping, GroupQuestion, answer
+from app.cohort.study.parameter_table import ParameterTable
 from core.verdicts.quantities import PARAMETERS
 
 MEASURE = "knee_range_deg"

@@ -8,9 +8,9 @@ One line per tissue and sample rate: sessions of instants called averaged, sessi
 import argparse
 from dataclasses import replace
 
-from core.rate_kind import tracks_of_kind
+from core.calibration.rate_kind import tracks_of_kind
 from core.samples import RateKind, Session
-from devices.walker import Tissue, WalkerSettings, simulate
+from devices.simulation.walker import Tissue, WalkerSettings, simulate
 
 RATES_HZ = (60.0, 100.0, 200.0)
 

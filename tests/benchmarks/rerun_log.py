@@ -22,7 +22,7 @@ from app.review.rerun_log import write_log
 from core.analysis import analyse
 from core.results import Analysis
 from core.samples import FloatArray, Session
-from devices.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
 from tests.benchmarks.long import STRIDES, repeated
 
 ROUNDING_S = 1.5e-9  # a timeline ticks in nanoseconds

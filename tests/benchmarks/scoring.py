@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.rotations import angle_between, wrap
 from core.samples import FloatArray
+from core.signal.rotations import angle_between, wrap
 from tests.benchmarks.trials import Truth
 
 SETTLING_S = 3.0  # in which a causal filter finds the vertical; not scored, for all alike

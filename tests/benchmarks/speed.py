@@ -24,13 +24,13 @@ import numpy as np
 from core.analysis import analyse
 from core.body import Joint
 from core.calibration.identify import moving_data
-from core.pair import OrientedTrack, pair_up
 from core.published.angles import published_angle
 from core.published.identify import identify_as_published
 from core.published.joint_centre import shifted_to_sensors
 from core.results import Method
 from core.samples import FloatArray
-from core.tracks import Track
+from core.signal.pair import OrientedTrack, pair_up
+from core.signal.tracks import Track
 from tests.benchmarks.peers import vqf_angle
 from tests.benchmarks.peers.qmt_axes import QmtAxes
 from tests.benchmarks.scoring import Estimate, Score, score

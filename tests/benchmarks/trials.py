@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 
 from core.body import Joint, Site
-from core.rate_kind import tracks_of_kind
+from core.calibration.rate_kind import tracks_of_kind
 from core.samples import FloatArray, ImuBlock, RateKind, Recording, RecordingKind, Session
-from devices.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
 
 JOINTS = (Joint.LEFT_KNEE, Joint.LEFT_ANKLE)
 STRIDES_PER_MINUTE = 54

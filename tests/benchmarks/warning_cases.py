@@ -8,13 +8,13 @@ import numpy as np
 
 from core.analysis import analyse
 from core.body import LEG_SITES, Joint, Side, Site
-from core.chosen_strides import leave_out
 from core.findings import Finding
-from core.quality import look_at
+from core.gait.chosen_strides import leave_out
 from core.results import Method
 from core.samples import BoolArray, FloatArray, ImuBlock, RateKind, RecordingKind, Session
 from core.timed.protocols import PlannedTest, TimedProtocol
-from devices.walker import (
+from core.verdicts.quality import look_at
+from devices.simulation.walker import (
     CourseKind,
     FreeMotion,
     Manner,

@@ -25,7 +25,7 @@ from core.analysis import analyse
 from core.body import LEG_SITES, Segment, Side, Site
 from core.samples import ImuBlock, RateKind, Recording, RecordingKind, Session
 from devices.files.session_folder import read_session
-from devices.walker import (
+from devices.simulation.walker import (
     COARSE,
     PEOPLE,
     VERY_COARSE,

@@ -25,7 +25,8 @@ def start() -> None:
     from PySide6.QtCore import QEvent, QObject, QTimer
     from PySide6.QtWidgets import QWidget
 
-    from app import cli, main_window
+    from app import main_window
+    from app.cli import main as cli
 
     class FirstFrame(QObject):
         def eventFilter(self, watched: QObject, event: QEvent) -> bool:
@@ -62,7 +63,7 @@ def started(environment: Mapping[str, str]) -> tuple[float, float]:
 
 def make_library(environment: Mapping[str, str]) -> None:
     code = (
-        "from pathlib import Path; from app.library_commands import default_folder; "
+        "from pathlib import Path; from app.cli.library import default_folder; "
         "from app.storage.opened import create_library; from app.storage.stored import Operator, Role; "
         "someone = Operator('AB', 'A. B.', Role.ADMINISTRATOR); "
         "create_library(default_folder(), someone, 'long enough a phrase')[0].library.close()"

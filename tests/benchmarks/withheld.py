@@ -17,7 +17,7 @@ from pathlib import Path
 from core.analysis import analyse
 from core.samples import RecordingKind, Session
 from core.verdicts.model import Assessment
-from devices.walker import PEOPLE, FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
+from devices.simulation.walker import PEOPLE, FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
 from tests.benchmarks.null_differences import real_walks
 
 WALK = Walk(strides=16)

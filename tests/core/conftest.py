@@ -12,9 +12,9 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from core.body import Joint, Segment, Side, Site
-from core.pair import OrientedTrack, Pair, pair_up
 from core.samples import FloatArray, ImuBlock, Recording, RecordingKind, Session
-from core.tracks import Track
+from core.signal.pair import OrientedTrack, Pair, pair_up
+from core.signal.tracks import Track
 
 GRAVITY = np.array([0.0, 0.0, 9.81])
 THIGH_M, SHANK_M = 0.42, 0.43

@@ -13,8 +13,8 @@ from scipy.spatial.transform import Rotation
 from core.analysis import analyse
 from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site
 from core.results import Analysis, JointCalibration, Method, ZeroKind
-from core.rotations import angle_between, joint_frame
 from core.samples import FloatArray, ImuBlock, Patient, RecordingKind, Session
+from core.signal.rotations import angle_between, joint_frame
 
 if TYPE_CHECKING:
     from tests.core.conftest import Person

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from devices.walker import Standing, Walk, WalkerSettings
+from devices.simulation.walker import Standing, Walk, WalkerSettings
 from tests.benchmarks.certainty import SETTINGS, TISSUES, WORN, Coverage, coverages
 
 WALK = WalkerSettings(recordings=(Standing(), Walk(strides=6)))

@@ -5,18 +5,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.wording import sentence
+from app.wording.translation import sentence
 from core.analysis import analyse
 from core.body import Joint, Side, Site
 from core.findings import Finding
-from core.pair import OrientedTrack
 from core.placement.chains import find_chains
 from core.placement.labels import exchanged_sites
 from core.results import Analysis
 from core.samples import Session
-from core.tracks import Track
+from core.signal.pair import OrientedTrack
+from core.signal.tracks import Track
 from core.verdicts.model import Verdict
-from devices.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
 from tests.benchmarks.placement import swapped
 
 LEFT_LEG = (Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT)

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from core.orientation import oriented
-from core.pair import OrientedTrack
 from core.samples import FloatArray, RateKind
-from core.tracks import Track
+from core.signal.orientation import oriented
+from core.signal.pair import OrientedTrack
+from core.signal.tracks import Track
 
 STEP_S = 0.01
 TIME_S = STEP_S * np.arange(600)

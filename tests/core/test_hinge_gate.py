@@ -11,7 +11,7 @@ from core.analysis import analyse
 from core.body import LEG_SITES, Side
 from core.results import Analysis
 from core.samples import ImuBlock, Session
-from devices.walker import Standing, Tissue, Walk, WalkerSettings, simulate
+from devices.simulation.walker import Standing, Tissue, Walk, WalkerSettings, simulate
 from tests.core.recorded_joints import recorded_people
 
 LEFT = tuple(site for site in LEG_SITES if site.side is Side.LEFT)

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from app.wording import sentence
+from app.wording.translation import sentence
 from core.analysis import analyse
 from core.body import LEG_JOINTS, LEG_SITES, Segment, Side, Site
 from core.findings import Severity
@@ -22,7 +22,16 @@ from core.placement.smoothed_tracks import Tracks, smoothed_in_steps
 from core.placement.steps import at_once
 from core.samples import FloatArray, ImuBlock, Recording, RecordingKind, Session
 from devices.files.xsens_mtmanager import mtmanager_trial
-from devices.walker import FreeMotion, Motion, SimulatedSession, Standing, Tissue, Walk, WalkerSettings, simulate
+from devices.simulation.walker import (
+    FreeMotion,
+    Motion,
+    SimulatedSession,
+    Standing,
+    Tissue,
+    Walk,
+    WalkerSettings,
+    simulate,
+)
 from tests.benchmarks.placement import (
     arranged,
     doubted,

@@ -12,9 +12,9 @@ from core.analysis import analyse
 from core.body import LEG_SITES, Joint, Site
 from core.findings import Severity
 from core.results import Analysis, Method, ZeroKind
-from core.rotations import angle_between
 from core.samples import FloatArray, ImuBlock, Recording, RecordingKind, Session
-from devices.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
+from core.signal.rotations import angle_between
+from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
 
 if TYPE_CHECKING:
     from tests.core.conftest import Person
@@ -168,7 +168,7 @@ def test_a_magnetometer_of_zeros_gives_no_angle(knee_visit: Session) -> None:
 
 @methods
 def test_samples_in_single_precision_are_taken(knee_visit: Session, method: Method) -> None:
-    """`FloatArray` allows any precision, VQF takes float64 only. Mend: cast in core.orientation, or in ImuBlock."""
+    """`FloatArray` allows any precision, VQF takes float64 only. Mend: cast in orientation.py, or in ImuBlock."""
 
     def single(b: ImuBlock) -> ImuBlock:
         return replace(b, gyr_rad_s=b.gyr_rad_s.astype(np.float32), acc_m_s2=b.acc_m_s2.astype(np.float32))

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from core.body import Joint, Side, Site, ankle_of, knee_of
-from core.strap import Slip, Turns, slips
+from core.calibration.strap import Slip, Turns, slips
 
 WINDOWS, WINDOW_S, JUMP = 10, 5.0, 6  # the sensor turns at the beginning of the seventh window
 WALKING_DEG = (0.6, -0.4, 0.9, -0.8, 0.3, -0.6, 0.8, -0.2, 0.5, -0.7)  # what walking alone turns

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from core.body import Joint
-from core.pair import OrientedTrack
 from core.placement.smoothed_tracks import smoothed_in_steps
 from core.placement.steps import at_once
 from core.samples import FloatArray
+from core.signal.pair import OrientedTrack
 
 if TYPE_CHECKING:
     from collections.abc import Callable

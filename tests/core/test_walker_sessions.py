@@ -9,7 +9,7 @@ from core.analysis import analyse
 from core.body import LEG_SITES, Joint, Side, Site
 from core.results import Analysis
 from core.samples import FloatArray, RateKind, SensorInfo, Session
-from devices.walker import FreeMotion, SimulatedSession, Standing, Tissue, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, SimulatedSession, Standing, Tissue, Walk, WalkerSettings, simulate
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 

@@ -26,8 +26,8 @@ from bumble.hci import Address
 from bumble.host import Host
 from bumble.link import LocalLink
 
-from devices.bluetooth import Announced, Radio
 from devices.emulators.bluetooth import INTERVAL_S, MTU, EmulatedPeripheral, UnpairedClient, address_of
+from devices.transport.bluetooth import Announced, Radio
 
 CENTRAL = "F0:F1:F2:F3:F4:F5"
 CONNECTS_S = 8.0

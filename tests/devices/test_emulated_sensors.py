@@ -14,8 +14,8 @@ from devices.emulators.shimmer3 import Shimmer3Voice
 from devices.emulators.witmotion import WitVoice
 from devices.emulators.ximu3 import Ximu3Voice
 from devices.emulators.xsens_mti import MtiVoice
-from devices.replay import ReplaySource
-from devices.walker import Standing, WalkerSettings, simulate
+from devices.simulation.replay import ReplaySource
+from devices.simulation.walker import Standing, WalkerSettings, simulate
 
 
 def motion(number: int) -> tuple[float, ...]:

@@ -11,14 +11,14 @@ import numpy as np
 import pytest
 
 from core.samples import RateKind
+from devices.drivers.shimmer3 import Shimmer3, Shimmer3Framer
+from devices.drivers.witmotion import WitFramer, WitMotion
+from devices.drivers.xbus import values
+from devices.drivers.ximu3 import Ximu3, Ximu3Framer
+from devices.drivers.xsens_mti import MtiFramer, XsensMti
 from devices.live import SensorDetails, SourceRefusedError
-from devices.shimmer3 import Shimmer3, Shimmer3Framer
 from devices.source import SourceInfo
 from devices.stream import Framer
-from devices.witmotion import WitFramer, WitMotion
-from devices.xbus import values
-from devices.ximu3 import Ximu3, Ximu3Framer
-from devices.xsens_mti import MtiFramer, XsensMti
 from tests.devices.scripted import ScriptedChannel
 
 DEG = 0.017453292519943295  # rad
@@ -85,7 +85,7 @@ class ScriptedShimmer:
 
 @pytest.fixture
 def shimmer(monkeypatch: pytest.MonkeyPatch) -> tuple[ScriptedShimmer, SourceInfo, SensorDetails]:
-    monkeypatch.setattr("devices.shimmer3.QUIET_S", 0.001)
+    monkeypatch.setattr("devices.drivers.shimmer3.QUIET_S", 0.001)
     said = ScriptedShimmer()
     return said, *Shimmer3().greet(ScriptedChannel(answers=said))
 
@@ -175,8 +175,8 @@ def test_witmotions_orientation_is_scalar_first() -> None:
 def test_a_witmotion_is_told_its_rate_and_what_to_send(
     rate_hz: float, code: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("devices.witmotion.ANSWERS_S", 0.0)
-    monkeypatch.setattr("devices.witmotion.SAYS_S", 0.0)
+    monkeypatch.setattr("devices.drivers.witmotion.ANSWERS_S", 0.0)
+    monkeypatch.setattr("devices.drivers.witmotion.SAYS_S", 0.0)
     channel = ScriptedChannel()
     with pytest.raises(SourceRefusedError):
         WitMotion(rate_hz=rate_hz).greet(channel)

@@ -11,18 +11,18 @@ from pathlib import Path
 
 import pytest
 
-from devices import ports as ports_module
 from devices.catalogue import DRIVERS
+from devices.drivers.lsl import LslSensor, LslStream, sensors_of
+from devices.drivers.shimmer3 import EMULATED as SHIMMER3
 from devices.emulators.shimmer3 import Shimmer3Voice
 from devices.emulators.transports import Emulation, PseudoTerminal, Voice
 from devices.emulators.witmotion import WitVoice
 from devices.emulators.ximu3 import Ximu3Voice
 from devices.emulators.xsens_mti import MtiVoice
 from devices.live import SourceRefusedError
-from devices.lsl import LslSensor, LslStream, sensors_of
-from devices.ports import MORE_PORTS, PortInfo, SerialPort, list_ports
 from devices.search import announcement, search, search_streams
-from devices.shimmer3 import EMULATED as SHIMMER3
+from devices.transport import ports as ports_module
+from devices.transport.ports import MORE_PORTS, PortInfo, SerialPort, list_ports
 from tests.devices.scripted import SilentVoice
 
 

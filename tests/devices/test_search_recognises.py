@@ -13,8 +13,8 @@ from devices.emulators.witmotion import WitVoice
 from devices.emulators.ximu3 import Ximu3Voice
 from devices.emulators.xsens_mti import MtiVoice
 from devices.live import SourceLostError, SourceRefusedError
-from devices.ports import PortInfo
 from devices.search import SearchResult, search
+from devices.transport.ports import PortInfo
 from tests.devices.scripted import SilentVoice
 
 

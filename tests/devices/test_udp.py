@@ -8,12 +8,12 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 import pytest
 
-from devices.channels import UdpChannel
+from devices.drivers.ximu3 import Ximu3
 from devices.emulators.transports import Emulation, UdpSender
 from devices.emulators.ximu3 import Ximu3Voice
 from devices.live import SourceLostError, SourceRefusedError
 from devices.stream import ByteSource
-from devices.ximu3 import Ximu3
+from devices.transport.channels import UdpChannel
 
 RATE_HZ, LISTENS = 200, 25
 

@@ -6,7 +6,7 @@ import pytest
 
 from core.body import Site
 from devices.files.session_folder import write_session
-from devices.walker import FreeMotion, SimulatedSession, Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, SimulatedSession, Standing, Walk, WalkerSettings, simulate
 
 LEFT_LEG = (Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT)
 

@@ -7,7 +7,7 @@ import pytest
 
 import core
 import devices
-from devices.walker import SimulatedSession
+from devices.simulation.walker import SimulatedSession
 
 ENTRY_POINTS = (devices.read_session, core.analyse, core.follow, core.identify, core.LiveWalk)
 

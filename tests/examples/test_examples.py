@@ -14,8 +14,8 @@ import pytest
 
 from core.body import Joint, Side, Site
 from core.samples import ImuBlock
-from devices.host_clock import host_time_ns
-from devices.walker import SimulatedSession
+from devices.clocks.host_clock import host_time_ns
+from devices.simulation.walker import SimulatedSession
 from tests.examples import (
     analyse_a_folder,
     events_of_one_foot,

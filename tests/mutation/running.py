@@ -23,7 +23,7 @@ from tests.mutation.mutants import Mutant
 
 PACKAGES = (
     *("app/exports", "devices", "core/gait", "core/calibration"),
-    *("core/verdicts", "app/reports/differences.py"),  # where a silent fault would be a wrong sentence
+    *("core/verdicts", "app/summary/differences.py"),  # where a silent fault would be a wrong sentence
 )
 TEST_FOLDERS = (
     *("tests/core", "tests/devices", "tests/app/exports", "tests/app/reports"),

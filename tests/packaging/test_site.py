@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
+from app.exports.columns import KNOWN
+from app.exports.result_folder import OWN_SESSION, TAKEN
 from app.films.film import Film
-from app.pages.help_topics import Topic, TopicGroup, group_title
-from app.reports.columns import KNOWN
-from app.reports.result_folder import OWN_SESSION, TAKEN
-from app.wording import use_language
+from app.help.help_topics import Topic, TopicGroup, group_title
+from app.wording.translation import use_language
 from devices.files.session_toml import PATIENT, RECORDING, SENSOR, SESSION
 from devices.files.site_files import NUMERIC
 

@@ -22,8 +22,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from app.batch.executors import MOST_TRIES, PRELOADED, ProcessExecutor, of_a_cluster, of_this_computer
-from app.batch.spread import Workers, finished
+from app.cohort.batch.executors import MOST_TRIES, PRELOADED, ProcessExecutor, of_a_cluster, of_this_computer
+from app.cohort.batch.spread import Workers, finished
 from tests.app.batch_stand_ins import StandIn, digest_of
 
 WORKERS = 2
@@ -143,10 +143,10 @@ def stand_ins(count: int, every_s: float, rounds: int, wanted: str, found: Batch
 def sessions(folder: Path, count: int, every_s: float, wanted: str, found: BatchKills) -> None:
     """Do so many sessions in three ways; each is another session."""
     # here, not above: each worker begins with this module, and is killed soon
-    from app.analysed_folder import AnalysisChoices
-    from app.batch.done import batch_at
-    from app.batch.run import Batch
-    from app.batch.sources import SessionFolders
+    from app.cohort.batch.analysed_folder import AnalysisChoices
+    from app.cohort.batch.done import batch_at
+    from app.cohort.batch.run import Batch
+    from app.cohort.batch.sources import SessionFolders
     from core.results import Method
     from tests.app.batch_material import results_in, write_swinging
 

@@ -22,7 +22,7 @@ from app.storage.library import Library
 from app.storage.opened import OpenedLibrary, open_library
 from app.storage.slots import Cost
 from app.storage.stored import Operator, Role
-from devices.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
 from tests.safety.journal_material import NO_ROOM_ASKED
 
 if TYPE_CHECKING:

@@ -17,18 +17,18 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from devices.csv_serial import Columns, CsvFramer
+from devices.drivers.csv_serial import Columns, CsvFramer
+from devices.drivers.shimmer3 import Shimmer3Framer, checksum
+from devices.drivers.witmotion import WitFramer
+from devices.drivers.ximu3 import Ximu3Framer
+from devices.drivers.xsens_mti import MtiFramer
 from devices.emulators.shimmer3 import ACC_CALIBRATION, CHANNELS, GYR_CALIBRATION, Shimmer3Voice
 from devices.emulators.witmotion import WitVoice
 from devices.emulators.ximu3 import message
 from devices.emulators.xsens_mti import MtiVoice
 from devices.emulators.xsens_mti import sample as mti_sample
-from devices.shimmer3 import Shimmer3Framer, checksum
 from devices.source import SourceInfo
 from devices.stream import Framer, Row
-from devices.witmotion import WitFramer
-from devices.ximu3 import Ximu3Framer
-from devices.xsens_mti import MtiFramer
 from tests.safety.stream_bursts import in_bursts
 
 DAMAGED_SHARE = 1 / 7

@@ -25,17 +25,17 @@ import numpy as np
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QApplication
 
-from app.theme import load_fonts
+from app.theme.notifier import load_fonts
 from app.wizard.sensors.dot_form import DotChoice
 from app.wizard.sensors.sources import SEARCH
 from app.wizard.sensors.step import SensorsStep
 from core.body import LEG_JOINTS, LEG_SITES, Site
 from core.samples import FloatArray, RecordingKind
-from devices.bluetooth import Radio
+from devices.clocks.host_clock import host_time_ns
 from devices.emulators.dot import EmulatedDot
 from devices.emulators.dot_patient import worn_air
 from devices.emulators.patient import FINE_HZ, EmulatedPatient
-from devices.host_clock import host_time_ns
+from devices.transport.bluetooth import Radio
 from tests.devices.bumble_air import BumbleAir, BumbleRadio
 from tests.safety.ports_to_results import Outcome, WindowSession, lead, look, outcome_of
 

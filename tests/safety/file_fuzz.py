@@ -27,12 +27,12 @@ import pyarrow.parquet as pq
 from scipy.io import savemat
 
 from core.body import Site
+from devices.drivers.xbus import Item, Mid, item, message
 from devices.files.imports import place_trial
 from devices.files.limited_reader import LimitedReader, LimitedReading, ReadingEndedError
 from devices.files.refusal import FileRefusedError
 from devices.files.session_folder import read_session
 from devices.files.site_files import MAG, QUAT, REQUIRED
-from devices.xbus import Item, Mid, item, message
 
 ROWS = 30
 GOOD_EVERY = 50

@@ -21,13 +21,13 @@ from typing import Any
 
 import pikepdf
 
-from app.reports.patient_report.document import make_report, report_data
-from app.reports.patient_report.plain_text import plain
-from app.reports.patient_report.request import AnalysedVisit, ReportRequest
-from app.reports.result_folder import write_results
+from app.exports.result_folder import write_results
+from app.reports.patient.document import make_report, report_data
+from app.summary.plain_text import plain
+from app.summary.request import AnalysedVisit, ReportRequest
 from core.analysis import analyse
 from core.samples import RecordingKind
-from devices.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
+from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
 
 MADE_AT = datetime(2026, 11, 21, 22, 15, 30, tzinfo=UTC)
 ALIVE = {"/Link", "/URI", "/Action", "/JavaScript", "/JS", "/Launch", "/AA", "/OpenAction", "/EmbeddedFile", "/Widget"}

@@ -22,7 +22,7 @@ import numpy as np
 from app.storage.journal.disk import Room, Trouble
 from app.storage.journal.records import RecordKind
 from app.storage.journal.writer import JournalWriter, State
-from devices.host_clock import host_time_ns
+from devices.clocks.host_clock import host_time_ns
 from tests.safety.journal_material import ID, KEY, LINES, NO_ROOM_ASKED, read_all
 
 DISK_BYTES = 8_000_000

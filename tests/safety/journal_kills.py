@@ -23,7 +23,7 @@ from app.storage.journal.header import find_segments, read_header
 from app.storage.journal.payloads import STREAM
 from app.storage.journal.records import RecordKind
 from app.storage.journal.writer import JournalWriter
-from devices.host_clock import host_time_ns
+from devices.clocks.host_clock import host_time_ns
 from tests.safety.journal_material import ID, KEY, LAYOUT, LINES, NAMES, NO_ROOM_ASKED, WALKER, block, line, read_all
 
 LONGEST_S = 1.2  # over two syncs; the first instants, before the journal is there, are among them

@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from app.acquisition.acquisition import Acquisition
-from devices.replay import POLL_S, ReplaySource
+from devices.simulation.replay import POLL_S, ReplaySource
 from tests.safety.journal_material import ID
 from tests.safety.live_material import numbered_session, open_journal
 

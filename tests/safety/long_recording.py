@@ -20,7 +20,7 @@ import numpy as np
 
 from app.acquisition.acquisition import Acquisition
 from core.samples import ImuBlock
-from devices.replay import ReplaySource
+from devices.simulation.replay import ReplaySource
 from tests.safety.journal_material import ID
 from tests.safety.live_material import RATE_HZ, faults_of, numbered_session, open_journal, read_back
 

@@ -70,7 +70,7 @@ def lead_session(tour: str = "keyboard") -> Calls:
     RuntimeError
         The session could not be led to its end.
     """
-    tail = ("packaging/tour.py", "{folder}", f"--{tour}", "--theme", "light", "--trace", "{trace}")
+    tail = ("-m", "tests.tours.tour", "{folder}", f"--{tour}", "--theme", "light", "--trace", "{trace}")
     return _called(tail, LONGEST_S)
 
 

@@ -21,8 +21,8 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
 from app.main_window import MainWindow
-from app.settings import Settings
-from app.theme import ThemeNotifier, load_fonts
+from app.system.settings import Settings
+from app.theme.notifier import ThemeNotifier, load_fonts
 
 SHIFTED = {"passphrase": "gnts!rinsu!vnser!idsd", "code": "Q,1056,YX["}  # each letter is its neighbour
 MAKE = """

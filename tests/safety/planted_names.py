@@ -21,13 +21,13 @@ from pathlib import Path
 
 import numpy as np
 
-from app.logs import start_logging
 from app.storage.backup import back_up
 from app.storage.exchange import export_session, import_session, session_with_samples
 from app.storage.journal.disk import Room
 from app.storage.opened import create_library, open_library
 from app.storage.recovery import find_interrupted, recover
 from app.storage.stored import Operator, Role
+from app.system.logs import start_logging
 from core.body import Site
 from core.samples import ImuBlock, Patient, Recording, RecordingKind, SensorInfo, Session
 
@@ -80,7 +80,7 @@ def named_session(name: str) -> Session:
 def work(folder: Path) -> None:
     """Do all that writes, name after name, until the kill."""
     start_logging(folder / "logs")
-    log = logging.getLogger("app.logs")
+    log = logging.getLogger("app.system.logs")
     opened, recovery_key = create_library(folder / "library", Operator("hk", NAMES[0], Role.ADMINISTRATOR), PASSPHRASE)
     assert opened.data_key is not None
     print(opened.data_key.hex(), recovery_key, flush=True)

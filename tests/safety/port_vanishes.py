@@ -16,12 +16,12 @@ import numpy as np
 from app.acquisition.acquisition import Acquisition
 from app.storage.journal.decoding import decode
 from devices.decoders import DECODERS
+from devices.drivers.ximu3 import Ximu3
 from devices.emulators.transports import Emulation, PseudoTerminal
 from devices.emulators.ximu3 import Ximu3Voice
-from devices.ports import PortInfo, SerialPort
 from devices.source import DecodedSensor
 from devices.stream import ByteSource
-from devices.ximu3 import Ximu3
+from devices.transport.ports import PortInfo, SerialPort
 from tests.safety.journal_material import KEY
 from tests.safety.vanishing import Pulling, Vanished, run
 

@@ -30,23 +30,23 @@ from PySide6.QtCore import QEvent, QSettings, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
-from app.settings import Settings
+from app.editing.session_recording import SessionRecording
 from app.storage.journal.header import JournalHeader
-from app.theme import ThemeNotifier, load_fonts
+from app.system.settings import Settings
+from app.theme.notifier import ThemeNotifier, load_fonts
 from app.wizard.sensors.sources import COLUMNS, SEARCH
 from app.wizard.sensors.step import SensorsStep
-from app.wizard.session_recording import SessionRecording
 from app.wizard.visit import Visit
 from app.wizard.wizard import Wizard
 from app.workers.library_controller import LibraryController
 from core.body import LEG_JOINTS, LEG_SITES, Joint, Site
 from core.results import Analysis, RecordingAnalysis
 from core.samples import FloatArray, ImuBlock, IntArray, RecordingKind
+from devices.clocks.host_clock import host_time_ns
 from devices.emulators.csv_lines import COLUMNS as EMULATED_COLUMNS
 from devices.emulators.patient import FINE_HZ, KINDS, EmulatedPatient, EmulatedSensor
 from devices.emulators.transports import Emulation, PseudoTerminal
-from devices.host_clock import host_time_ns
-from devices.ports import MORE_PORTS
+from devices.transport.ports import MORE_PORTS
 
 SITES = len(LEG_SITES)
 PATIENCE_S = 90.0

@@ -32,7 +32,7 @@ from app.storage.keys import KeyRefusedError
 from app.storage.layout import KEYS
 from app.storage.opened import slots_of
 from devices.files.session_folder import write_session
-from devices.walker import DEMONSTRATION, simulate
+from devices.simulation.walker import DEMONSTRATION, simulate
 from tests.safety.random_visits import OPERATOR, PASSPHRASE
 from tests.safety.said_and_held import HeldLibrary, left_open
 

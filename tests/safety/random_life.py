@@ -35,16 +35,16 @@ from PySide6.QtWidgets import QAbstractButton, QApplication, QComboBox, QLabel, 
 
 from app.acquisition.acquisition import Acquisition
 from app.main_window import SWITCH_S, MainWindow
-from app.settings import Settings
 from app.storage.keys import KeyRefusedError, KeySlots
 from app.storage.layout import KEYS
 from app.storage.opened import OpenedLibrary
-from app.theme import ThemeNotifier, load_fonts
+from app.system.settings import Settings
+from app.theme.notifier import ThemeNotifier, load_fonts
 from app.wizard.sensors import sources
 from app.wizard.worn_sensors import SourceChoice
 from app.workers.garbage import GarbageCollector
-from devices.replay import ReplaySource
-from devices.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
+from devices.simulation.replay import ReplaySource
+from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
 from tests.app.watchdog import Watchdog
 from tests.safety.random_user import RandomUser
 from tests.safety.random_visits import OPERATOR, PASSPHRASE

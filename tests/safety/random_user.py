@@ -17,7 +17,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.settings import Scheme
+from app.system.settings import Scheme
 from tests.safety.hostile_names import SEEDS
 from tests.safety.random_hands import CTRL, LEFT, NO_MODIFIER, RIGHT, SHIFT, Key
 from tests.safety.random_visits import SensibleUser

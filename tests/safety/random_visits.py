@@ -61,8 +61,8 @@ class SensibleUser(Hands):
         return "logs in"
 
     def _on_home(self, home: Any) -> str:
-        from app.pages.home_page import HomePage
-        from app.pages.import_page import ImportPage
+        from app.home.importing.import_page import ImportPage
+        from app.home.patients.home_page import HomePage
 
         page = home.current
         if isinstance(page, ImportPage):

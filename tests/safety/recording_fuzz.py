@@ -32,16 +32,16 @@ from app.storage.journal.payloads import layout_of
 from app.storage.journal.writer import JournalWriter
 from core.body import Site
 from core.samples import ImuBlock, Recording, RecordingKind
-from devices.channels import Channel
-from devices.csv_serial import DRIVER as CSV
+from devices.clocks.live_clock import LiveClock
 from devices.decoders import DECODERS
+from devices.drivers.csv_serial import DRIVER as CSV
+from devices.drivers.lsl import DRIVER as LSL
+from devices.drivers.witmotion import DRIVER as WITMOTION
+from devices.drivers.ximu3 import DRIVER as XIMU3
 from devices.live import SensorDetails
-from devices.live_clock import LiveClock
-from devices.lsl import DRIVER as LSL
 from devices.source import SourceInfo
 from devices.stream import ByteSource, Framer, Row
-from devices.witmotion import DRIVER as WITMOTION
-from devices.ximu3 import DRIVER as XIMU3
+from devices.transport.channels import Channel
 from tests.safety.device_fuzz import COLUMNS, MTI, OLD_SHIMMER3, SHIMMER3, Fuzzed, drivers, motion, old_shimmer3, row_of
 from tests.safety.journal_material import NO_ROOM_ASKED
 from tests.safety.stream_bursts import Sent, in_bursts

@@ -83,8 +83,8 @@ def contradictions(window: "MainWindow", held: HeldLibrary) -> list[str]:
 
 
 def _of_home(home: "Home", held: HeldLibrary) -> Iterator[str]:
-    from app.pages.home_lists import PatientLine, SessionLine
-    from app.pages.settings_page import SettingsPage
+    from app.home.patients.home_lists import PatientLine, SessionLine
+    from app.home.settings.settings_page import SettingsPage
 
     page = home.page
     if isinstance(home.current, SettingsPage):

@@ -10,7 +10,7 @@ from collections.abc import Collection
 from pathlib import Path
 
 from app.acquisition.acquisition import Acquisition
-from devices.replay import ReplaySource
+from devices.simulation.replay import ReplaySource
 from tests.safety.live_material import faults_of, numbered_session, read_back
 from tests.safety.vanishing import Pulling, Vanished, run
 

@@ -22,11 +22,11 @@ from app.storage.journal.decoding import decode
 from app.storage.journal.disk import Trouble
 from app.wizard.journal_words import standstill_message
 from devices.decoders import DECODERS
+from devices.drivers.ximu3 import Ximu3
 from devices.emulators.transports import Emulation, PseudoTerminal
 from devices.emulators.ximu3 import Ximu3Voice
-from devices.ports import PortInfo, SerialPort
 from devices.stream import ByteSource
-from devices.ximu3 import Ximu3
+from devices.transport.ports import PortInfo, SerialPort
 from tests.safety.journal_material import ID, KEY
 from tests.safety.live_material import open_journal
 from tests.safety.port_vanishes import RATE_HZ, SENSORS, motion

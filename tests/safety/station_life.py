@@ -37,7 +37,7 @@ from app.workers import library_watch
 from app.workers.library_watch import LibraryWatch
 from core.samples import Recording, RecordingKind
 from devices.decoders import DECODERS
-from devices.replay import ReplaySource
+from devices.simulation.replay import ReplaySource
 from tests.safety.clinic_material import PASSPHRASE, silent
 from tests.safety.journal_material import NO_ROOM_ASKED
 from tests.safety.live_material import numbered_session

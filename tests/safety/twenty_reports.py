@@ -28,17 +28,17 @@ import numpy as np
 import pikepdf
 from PIL import Image
 
-from app.reports.course import course_of
-from app.reports.course_lanes import CourseVisit
-from app.reports.patient_report.document import ReportPreview, make_report, report_data
-from app.reports.patient_report.report_file import write_visits
-from app.reports.patient_report.request import AnalysedVisit, ReportRequest, default_walks
-from app.reports.result_folder import write_results
+from app.exports.result_folder import write_results
+from app.reports.patient.document import ReportPreview, make_report, report_data
+from app.reports.patient.report_file import write_visits
+from app.summary.course import course_of
+from app.summary.course_lanes import CourseVisit
+from app.summary.request import AnalysedVisit, ReportRequest, default_walks
 from core.analysis import analyse
 from core.body import LEG_JOINTS, Joint, Side
 from core.results import Analysis, ZeroKind
 from core.samples import RecordingKind, Session
-from devices.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
+from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
 from tests.app.changed_analysis import recalibrated, with_few_strides
 from tests.benchmarks.null_differences import real_walks
 

@@ -3,7 +3,7 @@
     python -m tests.safety.two_displays OUT
 
 Starts a PostgreSQL of its own and two instances of the application, each on a display of its own (Xvfb with openbox)
-and with folders of its own, worked from outside by xdotool as `packaging/tour.py` does. Station one begins with a new
+and with folders of its own, worked from outside by xdotool as `tests/tours/tour.py` does. Station one begins with a new
 library and moves it to the server in the settings; station two joins at its first start. Then
 
 1. a session is recorded on one and reviewed on the other, which was not started anew;
@@ -13,8 +13,6 @@ library and moves it to the server in the settings; station two joins at its fir
 
 After each the database is looked into. Pictures of every stop go into OUT, a folder for each station.
 """
-
-# ruff: noqa: E402  packaging's scripts are no package: where they are has to be said before they are imported
 
 import argparse
 import importlib
@@ -32,11 +30,15 @@ from typing import Any
 import numpy as np
 from sqlalchemy import create_engine, make_url, text
 
-PACKAGING = Path(__file__).resolve().parents[2] / "packaging"
-sys.path.insert(0, str(PACKAGING))  # its scripts are no package
-
-from tour import WINDOW, Application, TourError, lead
-from tour_stops import (
+from app.storage.clinic.joining import join
+from app.storage.clinic.station import driver_url
+from app.storage.exchange import session_with_samples
+from app.storage.opened import open_library
+from core.samples import RecordingKind
+from devices.decoders import DECODERS
+from tests.benchmarks.own_display import own_display, own_environment
+from tests.tours.tour import INSIDE, WINDOW, Application, TourError, lead
+from tests.tours.tour_stops import (
     DIGITS,
     KEYBOARD,
     PASSPHRASE,
@@ -50,14 +52,6 @@ from tour_stops import (
     says,
     walk,
 )
-
-from app.storage.clinic.joining import join
-from app.storage.clinic.station import driver_url
-from app.storage.exchange import session_with_samples
-from app.storage.opened import open_library
-from core.samples import RecordingKind
-from devices.decoders import DECODERS
-from tests.benchmarks.own_display import own_display, own_environment
 
 LOOKS = (f"light {WINDOW}",)
 CODE = "DEMO-7"
@@ -371,7 +365,7 @@ def _station(name: str, out: Path) -> Iterator[StationOnScreen]:
 
 def _started(environment: Mapping[str, str]) -> Popen[str]:
     return Popen(
-        [sys.executable, str(PACKAGING / "tour_inside.py")],
+        list(INSIDE),
         cwd=environment["HOME"],
         env=dict(environment),
         stdin=PIPE,

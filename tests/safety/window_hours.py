@@ -24,8 +24,8 @@ from app.acquisition.acquisition import Acquisition
 from app.main_window import MainWindow
 from core.body import LEG_SITES
 from core.samples import ImuBlock, RecordingKind
-from devices.replay import DEMONSTRATION_SESSION, ReplaySource
-from devices.walker import simulate
+from devices.simulation.replay import DEMONSTRATION_SESSION, ReplaySource
+from devices.simulation.walker import simulate
 from tests.safety.window_material import PATIENCE_S, grown, held, linger, opened_window, wait
 
 if TYPE_CHECKING:

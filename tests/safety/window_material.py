@@ -19,8 +19,8 @@ from PySide6.QtWidgets import QApplication
 
 from app.acquisition.acquisition import Acquisition
 from app.main_window import SWITCH_S, MainWindow
-from app.settings import Settings
-from app.theme import ThemeNotifier, load_fonts
+from app.system.settings import Settings
+from app.theme.notifier import ThemeNotifier, load_fonts
 from app.wizard.sensors import sources
 from app.wizard.worn_sensors import SourceChoice
 from app.workers.garbage import GarbageCollector

@@ -19,8 +19,8 @@ from PySide6.QtWidgets import QApplication
 from app.acquisition.acquisition import Acquisition
 from app.main_window import MainWindow
 from core.body import LEG_SITES
-from devices.replay import ReplaySource
-from devices.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
+from devices.simulation.replay import ReplaySource
+from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
 from tests.safety.window_material import grown, held, linger, opened_window, wait
 
 if TYPE_CHECKING:

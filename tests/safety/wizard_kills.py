@@ -24,8 +24,8 @@ from PySide6.QtWidgets import QApplication
 
 from app.acquisition.acquisition import Acquisition
 from app.main_window import SWITCH_S, MainWindow
-from app.settings import Settings
-from app.theme import ThemeNotifier, load_fonts
+from app.system.settings import Settings
+from app.theme.notifier import ThemeNotifier, load_fonts
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.report.step import ReportStep
 from app.wizard.results.step import ResultsStep
@@ -33,8 +33,8 @@ from app.wizard.sensors import sources
 from app.wizard.worn_sensors import SourceChoice
 from core.body import LEG_SITES, Joint, Side, Site
 from core.samples import RecordingKind
-from devices.replay import ReplaySource
-from devices.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
+from devices.simulation.replay import ReplaySource
+from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
 from tests.safety.window_material import linger, wait
 
 SPEED = 20.0

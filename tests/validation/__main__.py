@@ -21,10 +21,10 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from app.cli import main as gaitwright
+from app.cli.main import main as gaitwright
 from core.body import Joint, Side
 from devices.files.session_folder import write_session
-from devices.walker import Tissue
+from devices.simulation.walker import Tissue
 from tests.benchmarks.foot_scoring import FoundStrides, Stretch, StrideScore, score_strides
 from tests.benchmarks.gait import NO_BIAS, foot_of, optical_foot, recorded_foot
 from tests.validation.paper_experiment import PROSTHESIS, against_bones, experiment

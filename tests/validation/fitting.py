@@ -20,7 +20,7 @@ from core.body import Side
 from core.results import RecordingAnalysis
 from core.samples import FloatArray
 from core.verdicts.quantities import FITTING, values_of
-from devices.walker import (
+from devices.simulation.walker import (
     FreeMotion,
     SimulatedSession,
     Standing,

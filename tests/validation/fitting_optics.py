@@ -13,9 +13,9 @@ from scipy.spatial.transform import Rotation
 from core.analysis import analyse
 from core.body import Joint, Side, Site
 from core.gait.inclination import lean_about
-from core.orientation import oriented
 from core.samples import BoolArray, FloatArray, ImuBlock, RateKind, Recording, RecordingKind, Session
-from core.tracks import even_tracks
+from core.signal.orientation import oriented
+from core.signal.tracks import even_tracks
 from tests.benchmarks.gait import optical_foot, recorded_foot
 from tests.validation.recordings_with_references import HINGES
 

@@ -26,7 +26,7 @@ from core.verdicts.fitting import BY_COLUMN
 from core.verdicts.measurement_error import KINDS, ComparisonKind, Difference, Judgement, compare
 from core.verdicts.quantities import assessment_of, values_of
 from core.verdicts.stride_means import mean_of_strides
-from devices.walker import (
+from devices.simulation.walker import (
     NO_CHANGE,
     PEOPLE,
     FreeMotion,

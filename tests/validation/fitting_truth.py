@@ -10,8 +10,8 @@ import numpy as np
 
 from core.body import Side
 from core.samples import FloatArray
-from devices.walker import SimulatedSession
-from devices.walker_motion import LegMotion
+from devices.simulation.walker import SimulatedSession
+from devices.simulation.walker_motion import LegMotion
 
 EXTENDED_DEG = 3.0
 

@@ -21,10 +21,10 @@ from core.body import Segment, Side, Site
 from core.gait.events import FootEvents, detect_events
 from core.gait.strides import Reason, Strides, strides_of_feet
 from core.samples import ImuBlock, RateKind, Recording, RecordingKind, Session
-from core.sensors import SensorTracks
+from core.signal.sensors import SensorTracks
 from devices.files.session_folder import read_session
 from devices.files.xsens_mtmanager import mtmanager_trial
-from devices.walker import (
+from devices.simulation.walker import (
     PEOPLE,
     CourseKind,
     Manner,
@@ -36,7 +36,7 @@ from devices.walker import (
     WalkerSettings,
     simulate,
 )
-from devices.walker_courses import draw_course, simulate_course
+from devices.simulation.walker_courses import draw_course, simulate_course
 from tests.benchmarks.gait import recorded_foot
 from tests.trials_of_files import import_with
 

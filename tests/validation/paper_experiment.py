@@ -16,7 +16,7 @@ from core.analysis import analyse
 from core.body import LEG_JOINTS, LEG_SITES, Joint, Segment, Side, Site
 from core.samples import FloatArray, Session
 from devices.files.references.reading import read_reference
-from devices.walker import (
+from devices.simulation.walker import (
     FreeMotion,
     Standing,
     Tissue,
@@ -24,9 +24,9 @@ from devices.walker import (
     WalkerSettings,
     simulate,
 )
-from devices.walker_body import make_leg
-from devices.walker_sensors import Mounting, Ride, draw_ride, sensor_poses
-from devices.walker_truth import MovedRecording
+from devices.simulation.walker_body import make_leg
+from devices.simulation.walker_sensors import Mounting, Ride, draw_ride, sensor_poses
+from devices.simulation.walker_truth import MovedRecording
 
 PROSTHESIS = Side.LEFT
 WALKS, STRIDES = 6, 8  # of 1.28 m: ten metres

@@ -14,18 +14,18 @@ from multiprocessing import get_context
 import numpy as np
 
 from core.analysis import analyse
+from core.angles.measure import pairs_of
 from core.body import LEG_SITES, Side, Site, hip_of
+from core.calibration.rate_kind import tracks_of_kind
+from core.calibration.validity import spans_of_validity
 from core.hip.clocks import HipClocks
 from core.hip.measure import fits_of
 from core.hip.results import ClockStatus
-from core.measure import pairs_of
-from core.quality import look_at
-from core.rate_kind import tracks_of_kind
-from core.rotations import wrap
 from core.samples import FloatArray
-from core.validity import spans_of_validity
-from devices.walker import SimulatedSession, Standing, Tissue, Walk, WalkerSettings, simulate
-from devices.walker_pelvis import hip_truth
+from core.signal.rotations import wrap
+from core.verdicts.quality import look_at
+from devices.simulation.walker import SimulatedSession, Standing, Tissue, Walk, WalkerSettings, simulate
+from devices.simulation.walker_pelvis import hip_truth
 
 MOST_LATE_S = 0.1
 WRONG_DEG = 45.0

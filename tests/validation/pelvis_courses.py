@@ -18,9 +18,9 @@ from core.results import RecordingAnalysis
 from core.samples import FloatArray
 from core.timed.protocols import PlannedTest, TimedProtocol
 from core.timed.seat import seat_motions
-from core.walk_findings import about_turns
-from devices.walker_body import CourseKind, Tissue
-from devices.walker_courses import CourseTruth, draw_course, simulate_course
+from core.verdicts.walk_findings import about_turns
+from devices.simulation.walker_body import CourseKind, Tissue
+from devices.simulation.walker_courses import CourseTruth, draw_course, simulate_course
 from tests.validation.timed_courses import tracks_of
 
 PITCHING_RAD_S, UPRIGHT_RAD = np.deg2rad(10.0), np.deg2rad(15.0)

@@ -10,7 +10,7 @@ import pytest
 from core.analysis import analyse
 from core.body import Site
 from core.verdicts.quantities import FITTING
-from devices.walker import Tissue, simulate
+from devices.simulation.walker import Tissue, simulate
 from tests.validation.fitting import errors_of, settings_of
 from tests.validation.fitting_optics import hinge_leans
 

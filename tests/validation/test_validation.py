@@ -9,7 +9,7 @@ import pytest
 from core.body import LEG_JOINTS, Joint
 from devices.files.references.reading import read_reference
 from devices.files.session_folder import write_session
-from devices.walker import Tissue, simulate
+from devices.simulation.walker import Tissue, simulate
 from tests.validation.__main__ import EXPERIMENT, PAGE, RECORDINGS, WHY, agreed, row_of, with_table
 from tests.validation.paper_experiment import FASTER, LATER_S, experiment, settings
 from tests.validation.recordings_with_references import HINGES, feet, hinge

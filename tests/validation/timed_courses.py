@@ -19,14 +19,14 @@ import numpy as np
 
 from core.body import Side
 from core.samples import RateKind, Recording, Session
-from core.sensors import SensorTracks
+from core.signal.sensors import SensorTracks
 from core.timed.found import TimedTest
 from core.timed.protocols import PlannedTest, TimedProtocol
 from core.timed.timing import time_test
 from core.timed.way import body_way, pauses_of, start_of, turns_of
 from devices.files.session_folder import read_session
-from devices.walker_body import CourseKind
-from devices.walker_courses import TAPE_M, CourseTruth, draw_course, simulate_course
+from devices.simulation.walker_body import CourseKind
+from devices.simulation.walker_courses import TAPE_M, CourseTruth, draw_course, simulate_course
 from tests.benchmarks.gait import optical_foot
 from tests.validation.recordings_with_references import feet
 

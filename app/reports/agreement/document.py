@@ -21,7 +21,7 @@ from app.reports.agreement.printed import (
 )
 from app.reports.agreement.study import AgreementStudy, AngleKind
 from app.reports.agreement.tables import events_together, lengths_together
-from app.reports.patient_report.blocks import (
+from app.reports.blocks import (
     Block,
     Cell,
     Column,
@@ -33,11 +33,11 @@ from app.reports.patient_report.blocks import (
     paragraph,
     table,
 )
-from app.reports.patient_report.dates import day
-from app.reports.patient_report.document import CODE_LENGTH, PAGES, draw_pages, set_pages
-from app.reports.patient_report.numbers_in_words import fixed, signed
-from app.reports.patient_report.plain_text import isolated, plain, shortened, typed
-from app.wording import capitalised, later, spoken_language, tr
+from app.reports.patient.document import CODE_LENGTH, PAGES, draw_pages, set_pages
+from app.summary.numbers_in_words import fixed, signed
+from app.summary.plain_text import isolated, plain, shortened, typed
+from app.summary.report_dates import day
+from app.wording.translation import capitalised, later, spoken_language, tr
 from core.agreement.figures import NAMED_PHASES, Agreement
 from core.body import JointKind
 from core.gait.phases import Phase

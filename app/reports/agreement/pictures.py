@@ -11,10 +11,10 @@ from itertools import pairwise
 import numpy as np
 
 from app.charts.drawing import COLOURS, MM, Picture, box, curve, line, picture, text
-from app.colours import PAPER
 from app.reports.agreement.printed import side_role
 from app.reports.agreement.study import AgreementStudy, AngleKind, ComparedWalk
-from app.wording import capitalised, later, tr
+from app.theme.colours import PAPER
+from app.wording.translation import capitalised, later, tr
 from core.body import Joint, JointKind
 from core.gait.phases import PHASES, Phase
 from core.samples import BoolArray, FloatArray, IntArray, Patient

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from app.recording_names import shown_names
+from app.wording.recordings import shown_names
 from core.agreement.clock import APART_S, MIN_OVERLAP_S, Alignment, FoundOffset, Misfit, align, find_offset
 from core.agreement.curves import ComparedTrial, TimedAngle, angle_at
 from core.agreement.events import (

@@ -21,7 +21,7 @@ from typing import Any, BinaryIO
 from app.storage.files import sync_folder
 from app.storage.layout import SUFFIX
 from app.storage.stored import LibraryError, LibraryFaultError
-from app.wording import tr
+from app.wording.translation import tr
 
 S3 = "s3://"
 PIECE_BYTES = 1 << 20

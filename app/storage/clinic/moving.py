@@ -33,7 +33,7 @@ from app.storage.opened import OpenedLibrary, Report, made_beside
 from app.storage.recovery import find_interrupted
 from app.storage.root import ID_SETTING
 from app.storage.stored import Action, LibraryError, RecordingState
-from app.wording import tr
+from app.wording.translation import tr
 
 BEFORE = "library-before-the-server.db"  # what was the folder's database
 LAST_STEP = b"last step"  # the mark of a move that nobody may give up without looking at the server

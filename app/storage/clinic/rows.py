@@ -18,7 +18,7 @@ from app.storage.clinic.station import JOURNALS_SETTING
 from app.storage.database.engine import Database
 from app.storage.database.models import Base, SettingRow
 from app.storage.stored import LibraryError
-from app.wording import tr
+from app.wording.translation import tr
 
 MANY = 1000  # rows held at a time
 SERVERS_OWN = (

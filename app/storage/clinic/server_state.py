@@ -6,7 +6,7 @@ from sqlalchemy.orm import Session as OrmSession
 
 from app.storage.database.models import SettingRow
 from app.storage.stored import LibraryError, LibraryFaultError
-from app.wording import tr
+from app.wording.translation import tr
 
 STATE_SETTING = "server state"
 TARGET_SETTING = "brought back to"  # by which station, into which folder: two folders would be two libraries

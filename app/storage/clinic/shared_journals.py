@@ -11,7 +11,7 @@ from app.storage.data_key import KeyMaterial
 from app.storage.journal.header import RESTORE, JournalRefusedError, destroy_key, read_header
 from app.storage.layout import CACHE, SUFFIX
 from app.storage.stored import StoredJournal
-from app.wording import later
+from app.wording.translation import later
 
 CACHED_BYTES = 20_000_000_000  # of copies on a station's disk: some hundred sessions
 NOT_YET_HERE = later("this recording is still on the station that made it")

@@ -26,7 +26,7 @@ from app.storage.stored import (
     LibraryFaultError,
     ServerSilentError,
 )
-from app.wording import tr
+from app.wording.translation import tr
 
 if TYPE_CHECKING:
     from psycopg import Connection as PgConnection

@@ -20,8 +20,8 @@ from app.storage.journal.reader import Damage, JournalReader, ReadReport
 from app.storage.journal.records import Record, RecordKind
 from core.body import Site
 from core.samples import BoolArray, FloatArray, ImuBlock, Recording
-from core.tracks import nominal_step_s
-from devices.shared_clock import tied
+from core.signal.tracks import nominal_step_s
+from devices.clocks.shared_clock import tied
 from devices.source import DecodedSensor, SensorCounts, SourceInfo, StreamDecoder
 
 Decoders = Mapping[str, Callable[[], StreamDecoder]]

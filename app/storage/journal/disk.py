@@ -10,7 +10,7 @@ from pathlib import Path
 
 from app.storage.files import hold, replace_file, sync_folder
 from app.storage.journal.header import JournalRefusedError
-from app.wording import later, tr
+from app.wording.translation import later, tr
 
 PIECE_BYTES = 1 << 20
 FULL_RATE_BYTES_S = 200_000.0  # six sensors at 200 Hz with orientation and magnetic field, sealed

@@ -23,7 +23,7 @@ from cryptography.hazmat.primitives.kdf.hkdf import HKDF
 from app.storage.data_key import KeyMaterial, checked
 from app.storage.files import sync_folder
 from app.storage.layout import SUFFIX, segment_name
-from app.wording import later, tr
+from app.wording.translation import later, tr
 
 MAGIC = b"\x89GWJ\r\n\x1a\n"  # what takes a journal for text, and mends its line ends, shows here first
 FORMAT = 1
@@ -46,7 +46,7 @@ class JournalRefusedError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class JournalHeader:
-    """`opened_wall_ns` since 1970 in UTC, `opened_ns` by `devices.host_clock`. No `wrapped_key`: not sealed."""
+    """`opened_wall_ns` since 1970 in UTC, `opened_ns` by `devices.clocks.host_clock`. No `wrapped_key`: not sealed."""
 
     recording_id: UUID
     segment: int

@@ -30,7 +30,7 @@ from app.storage.journal.payloads import STREAM, Footer, Rows, SampleLayout, Sou
 from app.storage.journal.records import FIRST_NUMBER, MAX_PAYLOAD, Record, RecordKind, Seal
 from app.storage.journal.shelter import DrawnSegment, Shelter
 from core.samples import ImuBlock
-from devices.host_clock import host_time_ns
+from devices.clocks.host_clock import host_time_ns
 from devices.source import SourceInfo
 
 WRITE_EVERY_S, SYNC_EVERY_S = 0.02, 0.5

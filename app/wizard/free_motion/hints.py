@@ -4,10 +4,10 @@ import math
 from collections.abc import Collection
 from dataclasses import dataclass, replace
 
-from app.icons import Icon
+from app.theme.icons import Icon
 from app.widgets.gauge import AXIS_FROM_DEG, CENTRE_FROM_MM, CLOSED, GaugeState, gauge_face, two_digits
 from app.widgets.hint import Hint
-from app.wording import capitalised, name_of, tr, tr_n
+from app.wording.translation import capitalised, name_of, tr, tr_n
 from core.body import Joint, Segment, Side, Site
 from core.live.excitation import HUMAN, PROSTHESIS, ExcitationState, Missing, Movement, Wanted
 from core.live.free_motion import FreeMotionState

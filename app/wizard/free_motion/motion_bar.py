@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from app.icons import Icon
+from app.theme.icons import Icon
 from app.widgets.action_bar import BarAction, BarState
-from app.wording import tr
+from app.wording.translation import tr
 from core.body import Side
 
 

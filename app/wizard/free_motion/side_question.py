@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from app.wording import side_name, tr
+from app.wording.translation import side_name, tr
 from core.body import Side
 from core.placement.chains import Chains
 

@@ -6,12 +6,13 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, QTimer, Slot
 
-from app import sounds
 from app.acquisition.live_sensors import live_sensors
-from app.icons import Icon
-from app.sounds import Sound
+from app.editing.session_recording import SessionRecording
 from app.storage.stored import RecordingState
-from app.theme import ThemeNotifier
+from app.system import sounds
+from app.system.sounds import Sound
+from app.theme.icons import Icon
+from app.theme.notifier import ThemeNotifier
 from app.widgets.action_bar import BarState
 from app.widgets.gauge import CLOSED
 from app.widgets.hint import Hint
@@ -34,9 +35,8 @@ from app.wizard.free_motion.motion_shown import gauge_faces, hip_faces, sensor_m
 from app.wizard.free_motion.page import FreeMotionFace, FreeMotionPage
 from app.wizard.free_motion.side_question import SILENT
 from app.wizard.keys import Intent, KeyAction
-from app.wizard.session_recording import SessionRecording
 from app.wizard.step import Step
-from app.wording import tr
+from app.wording.translation import tr
 from core.body import Joint, Side, Site
 from core.live.free_motion import FreeMotionState
 from core.samples import RecordingKind

@@ -6,15 +6,15 @@ from PySide6.QtCore import QPointF, QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPolygonF
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QSizePolicy, QWidget
 
-from app.icons import Icon
-from app.theme import ThemeNotifier
+from app.theme.icons import Icon
+from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.heard_order import hear_as_laid_out
 from app.widgets.icons import IconMark
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
-from app.wording import figure_text, tr
-from core.norms import ReferenceCurves
+from app.wording.translation import figure_text, tr
+from core.verdicts.norms import ReferenceCurves
 
 DRAWING_HEIGHT = 108
 

@@ -15,8 +15,8 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.reports.reference_bands import reference_curves
-from app.theme import ThemeNotifier
+from app.summary.reference_bands import reference_curves
+from app.theme.notifier import ThemeNotifier
 from app.widgets.card import Card
 from app.widgets.chips import Chips
 from app.widgets.field import Field, NumberField
@@ -24,7 +24,7 @@ from app.widgets.segmented import Segmented
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.themed import Themed
 from app.wizard.patient.cards import BandCard, LastVisit, LastVisitCard, TakenCard
-from app.wording import tr
+from app.wording.translation import tr
 from core.body import Side
 from core.samples import Patient
 

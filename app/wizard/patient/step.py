@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from PySide6.QtCore import QObject
 
-from app.dates import date
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from app.widgets.action_bar import BarAction, BarState
 from app.widgets.rail_row import StepState
 from app.wizard.patient.cards import LastVisit
 from app.wizard.patient.page import PatientDraft, PatientPage
 from app.wizard.step import Step
-from app.wording import name_of, tr
+from app.wording.dates import date
+from app.wording.translation import name_of, tr
 from core.body import LEG_JOINTS, Side
 from core.samples import Patient, RecordingKind, Session
 

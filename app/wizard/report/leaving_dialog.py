@@ -6,12 +6,12 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QColor, QPalette
 from PySide6.QtWidgets import QDialog, QFrame, QGridLayout, QHBoxLayout, QVBoxLayout, QWidget
 
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.chips import Chips
 from app.widgets.reading_area import ReadingArea
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
-from app.wording import tr
+from app.wording.translation import tr
 
 SIZE = (640, 600)
 Rows = Sequence[tuple[str, str]]

@@ -7,7 +7,7 @@ from PySide6.QtCore import QEvent, QObject, QSignalBlocker, Qt, QTimer, Signal
 from PySide6.QtGui import QKeyEvent
 from PySide6.QtWidgets import QBoxLayout, QFrame, QHBoxLayout, QPlainTextEdit, QWidget
 
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from app.widgets.card import Card
 from app.widgets.chips import Chips
 from app.widgets.choice import Choice
@@ -16,7 +16,7 @@ from app.widgets.segmented import Segmented
 from app.widgets.sheets import Sheet, Sheets, SmallSheets
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed
-from app.wording import tr
+from app.wording.translation import tr
 
 WORDS_WIDTH = 320
 WORDS_HEIGHT = 100

@@ -13,28 +13,28 @@ from PySide6.QtCore import QObject, QUrl
 from PySide6.QtGui import QDesktopServices
 from PySide6.QtWidgets import QFileDialog, QStackedWidget
 
-from app.icons import Icon
-from app.logs import version_of
-from app.pages.sentence_page import SentencePage
-from app.reports.course_lanes import CourseVisit
-from app.reports.patient_report.dates import day
-from app.reports.patient_report.request import AnalysedVisit, ReportRequest, default_walks
-from app.reports.proposed_names import free_name, session_name
+from app.exports.proposed_names import free_name, session_name
 from app.storage.audit import REPORT_FORMAT, about
 from app.storage.operators import CLINIC
 from app.storage.pseudonyms import Typed
 from app.storage.stored import Action, LibraryError
-from app.theme import ThemeNotifier
+from app.summary.course_lanes import CourseVisit
+from app.summary.report_dates import day
+from app.summary.request import AnalysedVisit, ReportRequest, default_walks
+from app.system.logs import version_of
+from app.theme.icons import Icon
+from app.theme.notifier import ThemeNotifier
 from app.widgets.action_bar import BarAction, BarState
 from app.widgets.folder_dialog import ask_for_new_folder
 from app.widgets.rail_row import StepState
+from app.widgets.sentence_page import SentencePage
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.report.leaving_dialog import LeavingDialog
 from app.wizard.report.page import ReportPage
 from app.wizard.report.printing import PRINTED_PPI, ReportPrinter
 from app.wizard.resuming import course_to, courses_before, read_analysed
 from app.wizard.step import Step
-from app.wording import capitalised, filled, tr
+from app.wording.translation import capitalised, filled, tr
 from app.workers.background import Report, Work
 from app.workers.library_controller import LibraryController
 from core.samples import RecordingKind
@@ -42,7 +42,7 @@ from devices.decoders import DECODERS
 from devices.files.refusal import FileRefusedError
 
 if TYPE_CHECKING:
-    from app.reports.patient_report.document import ReportPreview
+    from app.reports.patient.document import ReportPreview
     from app.storage.opened import OpenedLibrary
     from app.storage.stored import SessionSummary
     from app.wizard.report.leaving_dialog import Rows
@@ -186,7 +186,7 @@ class ReportStep(Step):
         session_id = stored.id
 
         def work(opened: "OpenedLibrary", _report: Report) -> list[bytes]:
-            from app.reports.patient_report.document import ReportPreview
+            from app.reports.patient.document import ReportPreview
 
             opened.library.audit.note(Action.PRINT, about("session", session_id), format=REPORT_FORMAT)
             return ReportPreview().pages(request, PRINTED_PPI)
@@ -254,7 +254,7 @@ class ReportStep(Step):
 
     def _previewing(self, request: ReportRequest, ppi: float) -> Work:
         def work(_report: Report) -> object:
-            from app.reports.patient_report.document import ReportPreview
+            from app.reports.patient.document import ReportPreview
 
             self._preview = self._preview or ReportPreview()
             return self._preview.pages(request, ppi)
@@ -360,9 +360,9 @@ class ReportStep(Step):
 
         def save(opened: "OpenedLibrary", report: Report) -> tuple[Path, list[str]]:
             from app.exports.exports import Format, export_from_library
-            from app.reports.patient_report.document import make_report
-            from app.reports.patient_report.report_file import write_visits
-            from app.reports.result_folder import LOG, check_place, write_results, written_beside
+            from app.exports.result_folder import LOG, check_place, write_results, written_beside
+            from app.reports.patient.document import make_report
+            from app.reports.patient.report_file import write_visits
 
             typed, lines = [Typed(one) for one in sorted(kept)], list[str]()
             report(0.0, tr("writing"))

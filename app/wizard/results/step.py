@@ -10,34 +10,34 @@ from uuid import UUID
 from PySide6.QtCore import QObject, QTimer
 from PySide6.QtWidgets import QWidget
 
-from app.icons import Icon
-from app.pages.correct_page import CorrectPage, JointLine, WalkLine
-from app.pages.sentence_page import SentencePage
-from app.recording_names import shown_names, where_shown
-from app.reports.agreed import agreed_with
-from app.reports.course_lanes import CourseVisit
-from app.reports.patient_report.dates import date_of
-from app.reports.visits import WalkedVisit, conditions_in_words, parts_of_visits, visits_by_condition
-from app.theme import ThemeNotifier
+from app.results.correct_page import CorrectPage, JointLine, WalkLine
+from app.results.detail_pages import BehindResults
+from app.summary.agreed import agreed_with
+from app.summary.course_lanes import CourseVisit
+from app.summary.report_dates import date_of
+from app.summary.visits import WalkedVisit, conditions_in_words, parts_of_visits, visits_by_condition
+from app.theme.icons import Icon
+from app.theme.notifier import ThemeNotifier
 from app.widgets.action_bar import BarAction, BarState
 from app.widgets.page_stack import PageStack
 from app.widgets.rail_row import StepState
+from app.widgets.sentence_page import SentencePage
 from app.widgets.start_pages import WorkingPage
 from app.wizard.keys import Intent
 from app.wizard.keys import KeyAction as KeyAction
 from app.wizard.results.stride_choice import StrideChoice
 from app.wizard.resuming import course_to, courses_before
 from app.wizard.step import Step
-from app.wording import capitalised, name_of, place, tr
-from app.workers.behind_results import BehindResults
+from app.wording.recordings import shown_names, where_shown
+from app.wording.translation import capitalised, name_of, place, tr
 from core.body import LEG_JOINTS, Joint
 from core.samples import RecordingKind
 
 if TYPE_CHECKING:
-    from app.pages.result_page import ResultPage
-    from app.pages.result_parts import ResultParts
-    from app.reports.patient_report.request import AnalysedVisit
-    from app.wizard.session_recording import SessionRecording
+    from app.editing.session_recording import SessionRecording
+    from app.results.result_page import ResultPage
+    from app.results.result_parts import ResultParts
+    from app.summary.request import AnalysedVisit
     from app.wizard.visit import Visit
     from core.results import Analysis
     from core.samples import Session
@@ -191,7 +191,7 @@ class ResultsStep(Step):
         self.changed.emit()
 
     def _hold(self, results: "ResultPage", analysis: "Analysis") -> None:
-        from app.reports.patient_report.request import AnalysedVisit  # as the results' page, which imported it
+        from app.summary.request import AnalysedVisit  # as the results' page, which imported it
 
         session = self._visit.evaluation.session
         if session is None or (self._held is not None and self._held[0] is session and self._held[1] is analysis):
@@ -227,7 +227,7 @@ class ResultsStep(Step):
         self._show()
 
     def _on_figures_wished(self, what: str, folder: Path, write: Callable[[], None]) -> None:
-        from app.workers.diagnostics_controller import saved_from_library
+        from app.results.diagnostics_controller import saved_from_library
 
         if (session := self._visit.session) is not None:
             session_id = session.id
@@ -443,7 +443,7 @@ class _ResultsFrame(PageStack):
         """Make the next part of the results; whether there was one."""
         if self._results is not None:
             return False
-        from app.pages.result_parts import ResultParts
+        from app.results.result_parts import ResultParts
 
         self._parts = self._parts or ResultParts(self._look)
         if not self._parts.make_next():
@@ -456,7 +456,7 @@ class _ResultsFrame(PageStack):
 
     def results(self) -> "ResultPage":
         if self._results is None:
-            from app.pages.result_page import ResultPage  # its imports take a second
+            from app.results.result_page import ResultPage  # its imports take a second
 
             self._results = ResultPage(self._look, self._parts)
             self._results.set_room(*self._room)

@@ -7,13 +7,13 @@ from uuid import UUID
 
 from PySide6.QtCore import QObject, Signal
 
-from app.wording import tr
+from app.wording.translation import tr
 from core.body import Side
 
 if TYPE_CHECKING:
+    from app.editing.session_recording import SessionRecording
     from app.widgets.stride_list import StrideLine
     from app.wizard.recordings import SessionRecordings
-    from app.wizard.session_recording import SessionRecording
 
 LeftOut = Mapping[Side, tuple[float, ...]]
 

@@ -7,15 +7,15 @@ from enum import StrEnum
 from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtWidgets import QBoxLayout, QGridLayout, QHBoxLayout, QVBoxLayout, QWidget
 
-from app.icons import Icon
-from app.theme import ThemeNotifier
+from app.theme.icons import Icon
+from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.choice import Choice
 from app.widgets.notice import Notice
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed
-from app.wording import tr
+from app.wording.translation import tr
 
 PADDING = 24
 MOST_COLUMNS = 40  # as rows; who sends more sends something else

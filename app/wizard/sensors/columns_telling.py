@@ -6,17 +6,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 from PySide6.QtCore import QObject, Signal
 
-from app.known_columns import keep_columns
+from app.system.known_columns import keep_columns
 from app.wizard.sensors.columns_form import AXES, ColumnsTold, Meaning
-from app.wording import figure_text, tr
+from app.wording.translation import figure_text, tr
 from core.samples import FloatArray
-from devices.csv_serial import FORCE_UNITS, RATE_UNITS, Columns
-from devices.lines import STILL, G, LinePreview, guessed, table_of
-from devices.ports import SerialPort
+from devices.drivers.csv_serial import FORCE_UNITS, RATE_UNITS, Columns
+from devices.drivers.lines import STILL, G, LinePreview, guessed, table_of
+from devices.transport.ports import SerialPort
 
 if TYPE_CHECKING:
     from app.wizard.sensors.columns_form import ColumnsForm
-    from devices.lines import LinesAt
+    from devices.drivers.lines import LinesAt
 
 TICKS_HZ = {"s": 1.0, "ms": 1e3, "us": 1e6}
 SLOWEST_HZ, FASTEST_HZ = 20.0, 2000.0

@@ -8,9 +8,9 @@ from PySide6.QtCore import QModelIndex, QRectF, QSignalBlocker, Qt, Signal
 from PySide6.QtGui import QColor, QFontMetrics, QKeyEvent, QPainter
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QVBoxLayout, QWidget
 
-from app.icons import Icon, paint_icon
-from app.theme import ThemeNotifier
-from app.tokens import Theme
+from app.theme.icons import Icon, paint_icon
+from app.theme.notifier import ThemeNotifier
+from app.theme.theme import Theme
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.choice import Choice
@@ -19,7 +19,7 @@ from app.widgets.table import CellTable, TableColumn, TableRow
 from app.widgets.table_cells import TableCell, TextCell
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed
-from app.wording import tr, tr_n
+from app.wording.translation import tr, tr_n
 
 ROW, HEAD, PADDING, MARK = 44, 32, 10, 20
 STRONG_DBM, FAIR_DBM = -60, -75

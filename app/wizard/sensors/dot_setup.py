@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject, Signal
 
 from app.acquisition.dot_fleet import DotAsked, DotFleet, DotPlan, acquisition_of
-from app.icons import Icon
+from app.theme.icons import Icon
 from app.widgets.action_bar import BarAction, BarState
 from app.wizard.sensor_sync import REASONS, SyncPurpose, progress_of
 from app.wizard.sensors.dot_form import DotLine
-from app.wording import filled, tr, tr_n
+from app.wording.translation import filled, tr, tr_n
 from devices.dot.synchronising import SyncFailure
 from devices.live import SourceLostError, SourceRefusedError
 

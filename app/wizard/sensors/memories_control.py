@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject, Signal, Slot
 
 from app.acquisition.dot_memories import DotMemories, HeldRecording, KnownRecording, known
-from app.icons import Icon
-from app.patient_words import when
-from app.recording_names import shown_names
+from app.theme.icons import Icon
 from app.widgets.action_bar import BarAction, BarState
 from app.widgets.sensors_progress import LineState, ProgressShown, SensorLine
 from app.wizard.sensors.memories_form import HeldLine
-from app.wording import filled, tr, tr_n
+from app.wording.patients import when
+from app.wording.recordings import shown_names
+from app.wording.translation import filled, tr, tr_n
 from devices.live import SourceLostError, SourceRefusedError
 
 if TYPE_CHECKING:

@@ -6,15 +6,15 @@ from dataclasses import dataclass
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
-from app.icons import Icon
-from app.theme import ThemeNotifier
+from app.theme.icons import Icon
+from app.theme.notifier import ThemeNotifier
 from app.widgets.card import Card
 from app.widgets.notice import Notice
 from app.widgets.table import CellTable, TableColumn, TableRow
 from app.widgets.table_cells import TextCell
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed
-from app.wording import tr, tr_n
+from app.wording.translation import tr, tr_n
 
 ROW, HEAD, PADDING = 48, 32, 10
 AT_LEAST_ROWS = 2

@@ -15,8 +15,8 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.icons import Icon
-from app.theme import ThemeNotifier
+from app.theme.icons import Icon
+from app.theme.notifier import ThemeNotifier
 from app.widgets.body_figure import SensorMark
 from app.widgets.choice import Choice
 from app.widgets.notice import Notice
@@ -33,7 +33,7 @@ from app.wizard.sensors.sensor_row import SensorRow
 from app.wizard.sensors.sensor_sentences import Said, said_of_dragged, said_of_sensors, said_of_shaken_together
 from app.wizard.sensors.session_chooser import SessionChooser
 from app.wizard.sensors.source_pages import NoSource, Searching, SourceOption
-from app.wording import tr
+from app.wording.translation import tr
 from core.body import LEG_SITES, Site
 from core.samples import FloatArray
 

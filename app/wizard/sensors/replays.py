@@ -12,15 +12,15 @@ from uuid import UUID
 from PySide6.QtCore import QObject, Signal
 
 from app.acquisition.acquisition import Acquisition
-from app.foreign_files import read_foreign_session
+from app.importing.untrusted_files import read_foreign_session
 from app.storage.exchange import session_with_samples
 from app.storage.stored import LibraryError, SessionSummary
 from app.wizard.worn_sensors import SourceChoice
-from app.wording import tr
+from app.wording.translation import tr
 from app.workers.background import Report
 from app.workers.library_controller import LibraryController
 from devices.decoders import DECODERS
-from devices.replay import ReplaySource, names_of
+from devices.simulation.replay import ReplaySource, names_of
 
 if TYPE_CHECKING:
     from app.storage.opened import OpenedLibrary

@@ -6,14 +6,14 @@ from PySide6.QtCore import QRect, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QAccessible, QFont, QFontMetrics, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QVBoxLayout, QWidget
 
-from app.body_words import segment_name
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from app.widgets.battery import WIDTH as CELL_WIDTH
 from app.widgets.painted_text import LEFT, RIGHT, PaintedText
 from app.widgets.text import MEDIUM, SEMIBOLD
 from app.widgets.themed import Themed
 from app.wizard.sensors.sensor_row import CHEVRON, CHIP, ROW, SensorRow, SensorRowView
-from app.wording import figure_text, tr
+from app.wording.body import segment_name
+from app.wording.translation import figure_text, tr
 from core.body import LEG_SITES, Site
 from core.samples import FloatArray
 

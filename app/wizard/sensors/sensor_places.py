@@ -17,16 +17,16 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.body_words import segment_name
-from app.theme import ThemeNotifier
-from app.tokens import CARD_RADIUS, CONTROL_RADIUS
+from app.theme.notifier import ThemeNotifier
+from app.theme.theme import CARD_RADIUS, CONTROL_RADIUS
 from app.widgets.body_figure import SENTENCE_ROOM, BodyFigure, SensorMark
 from app.widgets.chip import LETTERS, paint_chip
 from app.widgets.painted_text import RIGHT, PaintedText
 from app.widgets.text import MEDIUM, SEMIBOLD
 from app.widgets.themed import Themed
 from app.wizard.sensors.sensor_drag import DRAGGED, DraggedButton, sensor_in
-from app.wording import name_of, tr
+from app.wording.body import segment_name
+from app.wording.translation import name_of, tr
 from core.body import LEG_SEGMENTS, Segment, Side, Site
 
 TILE = (112, 50)

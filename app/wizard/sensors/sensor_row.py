@@ -16,10 +16,9 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QMenu, QSizePolicy, QWidget
 
-from app.body_words import segment_name
-from app.icons import Icon, paint_icon
-from app.theme import ThemeNotifier
-from app.tokens import CHIP_RADIUS, CONTROL_RADIUS
+from app.theme.icons import Icon, paint_icon
+from app.theme.notifier import ThemeNotifier
+from app.theme.theme import CHIP_RADIUS, CONTROL_RADIUS
 from app.widgets.battery import HEIGHT as CELL_HEIGHT
 from app.widgets.battery import LOW, paint_battery
 from app.widgets.battery import WIDTH as CELL_WIDTH
@@ -31,7 +30,8 @@ from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD
 from app.wizard.sensors.sensor_drag import DraggedButton
 from app.wizard.sensors.sensor_places import number_of
 from app.wizard.sensors.sensor_trace import Trace
-from app.wording import capitalised, figure_text, name_of, tr
+from app.wording.body import segment_name
+from app.wording.translation import capitalised, figure_text, name_of, tr
 from core.body import LEG_SITES, Site
 from devices.quiet import Quiet
 

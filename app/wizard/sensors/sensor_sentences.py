@@ -2,9 +2,9 @@
 
 from collections.abc import Collection, Mapping, Sequence
 
-from app.icons import Icon
+from app.theme.icons import Icon
 from app.wizard.sensors.sensor_row import SensorRow
-from app.wording import capitalised, figure_text, name_of, tr
+from app.wording.translation import capitalised, figure_text, name_of, tr
 from core.body import LEG_SITES, Segment, Side, Site
 
 NEARLY_EMPTY = 0.05  # of a battery: minutes

@@ -5,9 +5,9 @@ from PySide6.QtCore import QPointF, Qt
 from PySide6.QtGui import QColor, QFontMetrics, QPainter, QPaintEvent, QPen, QPolygonF
 from PySide6.QtWidgets import QWidget
 
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from app.widgets.text import SEMIBOLD
-from app.wording import tr
+from app.wording.translation import tr
 from core.samples import FloatArray
 
 PIXELS_PER_POINT = 2  # closer ones only cost, and blot

@@ -2,9 +2,9 @@
 
 from typing import TYPE_CHECKING
 
-from app.icons import Icon
+from app.theme.icons import Icon
 from app.widgets.action_bar import BarAction, BarState
-from app.wording import name_of, tr
+from app.wording.translation import name_of, tr
 from core.body import LEG_JOINTS, LEG_SITES, Site
 
 if TYPE_CHECKING:

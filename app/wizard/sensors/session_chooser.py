@@ -6,15 +6,15 @@ from uuid import UUID
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QStackedWidget, QVBoxLayout, QWidget
 
-from app.icons import Icon
-from app.pages.home_lists import LineList, PatientLine
-from app.theme import ThemeNotifier
+from app.home.patients.home_lists import LineList, PatientLine
+from app.theme.icons import Icon
+from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.notice import Notice
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed
-from app.wording import tr
+from app.wording.translation import tr
 
 LINES_AT_LEAST = 1.4  # in sight, so that it is seen that there are more
 LINE = 72

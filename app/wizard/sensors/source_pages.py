@@ -6,14 +6,14 @@ from dataclasses import dataclass
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QProgressBar, QVBoxLayout
 
-from app.icons import Icon
-from app.theme import ThemeNotifier
+from app.theme.icons import Icon
+from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.heard_order import hear_as_laid_out
 from app.widgets.notice import Notice
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed
-from app.wording import tr
+from app.wording.translation import tr
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,25 +12,25 @@ from importlib.util import find_spec
 from typing import TYPE_CHECKING, overload
 
 from app.acquisition.acquisition import Acquisition
-from app.known_columns import known_columns
+from app.system.known_columns import known_columns
 from app.wizard.worn_sensors import SetUpFirstError, SourceChoice
-from app.wording import later, tr, tr_n
+from app.wording.translation import later, tr, tr_n
 from core.body import Side
-from devices.bluetooth import BluetoothMissingError, own_radio
 from devices.catalogue import DRIVERS
 from devices.dot.samples import DRIVER as MOVELLA_DOT
 from devices.dot.source import DotSource
+from devices.drivers.lsl import GROUP, PORT
 from devices.live import SourceRefusedError
-from devices.lsl import GROUP, PORT
-from devices.networks import THIS_COMPUTER, own_addresses
-from devices.prosthesis_user import ProsthesisUser
-from devices.replay import DEMONSTRATION_SESSION, DEMONSTRATION_WITH_PELVIS, demonstration
 from devices.search import search, search_streams
+from devices.simulation.prosthesis_user import ProsthesisUser
+from devices.simulation.replay import DEMONSTRATION_SESSION, DEMONSTRATION_WITH_PELVIS, demonstration
+from devices.transport.bluetooth import BluetoothMissingError, own_radio
+from devices.transport.networks import THIS_COMPUTER, own_addresses
 
 if TYPE_CHECKING:
     from app.acquisition.dot_fleet import DotFleet
     from devices.search import FoundSensor, SearchResult
-    from devices.walker import WalkerSettings
+    from devices.simulation.walker import WalkerSettings
 
 DEMONSTRATION = "demonstration"
 WITH_PELVIS = "demonstration_with_pelvis"

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject
 
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from app.widgets.action_bar import BarAction, BarState
 from app.widgets.rail_row import StepState
 from app.widgets.sensor_tile import SILENT_FROM_S
@@ -23,7 +23,7 @@ from app.wizard.sensors.stored_replay import StoredReplay
 from app.wizard.sensors.trace_values import TRACE_S, TraceValues
 from app.wizard.step import Step
 from app.wizard.worn_sensors import SourceChoice
-from app.wording import tr
+from app.wording.translation import tr
 from core.body import Site
 
 if TYPE_CHECKING:

@@ -8,13 +8,13 @@ from uuid import UUID
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QFileDialog
 
-from app.icons import Icon
-from app.pages.home_lists import PatientLine
-from app.patient_words import when
+from app.home.patients.home_lists import PatientLine
+from app.theme.icons import Icon
 from app.widgets.action_bar import BarAction, BarState
 from app.widgets.folder_dialog import ask_for_folder
 from app.wizard.sensors.replays import Replays
-from app.wording import tr, tr_n
+from app.wording.patients import when
+from app.wording.translation import tr, tr_n
 
 if TYPE_CHECKING:
     from app.storage.stored import SessionSummary

@@ -9,8 +9,8 @@ from PySide6.QtCore import QSize, Qt, Signal
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QScrollArea, QSizePolicy, QVBoxLayout, QWidget
 
-from app.icons import Icon
-from app.theme import ThemeNotifier
+from app.theme.icons import Icon
+from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button
 from app.widgets.card import Card
 from app.widgets.field import NumberField
@@ -18,7 +18,7 @@ from app.widgets.notice import Notice
 from app.widgets.stillness import INSET, STEPS, CountRing, MovementBars, RingFace
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.themed import Themed
-from app.wording import capitalised, name_of, tr
+from app.wording.translation import capitalised, name_of, tr
 from core.body import LEG_JOINTS, Joint, Side, Site
 from core.calibration.rest import MAX_SPREAD_RAD_S
 from core.live.standing import WANTED_S

@@ -6,18 +6,18 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, QTimer
 
-from app import sounds
-from app.icons import Icon
-from app.sounds import Sound
-from app.theme import ThemeNotifier
+from app.editing.session_recording import SessionRecording
+from app.system import sounds
+from app.system.sounds import Sound
+from app.theme.icons import Icon
+from app.theme.notifier import ThemeNotifier
 from app.widgets.action_bar import BarAction, BarState
 from app.widgets.rail_row import StepState
 from app.wizard.keys import Intent, KeyAction
-from app.wizard.session_recording import SessionRecording
 from app.wizard.standing.estimator import StandingEstimator
 from app.wizard.standing.page import StandPhase, StandStillPage, StandStillView
 from app.wizard.step import Step
-from app.wording import tr
+from app.wording.translation import tr
 from core.body import LEG_JOINTS, Joint, Site
 from core.live.standing import WANTED_S
 from core.samples import RecordingKind

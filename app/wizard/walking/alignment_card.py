@@ -8,9 +8,8 @@ from PySide6.QtCore import QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QAccessible, QFontMetrics, QMouseEvent, QPainter, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QScrollArea, QSizePolicy, QVBoxLayout, QWidget
 
-from app.alignment_words import MINUS, change_in_words, direction_words, part_name, turns_words
-from app.theme import ThemeNotifier
-from app.tokens import CHIP_RADIUS, CONTROL_RADIUS
+from app.theme.notifier import ThemeNotifier
+from app.theme.theme import CHIP_RADIUS, CONTROL_RADIUS
 from app.widgets.card import Card
 from app.widgets.chip import Chip
 from app.widgets.choice import Choice
@@ -20,7 +19,8 @@ from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.themed import Themed
 from app.wizard.walking.bench import ChangeEntry
 from app.wizard.walking.stepper import Stepper
-from app.wording import figure_text, tr
+from app.wording.alignment import MINUS, change_in_words, direction_words, part_name, turns_words
+from app.wording.translation import figure_text, tr
 from core.alignment import FIGURES, MOST_TEXT, ProsthesisPart
 from core.body import Side
 

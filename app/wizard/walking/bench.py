@@ -3,8 +3,8 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from app.recording_names import LETTERS, condition_letters
-from app.reports.alignments import alignments_of
+from app.summary.alignments import alignments_of
+from app.wording.recordings import LETTERS, condition_letters
 from core.alignment import (
     FIGURES,
     AlignmentChange,

@@ -1,9 +1,9 @@
 """What can be done at the bench between two walks: walk on, keep, return to where it began."""
 
-from app.icons import Icon
+from app.theme.icons import Icon
 from app.widgets.action_bar import BarAction, BarState
 from app.wizard.walking.bench_control import Bench
-from app.wording import tr
+from app.wording.translation import tr
 
 
 def bench_bar(bench: Bench, asked: str | None, test: str, note: str, can_start: bool) -> BarState:

@@ -4,19 +4,19 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Signal, Slot
 
-from app.alignment_words import change_lines, to_do_in_words
-from app.reports.agreed import agreed_with
-from app.reports.comparison import Comparison, Contrast
-from app.reports.conditions import Part, parts_of
-from app.reports.patient_report.answer import Answer, Outcome
-from app.reports.patient_report.numbers_in_words import fixed
+from app.summary.agreed import agreed_with
+from app.summary.answer import Answer, Outcome
+from app.summary.comparison import Comparison, Contrast
+from app.summary.conditions import Part, parts_of
+from app.summary.numbers_in_words import fixed
 from app.wizard.evaluation import failure_in_words
 from app.wizard.walking.alignment_card import AlignmentRow, RowRole
 from app.wizard.walking.bench import AlignmentChain, ChangeEntry, chain_of, next_walk
 from app.wizard.walking.bench_view import BenchState
 from app.wizard.walking.bench_words import SPEED, bench_answer
 from app.wizard.walking.walk_labels import is_alignment, new_alignment
-from app.wording import tr
+from app.wording.alignment import change_lines, to_do_in_words
+from app.wording.translation import tr
 from core.alignment import AlignmentChange
 from core.body import Side
 from core.samples import Recording

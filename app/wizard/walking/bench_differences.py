@@ -1,17 +1,17 @@
 """What differs between two alignments: the prosthetic side, the sound side's reaction, and both legs together."""
 
-from app.alignment_words import NO_PROOF
-from app.icons import Icon
-from app.pages.compared_words import change_in_words, is_judged, why_not_told
-from app.reports.comparison import Compared, Comparison
-from app.reports.measures import FITTED
-from app.reports.patient_report.numbers_in_words import DAGGER, judged_in_words
-from app.theme import ThemeNotifier
+from app.results.compared_words import change_in_words, is_judged, why_not_told
+from app.summary.comparison import Compared, Comparison
+from app.summary.measures import FITTED
+from app.summary.numbers_in_words import DAGGER, judged_in_words
+from app.theme.icons import Icon
+from app.theme.notifier import ThemeNotifier
 from app.widgets.card import Card
 from app.widgets.table import CellTable, TableColumn, TableRow
 from app.widgets.table_cells import CENTRE, EMPTY, RIGHT, ErrorStrip, TableCell, TextCell
 from app.widgets.text import REGULAR, SEMIBOLD, Text
-from app.wording import tr
+from app.wording.alignment import NO_PROOF
+from app.wording.translation import tr
 from core.body import Side
 from core.verdicts.measurement_error import Judgement
 

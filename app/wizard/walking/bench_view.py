@@ -7,14 +7,14 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QAccessible
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QVBoxLayout, QWidget
 
-from app.icons import Icon
-from app.pages.compared_words import withheld_in_words
 from app.plots.compared_chart import ComparedChart, ComparedFrame
-from app.reports.beside import changes_on_curves
-from app.reports.comparison import Comparison
-from app.reports.conditions import Part
-from app.reports.patient_report.answer import Answer, Outcome
-from app.theme import ThemeNotifier
+from app.results.compared_words import withheld_in_words
+from app.summary.answer import Answer, Outcome
+from app.summary.beside import changes_on_curves
+from app.summary.comparison import Comparison
+from app.summary.conditions import Part
+from app.theme.icons import Icon
+from app.theme.notifier import ThemeNotifier
 from app.widgets.focus_ring import NO_RING
 from app.widgets.icons import IconMark
 from app.widgets.segmented import Segmented
@@ -23,7 +23,7 @@ from app.widgets.themed import Themed
 from app.wizard.walking.alignment_card import AlignmentCard, AlignmentRow
 from app.wizard.walking.bench import ChangeEntry
 from app.wizard.walking.bench_differences import BenchDifferences
-from app.wording import tr
+from app.wording.translation import tr
 from core.body import JointKind, Side
 from core.verdicts.model import worst
 

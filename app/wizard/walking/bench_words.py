@@ -2,15 +2,15 @@
 
 import math
 
-from app.pages.compared_words import error_in_sentence, is_judged, unit_behind
-from app.reports.comparison import Compared, Comparison
-from app.reports.conditions import Part
-from app.reports.patient_report.answer import Answer, Outcome
-from app.reports.patient_report.numbers_in_words import fixed, signed
-from app.reports.patient_report.what_stands_out import FAMILIES
-from app.wording import tr, within_sentence
+from app.results.compared_words import error_in_sentence, is_judged, unit_behind
+from app.summary.answer import Answer, Outcome
+from app.summary.comparison import Compared, Comparison
+from app.summary.conditions import Part
+from app.summary.numbers_in_words import fixed, signed
+from app.summary.what_stands_out import FAMILIES
+from app.wording.translation import tr, within_sentence
 from core.body import Side
-from core.norms import MIN_STRIDES_FOR_SD
+from core.verdicts.norms import MIN_STRIDES_FOR_SD
 
 SPEED = "speed_m_s"
 

@@ -7,7 +7,7 @@ from PySide6.QtCore import QSize, Qt
 from PySide6.QtGui import QAccessible
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QSizePolicy, QVBoxLayout
 
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.chip import Chip
@@ -16,7 +16,7 @@ from app.wizard.walking.charts import Hairline
 from app.wizard.walking.label_chooser import LabelChooser
 from app.wizard.walking.timed_chooser import TimedChooser
 from app.wizard.walking.walk_list import WalkRow, WalkState
-from app.wording import tr, tr_n
+from app.wording.translation import tr, tr_n
 from core.body import Side
 
 FIGURE = 60

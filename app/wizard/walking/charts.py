@@ -8,14 +8,14 @@ from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QSpacerItem, QWidget
 
 from app.charts.axes import ANKLE_DEG, KNEE_DEG, degrees_in_words
 from app.plots.phase_lanes import Swatch
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from app.widgets.card import Card
 from app.widgets.chip import LETTERS, SideKey
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.wizard.walking.live_lanes import LiveLanes
 from app.wizard.walking.live_strip import LiveStrip
 from app.wizard.walking.readout import WalkingReadout
-from app.wording import tr
+from app.wording.translation import tr
 from core.body import Side
 from core.gait.phases import Phase
 

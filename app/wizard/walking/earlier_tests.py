@@ -6,10 +6,10 @@ from uuid import UUID
 
 from PySide6.QtCore import QObject, Signal
 
-from app.patient_words import time_of_session
-from app.reports.course import Course, CourseTest, timed_tests_of
-from app.reports.course_lanes import CourseVisit
+from app.summary.course import Course, CourseTest, timed_tests_of
+from app.summary.course_lanes import CourseVisit
 from app.wizard.resuming import current_courses
+from app.wording.patients import time_of_session
 
 if TYPE_CHECKING:
     from app.storage.opened import OpenedLibrary

@@ -4,14 +4,14 @@ from PySide6.QtCore import QRect, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QFontMetrics, QKeyEvent, QPainter, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import QAbstractButton, QSizePolicy, QWidget
 
-from app.theme import ThemeNotifier
-from app.tokens import CHIP_RADIUS
+from app.theme.notifier import ThemeNotifier
+from app.theme.theme import CHIP_RADIUS
 from app.widgets.chips import flow
 from app.widgets.field import Field
 from app.widgets.painted_text import CENTRE, LEFT, PaintedText
 from app.widgets.text import MEDIUM, SEMIBOLD
 from app.widgets.themed import Themed
-from app.wording import tr
+from app.wording.translation import tr
 
 HEIGHT = 48  # as high as the field beside them
 PADDING, GAP, CAP = 14, 8, 22

@@ -14,15 +14,15 @@ from PySide6.QtWidgets import QSizePolicy
 
 from app.charts.axes import AXIS_WIDTH, RIGHT_MARGIN
 from app.plots.phase_lanes import BETWEEN, GAP_PX, LANE, paint_phase
-from app.theme import ThemeNotifier
-from app.tokens import CHIP_RADIUS
+from app.theme.notifier import ThemeNotifier
+from app.theme.theme import CHIP_RADIUS
 from app.widgets.chip import CHIP, LETTERS, paint_chip
 from app.widgets.text import MEDIUM
 from app.widgets.themed import Themed
 from app.wizard.walking.live_strip import SHOWN_S
 from app.wizard.walking.readout import LiveLane, PhaseSpan
 from app.wizard.walking.scrolling_picture import ScrollingPicture
-from app.wording import tr
+from app.wording.translation import tr
 from core.body import Side
 
 AXIS_HEIGHT, TICK = 24, 4

@@ -19,7 +19,7 @@ from core.samples import Recording
 
 if TYPE_CHECKING:
     from app.acquisition.acquisition import Acquisition
-    from app.wizard.session_recording import Ongoing
+    from app.editing.session_recording import Ongoing
     from app.wizard.visit import Visit
     from app.wizard.walking.readout import WalkingReadout
 

@@ -17,12 +17,12 @@ from PySide6.QtWidgets import QWidget
 
 from app.charts.axes import AXIS_WIDTH, RIGHT_MARGIN, range_for
 from app.plots.angle_chart import AngleAxis
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from app.widgets.chip import LETTERS
 from app.widgets.text import MEDIUM
 from app.wizard.walking.readout import LiveTrace
 from app.wizard.walking.scrolling_picture import ScrollingPicture
-from app.wording import tr
+from app.wording.translation import tr
 from core.body import Side
 from core.samples import FloatArray
 

@@ -4,11 +4,11 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Signal, Slot
 
-from app.icons import Icon
+from app.theme.icons import Icon
 from app.widgets.action_bar import BarAction, BarState
 from app.widgets.sensors_progress import ProgressShown
 from app.wizard.sensor_sync import SyncPurpose, progress_of
-from app.wording import tr
+from app.wording.translation import tr
 from core.body import Site
 
 if TYPE_CHECKING:

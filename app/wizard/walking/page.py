@@ -15,10 +15,9 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.icons import Icon
 from app.patient_screen.controls import ControlsCard
-from app.recording_names import LETTERS
-from app.theme import ThemeNotifier
+from app.theme.icons import Icon
+from app.theme.notifier import ThemeNotifier
 from app.widgets.focus_ring import NO_RING
 from app.widgets.notice import Notice
 from app.widgets.segmented import Segmented
@@ -32,7 +31,8 @@ from app.wizard.walking.readout import WalkingReadout
 from app.wizard.walking.timed_result import TimedResult, TimedResultView
 from app.wizard.walking.timed_view import TimedView, TimedViewState
 from app.wizard.walking.walk_list import WalkList, WalkRow, WalkState
-from app.wording import tr
+from app.wording.recordings import LETTERS
+from app.wording.translation import tr
 from core.timed.protocols import TimedProtocol
 
 MARGIN, BETWEEN = 24, 12

@@ -12,15 +12,15 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Qt, Signal, Slot
 
-from app import sounds
-from app.gates_in_words import gate_sentence
 from app.patient_screen.controls import ControlsCard, choices
 from app.patient_screen.metronome import Metronome
 from app.patient_screen.patient_view import SHOWN_STRIDES, PatientView
 from app.patient_screen.window import PatientWindow
-from app.sounds import Sound
-from app.theme import ThemeNotifier
-from app.wording import tr
+from app.system import sounds
+from app.system.sounds import Sound
+from app.theme.notifier import ThemeNotifier
+from app.wording.translation import tr
+from app.wording.verdicts import gate_sentence
 from core.body import LEG_SEGMENTS, Joint, Segment, Side, Site, knee_of
 from core.results import JointCalibration
 from core.targets import Target, TargetMeasure, TargetTally, shown_value

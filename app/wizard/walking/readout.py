@@ -5,11 +5,11 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 
 from core.body import Joint, Side, Site
+from core.calibration.strap import Slip
 from core.gait.phases import Phase
 from core.live.bias import BiasCorrection
 from core.live.stride_values import StrideValue
 from core.samples import FloatArray
-from core.strap import Slip
 from core.timed.live import LiveReadout
 
 

@@ -7,9 +7,9 @@ from uuid import UUID
 
 from PySide6.QtCore import QObject, Slot
 
-from app import sounds
-from app.sounds import Sound
-from app.theme import ThemeNotifier
+from app.system import sounds
+from app.system.sounds import Sound
+from app.theme.notifier import ThemeNotifier
 from app.widgets.action_bar import BarState
 from app.widgets.rail_row import StepState
 from app.wizard.keys import Intent, KeyAction
@@ -26,12 +26,12 @@ from app.wizard.walking.walk_notice import WalkNotice, asked_walk
 from app.wizard.walking.walk_rows import facts_of, ongoing_walk, rows_of
 from app.wizard.walking.walk_start import WalkStart
 from app.wizard.walking.walking_bar import QuietAction, WalkingBar
-from app.wording import tr
+from app.wording.translation import tr
 from core.samples import RecordingKind
 from core.targets import TargetTally, with_tallies
 
 if TYPE_CHECKING:
-    from app.wizard.session_recording import Ongoing, SessionRecording
+    from app.editing.session_recording import Ongoing, SessionRecording
     from app.wizard.visit import Visit
     from app.wizard.walking.page import WalkingPage
     from app.wizard.walking.readout import WalkingReadout

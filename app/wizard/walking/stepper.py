@@ -4,10 +4,10 @@ from PySide6.QtCore import QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QAccessible, QFontMetrics, QKeyEvent, QMouseEvent, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from app.widgets.painted_text import CENTRE, LEFT, PaintedText
 from app.widgets.text import MEDIUM, SEMIBOLD
-from app.wording import tr
+from app.wording.translation import tr
 
 CAPTION, BOX, END = 18, 44, 32
 LEAST = 116

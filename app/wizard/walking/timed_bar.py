@@ -2,12 +2,12 @@
 
 import math
 
-from app import sounds
-from app.icons import Icon
-from app.timed_words import name_of_test
+from app.system import sounds
+from app.theme.icons import Icon
 from app.widgets.action_bar import BarAction, BarState, RecordingNote
 from app.wizard.walking.timed_control import TimedControl
-from app.wording import tr
+from app.wording.timed_tests import name_of_test
+from app.wording.translation import tr
 from core.timed.protocols import DEFINITIONS
 
 

@@ -5,10 +5,10 @@ from collections.abc import Mapping
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QHBoxLayout, QWidget
 
-from app.theme import ThemeNotifier
-from app.timed_words import name_of_test
+from app.theme.notifier import ThemeNotifier
 from app.widgets.choice import Choice
-from app.wording import tr
+from app.wording.timed_tests import name_of_test
+from app.wording.translation import tr
 from core.timed.protocols import TimedProtocol
 
 LEAST, MOST = 120, 340  # px of the box

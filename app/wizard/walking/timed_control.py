@@ -5,19 +5,19 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Signal, Slot
 
-from app import sounds
-from app.dates import short_date
-from app.measure_names import decimals, short_unit
-from app.reports.course_lanes import LaneKind, lanes
-from app.reports.patient_report.numbers_in_words import fixed
-from app.sounds import Sound
 from app.storage.journal.payloads import key_text
-from app.timed_words import name_of_test
+from app.summary.course_lanes import LaneKind, lanes
+from app.summary.numbers_in_words import fixed
+from app.system import sounds
+from app.system.sounds import Sound
 from app.wizard.evaluation import failure_in_words
 from app.wizard.walking.earlier_tests import EarlierTests
 from app.wizard.walking.timed_result import TimedAttempt, TimedResult
 from app.wizard.walking.timed_view import TimedViewState
-from app.wording import tr
+from app.wording.dates import short_date
+from app.wording.measures import decimals, short_unit
+from app.wording.timed_tests import name_of_test
+from app.wording.translation import tr
 from core.body import Segment
 from core.timed.found import TimedTest
 from core.timed.live import RUN_OUT_S, LiveReadout, LiveTest
@@ -25,9 +25,9 @@ from core.timed.measures import COLUMNS
 from core.timed.protocols import DEFINITIONS, KeyMeaning, PlannedTest, TimedProtocol
 
 if TYPE_CHECKING:
-    from app.reports.course import Course
-    from app.reports.course_lanes import CourseLane, CourseVisit
-    from app.wizard.session_recording import SessionRecording
+    from app.editing.session_recording import SessionRecording
+    from app.summary.course import Course
+    from app.summary.course_lanes import CourseLane, CourseVisit
     from app.wizard.visit import Visit
     from app.wizard.walking.estimator import WalkingEstimator
 

@@ -9,12 +9,19 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QAccessible
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
 
-from app.icons import Icon
-from app.pages.home_course import CourseCard
-from app.reports.course_lanes import CourseLane, CourseVisit
-from app.reports.course_words import changes_since_in_words
-from app.theme import ThemeNotifier
-from app.timed_words import (
+from app.plots.course import CourseCard
+from app.summary.course_lanes import CourseLane, CourseVisit
+from app.summary.course_words import changes_since_in_words
+from app.theme.icons import Icon
+from app.theme.notifier import ThemeNotifier
+from app.widgets.card import Card
+from app.widgets.focus_ring import NO_RING
+from app.widgets.icons import IconMark
+from app.widgets.table import CellTable, TableColumn, TableRow
+from app.widgets.table_cells import RIGHT, TextCell
+from app.widgets.text import SEMIBOLD, Text
+from app.widgets.themed import Themed
+from app.wording.timed_tests import (
     course_sentence,
     error_words,
     name_of_test,
@@ -24,14 +31,7 @@ from app.timed_words import (
     tape_sentence,
     why_sentence,
 )
-from app.widgets.card import Card
-from app.widgets.focus_ring import NO_RING
-from app.widgets.icons import IconMark
-from app.widgets.table import CellTable, TableColumn, TableRow
-from app.widgets.table_cells import RIGHT, TextCell
-from app.widgets.text import SEMIBOLD, Text
-from app.widgets.themed import Themed
-from app.wording import figure_text, tr
+from app.wording.translation import figure_text, tr
 from core.timed.found import TimedPart, TimedTest
 from core.timed.protocols import TimedProtocol
 

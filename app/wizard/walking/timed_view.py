@@ -7,9 +7,8 @@ from PySide6.QtCore import QPointF, QRectF, QSize, Qt
 from PySide6.QtGui import QAccessible, QBrush, QColor, QFontMetrics, QPainter, QPaintEvent, QPen, QPolygonF
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QSizePolicy, QVBoxLayout
 
-from app.icons import Icon
-from app.theme import ThemeNotifier
-from app.timed_words import end_words, name_of_test, reason_words, start_words
+from app.theme.icons import Icon
+from app.theme.notifier import ThemeNotifier
 from app.widgets.card import Card
 from app.widgets.digits import Digits
 from app.widgets.focus_ring import NO_RING
@@ -17,7 +16,8 @@ from app.widgets.icons import IconMark
 from app.widgets.painted_text import CENTRE, LEFT, RIGHT, PaintedText
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.themed import Themed
-from app.wording import capitalised, figure_text, joined, name_of, tr
+from app.wording.timed_tests import end_words, name_of_test, reason_words, start_words
+from app.wording.translation import capitalised, figure_text, joined, name_of, tr
 from core.body import Side
 from core.timed.live import LiveReadout
 from core.timed.protocols import DEFINITIONS, TimedProtocol

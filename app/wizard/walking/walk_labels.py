@@ -2,8 +2,8 @@
 
 from collections.abc import Sequence
 
-from app.recording_names import LETTERS
-from app.wording import tr
+from app.wording.recordings import LETTERS
+from app.wording.translation import tr
 from core.samples import Patient
 
 MOST = 9  # as many as there are digits on caps

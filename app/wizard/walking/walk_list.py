@@ -14,9 +14,9 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.icons import Icon, paint_icon
-from app.theme import ThemeNotifier
-from app.tokens import CHIP_RADIUS, CONTROL_RADIUS
+from app.theme.icons import Icon, paint_icon
+from app.theme.notifier import ThemeNotifier
+from app.theme.theme import CHIP_RADIUS, CONTROL_RADIUS
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.field import Field
@@ -25,7 +25,7 @@ from app.widgets.painted_button import PaintedButton
 from app.widgets.painted_text import CENTRE, PaintedText, height_for
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.themed import Themed
-from app.wording import tr, tr_n
+from app.wording.translation import tr, tr_n
 
 BADGE = 28
 ROW, BETWEEN = 56, 4

@@ -2,8 +2,8 @@
 
 from typing import TYPE_CHECKING
 
-from app.reports.pooled_walks import pools_of
 from app.storage.stored import RecordingState
+from app.summary.pooled_walks import pools_of
 from app.wizard.losses import NOTHING, Losses, Message
 from app.wizard.walk_messages import (
     bias_message,
@@ -18,8 +18,8 @@ from app.wizard.walk_messages import (
 from core.body import Side
 
 if TYPE_CHECKING:
+    from app.editing.session_recording import SessionRecording
     from app.wizard.recordings import SessionRecordings
-    from app.wizard.session_recording import SessionRecording
     from app.wizard.visit import Visit
     from app.wizard.walking.readout import WalkingReadout
 

@@ -7,13 +7,13 @@ from app.storage.stored import RecordingState
 from app.wizard.walk_messages import clock
 from app.wizard.walking.walk_list import WalkRow, WalkState
 from app.wizard.walking.walk_notice import length_s, strides_of
-from app.wording import tr
+from app.wording.translation import tr
 from core.body import Side
 from core.samples import RecordingKind
 
 if TYPE_CHECKING:
+    from app.editing.session_recording import Ongoing, SessionRecording
     from app.wizard.recordings import SessionRecordings
-    from app.wizard.session_recording import Ongoing, SessionRecording
     from app.wizard.visit import Visit
 
 LETTERS = {Side.LEFT: "L", Side.RIGHT: "R"}

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 from app.wizard.walking.memory_control import MemoryControl
 from app.wizard.walking.timed_control import TimedControl
-from app.wording import tr
+from app.wording.translation import tr
 
 if TYPE_CHECKING:
     from app.wizard.visit import Visit

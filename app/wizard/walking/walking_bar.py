@@ -4,9 +4,8 @@ from dataclasses import replace
 from enum import Enum, auto
 from typing import TYPE_CHECKING
 
-from app import sounds
-from app.icons import Icon
-from app.timed_words import name_of_test
+from app.system import sounds
+from app.theme.icons import Icon
 from app.widgets.action_bar import BarAction, BarState, RecordingNote
 from app.wizard.walking.bench_bar import bench_bar
 from app.wizard.walking.bench_control import Bench
@@ -16,10 +15,11 @@ from app.wizard.walking.timed_control import TimedControl
 from app.wizard.walking.walk_notice import asked_walk
 from app.wizard.walking.walk_rows import ongoing_walk
 from app.wizard.walking.walk_start import WalkStart
-from app.wording import capitalised, tr, within_sentence
+from app.wording.timed_tests import name_of_test
+from app.wording.translation import capitalised, tr, within_sentence
 
 if TYPE_CHECKING:
-    from app.wizard.session_recording import Ongoing
+    from app.editing.session_recording import Ongoing
     from app.wizard.visit import Visit
 
 

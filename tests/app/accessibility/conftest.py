@@ -6,7 +6,7 @@ import pytest
 from PySide6.QtWidgets import QApplication
 
 from app.widgets.accessible_role import tell_roles
-from app.wording import use_language
+from app.wording.translation import use_language
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -10,14 +10,14 @@ from PySide6.QtCore import QBuffer, QByteArray
 from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QWidget
 
-from app.icons import Icon
-from app.pages.agreement_page import AgreementPage
-from app.pages.correct_page import CorrectPage, JointLine, WalkLine
-from app.pages.found_page import FoundPage
-from app.pages.result_page import ANSWER, COMPARE, STRIDES, WHOLE, ResultPage
 from app.patient_screen.patient_view import PatientView
 from app.patient_screen.window import PatientWindow
-from app.theme import ThemeNotifier
+from app.results.agreement_page import AgreementPage
+from app.results.correct_page import CorrectPage, JointLine, WalkLine
+from app.results.found_page import FoundPage
+from app.results.result_page import ANSWER, COMPARE, STRIDES, WHOLE, ResultPage
+from app.theme.icons import Icon
+from app.theme.notifier import ThemeNotifier
 from app.widgets.action_bar import BarAction, BarState, RecordingNote
 from app.widgets.rail_row import RailRow, StepState
 from app.widgets.sensor_tile import SensorTile
@@ -30,19 +30,19 @@ from app.wizard.walking.page import WalkingPage
 from app.wizard.walking.timed_result import TimedAttempt, TimedResult
 from app.wizard.walking.timed_view import TimedViewState
 from app.wizard.walking.walk_list import WalkRow, WalkState
-from app.wording import tr
+from app.wording.translation import tr
 from core.analysis import analyse
 from core.body import LEG_SITES, Joint, Side
-from core.diagnostics import diagnostics_of
 from core.results import Analysis
 from core.samples import Session
 from core.targets import Target, TargetMeasure
 from core.timed.found import TimedTest
 from core.timed.live import LiveReadout
 from core.timed.protocols import PlannedTest, TimedProtocol
-from devices.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
+from core.verdicts.diagnostics import diagnostics_of
+from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
 from tests.app.changed_analysis import visit_of
-from tests.app.pages.filled_pages import PAGES
+from tests.app.results.filled_pages import PAGES
 from tests.app.wizard.walking.bench_material import bench_visit
 
 Make = Callable[[ThemeNotifier], QWidget]

@@ -6,8 +6,8 @@ from PySide6.QtGui import QAccessible
 from PySide6.QtWidgets import QApplication, QComboBox, QLineEdit, QPlainTextEdit, QPushButton, QVBoxLayout, QWidget
 from pytestqt.qtbot import QtBot
 
-from app.icons import Icon
-from app.theme import ThemeNotifier
+from app.theme.icons import Icon
+from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button
 from app.widgets.choice import Choice
 from app.widgets.segmented import Segmented

@@ -9,8 +9,8 @@ from dataclasses import fields, replace
 import pytest
 from PySide6.QtGui import QColor
 
-from app.colours import DARK, LIGHT, PAPER, Colours
-from app.tokens import Theme
+from app.theme.colours import DARK, LIGHT, PAPER, Colours
+from app.theme.theme import Theme
 from core.body import Side
 from tests.app.accessibility.contrast import contrast, over
 

@@ -4,7 +4,7 @@ import pytest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from tests.app.accessibility.accessible_tree import complaints, wrong_hearing, wrong_order
 from tests.app.accessibility.framed_pages import FRAMED, framed
 from tests.app.room import settle

@@ -10,15 +10,15 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QProgressBar, QWidget
 from pytestqt.qtbot import QtBot
 
-from app import motion
+from app.help.help_page import HelpPage
+from app.help.help_topics import Topic
+from app.home.settings.settings_page import SettingsPage
 from app.main_window import MainWindow
-from app.pages.help_page import HelpPage
-from app.pages.help_topics import Topic
-from app.pages.settings_page import SettingsPage
 from app.plots.moving_legs import MovingLegs
-from app.settings import Settings
-from app.theme import ThemeNotifier
-from app.tokens import Theme
+from app.system.settings import Settings
+from app.theme import motion
+from app.theme.notifier import ThemeNotifier
+from app.theme.theme import Theme
 from app.wizard.shell import WizardShell
 
 WAIT_MS = 2000

@@ -7,7 +7,7 @@ import pytest
 from PySide6.QtWidgets import QScrollArea
 from pytestqt.qtbot import QtBot
 
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from tests.app.accessibility.framed_pages import FRAMED, framed
 from tests.app.room import settle, words_cut
 

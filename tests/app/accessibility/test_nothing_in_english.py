@@ -12,11 +12,11 @@ import pytest
 from PySide6.QtWidgets import QAbstractButton, QComboBox, QLabel, QLineEdit, QWidget
 from pytestqt.qtbot import QtBot
 
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from app.widgets.table import CellTable
-from app.wording import use_language
+from app.wording.translation import use_language
 from tests.app.accessibility.framed_pages import FRAMED, framed
-from tests.app.pages.filled_pages import PAGES
+from tests.app.results.filled_pages import PAGES
 from tests.app.room import settle
 from tests.app.test_german import ENGLISH, pairs
 

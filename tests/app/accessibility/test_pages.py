@@ -3,9 +3,9 @@
 import pytest
 from pytestqt.qtbot import QtBot
 
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from tests.app.accessibility.accessible_tree import complaints, wrong_hearing
-from tests.app.pages.filled_pages import PAGES
+from tests.app.results.filled_pages import PAGES
 
 
 @pytest.mark.endurance

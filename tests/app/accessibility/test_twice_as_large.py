@@ -4,7 +4,7 @@ import pytest
 from PySide6.QtWidgets import QPushButton, QScrollArea, QWidget
 from pytestqt.qtbot import QtBot
 
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from tests.app.accessibility.framed_pages import FRAMED, framed
 from tests.app.accessibility.reach import out_of_reach
 from tests.app.room import settle, words_cut

@@ -10,12 +10,12 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QWidget
 from pytestqt.qtbot import QtBot
 
+from app.help.help_page import HelpPage
+from app.help.help_topics import Topic
 from app.home.home import Home
 from app.main_window import MainWindow
-from app.pages.help_page import HelpPage
-from app.pages.help_topics import Topic
-from app.settings import Settings
-from app.theme import ThemeNotifier
+from app.system.settings import Settings
+from app.theme.notifier import ThemeNotifier
 from app.workers.library_controller import LibraryController
 from tests.app.accessibility.accessible_tree import complaints, wrong_order
 from tests.app.accessibility.framed_pages import patient_screen

@@ -14,7 +14,7 @@ from app.acquisition.reader import REOPEN_S
 from app.storage.journal.decoding import decode
 from core.samples import ImuBlock, RecordingKind
 from devices.live import Keep, SensorDetails, SourceLostError, SourceRefusedError
-from devices.replay import ReplayFaults, ReplaySource
+from devices.simulation.replay import ReplayFaults, ReplaySource
 from devices.source import SourceInfo
 from tests.safety.journal_material import ID, KEY, LINES, LineDecoder, line
 from tests.safety.live_material import (

@@ -13,8 +13,8 @@ from core.body import LEG_SITES, Joint, Site
 from core.calibration.rest import rest_of
 from core.live.sensors import LiveSensor
 from core.samples import ImuBlock, RateKind, Recording
-from devices.replay import DEMONSTRATION_SESSION
-from devices.walker import FreeMotion, Standing, Walk, simulate
+from devices.simulation.replay import DEMONSTRATION_SESSION
+from devices.simulation.walker import FreeMotion, Standing, Walk, simulate
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 

@@ -26,8 +26,8 @@ from core.analysis import analyse
 from core.body import Joint, Site
 from core.results import Analysis
 from core.samples import ImuBlock, Patient, Recording, RecordingKind, SensorInfo, Session
-from devices.replay import ReplayFaults, ReplaySource
-from devices.walker import FreeMotion, SimulatedSession, Standing, Walk, WalkerSettings, simulate
+from devices.simulation.replay import ReplayFaults, ReplaySource
+from devices.simulation.walker import FreeMotion, SimulatedSession, Standing, Walk, WalkerSettings, simulate
 from tests.safety.live_material import Clock, numbered_session
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three

@@ -26,7 +26,7 @@ from app.storage.opened import OpenedLibrary
 from app.storage.stored import Operator, PlacedSensor, RecordingState, Role
 from core.results import Analysis, Method
 from core.samples import ImuBlock, Patient, Recording, RecordingKind, SensorInfo, Session
-from devices.replay import ReplaySource
+from devices.simulation.replay import ReplaySource
 from tests.safety.journal_material import ID, KEY
 from tests.safety.live_material import faults_of, numbered_session, open_journal, read_back
 from tests.safety.long_recording import record_long

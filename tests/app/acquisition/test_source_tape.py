@@ -6,8 +6,8 @@ from pathlib import Path
 from app.acquisition.source_tape import SourceTape
 from app.storage.journal.reader import JournalReader
 from app.storage.journal.records import Record, RecordKind
+from devices.drivers.ximu3 import Ximu3, command
 from devices.stream import ByteSource
-from devices.ximu3 import Ximu3, command
 from tests.devices.scripted import ScriptedChannel
 from tests.safety.journal_material import ID, KEY
 from tests.safety.live_material import open_journal

@@ -5,13 +5,13 @@ import datetime
 import pytest
 
 from app.demonstration.patients import SimulatedPatient, simulated_patients
-from app.wording import use_language
+from app.wording.translation import use_language
 from core.alignment import changed_between
 from core.body import Side
 from core.goals import GoalOf
 from core.timed.protocols import TimedProtocol
-from devices.fitted_prosthesis import BUILT
-from devices.walker import FreeMotion, Standing, TimedCourse, Walk
+from devices.simulation.fitted_prosthesis import BUILT
+from devices.simulation.walker import FreeMotion, Standing, TimedCourse, Walk
 
 NOW = datetime.datetime(2026, 11, 24, 15, 0, tzinfo=datetime.UTC)
 

@@ -10,11 +10,11 @@ import pytest
 
 from app.demonstration.patients import SimulatedVisit, ToldOfWalk, simulated_patients
 from app.demonstration.recording import add_patients, record_visit, take_in
-from app.home.patient_reading import PatientReading, read_patient
-from app.reports.course import KNEE, SPEED, CourseCondition, change
+from app.home.patients.reading import PatientReading, read_patient
 from app.storage.library import DEMONSTRATOR, Library
 from app.storage.opened import OpenedLibrary, create_library
 from app.storage.stored import LibraryError, Limits, Operator, Role
+from app.summary.course import KNEE, SPEED, CourseCondition, change
 from app.wizard.resuming import read_analysed, read_recordings
 from core.alignment import AlignmentChange, PartChange, ProsthesisPart
 from core.body import LEG_SITES, Joint, Side
@@ -23,8 +23,8 @@ from core.samples import RecordingKind, Session
 from core.timed.measures import COLUMNS
 from core.timed.protocols import PlannedTest, TimedProtocol
 from core.verdicts.model import Verdict
-from devices.replay import DEMONSTRATION_NAMES
-from devices.walker import Standing, Walk, WalkerSettings
+from devices.simulation.replay import DEMONSTRATION_NAMES
+from devices.simulation.walker import Standing, Walk, WalkerSettings
 
 NOW = datetime.datetime(2026, 11, 24, 15, 0, tzinfo=datetime.UTC)
 CHANGE = AlignmentChange("Alignment A", (PartChange(ProsthesisPart.KNEE_UNIT, turns=1.0),))

@@ -5,11 +5,11 @@ from pathlib import Path
 
 import pytest
 
-from app.reports.result_folder import write_results
+from app.exports.result_folder import write_results
 from core.analysis import analyse
 from core.results import Analysis
 from core.samples import Session
-from devices.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
 
 NAME = "Miller"
 

@@ -15,7 +15,7 @@ from app.exports.c3d_angles import write_c3d
 from app.exports.fhir_bundle import bundle
 from app.exports.opensim_motion import write_motion
 from app.exports.spreadsheet import write_spreadsheet
-from app.reports.summary import summarise
+from app.exports.summary import summarise
 from core.body import Joint, Side
 from core.gait.strides import Reason
 from core.results import Analysis, RecordingAnalysis

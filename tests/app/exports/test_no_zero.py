@@ -11,10 +11,10 @@ import openpyxl
 import pytest
 
 from app.exports.exports import Format, export_from_folder
-from app.reports.result_folder import write_results
+from app.exports.result_folder import write_results
 from core.analysis import analyse
 from core.body import LEG_JOINTS, Joint
-from devices.walker import FreeMotion, SimulatedSession, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, SimulatedSession, Walk, WalkerSettings, simulate
 
 
 @pytest.fixture(scope="module")

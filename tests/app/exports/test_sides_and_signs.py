@@ -16,12 +16,12 @@ import openpyxl
 import pytest
 
 from app.exports.exports import Format, export_from_folder
-from app.reports.result_folder import write_results
+from app.exports.result_folder import write_results
 from core.analysis import analyse
 from core.body import LEG_JOINTS, Joint, Side
 from core.results import Analysis
 from core.samples import FloatArray, Session
-from devices.walker import FreeMotion, RecordingTruth, Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, RecordingTruth, Standing, Walk, WalkerSettings, simulate
 
 MOT = {
     "knee_angle_l": Joint.LEFT_KNEE,

@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 from app.exports.exports import Format, export_from_folder
-from app.import_drafts import drafts_of, session_of
-from app.reports.result_folder import write_results
+from app.exports.result_folder import write_results
+from app.importing.import_drafts import drafts_of, session_of
 from core.analysis import analyse
 from core.body import Site
 from core.results import Analysis
@@ -18,7 +18,7 @@ from devices.files.imports import add_recording, place_sensors
 from devices.files.refusal import FileRefusedError
 from devices.files.session_folder import read_session, write_session
 from devices.files.trial import ImportedTrial
-from devices.walker import Walk, WalkerSettings, simulate
+from devices.simulation.walker import Walk, WalkerSettings, simulate
 
 SITES = (Site.LEFT_THIGH, Site.LEFT_SHANK)
 

@@ -10,13 +10,13 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.home.home import Home
-from app.settings import Settings
 from app.storage.keys import KeySlots
 from app.storage.layout import KEYS
 from app.storage.library import Library
 from app.storage.slots import Cost
 from app.storage.stored import Operator, Role
-from app.theme import ThemeNotifier, load_fonts
+from app.system.settings import Settings
+from app.theme.notifier import ThemeNotifier, load_fonts
 from app.workers.library_controller import LibraryController
 from core.samples import Patient, Session
 from tests.app.home.home_library import PASSPHRASE, open_library

@@ -4,14 +4,14 @@ import datetime
 from pathlib import Path
 from uuid import UUID
 
-from app.reports.course import Course
-from app.reports.course_lanes import CourseVisit
 from app.storage.audit import REPORT_FORMAT, about
 from app.storage.keys import KeySlots
 from app.storage.layout import KEYS
 from app.storage.library import Library
 from app.storage.slots import Cost
 from app.storage.stored import Action, Operator, RecordingState, Role, StoredJournal
+from app.summary.course import Course
+from app.summary.course_lanes import CourseVisit
 from app.wizard.resuming import current_course_key
 from core.body import Joint
 from core.samples import Patient, Recording, RecordingKind, Session

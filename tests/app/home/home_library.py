@@ -4,8 +4,8 @@ from pathlib import Path
 
 from pytestqt.qtbot import QtBot
 
-from app.home.deletion_dialog import DeletionDialog
 from app.home.home import Home
+from app.home.patients.deletion_dialog import DeletionDialog
 from app.workers.library_controller import LibraryController
 from app.workers.library_state import OpenedState
 

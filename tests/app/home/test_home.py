@@ -16,10 +16,9 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.foreign_files import read_foreign_session, the_reader
 from app.home.home import Home
-from app.pages.home_lists import PatientLine, SessionLine
-from app.settings import Scheme, Settings
+from app.home.patients.home_lists import PatientLine, SessionLine
+from app.importing.untrusted_files import read_foreign_session, the_reader
 from app.storage.database.ids import uuid7
 from app.storage.exchange import import_session
 from app.storage.journal.disk import Room
@@ -32,7 +31,8 @@ from app.storage.opened import OpenedLibrary
 from app.storage.recovery import adopt_home, find_interrupted, recover
 from app.storage.rollback import Rollback
 from app.storage.stored import LibraryError, PlacedSensor, RecordingState, Role, StoredJournal, StoredPatient
-from app.theme import ThemeNotifier, load_fonts
+from app.system.settings import Scheme, Settings
+from app.theme.notifier import ThemeNotifier, load_fonts
 from app.widgets.button import Button
 from app.workers.library_controller import LibraryController
 from app.workers.refusals import Refusal
@@ -208,7 +208,7 @@ def test_a_stopped_import_says_what_came_of_it_once_that_is_known(
         assert go_on.wait(WAIT_MS / 1000)
         return import_session(opened, session, (lambda _share, _what: None) if is_done else report, code)
 
-    monkeypatch.setattr("app.home.importing.import_session", held)
+    monkeypatch.setattr("app.home.importing.controller.import_session", held)
     home.importing.read([tmp_path / "visit"])
     qtbot.waitUntil(lambda: home.current is home.importing.page, timeout=WAIT_MS)
     home.bar.primary_pressed.emit()

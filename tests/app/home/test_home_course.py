@@ -13,22 +13,22 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.home.home import Home
-from app.home.patient_reading import PatientReading, compute_courses, read_patient
-from app.pages.home_lists import SessionLine
-from app.reports.course_lanes import SPEED_LANE
-from app.settings import Settings
+from app.home.patients.home_lists import SessionLine
+from app.home.patients.reading import PatientReading, compute_courses, read_patient
 from app.storage.audit import REPORT_FORMAT, about
 from app.storage.database.ids import uuid7
 from app.storage.exchange import import_session
 from app.storage.library import DEMONSTRATOR, Library
 from app.storage.opened import OpenedLibrary, open_library
 from app.storage.stored import Action, StoredPatient
-from app.theme import ThemeNotifier, load_fonts
+from app.summary.course_lanes import SPEED_LANE
+from app.system.settings import Settings
+from app.theme.notifier import ThemeNotifier, load_fonts
 from app.workers.library_controller import LibraryController
 from core.body import Site
 from core.goals import GOAL_COLUMNS, Goal, GoalOf
 from core.samples import Patient
-from devices.walker import DEMONSTRATION, Standing, Walk, simulate
+from devices.simulation.walker import DEMONSTRATION, Standing, Walk, simulate
 from tests.app.home.course_library import PASSPHRASE, add_visit, course_of_visit, make_course_library
 
 WAIT_MS = 20_000

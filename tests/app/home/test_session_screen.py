@@ -13,20 +13,20 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QAbstractButton, QApplication, QComboBox, QLabel, QWidget
 from pytestqt.qtbot import QtBot
 
-from app.colours import DARK, LIGHT
 from app.home import session_screen
 from app.home.session_screen import ENDED_EARLY, STOPPED, SessionScreen
-from app.pages.found_page import FoundPage
-from app.pages.result_page import (
+from app.plots.angle_chart import AngleChart
+from app.results.found_page import FoundPage
+from app.results.result_page import (
     ANSWER,
     COMPARE,
     STRIDES,
     WHOLE,
     ResultPage,
 )
-from app.pages.whole_page import BOTH, ORIENTATION, PUBLISHED, RESULT
-from app.plots.angle_chart import AngleChart
-from app.theme import ThemeNotifier
+from app.results.whole_page import BOTH, ORIENTATION, PUBLISHED, RESULT
+from app.theme.colours import DARK, LIGHT
+from app.theme.notifier import ThemeNotifier
 from app.widgets.findings_list import FindingRow
 from app.widgets.table import CellTable
 from app.widgets.table_cells import TextCell
@@ -46,7 +46,7 @@ from core.results import (
     ZeroKind,
 )
 from core.samples import FloatArray, Patient, RecordingKind, Session
-from devices.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
+from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
 
 TIME_S = np.arange(600) / 100
 GAP = slice(200, 260)

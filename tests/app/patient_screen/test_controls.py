@@ -8,7 +8,7 @@ from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
 from app.patient_screen.controls import Choice, ControlsCard, choices
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from core.body import Side
 from core.targets import Target, TargetMeasure
 from tests.app.room import words_cut

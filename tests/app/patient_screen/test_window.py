@@ -8,7 +8,7 @@ from pytestqt.qtbot import QtBot
 
 from app.patient_screen.patient_view import PatientView, figure, title_of
 from app.patient_screen.window import PatientWindow
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from core.body import Side
 from core.targets import Target, TargetMeasure
 

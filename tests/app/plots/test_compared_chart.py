@@ -10,8 +10,8 @@ from pytestqt.qtbot import QtBot
 from app.charts.cycles import Band
 from app.charts.stride_chart import StrideCurve
 from app.plots.compared_chart import ComparedChart
-from app.reports.reference_bands import reference_curves
-from app.theme import ThemeNotifier
+from app.summary.reference_bands import reference_curves
+from app.theme.notifier import ThemeNotifier
 from core.body import JointKind, Side
 
 BAND = Band(*reference_curves().mean_and_sd_deg("knee"))

@@ -12,8 +12,8 @@ from app.charts.cycles import SideCycle
 from app.charts.marks import Deviation, Gap, Point
 from app.charts.stride_chart import toe_off_labels
 from app.plots.cycle_chart import CycleChart, CycleCharts
-from app.reports.reference_bands import reference_curves
-from app.theme import ThemeNotifier
+from app.summary.reference_bands import reference_curves
+from app.theme.notifier import ThemeNotifier
 from core.body import Joint, Side
 from core.gait.cycles import mean_cycle
 from core.samples import FloatArray

@@ -9,7 +9,7 @@ from pytestqt.qtbot import QtBot
 from app.charts.axes import ANKLE_DEG, KNEE_DEG
 from app.plots.angle_chart import AngleChart, Curve
 from app.plots.joint_charts import NO_VALUE, JointCharts
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from core.body import Joint, Side
 from core.samples import FloatArray
 

@@ -10,10 +10,10 @@ from PySide6.QtGui import QColor, QImage
 from pytestqt.qtbot import QtBot
 
 from app.plots.lane_plot import APART, INSET, DateAxis, LanePlot, LaneScale
-from app.reports.course import Course
-from app.reports.course_lanes import KNEE_LANE, CourseVisit, lanes
-from app.reports.course_words import day_of
-from app.theme import ThemeNotifier
+from app.summary.course import Course
+from app.summary.course_lanes import KNEE_LANE, CourseVisit, lanes
+from app.summary.course_words import day_of
+from app.theme.notifier import ThemeNotifier
 from core.body import Joint
 from tests.app.course_material import course, unsure, walked
 

@@ -8,8 +8,8 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.plots.moving_legs import MovingLegs
-from app.review.mean_legs import MeanLeg, MeanLegs
-from app.theme import ThemeNotifier, load_fonts
+from app.summary.mean_legs import MeanLeg, MeanLegs
+from app.theme.notifier import ThemeNotifier, load_fonts
 from core.body import Side
 
 

@@ -9,7 +9,7 @@ from pytestqt.qtbot import QtBot
 
 from app.plots.joint_charts import JointCharts
 from app.plots.phase_lanes import Lane, PhaseLanes
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from core.body import Side
 from core.gait.events import FootEvents
 from core.gait.phases import phases_at

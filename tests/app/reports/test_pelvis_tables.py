@@ -8,15 +8,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.gates_in_words import WORDS, gate_sentence, gate_words
-from app.reports.columns import column_of
-from app.reports.result_folder import write_results
+from app.exports.columns import column_of
+from app.exports.result_folder import write_results
 from app.storage.analysis_content import packed, unpacked
+from app.wording.verdicts import WORDS, gate_sentence, gate_words
 from core.body import LEG_SITES, Joint, Side, Site, hip_of
 from core.verdicts.gates import judged
 from core.verdicts.model import GateReason, Verdict
 from devices.files.session_folder import read_session, write_session
-from devices.walker import Tissue
+from devices.simulation.walker import Tissue
 from tests.core.hip.hip_sessions import analysed, with_hip
 
 HIP_GATES = ("hip_disagreement", "hip_centre", "hips_apart")

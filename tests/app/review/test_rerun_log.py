@@ -13,24 +13,24 @@ import pytest
 import rerun.blueprint as rrb
 from rerun.chunk import Chunk, RrdReader
 
-from app.colours import DARK
-from app.gates_in_words import verdict_word
-from app.reports.gait_csv import write_gait
-from app.reports.patient_report.answer import answer_of
-from app.reports.patient_report.facts import Facts
-from app.reports.patient_report.request import AnalysedVisit
-from app.reports.walk_figures import verdict_of
+from app.exports.gait_csv import write_gait
 from app.review import rerun_log
-from app.review.drawn_legs import draw_legs
-from app.review.may_be_read import document, name_of_view
+from app.review.data_quality_panel import document, name_of_view
 from app.review.rerun_log import write_log
+from app.summary.answer import answer_of
+from app.summary.drawn_legs import draw_legs
+from app.summary.facts import Facts
+from app.summary.request import AnalysedVisit
+from app.summary.walk_figures import verdict_of
+from app.theme.colours import DARK
+from app.wording.verdicts import verdict_word
 from core.analysis import analyse
 from core.body import LEG_JOINTS, Joint, Side, Site
 from core.gait.phases import PHASES
 from core.results import Analysis, JointAngle, Method, RecordingAnalysis
 from core.samples import FloatArray, ImuBlock, Patient, Recording, RecordingKind, Session
 from core.verdicts.model import READ, Assessment, GateReason, JointVerdicts, Verdict, Verdicts, assess
-from devices.walker import Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import Standing, Walk, WalkerSettings, simulate
 
 
 def block(n: int, seed: int) -> ImuBlock:

@@ -10,7 +10,7 @@ import pytest
 from app.storage.analysis_content import DIGEST, LENGTH, DamagedContentError, packed, unpacked
 from core.analysis import analyse
 from core.results import Analysis
-from devices.walker import DEMONSTRATION, Standing, simulate
+from devices.simulation.walker import DEMONSTRATION, Standing, simulate
 
 
 @pytest.fixture(scope="module")

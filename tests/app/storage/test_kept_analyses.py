@@ -22,7 +22,7 @@ from core.findings import Finding, Severity
 from core.results import Analysis
 from core.samples import ImuBlock, Patient, RateKind, Recording, SensorInfo, Session
 from core.timed.protocols import PlannedTest, TimedProtocol
-from devices.walker import DEMONSTRATION, Standing, Walk, simulate
+from devices.simulation.walker import DEMONSTRATION, Standing, Walk, simulate
 
 SHANK = Site.LEFT_SHANK
 

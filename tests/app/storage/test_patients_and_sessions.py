@@ -9,7 +9,6 @@ from dataclasses import replace
 import pytest
 from sqlalchemy import func, select
 
-from app.reports.course import Course
 from app.storage.database.engine import Database
 from app.storage.database.ids import uuid7
 from app.storage.database.models import Base
@@ -30,6 +29,7 @@ from app.storage.stored import (
     StoredRecording,
     StoredSession,
 )
+from app.summary.course import Course
 from core.alignment import AlignmentChange, PartChange, ProsthesisPart
 from core.body import Joint, Side, Site
 from core.findings import Finding, Severity

@@ -6,9 +6,9 @@ from PySide6.QtGui import QColor
 from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
-from app.colours import LIGHT
-from app.icons import Icon
-from app.theme import ThemeNotifier, load_fonts
+from app.theme.colours import LIGHT
+from app.theme.icons import Icon
+from app.theme.notifier import ThemeNotifier, load_fonts
 from app.widgets.action_bar import ActionBar, BarAction, BarState, RecordingNote, clock_time
 from tests.app.room import settle, words_cut
 

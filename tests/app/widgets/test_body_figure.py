@@ -5,7 +5,7 @@ from PySide6.QtCore import QPointF, QRectF
 from PySide6.QtGui import QColor, QImage, QPainter
 from pytestqt.qtbot import QtBot
 
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from app.widgets.body_figure import BodyFigure, SensorMark, paint_legs
 from app.widgets.body_shapes import body_shapes, read_path
 from core.body import LEG_JOINTS, LEG_SITES, Side, Site

@@ -10,10 +10,10 @@ from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QPainter
 from pytestqt.qtbot import QtBot
 
-from app.theme import ThemeNotifier, load_fonts
+from app.theme.notifier import ThemeNotifier, load_fonts
 from app.widgets import gauge as gauge_module
 from app.widgets.gauge import Gauge, GaugeFace, GaugeState, gauge_face, two_digits
-from app.wording import use_language
+from app.wording.translation import use_language
 from core.body import Joint
 from core.live.excitation import HUMAN, PROSTHESIS, ExcitationState
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from pytestqt.qtbot import QtBot
 
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from app.widgets.hip_gauge import HipFace, HipGauge, hip_face
 from core.body import Joint
 from core.live.hip_heading import HipHeadingState

@@ -6,7 +6,7 @@ import pytest
 from PySide6.QtCore import QRectF
 from PySide6.QtGui import QImage, QPainter
 
-from app.icons import Icon, paint_icon
+from app.theme.icons import Icon, paint_icon
 
 SIDE = 48
 

@@ -7,7 +7,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.theme import ThemeNotifier, load_fonts
+from app.theme.notifier import ThemeNotifier, load_fonts
 from app.widgets.key_groups import COLUMNS, KeyGroups
 
 GROUPS = ["7ATX", "CTM1", "NEMQ", "0PG8", "MMPN", "YTHB", "DZ7F", "Z1CR", "X"]

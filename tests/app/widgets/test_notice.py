@@ -5,8 +5,8 @@ import pytest
 from PySide6.QtGui import QImage
 from pytestqt.qtbot import QtBot
 
-from app.icons import Icon
-from app.theme import ThemeNotifier
+from app.theme.icons import Icon
+from app.theme.notifier import ThemeNotifier
 from app.widgets.notice import ICON, PADDING, Notice
 from core.samples import FloatArray
 

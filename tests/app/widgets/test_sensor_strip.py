@@ -8,8 +8,8 @@ from PySide6.QtGui import QColor, QPaintEvent
 from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
-from app.colours import LIGHT
-from app.theme import ThemeNotifier
+from app.theme.colours import LIGHT
+from app.theme.notifier import ThemeNotifier
 from app.widgets.sensor_strip import SensorStrip
 from app.widgets.sensor_tile import SensorTile, TileState, sentence
 from app.widgets.strip_button import StripButton

@@ -7,8 +7,8 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QWidget
 from pytestqt.qtbot import QtBot
 
-from app.colours import LIGHT
-from app.theme import ThemeNotifier
+from app.theme.colours import LIGHT
+from app.theme.notifier import ThemeNotifier
 from app.widgets import toast as toast_module
 from app.widgets.header import Header
 from app.widgets.stopwatch import Stopwatch

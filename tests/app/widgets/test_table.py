@@ -11,9 +11,9 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.icons import Icon
-from app.theme import ThemeNotifier
-from app.tokens import Theme
+from app.theme.icons import Icon
+from app.theme.notifier import ThemeNotifier
+from app.theme.theme import Theme
 from app.widgets.table import CellTable, TableColumn, TableRow
 from app.widgets.table_cells import CENTRE, EMPTY, LEFT, RIGHT, STRIP_WIDTH, ErrorStrip, TableCell, TextCell
 from app.widgets.text import SEMIBOLD

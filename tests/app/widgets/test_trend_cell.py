@@ -7,8 +7,8 @@ from PySide6.QtCore import QRectF
 from PySide6.QtGui import QColor, QImage, QPainter
 from PySide6.QtWidgets import QApplication
 
-from app.theme import ThemeNotifier
-from app.tokens import Theme
+from app.theme.notifier import ThemeNotifier
+from app.theme.theme import Theme
 from app.widgets.trend_cell import WIDTH, TrendCell
 from core.body import Side
 

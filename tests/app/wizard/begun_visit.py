@@ -2,7 +2,7 @@
 
 from pytestqt.qtbot import QtBot
 
-from app.wizard.session_recording import SessionRecording
+from app.editing.session_recording import SessionRecording
 from app.wizard.visit import Visit
 from core.body import Site
 from core.samples import Patient, RecordingKind

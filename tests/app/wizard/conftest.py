@@ -11,13 +11,13 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.acquisition.acquisition import Acquisition
-from app.settings import Settings
 from app.storage.keys import KeySlots
 from app.storage.layout import KEYS
 from app.storage.library import Library
 from app.storage.slots import Cost
 from app.storage.stored import Operator, Role
-from app.theme import ThemeNotifier, load_fonts
+from app.system.settings import Settings
+from app.theme.notifier import ThemeNotifier, load_fonts
 from app.wizard.sensors.step import SensorsStep
 from app.wizard.visit import Visit
 from app.wizard.wizard import Wizard
@@ -26,8 +26,8 @@ from app.workers.library_controller import LibraryController
 from core.body import LEG_SITES, Site
 from core.samples import Patient, Session
 from devices.emulators.dot_faults import DotFaults
-from devices.replay import ReplaySource
-from devices.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
+from devices.simulation.replay import ReplaySource
+from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
 from tests.app.wizard.dressed_patient import Worn, dressed_patient
 from tests.devices.dot.fast_radio import FastRadio
 

@@ -12,7 +12,7 @@ from core.calibration.rest import Rest, rest_of
 from core.live.sensors import LiveSensor
 from core.results import JointCalibration
 from core.samples import ImuBlock, Recording
-from devices.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
 
 Blocks = Mapping[str, ImuBlock]
 

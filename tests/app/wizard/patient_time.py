@@ -14,9 +14,9 @@ from pytestqt.qtbot import QtBot
 from app.acquisition.acquisition import Acquisition, LiveEstimator
 from app.wizard.worn_sensors import SourceChoice
 from core.samples import ImuBlock, Session
-from devices.host_clock import host_time_ns
+from devices.clocks.host_clock import host_time_ns
 from devices.live import LiveSource
-from devices.replay import ReplaySource
+from devices.simulation.replay import ReplaySource
 
 TICK_MS = 10
 TICK_NS = 50_000_000

@@ -11,15 +11,15 @@ from pytestqt.qtbot import QtBot
 
 from app.acquisition.heartbeat import Standstill
 from app.acquisition.recorder import Recorder
+from app.editing.session_recording import Ongoing
 from app.storage.journal.disk import Trouble
 from app.storage.opened import OpenedLibrary
 from app.storage.shared_edits import SharedEdits
 from app.storage.stored import LibraryBusyError, LibraryError, RecordingState
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from app.wizard import wizard as wizard_module
 from app.wizard.free_motion.step import FreeMotionStep
 from app.wizard.keys import Intent, KeyAction
-from app.wizard.session_recording import Ongoing
 from app.wizard.standing.step import StandStillStep
 from app.wizard.visit import Visit
 from app.wizard.walking.step import WATCH_TICKS, WalkingStep

@@ -10,9 +10,9 @@ from PySide6.QtCore import QSettings
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.settings import Settings
 from app.storage.stored import RecordingState
-from app.theme import ThemeNotifier, load_fonts
+from app.system.settings import Settings
+from app.theme.notifier import ThemeNotifier, load_fonts
 from app.widgets.rail_row import StepState
 from app.wizard import wizard as wizard_module
 from app.wizard.free_motion.step import FreeMotionStep

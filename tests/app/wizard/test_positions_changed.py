@@ -8,7 +8,7 @@ import pytest
 from PySide6.QtTest import QSignalSpy
 from pytestqt.qtbot import QtBot
 
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from app.wizard.evaluation import Evaluation
 from app.wizard.sensors.step import SensorsStep
 from app.wizard.visit import Visit

@@ -4,14 +4,14 @@ import pytest
 from pytestqt.qtbot import QtBot
 
 from app.acquisition.acquisition import Acquisition
-from app.pages.result_page import ResultPage
+from app.results.result_page import ResultPage
 from app.wizard import wizard as wizard_module
 from app.wizard.wizard import FREE_MOTION, PATIENT, REPORT, RESULTS, SENSORS, STAND_STILL, WALKING, Wizard
 from app.wizard.worn_sensors import SourceChoice
 from app.workers.preload import preload
 from core.body import LEG_SITES
 from core.samples import Patient, Session
-from devices.replay import ReplaySource
+from devices.simulation.replay import ReplaySource
 from tests.app.watchdog import Watchdog
 
 WAIT_MS = 60_000

@@ -9,10 +9,10 @@ import pytest
 from pytestqt.qtbot import QtBot
 
 from app.acquisition.recorder import ROW_WAIT_S, Recorder
+from app.editing.session_recording import SessionRecording
 from app.storage.opened import OpenedLibrary
 from app.storage.recordings import Recordings
 from app.storage.stored import LibraryFaultError, RecordingState
-from app.wizard.session_recording import SessionRecording
 from app.wizard.visit import Visit
 from app.workers.library_controller import LibraryController
 from core.body import LEG_SITES, Side, Site

@@ -16,7 +16,7 @@ from core.results import Analysis
 from core.samples import Patient, Recording, RecordingKind, Session
 from devices.files.session_folder import read_session, write_session
 from devices.files.xsens_mtmanager import mtmanager_trial
-from devices.walker import DEMONSTRATION, simulate
+from devices.simulation.walker import DEMONSTRATION, simulate
 from tests.trials_of_files import import_with
 
 pytestmark = pytest.mark.endurance  # as long as the patients take, a minute or two each

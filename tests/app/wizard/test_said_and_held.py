@@ -13,10 +13,10 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.home.home import Home
-from app.settings import Settings
 from app.storage.exchange import import_session
 from app.storage.opened import OpenedLibrary
-from app.theme import ThemeNotifier
+from app.system.settings import Settings
+from app.theme.notifier import ThemeNotifier
 from app.wizard.wizard import RESULTS, WALKING, Wizard
 from app.workers.library_controller import LibraryController
 from core.samples import Session

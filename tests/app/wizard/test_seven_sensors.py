@@ -12,7 +12,7 @@ from pytestqt.qtbot import QtBot
 
 from app.storage.analysis_content import packed
 from app.storage.exchange import export_session, session_with_samples
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from app.wizard.free_motion.step import FreeMotionStep
 from app.wizard.sensors.replays import replay_of
 from app.wizard.sensors.step import SensorsStep
@@ -27,8 +27,8 @@ from core.body import LEG_JOINTS, LEG_SITES, Side, Site, hip_of
 from core.samples import RecordingKind, Session
 from devices.decoders import DECODERS
 from devices.files.session_folder import read_session
-from devices.replay import ReplaySource
-from devices.walker import DEMONSTRATION, FreeMotion, Motion, Standing, Walk, simulate
+from devices.simulation.replay import ReplaySource
+from devices.simulation.walker import DEMONSTRATION, FreeMotion, Motion, Standing, Walk, simulate
 from tests.app.wizard.begun_visit import begin, record
 from tests.app.wizard.conftest import SPEED
 

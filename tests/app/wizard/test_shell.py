@@ -9,18 +9,18 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QComboBox, QPushButton, QVBoxLayout, QWidget
 from pytestqt.qtbot import QtBot
 
-from app.icons import Icon
-from app.pages.sentence_page import SentencePage
-from app.theme import ThemeNotifier, load_fonts
+from app.theme.icons import Icon
+from app.theme.notifier import ThemeNotifier, load_fonts
 from app.widgets.action_bar import BarAction, BarState, RecordingNote
 from app.widgets.rail_row import RailForm, RailRow, StepState
 from app.widgets.sensor_strip import SensorStrip
 from app.widgets.sensor_tile import SensorTile
+from app.widgets.sentence_page import SentencePage
 from app.widgets.step_rail import wizard_below
 from app.wizard import shell as shell_module
 from app.wizard.free_motion.page import FreeMotionPage
 from app.wizard.shell import StripMode, WizardShell
-from app.wording import tr, use_language
+from app.wording.translation import tr, use_language
 from core.body import LEG_SITES, Site
 from tests.app.room import settle, words_cut
 

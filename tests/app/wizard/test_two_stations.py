@@ -10,16 +10,16 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
+from app.editing.dialog import EditDialog
+from app.editing.session_recording import SessionRecording
 from app.storage.edited_fields import patient_fields, recording_fields, session_fields
 from app.storage.library import Library
 from app.storage.opened import open_library
 from app.storage.shared_edits import SharedEdits
 from app.storage.stored import BEGINNING, LibraryError, Limits, PlacedSensor
 from app.storage.three_way import Value
-from app.wizard.edit_dialog import EditDialog
 from app.wizard.report.step import ReportStep
 from app.wizard.results.stride_choice import StrideChoice
-from app.wizard.session_recording import SessionRecording
 from app.wizard.visit import Visit
 from app.wizard.wizard import SENSORS, Wizard
 from app.workers.library_controller import LibraryController

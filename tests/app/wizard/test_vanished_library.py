@@ -12,12 +12,12 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.acquisition.acquisition import Acquisition
+from app.editing.session_recording import SessionRecording
 from app.main_window import MainWindow
-from app.settings import Settings
 from app.storage.stored import RecordingState
-from app.theme import ThemeNotifier, load_fonts
+from app.system.settings import Settings
+from app.theme.notifier import ThemeNotifier, load_fonts
 from app.wizard import wizard as wizard_module
-from app.wizard.session_recording import SessionRecording
 from app.wizard.visit import Visit
 from app.wizard.walking.step import WalkingStep
 from app.wizard.wizard import WALKING, Wizard
@@ -25,7 +25,7 @@ from app.wizard.worn_sensors import SourceChoice
 from app.workers.library_controller import LibraryController
 from core.body import LEG_SITES, Site
 from core.samples import RecordingKind
-from devices.replay import ReplaySource
+from devices.simulation.replay import ReplaySource
 from tests.app.wizard.begun_visit import begin, record
 from tests.app.wizard.conftest import PASSPHRASE, SPEED
 

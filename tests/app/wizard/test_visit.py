@@ -12,7 +12,7 @@ from app.storage.analysis_content import packed
 from app.storage.audit import about
 from app.storage.opened import open_library
 from app.storage.stored import Limits, RecordingState
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from app.widgets.rail_row import StepState
 from app.wizard.patient.step import PatientStep
 from app.wizard.standing.step import StandStillStep

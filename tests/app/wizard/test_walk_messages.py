@@ -4,7 +4,7 @@ import pytest
 from pytestqt.qtbot import QtBot
 
 from app.acquisition.memory_fetching import Lack
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from app.wizard.losses import NOTHING
 from app.wizard.visit import Visit
 from app.wizard.walk_messages import (

@@ -11,7 +11,7 @@ from PySide6.QtCore import QObject
 from PySide6.QtTest import QSignalSpy
 from pytestqt.qtbot import QtBot
 
-from app.home.settings_controller import _slots
+from app.home.settings.controller import _slots
 from app.storage.bringing_home import bring_home
 from app.storage.database.ids import uuid7
 from app.storage.journal.disk import Room

@@ -11,8 +11,8 @@ import numpy as np
 from vqf import VQF, offlineVQF
 
 from core.calibration.zero import standing_twist
-from core.rotations import joint_frame, matrix_from_quaternion, turn_about_vertical
 from core.samples import FloatArray, RateKind
+from core.signal.rotations import joint_frame, matrix_from_quaternion, turn_about_vertical
 from tests.benchmarks.trials import Trial
 
 WINDOW_S = 10.0

@@ -10,9 +10,9 @@ from core.analysis import analyse
 from core.angles import hinge_angle as drifting
 from core.angles.hinge_angle import hinge_angle, hinge_angle_and_sd
 from core.body import Joint, Site
-from core.pair import pair_of
 from core.samples import FloatArray, RecordingKind
-from devices.walker import FreeMotion, Motion, SensorErrors, WalkerSettings, simulate
+from core.signal.pair import pair_of
+from devices.simulation.walker import FreeMotion, Motion, SensorErrors, WalkerSettings, simulate
 
 if TYPE_CHECKING:
     from tests.core.conftest import Person

@@ -10,8 +10,8 @@ from scipy.spatial.transform import Rotation
 
 from core.angles.twist import off_axis_rate, twist
 from core.body import Joint
-from core.pair import Pair
 from core.samples import FloatArray, RecordingKind
+from core.signal.pair import Pair
 
 if TYPE_CHECKING:
     from tests.core.conftest import Person

@@ -9,9 +9,9 @@ from core.analysis import analyse
 from core.body import Joint, Site
 from core.calibration.bare_axis import bare_axes
 from core.calibration.joint_axis import moved
-from core.datasets import gather
-from core.rotations import angle_between
-from devices.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
+from core.signal.datasets import gather
+from core.signal.rotations import angle_between
+from devices.simulation.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
 
 if TYPE_CHECKING:
     from tests.core.conftest import Person

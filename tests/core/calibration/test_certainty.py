@@ -15,9 +15,9 @@ from core.calibration.certainty import (
     looseness,
     sandwich_covariance,
 )
-from core.datasets import gather
-from core.rotations import joint_frame
 from core.samples import FloatArray
+from core.signal.datasets import gather
+from core.signal.rotations import joint_frame
 
 if TYPE_CHECKING:
     from tests.core.conftest import Person

@@ -11,9 +11,9 @@ from core.body import Joint
 from core.calibration.coincidence import fit_coincidence, relative_rotation
 from core.calibration.heading import heading_over
 from core.calibration.lag import find_lag
-from core.datasets import Datasets, gather, moving_indices
-from core.pair import OrientedTrack, Pair, lever_matrix, pair_up
-from core.rotations import joint_frame, wrap
+from core.signal.datasets import Datasets, gather, moving_indices
+from core.signal.pair import OrientedTrack, Pair, lever_matrix, pair_up
+from core.signal.rotations import joint_frame, wrap
 
 if TYPE_CHECKING:
     from tests.core.conftest import Person

@@ -8,8 +8,8 @@ import numpy as np
 
 from core.body import Joint
 from core.calibration.heading import FORCE_CORRELATION_S, _force_terms
-from core.datasets import gather
 from core.samples import FloatArray
+from core.signal.datasets import gather
 
 if TYPE_CHECKING:
     from tests.core.conftest import Person

@@ -12,9 +12,9 @@ from core.body import Joint, Site
 from core.calibration import hinge
 from core.calibration.hinge import hinge_axes, hinge_residual, in_plane_difference
 from core.calibration.joint_axis import moved
-from core.datasets import Datasets, gather
-from core.robust import robust_sd
-from core.rotations import angle_between
+from core.signal.datasets import Datasets, gather
+from core.signal.robust import robust_sd
+from core.signal.rotations import angle_between
 
 if TYPE_CHECKING:
     from tests.core.conftest import Person

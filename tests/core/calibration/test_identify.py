@@ -9,10 +9,10 @@ import pytest
 from core.body import Joint
 from core.calibration import identify
 from core.calibration.identify import Decision, Downs, Identification, identify_joint, moving_data
-from core.datasets import Datasets
-from core.pair import OrientedTrack, Pair, pair_up
-from core.rotations import joint_frame
 from core.samples import FloatArray
+from core.signal.datasets import Datasets
+from core.signal.pair import OrientedTrack, Pair, pair_up
+from core.signal.rotations import joint_frame
 
 if TYPE_CHECKING:
     from tests.core.conftest import Person

@@ -20,9 +20,9 @@ from core.calibration.joint_axis import (
     polish,
     residuals,
 )
-from core.datasets import Datasets, gather
-from core.rotations import angle_between, wrap
 from core.samples import FloatArray
+from core.signal.datasets import Datasets, gather
+from core.signal.rotations import angle_between, wrap
 
 if TYPE_CHECKING:
     from tests.core.conftest import Person

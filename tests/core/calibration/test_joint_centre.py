@@ -23,10 +23,10 @@ from core.calibration.joint_centre import (
     centre_sd_m,
     nearest_to_sensors,
 )
-from core.datasets import Datasets, gather
-from core.robust import robust_sd
-from core.rotations import joint_frame
 from core.samples import FloatArray
+from core.signal.datasets import Datasets, gather
+from core.signal.robust import robust_sd
+from core.signal.rotations import joint_frame
 
 if TYPE_CHECKING:
     from tests.core.conftest import Person

@@ -10,9 +10,9 @@ from core.analysis import analyse
 from core.body import LEG_SITES, Joint, Side
 from core.calibration import knees_help
 from core.calibration.knees_help import helped_by_knee
-from core.rotations import angle_between
 from core.samples import FloatArray
-from devices.walker import FreeMotion, SimulatedSession, Standing, Tissue, Walk, WalkerSettings, simulate
+from core.signal.rotations import angle_between
+from devices.simulation.walker import FreeMotion, SimulatedSession, Standing, Tissue, Walk, WalkerSettings, simulate
 
 KNEE, ANKLE = Joint.LEFT_KNEE, Joint.LEFT_ANKLE
 LEFT = tuple(site for site in LEG_SITES if site.side is Side.LEFT)

@@ -9,9 +9,9 @@ import pytest
 
 from core.body import Joint
 from core.calibration.lag import Lag, find_lag, sharpest_lag, smoothest_lag
-from core.datasets import Datasets, gather, moving_indices
-from core.pair import OrientedTrack, Pair, pair_up
 from core.samples import FloatArray
+from core.signal.datasets import Datasets, gather, moving_indices
+from core.signal.pair import OrientedTrack, Pair, pair_up
 
 if TYPE_CHECKING:
     from tests.core.conftest import Person

@@ -9,7 +9,7 @@ import pytest
 
 from core.body import Joint
 from core.calibration.joint_axis import _liveliest
-from core.datasets import Datasets, gather
+from core.signal.datasets import Datasets, gather
 
 if TYPE_CHECKING:
     from tests.core.conftest import Person

@@ -9,10 +9,10 @@ from scipy.spatial.transform import Rotation
 
 from core.body import Joint
 from core.calibration.heading import heading_over
-from core.pair import OrientedTrack, Pair, pair_up
-from core.rotations import wrap
 from core.samples import RecordingKind
-from core.tracks import Track
+from core.signal.pair import OrientedTrack, Pair, pair_up
+from core.signal.rotations import wrap
+from core.signal.tracks import Track
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -20,9 +20,9 @@ from core.calibration.clinical_sign import (
     skewness,
 )
 from core.calibration.zero import standing_twist, wrapped_to_zero
-from core.rotations import joint_frame, wrap
 from core.samples import FloatArray
-from devices.walker import Manner, Tissue, Walk, WalkerSettings, simulate
+from core.signal.rotations import joint_frame, wrap
+from devices.simulation.walker import Manner, Tissue, Walk, WalkerSettings, simulate
 
 T = np.arange(1000) / 100
 SWING = 9 * np.exp(2 * (np.cos(6 * T) - 1)) - 2  # 7 rad/s forward, 2 back

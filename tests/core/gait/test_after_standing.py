@@ -6,8 +6,8 @@ import pytest
 from core.body import Side, Site
 from core.gait.foot import follow
 from core.samples import RateKind
-from core.sensors import SensorTracks
-from devices.walker import Standing, Walk, WalkerSettings, simulate
+from core.signal.sensors import SensorTracks
+from devices.simulation.walker import Standing, Walk, WalkerSettings, simulate
 
 
 @pytest.mark.endurance

@@ -13,7 +13,7 @@ from core.results import RecordingAnalysis
 from core.samples import FloatArray, SensorInfo, Session
 from core.verdicts.gates import clocks_verdict
 from core.verdicts.model import Verdict
-from devices.walker import Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import Standing, Walk, WalkerSettings, simulate
 
 FEET = (Site.LEFT_FOOT, Site.RIGHT_FOOT)
 RNG = np.random.default_rng(3)

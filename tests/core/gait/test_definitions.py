@@ -13,11 +13,11 @@ from core.gait.phases import PHASES, phases_at
 from core.gait.shank import gait_of_shank
 from core.gait.strides import Reason, strides_of
 from core.gait.symmetry import curve_difference, gait_variable_score
-from core.orientation import oriented
-from core.robust import robust_sd
 from core.samples import FloatArray, RateKind
-from core.tracks import even_tracks
-from devices.walker import Standing, Walk, WalkerSettings, simulate
+from core.signal.orientation import oriented
+from core.signal.robust import robust_sd
+from core.signal.tracks import even_tracks
+from devices.simulation.walker import Standing, Walk, WalkerSettings, simulate
 
 PERCENT = np.arange(101.0)
 WINDOWS = [  # joint, peak, first and last percent of the stride, whether it is a maximum

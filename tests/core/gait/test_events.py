@@ -16,11 +16,11 @@ from core.gait.crossings import first_crossing, onset
 from core.gait.events import SOURCES, EventSource, FootEvents, Timing, gait_of, without_stray_toe_offs
 from core.gait.foot import FootMotion
 from core.gait.sole import SoleTravel, travel_of
-from core.orientation import oriented
-from core.pair import OrientedTrack
 from core.samples import BoolArray, FloatArray, ImuBlock, RateKind
-from core.tracks import even_tracks
-from devices.walker import FootTruth, FreeMotion, Manner, Standing, Tissue, Walk, WalkerSettings, simulate
+from core.signal.orientation import oriented
+from core.signal.pair import OrientedTrack
+from core.signal.tracks import even_tracks
+from devices.simulation.walker import FootTruth, FreeMotion, Manner, Standing, Tissue, Walk, WalkerSettings, simulate
 
 FOOT = Site.LEFT_FOOT
 EVENTS = ("heel_rise_s", "toe_off_s", "initial_contact_s", "full_contact_s")

@@ -14,11 +14,11 @@ from core.gait.events import FootEvents, gait_of
 from core.gait.foot import GRAVITY_M_S2, follow
 from core.gait.live import SETTINGS, FootEvent, LiveEvent, LiveEvents
 from core.gait.phases import PHASES, Phase, phases_at
-from core.orientation import oriented
-from core.pair import OrientedTrack
 from core.samples import FloatArray, ImuBlock, RateKind
-from core.tracks import even_tracks
-from devices.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
+from core.signal.orientation import oriented
+from core.signal.pair import OrientedTrack
+from core.signal.tracks import even_tracks
+from devices.simulation.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 

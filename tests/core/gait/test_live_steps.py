@@ -10,8 +10,8 @@ from core.body import Side, Site
 from core.gait.live import FootEvent, LiveEvent, LiveEvents
 from core.gait.phases import Phase
 from core.samples import FloatArray, ImuBlock
-from devices.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
-from devices.walker_motion import TrueFootEvents
+from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker_motion import TrueFootEvents
 
 SITE = Site.LEFT_FOOT
 EVENTS = ("heel_rise", "toe_off", "initial_contact", "full_contact")

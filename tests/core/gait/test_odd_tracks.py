@@ -9,10 +9,10 @@ from core.gait.foot import GRAVITY_M_S2
 from core.gait.phases import PHASES, Phase, phases_at
 from core.gait.shank import gait_of_shank
 from core.gait.strides import Reason, strides_of
-from core.orientation import oriented
-from core.pair import OrientedTrack
 from core.samples import FloatArray, RateKind
-from core.tracks import Track
+from core.signal.orientation import oriented
+from core.signal.pair import OrientedTrack
+from core.signal.tracks import Track
 
 RNG = np.random.default_rng(5)
 

@@ -9,7 +9,7 @@ import pytest
 from core.body import Side
 from core.gait.events import gait_of
 from core.gait.rolling import landing_marks, leaving_marks, sharpest, timed_by
-from devices.walker import PEOPLE, Manner, Standing, Tissue, Walk, WalkerSettings
+from devices.simulation.walker import PEOPLE, Manner, Standing, Tissue, Walk, WalkerSettings
 from tests.benchmarks.gait_simulated import walks_of
 from tests.core.gait.test_stroke_walks import events_of
 

@@ -11,11 +11,11 @@ from core.gait.events import FootEvents
 from core.gait.phases import PHASES, Phase, phases_at
 from core.gait.shank import gait_of_shank
 from core.gait.strides import strides_of
-from core.orientation import oriented
 from core.samples import RateKind
-from core.tracks import even_tracks
-from devices.walker import Standing, Tissue, Walk, WalkerSettings, simulate
-from devices.walker_motion import TrueFootEvents
+from core.signal.orientation import oriented
+from core.signal.tracks import even_tracks
+from devices.simulation.walker import Standing, Tissue, Walk, WalkerSettings, simulate
+from devices.simulation.walker_motion import TrueFootEvents
 
 SHANK = Site.RIGHT_SHANK
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from devices.walker import Tissue, Walk, WalkerSettings
+from devices.simulation.walker import Tissue, Walk, WalkerSettings
 from tests.benchmarks.gait_simulated import Score, score_walks
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three

@@ -11,7 +11,7 @@ from core.gait.stairs import FootClimbs, on_stairs
 from core.gait.strides import Reason, strides_of, strides_of_feet
 from core.samples import FloatArray
 from core.timed.protocols import PlannedTest, TimedProtocol
-from devices.walker import Standing, Treadmill, Walk, WalkerSettings, simulate
+from devices.simulation.walker import Standing, Treadmill, Walk, WalkerSettings, simulate
 from tests.core.gait.test_strides import feet_events
 
 FEET = (Site.LEFT_FOOT, Site.RIGHT_FOOT)

@@ -15,10 +15,10 @@ from core.calibration.rest import rest_of
 from core.gait.events import FootEvents, gait_of
 from core.gait.shank import gait_of_shank
 from core.gait.strides import strides_of
-from core.orientation import oriented
-from core.pair import OrientedTrack
 from core.samples import ImuBlock, RateKind
-from core.tracks import even_tracks
+from core.signal.orientation import oriented
+from core.signal.pair import OrientedTrack
+from core.signal.tracks import even_tracks
 from devices.files.session_folder import read_session
 
 COUNTED = {

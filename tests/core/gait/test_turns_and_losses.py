@@ -11,11 +11,11 @@ from core.body import Side, Site
 from core.calibration.rest import rest_of
 from core.gait.events import FootEvents, gait_of
 from core.gait.strides import Reason, strides_of
-from core.orientation import oriented
 from core.samples import FloatArray, ImuBlock, RateKind
-from core.tracks import MAX_BRIDGED_GAP_S, even_tracks
+from core.signal.orientation import oriented
+from core.signal.tracks import MAX_BRIDGED_GAP_S, even_tracks
 from devices.files.session_folder import read_session
-from devices.walker import Standing, Tissue, Walk, WalkerSettings, simulate
+from devices.simulation.walker import Standing, Tissue, Walk, WalkerSettings, simulate
 
 FEET = {Side.LEFT: Site.LEFT_FOOT, Side.RIGHT: Site.RIGHT_FOOT}
 SAME_S = 0.05

@@ -12,7 +12,7 @@ from core.body import LEG_SITES, Joint, Side, Site, hip_of
 from core.results import Analysis, RecordingAnalysis
 from core.samples import FloatArray, RecordingKind
 from core.verdicts.gates import judged
-from devices.walker import (
+from devices.simulation.walker import (
     FreeMotion,
     Motion,
     SimulatedSession,
@@ -22,7 +22,7 @@ from devices.walker import (
     WalkerSettings,
     simulate,
 )
-from devices.walker_pelvis import HipTruth, hip_truth
+from devices.simulation.walker_pelvis import HipTruth, hip_truth
 
 SEVEN = (*LEG_SITES, Site.PELVIS)
 RIGHT = tuple(site for site in LEG_SITES if site.side is Side.RIGHT)

@@ -12,8 +12,8 @@ from core.hip.measure import with_sd
 from core.hip.results import ClockStatus
 from core.samples import Recording, RecordingKind, Session
 from core.verdicts.model import Verdict
-from devices.walker import Standing, Tissue, Walk, simulate
-from devices.walker_pelvis import pelvis_truth
+from devices.simulation.walker import Standing, Tissue, Walk, simulate
+from devices.simulation.walker_pelvis import pelvis_truth
 from tests.core.hip.hip_sessions import abduction_error_deg, analysed, flexion_error_deg, settings, truth
 
 

@@ -20,12 +20,12 @@ from core.live.joint_frames import JointGeometry
 from core.live.orientation import NOTHING, LiveOrientation, OrientedSamples, joined
 from core.live.pairing import MAX_WAIT_S, Pairing
 from core.live.streams import EvenStream
-from core.pair import OrientedTrack, pair_up
 from core.results import AxisSource, JointCalibration
-from core.rotations import joint_frame, wrap
 from core.samples import FloatArray, ImuBlock, RateKind, Recording, RecordingKind, Session
-from core.tracks import Track
-from devices.walker import FreeMotion, JointTruth, Standing, Tissue, Walk, WalkerSettings, simulate
+from core.signal.pair import OrientedTrack, pair_up
+from core.signal.rotations import joint_frame, wrap
+from core.signal.tracks import Track
+from devices.simulation.walker import FreeMotion, JointTruth, Standing, Tissue, Walk, WalkerSettings, simulate
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 

@@ -14,8 +14,8 @@ from core.body import Joint, Site
 from core.live.excitation import HUMAN, PROSTHESIS, Excitation, ExcitationState, Missing, Movement
 from core.live.orientation import OrientedSamples
 from core.live.sample_sets import MAX_SETS, matrices_of
-from core.rotations import matrix_from_quaternion
 from core.samples import FloatArray
+from core.signal.rotations import matrix_from_quaternion
 from tests.benchmarks.excitation import QUANTITIES, stopped_calibrations
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three

@@ -13,8 +13,8 @@ from core.live.free_motion import FreeMotionState, LiveFreeMotion
 from core.live.lag import LagVerdict
 from core.live.sensors import LiveSensor
 from core.samples import ImuBlock
-from devices.walker import FreeMotion as FreeMotionRecording
-from devices.walker import Motion, SimulatedSession, Standing, Tissue, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion as FreeMotionRecording
+from devices.simulation.walker import Motion, SimulatedSession, Standing, Tissue, WalkerSettings, simulate
 
 LEFT = tuple(site for site in LEG_SITES if site.side is Side.LEFT)
 

@@ -16,8 +16,17 @@ from core.live.hip_heading import HipHeadingState
 from core.live.sensors import LiveSensor
 from core.live.walking import LiveWalk
 from core.samples import FloatArray, ImuBlock
-from devices.walker import FreeMotion, Motion, SimulatedSession, Standing, Tissue, Walk, WalkerSettings, simulate
-from devices.walker_pelvis import hip_truth
+from devices.simulation.walker import (
+    FreeMotion,
+    Motion,
+    SimulatedSession,
+    Standing,
+    Tissue,
+    Walk,
+    WalkerSettings,
+    simulate,
+)
+from devices.simulation.walker_pelvis import hip_truth
 
 PELVIS_AND_THIGHS = (Site.LEFT_THIGH, Site.RIGHT_THIGH, Site.PELVIS)
 HIPS = tuple(hip_of(side) for side in Side)

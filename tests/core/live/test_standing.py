@@ -11,8 +11,8 @@ from core.body import LEG_SITES, Site
 from core.calibration.rest import rest_of
 from core.live.standing import WANTED_S, LiveStanding, StandingState
 from core.samples import ImuBlock, Recording, RecordingKind
-from devices.walker import Standing as StandingRecording
-from devices.walker import WalkerSettings, simulate
+from devices.simulation.walker import Standing as StandingRecording
+from devices.simulation.walker import WalkerSettings, simulate
 
 BLOCK_S = 0.033
 

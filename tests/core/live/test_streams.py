@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from core.live.streams import EvenSamples, EvenStream
 from core.samples import BoolArray, FloatArray, ImuBlock, IntArray
-from core.tracks import even_tracks
+from core.signal.tracks import even_tracks
 
 RATE_HZ = 100.0
 STEP_S = 1 / RATE_HZ

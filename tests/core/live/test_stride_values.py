@@ -22,7 +22,7 @@ from core.live.stride_values import StrideValue, StrideValues
 from core.live.walking import LiveFoot, LiveJoint, LiveWalk, WalkingState
 from core.samples import FloatArray
 from core.targets import TargetMeasure
-from devices.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
 
 STEP_S = 0.01
 OFF, ON = FootEvent.TOE_OFF, FootEvent.INITIAL_CONTACT

@@ -16,7 +16,7 @@ from core.live.sensors import LiveSensor
 from core.live.walking import LiveWalk, WalkingState
 from core.results import Analysis, JointCalibration
 from core.samples import ImuBlock, Recording
-from devices.walker import FreeMotion, SimulatedSession, Standing, Tissue, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, SimulatedSession, Standing, Tissue, Walk, WalkerSettings, simulate
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 

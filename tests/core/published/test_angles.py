@@ -11,7 +11,6 @@ from hypothesis import strategies as st
 
 from core.angles.twist import off_axis_rate, twist
 from core.body import LEG_JOINTS, Joint
-from core.pair import Pair
 from core.published.angles import (
     angle_from_accelerations,
     angle_from_orientations,
@@ -20,8 +19,9 @@ from core.published.angles import (
     published_angle,
     unwrapped_about_trend,
 )
-from core.rotations import joint_frame, wrap
 from core.samples import FloatArray, RecordingKind
+from core.signal.pair import Pair
+from core.signal.rotations import joint_frame, wrap
 
 if TYPE_CHECKING:
     from tests.core.conftest import Person

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from core.body import Joint
-from core.pair import Pair
 from core.published.angles import DEFAULT_TAU_S, published_angle
 from core.published.figures import (
     GRID_STEP_RAD,
@@ -17,8 +16,9 @@ from core.published.figures import (
     projected_rates,
     two_ways,
 )
-from core.rotations import angle_between
 from core.samples import FloatArray, RecordingKind
+from core.signal.pair import Pair
+from core.signal.rotations import angle_between
 
 if TYPE_CHECKING:
     from tests.core.conftest import Person

@@ -12,8 +12,8 @@ from core.body import Joint
 from core.published import joint_axis
 from core.published.joint_axis import axis_from_angles, constraint, identify_axes
 from core.published.signs import signs_match
-from core.rotations import angle_between
 from core.samples import FloatArray
+from core.signal.rotations import angle_between
 
 if TYPE_CHECKING:
     from tests.core.conftest import Person

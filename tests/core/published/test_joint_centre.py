@@ -9,11 +9,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from core.body import Joint
-from core.pair import Pair
 from core.published import joint_centre
 from core.published.joint_centre import identify_centres, shifted_to_sensors
-from core.rotations import joint_frame
 from core.samples import FloatArray
+from core.signal.pair import Pair
+from core.signal.rotations import joint_frame
 
 if TYPE_CHECKING:
     from tests.core.conftest import Person

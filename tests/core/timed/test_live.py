@@ -13,8 +13,8 @@ from core.samples import Recording
 from core.timed.found import NotMeasured
 from core.timed.live import LiveTest
 from core.timed.protocols import KeyMeaning, PlannedTest, TimedProtocol
-from devices.walker_body import CourseKind, TimedCourse, Tissue
-from devices.walker_courses import SimulatedCourse, draw_course, simulate_course
+from devices.simulation.walker_body import CourseKind, TimedCourse, Tissue
+from devices.simulation.walker_courses import SimulatedCourse, draw_course, simulate_course
 
 FEET = (Site.LEFT_FOOT, Site.RIGHT_FOOT)
 BLOCK_S = 0.1

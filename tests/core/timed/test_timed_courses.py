@@ -9,12 +9,12 @@ from core.analysis import analyse
 from core.body import Side, Site
 from core.gait.strides import Reason
 from core.samples import RateKind, Recording, Session
-from core.sensors import SensorTracks
+from core.signal.sensors import SensorTracks
 from core.timed.found import NotMeasured, TimedTest
 from core.timed.protocols import DEFINITIONS, PlannedTest, TimedProtocol
 from core.timed.timing import time_test
-from devices.walker_body import CourseKind, TimedCourse, Tissue
-from devices.walker_courses import CourseTruth, SimulatedCourse, draw_course, simulate_course
+from devices.simulation.walker_body import CourseKind, TimedCourse, Tissue
+from devices.simulation.walker_courses import CourseTruth, SimulatedCourse, draw_course, simulate_course
 
 FEET = (Site.LEFT_FOOT, Site.RIGHT_FOOT)
 TEN_METRES = TimedCourse(CourseKind.TEN_METRES, seed=2, speed_m_s=0.9, sites=FEET, tissue=Tissue.SOFT)

@@ -10,10 +10,10 @@ from core.body import LEG_JOINTS, Joint, Side, ankle_of, knee_of
 from core.gait.clocks import ClockTie, LegClocks
 from core.gait.spatiotemporal import parameters_of
 from core.gait.strides import Reason, Strides
-from core.reception import Reception
 from core.results import AxisSource, JointCalibration, Method, RecordingAnalysis, SideGait, ZeroKind
 from core.results import JointAngle as Angle
 from core.samples import FloatArray, RecordingKind
+from core.signal.reception import Reception
 from core.verdicts.gates import verdicts_of
 from core.verdicts.model import Assessment, Verdict, Verdicts
 

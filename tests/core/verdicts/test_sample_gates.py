@@ -11,13 +11,13 @@ import pytest
 
 from core.analysis import analyse
 from core.body import Joint, Side, Site
-from core.reception import Reception
 from core.results import RecordingAnalysis
 from core.samples import BoolArray, FloatArray, ImuBlock, Session
+from core.signal.reception import Reception
 from core.verdicts.gates import verdicts_of
 from core.verdicts.model import Verdict
 from core.verdicts.quantities import side_mean
-from devices.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
 from tests.core.verdicts.built_walk import calibrations, leg, not_read, walk, with_gaps
 
 FOOT, SHANK, THIGH = Site.LEFT_FOOT, Site.LEFT_SHANK, Site.LEFT_THIGH

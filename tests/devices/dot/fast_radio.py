@@ -9,10 +9,10 @@ import threading
 import time
 from collections.abc import Sequence
 
-from devices.bluetooth import Radio
 from devices.emulators.bluetooth import Air
 from devices.emulators.dot import EmulatedDot, Motion
 from devices.emulators.dot_faults import DotFaults
+from devices.transport.bluetooth import Radio
 from tests.devices.dot.virtual_time import turning
 
 SPEED = 50.0

@@ -9,9 +9,9 @@ import pytest
 from devices.dot.decoder import DotDecoder, file_settings
 from devices.dot.messages import DotMessage, RecordedFile
 from devices.dot.samples import DotFramer, FileFramer
-from devices.notifications import framed
 from devices.source import SourceInfo
 from devices.stream import Row
+from devices.transport.notifications import framed
 
 STEP_US, TURN = 16667, 1 << 32
 VALUES = (0.5, -0.5, 0.5, 0.5, 1.0, -2.0, 9.75, 90.0, -180.0, 360.0)  # exact in single precision

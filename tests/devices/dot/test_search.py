@@ -8,11 +8,11 @@ from typing import Any
 
 import pytest
 
-from devices.bluetooth import Announced, BluetoothMissingError, Radio
 from devices.dot.sensor import is_dot
 from devices.dot.source import DotSource
 from devices.live import SourceRefusedError
 from devices.search import search
+from devices.transport.bluetooth import Announced, BluetoothMissingError, Radio
 
 
 def free_port() -> int:
@@ -72,7 +72,7 @@ def test_without_the_library_the_other_sensors_are_found_and_it_says_what_to_ins
             raise ImportError(name)
         return imported(name, *arguments, **more)
 
-    monkeypatch.setattr("devices.bluetooth.find_spec", lambda name: None if name == "bleak" else found(name))
+    monkeypatch.setattr("devices.transport.bluetooth.find_spec", lambda name: None if name == "bleak" else found(name))
     monkeypatch.setattr(builtins, "__import__", missing)
     result = search((), free_port(), radio=Radio())
     assert result.sensors == ()

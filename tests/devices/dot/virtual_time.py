@@ -6,10 +6,10 @@ import threading
 from collections.abc import Coroutine, Sequence
 from typing import Any, TypeVar
 
-from devices.bluetooth import Radio, Tick
 from devices.emulators.bluetooth import Air
 from devices.emulators.dot import EmulatedDot, Motion
 from devices.emulators.dot_faults import DotFaults
+from devices.transport.bluetooth import Radio, Tick
 
 Result = TypeVar("Result")
 BEGIN_S = 5000.0

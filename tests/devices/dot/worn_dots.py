@@ -6,7 +6,7 @@ from typing import Protocol
 import numpy as np
 
 from core.samples import FloatArray
-from devices.bluetooth import Announced
+from devices.clocks.shared_clock import tied
 from devices.dot.decoder import DotDecoder
 from devices.dot.sensor import DotSensor
 from devices.dot.source import DotGroup, DotSource
@@ -14,8 +14,8 @@ from devices.emulators.bluetooth import Air
 from devices.emulators.dot import EmulatedDot
 from devices.emulators.dot_faults import DotFaults
 from devices.live import SourceLostError, SourceRefusedError
-from devices.shared_clock import tied
 from devices.source import DecodedSensor
+from devices.transport.bluetooth import Announced
 from tests.devices.dot.virtual_time import VirtualRadio, worn
 
 RAD = np.pi / 180

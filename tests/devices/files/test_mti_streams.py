@@ -9,12 +9,12 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from core.samples import RateKind
+from devices.drivers.xbus import Item, Mid, item, message
 from devices.files.formats import format_of
 from devices.files.mti_streams import mti_trial
 from devices.files.refusal import FileRefusedError
 from devices.files.trial import ImportedSensor
-from devices.xbus import Item, Mid, item, message
-from tests.devices.test_xsens_mti import golden_items, golden_numbers
+from tests.devices.drivers.test_xsens_mti import golden_items, golden_numbers
 from tests.swinging_sensor import swinging_sensor
 
 Find = Callable[[str], Path]

@@ -19,8 +19,8 @@ from devices.files.formats import recognised
 from devices.files.refusal import FileRefusedError
 from devices.files.trial import ImportedSensor
 from devices.files.xdf import straight_times, xdf_trial
-from devices.walker import simulate
-from devices.walker_body import Walk, WalkerSettings
+from devices.simulation.walker import simulate
+from devices.simulation.walker_body import Walk, WalkerSettings
 from tests.trials_of_files import import_with
 
 Numbers = NDArray[np.float64]

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from core.body import LEG_JOINTS, Joint
-from devices.walker import FreeMotion, SessionTruth, Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, SessionTruth, Standing, Walk, WalkerSettings, simulate
 
 SETTINGS = WalkerSettings(
     seed=3,

@@ -21,7 +21,7 @@ from core.verdicts.model import Assessment, JointVerdicts, Verdict
 from devices.files.references.reading import read_reference
 from devices.files.references.trial import EVENTS, ReferenceFile, ReferenceTrial
 from devices.files.refusal import FileRefusedError
-from devices.walker import SessionTruth
+from devices.simulation.walker import SessionTruth
 from tests.app.reports.agreement.agreement_material import PPM, made, rows_of, write_reference
 
 TURNED = (Joint.RIGHT_KNEE,)

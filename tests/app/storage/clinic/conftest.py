@@ -21,7 +21,7 @@ from app.storage.opened import OpenedLibrary, logged_in
 from app.storage.slots import Cost
 from app.storage.stored import Operator, Role
 from core.samples import Session
-from devices.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
 
 PASSPHRASE = "four short words here"
 ANY_ROOM = Room(start_bytes=0, kept_bytes=0)

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from app.cli import main
+from app.cli.main import main
 from app.storage.layout import DATABASE_VARIABLE
 from app.storage.opened import open_library
 from tests.app.storage.clinic.conftest import PASSPHRASE

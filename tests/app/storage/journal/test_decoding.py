@@ -13,8 +13,8 @@ from app.storage.journal.reader import JournalReader
 from app.storage.journal.writer import JournalWriter
 from core.body import Site
 from core.samples import ImuBlock, Recording, RecordingKind
+from devices.simulation.walker import DEMONSTRATION, simulate
 from devices.source import SensorCounts, SourceInfo
-from devices.walker import DEMONSTRATION, simulate
 from tests.safety.journal_material import (
     ID,
     KEY,

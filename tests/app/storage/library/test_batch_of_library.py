@@ -8,8 +8,8 @@ from uuid import UUID
 
 import pytest
 
-from app import cli
-from app.batch import library_sessions
+from app.cli import main as cli
+from app.cohort.batch import library_sessions
 from app.storage.exchange import import_session, session_with_samples
 from app.storage.journal.decoding import Decoders
 from app.storage.journal.disk import Room

@@ -27,7 +27,7 @@ from core.findings import Finding, Severity
 from core.goals import Goal, GoalOf
 from core.samples import ImuBlock, Patient, RateKind, Recording, RecordingKind, SensorInfo, Session
 from devices.files.session_folder import read_session, write_session
-from devices.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
 
 ANY_ROOM = Room(start_bytes=0, kept_bytes=0)
 NAMES = [f"Kowalczyk-{number:03d}" for number in range(200)]

@@ -8,7 +8,7 @@ from uuid import UUID, uuid4
 
 import pytest
 
-from app import cli
+from app.cli import main as cli
 from app.storage.database.ids import uuid7
 from app.storage.exchange import export_session, import_session
 from app.storage.journal.disk import Room
@@ -18,7 +18,7 @@ from app.storage.opened import OpenedLibrary, held_alone
 from app.storage.recovery import find_interrupted
 from app.storage.stored import Action, StoredRecording
 from core.samples import Recording, RecordingKind
-from devices.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
 
 PASSPHRASE = "four short words here"
 ANY_ROOM = Room(start_bytes=0, kept_bytes=0)

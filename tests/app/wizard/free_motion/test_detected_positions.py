@@ -7,7 +7,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from app.widgets.rail_row import StepState
 from app.wizard.free_motion.step import FreeMotionStep
 from app.wizard.sensors.step import SensorsStep

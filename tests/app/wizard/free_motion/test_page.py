@@ -10,7 +10,7 @@ from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QAccessible
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.theme import ThemeNotifier, load_fonts
+from app.theme.notifier import ThemeNotifier, load_fonts
 from app.widgets.gauge import Gauge, GaugeFace, GaugeMeasure, GaugeState
 from app.widgets.hint import Hint
 from app.widgets.hip_gauge import hip_face

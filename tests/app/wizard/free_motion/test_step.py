@@ -7,10 +7,10 @@ from dataclasses import replace
 import pytest
 from pytestqt.qtbot import QtBot
 
-from app import sounds
-from app.sounds import Sound
 from app.storage.stored import Limits
-from app.theme import ThemeNotifier
+from app.system import sounds
+from app.system.sounds import Sound
+from app.theme.notifier import ThemeNotifier
 from app.widgets.gauge import GaugeState
 from app.widgets.rail_row import StepState
 from app.wizard.free_motion.estimator import FreeMotionView
@@ -23,7 +23,7 @@ from app.workers.library_controller import LibraryController
 from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site
 from core.live.free_motion import FreeMotionState
 from core.samples import RecordingKind
-from devices.replay import ReplaySource
+from devices.simulation.replay import ReplaySource
 from tests.app.wizard.begun_visit import begin, record
 from tests.app.wizard.free_motion.test_hints import motion, state
 from tests.app.wizard.free_motion.test_side_question import chains

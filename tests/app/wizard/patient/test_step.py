@@ -10,7 +10,7 @@ from pytestqt.qtbot import QtBot
 
 from app.storage.opened import OpenedLibrary
 from app.storage.stored import PlacedSensor, StoredPatient
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from app.widgets.rail_row import StepState
 from app.wizard.patient.page import PatientDraft
 from app.wizard.patient.step import PatientStep

@@ -6,7 +6,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QScrollBar
 from pytestqt.qtbot import QtBot
 
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from app.wizard.report.page import ReportPage
 from tests.app.wizard.report.test_page import png
 

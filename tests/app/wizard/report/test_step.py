@@ -10,12 +10,12 @@ import pypdf
 import pytest
 from pytestqt.qtbot import QtBot
 
-from app.reports.patient_report.document import ReportPreview
-from app.reports.proposed_names import free_name, session_name
+from app.exports.proposed_names import free_name, session_name
+from app.reports.patient.document import ReportPreview
 from app.storage.exchange import import_session
 from app.storage.operators import CLINIC
 from app.storage.stored import LibraryError
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from app.widgets.rail_row import StepState
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.report.leaving_dialog import LeavingDialog

@@ -12,12 +12,12 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QFileDialog
 from pytestqt.qtbot import QtBot
 
-from app.pages.beside_choice import Beside
-from app.pages.result_page import STRIDES
-from app.reports.comparison import Contrast
+from app.results.beside_choice import Beside
+from app.results.result_page import STRIDES
 from app.storage.exchange import import_session
 from app.storage.opened import OpenedLibrary
-from app.theme import ThemeNotifier, load_fonts
+from app.summary.comparison import Contrast
+from app.theme.notifier import ThemeNotifier, load_fonts
 from app.wizard import reviewing
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.results.step import ResultsStep
@@ -25,11 +25,11 @@ from app.wizard.resuming import current_course_key
 from app.wizard.visit import Visit
 from app.workers.library_controller import LibraryController
 from core.body import LEG_JOINTS, Joint, Side
-from core.chosen_strides import left_out_by_hand
+from core.gait.chosen_strides import left_out_by_hand
 from core.results import RecordingAnalysis
 from core.samples import FloatArray, RecordingKind, Session
 from core.verdicts.measurement_error import ErrorSource
-from devices.walker import DEMONSTRATION, simulate
+from devices.simulation.walker import DEMONSTRATION, simulate
 from tests.app.library_answers import asked
 from tests.app.room import words_cut
 

@@ -7,19 +7,19 @@ from pathlib import Path
 import pytest
 from pytestqt.qtbot import QtBot
 
-from app import known_columns as kept
-from app.theme import ThemeNotifier
+from app.system import known_columns as kept
+from app.theme.notifier import ThemeNotifier
 from app.wizard.sensors.columns_form import ColumnsForm, Meaning
 from app.wizard.sensors.sources import COLUMNS, SEARCH
 from app.wizard.sensors.step import SensorsStep
 from app.wizard.visit import Visit
 from app.wizard.worn_sensors import SourceChoice
+from devices.drivers.lines import LinesAt
 from devices.emulators.csv_lines import COLUMNS as EMULATED
 from devices.emulators.csv_lines import LineVoice
 from devices.emulators.transports import Emulation, PseudoTerminal
-from devices.lines import LinesAt
 from devices.live import SourceRefusedError
-from devices.ports import PortInfo
+from devices.transport.ports import PortInfo
 
 
 def still(number: int) -> tuple[float, ...]:

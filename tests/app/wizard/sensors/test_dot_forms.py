@@ -7,7 +7,7 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from app.widgets.sensors_progress import LineState, ProgressShown, SensorLine, SensorsProgress
 from app.wizard.sensors.dot_form import DotChoice, DotForm, DotLine
 from app.wizard.sensors.memories_form import HeldLine, MemoriesForm

@@ -10,13 +10,13 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QMenu, QWidget
 from pytestqt.qtbot import QtBot
 
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from app.wizard.sensors.page import SensorsPage, Way
 from app.wizard.sensors.sensor_drag import DRAGGED
 from app.wizard.sensors.sensor_row import SensorRow
 from app.wizard.sensors.sensor_trace import _lines
 from app.wizard.sensors.source_pages import SourceOption
-from app.wording import use_language
+from app.wording.translation import use_language
 from core.body import LEG_SITES, Side, Site
 from tests.app.room import settle, words_cut
 

@@ -11,7 +11,7 @@ from pytestqt.qtbot import QtBot
 from app.storage.exchange import import_session
 from app.storage.opened import OpenedLibrary
 from app.storage.stored import LibraryError
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from app.wizard.sensors.replays import Replays, replay_of
 from app.wizard.sensors.step import REPLAY, SensorsStep
 from app.wizard.visit import Visit

@@ -13,12 +13,12 @@ from app.wizard.sensors.sources import DEMONSTRATION, SEARCH, WITH_PELVIS, Sourc
 from app.wizard.worn_sensors import SetUpFirstError, SourceChoice, WornSensors
 from core.alignment import NetChange, ProsthesisPart
 from core.body import Side
-from devices.bluetooth import BluetoothMissingError
 from devices.dot.samples import DRIVER as MOVELLA_DOT
 from devices.live import LiveSource, SourceRefusedError
-from devices.ports import PortInfo
-from devices.replay import ReplaySource
 from devices.search import FoundSensor, Passed, SearchResult
+from devices.simulation.replay import ReplaySource
+from devices.transport.bluetooth import BluetoothMissingError
+from devices.transport.ports import PortInfo
 from tests.safety.live_material import numbered_session
 
 REFUSED = Passed(

@@ -7,7 +7,7 @@ import pytest
 from pytestqt.qtbot import QtBot
 
 from app.acquisition.acquisition import Acquisition
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from app.widgets.rail_row import StepState
 from app.wizard.free_motion.step import FreeMotionStep
 from app.wizard.keys import Intent, KeyAction
@@ -21,7 +21,7 @@ from app.wizard.worn_sensors import SourceChoice
 from core.body import Site
 from core.samples import Session
 from devices.live import SourceRefusedError
-from devices.replay import ReplaySource
+from devices.simulation.replay import ReplaySource
 
 TICKS_FOR_ROWS = 24  # of which three times rows and eight times traces are shown
 

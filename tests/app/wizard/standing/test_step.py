@@ -9,7 +9,7 @@ from pytestqt.qtbot import QtBot
 from app.acquisition.recorder import Recorder
 from app.storage.opened import OpenedLibrary
 from app.storage.stored import LibraryError
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from app.widgets.rail_row import StepState
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.standing.page import StandPhase
@@ -17,7 +17,7 @@ from app.wizard.standing.step import StandStillStep
 from app.wizard.visit import Visit
 from core.body import Joint, Site
 from core.samples import RecordingKind
-from devices.replay import ReplaySource
+from devices.simulation.replay import ReplaySource
 from tests.app.wizard.begun_visit import begin
 
 SPACE = Intent(KeyAction.RUN)

@@ -10,10 +10,10 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
-from app.reports.comparison import Comparison, Contrast
-from app.reports.conditions import Part, parts_of
-from app.reports.patient_report.answer import Outcome
-from app.theme import ThemeNotifier
+from app.summary.answer import Outcome
+from app.summary.comparison import Comparison, Contrast
+from app.summary.conditions import Part, parts_of
+from app.theme.notifier import ThemeNotifier
 from app.widgets.table_cells import TextCell
 from app.wizard.visit import Visit
 from app.wizard.walking.bench import ChangeEntry, chain_of, next_walk

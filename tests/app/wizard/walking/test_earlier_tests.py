@@ -6,10 +6,10 @@ from uuid import UUID
 
 from pytestqt.qtbot import QtBot
 
-from app.reports.course import Course, timed_tests_of
-from app.reports.course_lanes import CourseVisit, LaneKind, lanes
 from app.storage.opened import OpenedLibrary
-from app.theme import ThemeNotifier
+from app.summary.course import Course, timed_tests_of
+from app.summary.course_lanes import CourseVisit, LaneKind, lanes
+from app.theme.notifier import ThemeNotifier
 from app.widgets.text import Text
 from app.wizard.resuming import current_course_key
 from app.wizard.visit import Visit

@@ -7,7 +7,7 @@ from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from app.wizard.walking.live_lanes import LiveLanes
 from app.wizard.walking.readout import LiveLane, PhaseSpan
 from core.body import Side

@@ -6,7 +6,7 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.charts.axes import ANKLE_DEG, KNEE_DEG
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from app.wizard.walking.live_strip import LiveStrip, _Trace
 from app.wizard.walking.readout import LiveTrace
 from core.body import Side

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator
 import pytest
 from pytestqt.qtbot import QtBot
 
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from app.widgets.action_bar import BarState
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.sensors.step import SensorsStep

@@ -11,7 +11,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QAbstractButton, QApplication, QLabel, QPushButton, QScrollArea, QVBoxLayout, QWidget
 from pytestqt.qtbot import QtBot
 
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from app.widgets.field import Field
 from app.wizard.walking.page import WalkingPage
 from app.wizard.walking.readout import LiveLane, LiveTrace, PhaseSpan, WalkingReadout

@@ -10,16 +10,16 @@ import pytest
 from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
-from app import sounds
 from app.patient_screen.controls import ControlsCard
-from app.sounds import Sound
-from app.theme import ThemeNotifier
+from app.system import sounds
+from app.system.sounds import Sound
+from app.theme.notifier import ThemeNotifier
 from app.wizard.walking.patient_feedback import PatientFeedback, reasons_against
 from app.wizard.walking.readout import WalkingReadout
 from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site
+from core.calibration.strap import Slip
 from core.live.stride_values import StrideValue
 from core.results import ZeroKind
-from core.strap import Slip
 from core.targets import Target, TargetMeasure, TargetTally
 from tests.core.verdicts.built_walk import calibration
 

@@ -12,7 +12,7 @@ from pytestqt.qtbot import QtBot
 from app.acquisition.recorder import Recorder
 from app.patient_screen.window import PatientWindow
 from app.storage.stored import LibraryError
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.results.step import ResultsStep
 from app.wizard.resuming import rests_of
@@ -25,7 +25,7 @@ from core.alignment import AlignmentChange, PartChange, ProsthesisPart
 from core.body import Joint, Side, Site
 from core.samples import Patient, RecordingKind
 from core.targets import Target, TargetMeasure, TargetTally, tallies_of
-from devices.replay import ReplaySource
+from devices.simulation.replay import ReplaySource
 from tests.app.wizard.begun_visit import begin
 from tests.app.wizard.patient_time import PATIENCE_MS, PatientTime
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from pytestqt.qtbot import QtBot
 
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from app.widgets.table import TableRow
 from app.widgets.table_cells import TextCell
 from app.wizard.evaluation import failure_in_words

@@ -7,14 +7,14 @@ import pytest
 from PySide6.QtCore import QTimer
 from pytestqt.qtbot import QtBot
 
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.visit import Visit
 from app.wizard.walking.step import WalkingStep
 from core.body import Site
 from core.samples import Patient, RecordingKind, Session
 from core.timed.protocols import PlannedTest, TimedProtocol
-from devices.walker import DEMONSTRATION, Standing, Walk, simulate
+from devices.simulation.walker import DEMONSTRATION, Standing, Walk, simulate
 from tests.app.wizard.begun_visit import begin
 from tests.app.wizard.patient_time import PATIENCE_MS, PatientTime
 

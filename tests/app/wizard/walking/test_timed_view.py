@@ -6,9 +6,9 @@ from dataclasses import replace
 import pytest
 from pytestqt.qtbot import QtBot
 
-from app.theme import ThemeNotifier
+from app.theme.notifier import ThemeNotifier
 from app.wizard.walking.timed_view import TimedView, TimedViewState, distance_words, status_words, time_text
-from app.wording import use_language
+from app.wording.translation import use_language
 from core.body import Side, Site
 from core.timed.found import NotMeasured
 from core.timed.live import LiveReadout

@@ -5,16 +5,16 @@ from typing import Any, cast
 
 import pytest
 
-from app.recording_names import shown_names
+from app.editing.session_recording import Ongoing
 from app.storage.stored import RecordingState
 from app.widgets.action_bar import BarAction
-from app.wizard.session_recording import Ongoing
 from app.wizard.visit import Visit
 from app.wizard.walking.bench_control import Bench
 from app.wizard.walking.memory_control import MemoryControl
 from app.wizard.walking.timed_control import TimedControl
 from app.wizard.walking.walk_start import WalkStart
 from app.wizard.walking.walking_bar import QuietAction, WalkingBar
+from app.wording.recordings import shown_names
 from core.samples import Recording, RecordingKind
 from core.timed.protocols import PlannedTest, TimedProtocol
 from tests.app.wizard.walking.bench_material import WALKED, bench_visit

@@ -1,0 +1,106 @@
+"""`gaitwright agree`: what a session and an optical system differ by, in the shape of Table 1."""
+
+import argparse
+import json
+from collections.abc import Callable
+from datetime import datetime
+from pathlib import Path
+
+from app.cli.library import add_key_arguments, default_folder, read_place, session_place
+from app.system.logs import version_of
+from devices.files.refusal import FileRefusedError, one_line
+
+Report = Callable[[float, str], None]
+REPORT = "agreement.pdf"  # as app.reports.agreement.folder has it, whose imports take long
+MOST_SUMMARY_BYTES = 10_000_000
+
+
+def add_agree_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.description = (
+        "Compare the angles, events and stride lengths of a session with an optical system. Its clock and signs are "
+        "found from the rates."
+    )
+    parser.add_argument(
+        "session",
+        metavar="SESSION",
+        type=session_place,
+        help="the session folder, results with their session inside, or library:ID",
+    )
+    parser.add_argument(
+        "--reference",
+        metavar="FILE",
+        type=Path,
+        action="append",
+        required=True,
+        help="CSV with time_s and left_knee ... in degrees, OpenSim .mot, C3D, or Visual3D's text; to be given again "
+        "for each further file",
+    )
+    parser.add_argument(
+        "--library", metavar="LIBRARY", type=Path, default=default_folder(), help="the folder of the library (your own)"
+    )
+    add_key_arguments(parser)
+    parser.add_argument("--out", metavar="OUT", type=Path, required=True, help="the folder of the agreement to write")
+    parser.add_argument("--no-report", action="store_true", help=f"write no {REPORT}")
+
+
+def agree(wanted: argparse.Namespace, report: Report) -> list[str]:
+    """Write the agreement and give the lines for the terminal.
+
+    Raises
+    ------
+    FileRefusedError
+        The session or a reference cannot be read, nothing can be compared, or something else stands at OUT.
+    OSError
+        The agreement cannot be written.
+    """
+    from app.exports.result_folder import written_beside
+    from app.importing.untrusted_files import read_foreign_reference
+    from app.reports.agreement.folder import write_agreement
+    from app.reports.agreement.printed import printed
+    from app.reports.agreement.study import study_of
+    from core.analysis import analyse
+
+    check_agreement_place(wanted.out)
+    files = []
+    for path in wanted.reference:
+
+        def waiting(path: Path = path) -> None:
+            report(0.0, str(path))
+
+        files.append((path.name, read_foreign_reference(path, waiting)))
+    session = read_place(wanted, wanted.session, report)
+    study = study_of(analyse(session, progress=report), files)
+    report(1.0, "writing")
+    with written_beside(wanted.out) as folder:
+        made_at = None if wanted.no_report else datetime.now().astimezone()
+        write_agreement(study, session, folder, made_at, version_of("gaitwright"))
+        report(1.0, "writing")
+    walks = len(study.walks)
+    count = f"{walks} {'recording' if walks == 1 else 'recordings'} compared"
+    return [
+        *printed(study, session.patient),
+        "",
+        f"{one_line(str(wanted.out))}: {count}. Research use. Not a medical device.",
+    ]
+
+
+def check_agreement_place(out: Path) -> None:
+    """See whether an agreement may stand at `out`: nothing is there, or only an agreement.
+
+    Raises
+    ------
+    FileRefusedError
+        Something else is there.
+    """
+    from app.reports.agreement.tables import FORMAT, SUMMARY
+
+    if not out.exists() or (out.is_dir() and not any(out.iterdir())):
+        return
+    summary = out / SUMMARY
+    try:
+        is_one = summary.stat().st_size <= MOST_SUMMARY_BYTES
+        is_one = is_one and json.loads(summary.read_text(encoding="utf-8")).get("format") == FORMAT
+    except (OSError, ValueError, AttributeError, RecursionError):
+        is_one = False
+    if not is_one or any(out.rglob("session.toml")):
+        raise FileRefusedError(str(out), "this is there already and is not an agreement", "Choose another --out")

@@ -1,0 +1,132 @@
+"""`gaitwright compare`: what differs between conditions or sessions, as a table on the terminal and as a CSV file."""
+
+import argparse
+import math
+from collections.abc import Callable, Iterator, Sequence
+from itertools import groupby
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from app.cli.library import add_key_arguments, default_folder, read_place, session_place
+from devices.files.refusal import FileRefusedError, one_line
+
+if TYPE_CHECKING:
+    from app.summary.comparison import Comparison
+    from app.summary.conditions import Part
+    from core.results import Analysis
+    from core.samples import Session
+
+DIFFERENCES = "differences.csv"
+FLAGS = {  # as core.verdicts.measurement_error has them
+    "exceeds_error": "beyond measurement error",
+    "inside_error": "inside measurement error",
+    "too_few_strides": "too few strides",
+    "no_published_figure": "not judged",
+    "withheld": "withheld",
+}
+DAGGER = "†"
+DAGGER_MEANS = f"{DAGGER} The error rests on a figure of which the source could not be checked."
+
+Report = Callable[[float, str], None]
+
+
+def add_compare_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.description = (
+        "Tell the differences between the conditions of a session, or between sessions, and which of them are inside "
+        "the measurement error."
+    )
+    help_text = (
+        "session folders, results with their session inside, or library:ID; the first is what others differ from"
+    )
+    parser.add_argument("sessions", metavar="SESSION", type=session_place, nargs="+", help=help_text)
+    parser.add_argument(
+        "--library", metavar="LIBRARY", type=Path, default=default_folder(), help="the folder of the library (your own)"
+    )
+    add_key_arguments(parser)
+    parser.add_argument("--out", metavar="OUT", type=Path, required=True, help=f"the folder for {DIFFERENCES}")
+
+
+def compare(wanted: argparse.Namespace, report: Report) -> list[str]:
+    """Write the table and give the lines for the terminal.
+
+    Raises
+    ------
+    FileRefusedError
+        A session cannot be read, nothing can be compared, or something else stands at OUT.
+    OSError
+        The table cannot be written.
+    """
+    from app.exports.result_folder import written_beside
+    from app.summary.differences import comparisons_of, rows_of, without_common_condition, write_differences
+    from core.analysis import analyse
+
+    _check_place(wanted.out)
+    visits = []
+    for number, place in enumerate(wanted.sessions):
+
+        def told(share: float, what: str, number: int = number) -> None:
+            report((number + share) / len(wanted.sessions), what)
+
+        session = read_place(wanted, place, told)
+        visits.append((session, analyse(session, progress=told)))
+    comparisons = comparisons_of(visits)
+    rows = [row for comparison in comparisons for row in rows_of(comparison)]
+    alone = [_not_compared(wanted.sessions[number - 1], visits) for number in without_common_condition(visits)]
+    if not rows:
+        names = ", ".join(one_line(str(place)) for place in wanted.sessions)
+        if alone:
+            raise FileRefusedError(names, " ".join(alone), "Name sessions that were walked under the same condition")
+        what = "there are no two conditions, nor two sessions, with strides in both"
+        raise FileRefusedError(names, what, "Name two sessions, or one with two conditions")
+    with written_beside(wanted.out) as folder:
+        write_differences(rows, folder / DIFFERENCES)
+        report(1.0, "writing")
+    return [
+        *(line for comparison in comparisons for line in _table(comparison)),
+        *(["", *alone] if alone else []),
+        *(["", DAGGER_MEANS] if any(row.difference.is_unverified for row in rows) else []),
+        "",
+        f"{wanted.out / DIFFERENCES}: {len(rows)} differences. Research use. Not a medical device.",
+    ]
+
+
+def _not_compared(place: object, visits: "Sequence[tuple[Session, Analysis]]") -> str:
+    from app.summary.visits import WalkedVisit, conditions_in_words
+
+    walked = [
+        WalkedVisit(f"session {number}", analysis, session.recordings)
+        for number, (session, analysis) in enumerate(visits, 1)
+    ]
+    name = one_line(str(place))
+    return f"{name} has no condition in common with the first, so they are not compared. {conditions_in_words(walked)}"
+
+
+def _check_place(out: Path) -> None:
+    """See whether a comparison may stand at `out`: nothing is there, or only a comparison."""
+    if out.exists() and not (out.is_dir() and {path.name for path in out.iterdir()} <= {DIFFERENCES}):
+        raise FileRefusedError(str(out), "this is there already and is not a comparison", "Choose another --out")
+
+
+def _table(comparison: "Comparison") -> Iterator[str]:
+    from app.summary.differences import rows_of
+
+    simulated = "SIMULATED. " if comparison.is_simulated else ""
+    for _, of_part in groupby(rows_of(comparison), key=lambda row: row.part.letter):
+        rows = list(of_part)
+        yield f"{simulated}{_named(rows[0].part)} less {_named(comparison.against)}"
+        yield f"  {'':5} {'':38} {'one':>9} {'other':>9} {'differs':>9} {'error':>7}"
+        for row in rows:
+            side = "" if row.side is None else row.side[0].upper()
+            found = row.difference
+            figures = (row.value.mean, row.other.mean, found.difference)
+            cells = " ".join(f"{_short(figure):>9}" for figure in figures)
+            mark = DAGGER if found.is_unverified else " "
+            yield f"  {side:5} {row.parameter:38} {cells} {_short(found.error):>7}{mark} {FLAGS[found.judgement]}"
+
+
+def _named(part: "Part") -> str:
+    return f"{part.letter} {one_line(part.name)}"
+
+
+def _short(value: float) -> str:
+    return f"{round(value, 2) + 0.0:.2f}" if math.isfinite(value) else ""  # no minus before zero

@@ -1,0 +1,124 @@
+"""What does the command line do with sensors? It lists those that are heard, and plays ones that are not there."""
+
+import os
+import tempfile
+import threading
+import time
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from devices.emulators.patient import EmulatedPatient
+    from devices.emulators.transports import Emulation
+
+EMULATED = ("ximu3", "witmotion", "csv", "xsens-mti", "shimmer3")  # as devices.emulators.patient has them
+MOVEMENTS = {"f": "free_motion", "w": "walking", "s": "standing"}
+
+
+def list_devices(streams_in: str = "") -> Iterator[str]:
+    """What is heard now, at which port nothing is, how drivers and readers of files were proved; takes a second or two.
+
+    Parameters
+    ----------
+    streams_in
+        By which of this computer's addresses streams are asked for; empty: they are not.
+    """
+    from app.system.known_columns import known_columns
+    from devices.catalogue import DRIVERS
+    from devices.files.trial import PROGRAMS, PROOFS
+    from devices.live import SourceRefusedError
+    from devices.search import SearchResult, search, search_streams
+    from devices.transport.bluetooth import own_radio
+
+    found = search(columns=known_columns(), radio=own_radio())
+    if streams_in:
+        try:
+            streams = search_streams(streams_in)
+        except SourceRefusedError as refusal:
+            yield str(refusal)
+        else:
+            found = SearchResult(
+                found.sensors + streams.sensors, found.passed + streams.passed, found.lines, found.deaf
+            )
+    names = {driver.key: driver.name for driver in DRIVERS}
+    yield "Sensors that were heard:" if found.sensors else "No sensor was heard."
+    for sensor in found.sensors:
+        simulated = ", simulated" if sensor.is_simulated else ""
+        yield f"- {names[sensor.driver]}: {sensor.name} at {sensor.place}{simulated}"
+    for lines in (one for one in found.lines if one.columns is None):
+        yield f"- Lines of {lines.count} numbers at {lines.port.device}: tell the application what they are."
+    if found.deaf is not None:
+        yield str(found.deaf)
+    if found.passed:
+        yield "Ports without one:"
+    for passed in found.passed:
+        about = f" ({passed.port.description})" if passed.port.description else ""
+        yield f"- {passed.port.device}{about}: {passed.refusal}"
+    yield "How the drivers were proved:"
+    for driver in DRIVERS:
+        yield f"- {driver.name}: {driver.proof}"
+    yield "What the readers of files were held against:"
+    for name, proof in PROOFS.items():
+        yield f"- {PROGRAMS[name]}: {proof}"
+
+
+def emulate(kind: str, count: int, seconds: float, tell: Callable[[str], None], asked: Iterable[str] = ()) -> None:
+    """Play so many sensors at pseudo-terminals until interrupted or `seconds` are over; tells their ports first.
+
+    Parameters
+    ----------
+    asked
+        Lines, whenever they come, of what the patient is to do; see `MOVEMENTS`.
+
+    Raises
+    ------
+    OSError
+        There are no pseudo-terminals on this system.
+    """
+    from devices.emulators.patient import EmulatedPatient, session_for
+    from devices.transport.ports import MORE_PORTS
+
+    patient = EmulatedPatient(session_for(count))
+    with _emulations(patient, kind, count) as emulations:
+        places = [emulation.place for emulation in emulations]
+        for place in places:
+            tell(place)
+        tell(f"Let the application look there: {MORE_PORTS}={os.pathsep.join(places)}")
+        tell("The patient stands. Type f and Enter for a free motion, w for a walk.")
+        threading.Thread(target=_ask, args=(patient, asked, tell), daemon=True).start()  # it waits for the keyboard
+        until_s = time.monotonic() + seconds
+        try:
+            while time.monotonic() < until_s:
+                time.sleep(min(0.1, seconds))
+        except KeyboardInterrupt:
+            tell("Ended.")
+
+
+def _ask(patient: "EmulatedPatient", asked: Iterable[str], tell: Callable[[str], None]) -> None:
+    from core.samples import RecordingKind
+
+    for line in asked:
+        if (kind := MOVEMENTS.get(line.strip())) is not None:
+            clip = patient.ask(RecordingKind(kind))
+            tell(f"{clip.recording.name}: {(clip.end_ns - clip.start_ns) / 1e9:.0f} s")
+
+
+@contextmanager
+def _emulations(patient: "EmulatedPatient", kind: str, count: int) -> "Iterator[list[Emulation]]":
+    from devices.emulators.patient import EmulatedSensor
+    from devices.emulators.transports import Emulation, PseudoTerminal
+
+    with tempfile.TemporaryDirectory(prefix="gaitwright-ports-") as folder:
+        emulations: list[Emulation] = []
+        try:
+            for number in range(count):
+                link = Path(folder) / f"{kind}-{number + 1}"
+                voice = EmulatedSensor(patient, kind, number).voice
+                emulations.append(Emulation(voice, partial(PseudoTerminal, link)))
+            yield emulations
+        finally:
+            for emulation in emulations:
+                emulation.close()

@@ -1,0 +1,124 @@
+"""`gaitwright export`: the results of a session for other programs, without names unless identity is asked for."""
+
+import argparse
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from app.cli.library import (
+    LibrarySession,
+    add_key_arguments,
+    default_folder,
+    opened_library,
+    session_place,
+)
+from devices.decoders import DECODERS
+from devices.files.refusal import FileRefusedError, one_line
+
+if TYPE_CHECKING:
+    from app.storage.pseudonyms import Typed
+
+FORMATS = ("xlsx", "c3d", "mot", "fhir", "bids-motion")  # as app.exports.exports has them, whose import takes long
+
+TYPED = ("device", "aids", "surface", "conditions", "changes")  # as app.storage.pseudonyms has it
+
+Report = Callable[[float, str], None]
+
+
+def add_export_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.description = (
+        "Analyse a session and write its results for other programs: a spreadsheet, C3D, OpenSim's mot, a FHIR R4 "
+        "bundle; or what its sensors measured, as BIDS-Motion. Names are taken away unless identity is asked for."
+    )
+    help_text = "the session folder, results with their session inside, or library:ID"
+    parser.add_argument("session", metavar="SESSION", type=session_place, help=help_text)
+    parser.add_argument(
+        "--library", metavar="LIBRARY", type=Path, default=default_folder(), help="the folder of the library (your own)"
+    )
+    add_key_arguments(parser)
+    parser.add_argument("--as", dest="formats", metavar="FORMAT,...", required=True, help=", ".join(FORMATS))
+    parser.add_argument(
+        "--keep",
+        metavar="WHAT,...",
+        default="",
+        help=f"without identity, what was typed freely and leaves all the same: {', '.join(TYPED)}",
+    )
+    parser.add_argument("--identified", action="store_true", help="leave code, notes, operator and dates as they are")
+    where = parser.add_mutually_exclusive_group(required=True)
+    where.add_argument("--out", metavar="OUT", type=Path, help="an empty or new folder")
+    where.add_argument(
+        "--preview", action="store_true", help="write nothing; say all that would leave without identity"
+    )
+
+
+def export(wanted: argparse.Namespace, report: Report) -> list[str]:
+    """Write the formats asked for and give the lines for the terminal.
+
+    Raises
+    ------
+    FileRefusedError
+        No such format, nothing that could be kept, a session that cannot be read, or something stands at OUT.
+    OSError
+        The files cannot be written.
+    """
+    from app.exports.exports import Format, export_from_folder, export_from_library
+    from app.exports.result_folder import written_beside
+    from app.importing.untrusted_files import read_foreign_session
+    from app.reports.patient.report_file import session_of
+    from app.storage.pseudonyms import Typed
+    from core.analysis import analyse
+
+    formats = [Format(name) for name in _chosen("--as", wanted.formats, FORMATS, "is no format")]
+    kept = [Typed(name) for name in _chosen("--keep", wanted.keep, TYPED, "is not among what is typed")]
+    if wanted.identified and (kept or wanted.preview):
+        raise FileRefusedError("--identified", "with identity all leaves as it is", "Leave out --keep and --preview")
+    if wanted.preview:
+        return _preview(wanted, kept)
+    if wanted.out.exists() and not (wanted.out.is_dir() and not any(wanted.out.iterdir())):
+        raise FileRefusedError(
+            str(wanted.out), "there is something here already", "Choose an empty folder or a new one"
+        )
+    with written_beside(wanted.out) as folder:
+        if isinstance(wanted.session, LibrarySession):
+            with opened_library(wanted) as opened:
+                session_id, identified = wanted.session.id, wanted.identified
+                lines = export_from_library(
+                    opened, session_id, formats, folder, DECODERS, report, kept=kept, is_identified=identified
+                )
+        else:
+            session = read_foreign_session(session_of(wanted.session), lambda: report(0.0, str(wanted.session)))
+            analysis = analyse(session, progress=report)
+            lines = export_from_folder(session, analysis, formats, folder, kept=kept, is_identified=wanted.identified)
+        count = sum(path.is_file() for path in folder.rglob("*"))
+    whose = "with identity" if wanted.identified else "pseudonymised"
+    return [f"{wanted.out}: {count} {'file' if count == 1 else 'files'}, {whose}.", *lines]
+
+
+def _chosen(option: str, said: str, known: Sequence[str], what: str) -> list[str]:
+    """The words of an option, each once.
+
+    Raises
+    ------
+    FileRefusedError
+        One is not known.
+    """
+    names = list(dict.fromkeys(filter(None, said.split(","))))
+    for name in names:
+        if name not in known:
+            raise FileRefusedError(option, f"{one_line(name)} {what}", f"Choose of: {', '.join(known)}")
+    return names
+
+
+def _preview(wanted: argparse.Namespace, kept: "Sequence[Typed]") -> list[str]:
+    """Lines with all that would leave beside the figures; raises as `export`."""
+    from app.exports.exports import preview_from_folder, preview_from_library
+    from app.importing.untrusted_files import read_foreign_session
+    from app.reports.patient.report_file import session_of
+
+    if isinstance(wanted.session, LibrarySession):
+        with opened_library(wanted) as opened:
+            rows = preview_from_library(opened, wanted.session.id, kept)
+    else:
+        rows = preview_from_folder(read_foreign_session(session_of(wanted.session), lambda: None), kept)
+    told = [f"{name}: {one_line(str(value))}" for name, value in rows]
+    return [*told, "And angles, events, strides and averages of these recordings. Nothing was written."]

@@ -1,0 +1,89 @@
+"""`gaitwright report`: what goes into the patient's file, as a PDF."""
+
+import argparse
+from collections.abc import Callable
+from datetime import datetime
+from pathlib import Path
+
+from app.cli.library import add_key_arguments, default_folder, read_place, session_place
+from app.cli.progress import one_of
+from app.system.logs import version_of
+
+PAPERS = ("a4", "letter")  # as app.reports.patient.request has them, whose import takes long
+
+Report = Callable[[float, str], None]
+
+
+def add_report_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.description = "Analyse a session and make its report: one walk, or up to three conditions beside each other."
+    parser.add_argument(
+        "session",
+        metavar="SESSION|OUT",
+        type=session_place,
+        help="the session folder, results with their session inside, or library:ID",
+    )
+    parser.add_argument(
+        "--library", metavar="LIBRARY", type=Path, default=default_folder(), help="the folder of the library (your own)"
+    )
+    add_key_arguments(parser)
+    parser.add_argument("--out", metavar="FILE.pdf", type=Path, required=True, help="the report to write")
+    parser.add_argument(
+        "--walk",
+        metavar="NAME",
+        action="append",
+        default=[],
+        help="a walk to show; up to three are compared, the last is shown (of each condition, most strides)",
+    )
+    parser.add_argument("--earlier", metavar="SESSION", type=session_place, help="a visit to compare with")
+    parser.add_argument("--comment", metavar="FILE", type=Path, help="the clinician's words, a text in UTF-8")
+    parser.add_argument("--paper", type=one_of(PAPERS), default=PAPERS[0], metavar="PAPER", help=" | ".join(PAPERS))
+
+
+def make(wanted: argparse.Namespace, progress: Report) -> list[str]:
+    """Write the report and give the line for the terminal.
+
+    Raises
+    ------
+    FileRefusedError
+        A session, walk or comment cannot be read, or something else than a report stands at FILE.pdf.
+    OSError
+        The report cannot be written.
+    """
+    from app.reports.patient.document import make_report
+    from app.reports.patient.report_file import check_report_place, chosen_walks, replace_report
+    from app.summary.request import MAX_CONDITIONS, AnalysedVisit, ReportRequest
+    from core.analysis import analyse
+    from devices.files.refusal import FileRefusedError
+
+    check_report_place(wanted.out)
+    if len(wanted.walk) > MAX_CONDITIONS:
+        what = f"{len(wanted.walk)} walks are too many for one report"
+        raise FileRefusedError("--walk", what, f"Choose up to {MAX_CONDITIONS}")
+    progress(0.0, str(wanted.session))
+    comment = _comment(wanted.comment)
+    session = read_place(wanted, wanted.session, progress)
+    visit = AnalysedVisit(session, analyse(session, progress=progress))
+    walks = chosen_walks(visit, wanted.walk, str(wanted.session))
+    earlier = None
+    if wanted.earlier is not None:
+        before = read_place(wanted, wanted.earlier, progress)
+        earlier = AnalysedVisit(before, analyse(before, progress=progress))
+        chosen_walks(earlier, [], str(wanted.earlier))  # refuses a visit without a walk
+        walks = walks if wanted.walk else walks[-1:]  # a visit is compared with a visit
+    now, version = datetime.now().astimezone(), version_of("gaitwright")
+    progress(1.0, "report")
+    request = ReportRequest(visit, walks, now, version, comment, paper=wanted.paper, earlier=earlier)
+    replace_report(make_report(request), wanted.out)
+    return [f"{wanted.out}: the report of {', '.join(walks)}."]
+
+
+def _comment(file: Path | None) -> str:
+    from devices.files.refusal import FileRefusedError
+
+    if file is None:
+        return ""
+    try:
+        return file.read_text(encoding="utf-8-sig")
+    except (OSError, UnicodeDecodeError) as problem:
+        why = problem.strerror if isinstance(problem, OSError) else "it is no text in UTF-8"
+        raise FileRefusedError(str(file), f"this cannot be read ({why})", "Give --comment a text file") from problem

@@ -1,0 +1,99 @@
+"""Sessions of a library analysed anew by several processes, and what came of them kept in the library.
+
+Samples are read here, one session after the other, since the library's key leaves this process for nobody; what the
+others are given is a session without names, and what they give back are the bytes that the library keeps.
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from uuid import UUID
+
+from app.cohort.batch.spread import Workers, finished
+from app.storage.analysis_content import packed
+from app.storage.journal.header import JournalRefusedError
+from app.storage.kept_analyses import bare
+from app.storage.stored import LibraryError
+from app.wording.translation import tr
+from core.analysis import analyse
+from core.samples import Session
+from devices.files.refusal import FileRefusedError
+
+Report = Callable[[float, str], None]
+Keep = Callable[[bytes], None]
+
+
+@dataclass(frozen=True, slots=True)
+class AgainTask:
+    """One session to be analysed, as it is told and as `bare` leaves it."""
+
+    session_id: UUID
+    session: Session
+
+
+@dataclass(slots=True)
+class AgainResult:
+    """What came of a selection. `failures`: reasons by the sessions' ids."""
+
+    total: int
+    analysed: int = 0
+    as_before: int = 0
+    failures: dict[UUID, str] = field(default_factory=dict)
+
+    @property
+    def finished(self) -> int:
+        return self.analysed + self.as_before + len(self.failures)
+
+
+def again_task(task: AgainTask) -> bytes:
+    """Analyse a session; what came of it as the library keeps it."""
+    return packed(analyse(task.session))
+
+
+def analyse_again(
+    session_ids: tuple[UUID, ...],
+    read: Callable[[UUID], tuple[Session, Keep] | None],
+    workers: Workers,
+    report: Report,
+) -> AgainResult:
+    """Analyse sessions that this version has not analysed as they are told now; each is kept once it is done.
+
+    Parameters
+    ----------
+    read
+        Gives a session with its samples and what keeps the bytes that come of it; None: nothing is to be done.
+    report
+        What it raises ends the work; what was done until then is kept.
+    """
+    result, keeps = AgainResult(len(session_ids)), dict[UUID, Keep]()
+
+    def told() -> None:
+        words = tr("{done} of {total} sessions").format(done=result.finished, total=result.total)
+        report(result.finished / max(result.total, 1), words)
+
+    def tasks() -> Iterator[AgainTask]:
+        for session_id in session_ids:
+            try:
+                found = read(session_id)
+            except (LibraryError, JournalRefusedError, FileRefusedError) as refusal:
+                result.failures[session_id] = str(refusal)
+                continue
+            except OSError as problem:
+                result.failures[session_id] = problem.strerror or type(problem).__name__
+                continue
+            if found is None:
+                result.as_before += 1
+                told()
+                continue
+            session, keeps[session_id] = found
+            yield AgainTask(session_id, bare(session))
+
+    told()
+    for task, outcome in finished(again_task, tasks(), workers):
+        keep = keeps.pop(task.session_id)
+        if isinstance(outcome, Exception):
+            result.failures[task.session_id] = f"{type(outcome).__name__}: {outcome}"
+        else:
+            keep(outcome)
+            result.analysed += 1
+        told()
+    return result

@@ -1,0 +1,50 @@
+"""What `analyse` writes of a session: one function, so that a batch writes the same bytes."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+
+from app.exports.result_folder import LOG, write_results
+from app.system.logs import version_of
+from core.analysis import analyse
+from core.results import Analysis, Method
+from core.samples import Session
+
+Report = Callable[[float, str], None]
+
+
+@dataclass(frozen=True, slots=True)
+class AnalysisChoices:
+    """How a session is analysed, and which files are written beside its tables."""
+
+    method: Method
+    tau_s: float
+    has_report: bool = True
+    has_log: bool = True
+
+
+def write_analysed(session: Session, folder: Path, choices: AnalysisChoices, report: Report) -> Analysis:
+    """Analyse `session` and write all that comes of it into `folder`, which is there.
+
+    Raises
+    ------
+    FileRefusedError
+        A recording's folder has the name of one of the results, or a file of the session changed meanwhile.
+    OSError
+        The disk is full or cannot be written to.
+    """
+    analysis = analyse(session, choices.method, choices.tau_s, report)
+    report(1.0, "writing")
+    write_results(session, analysis, folder)
+    if choices.has_log:
+        from app.review.rerun_log import write_log  # here, not above: its library takes long to import
+
+        write_log(session, analysis, folder / LOG)
+    if choices.has_report:
+        from app.reports.patient.report_file import write_report
+
+        report(1.0, "report")
+        write_report(session, analysis, folder, datetime.now().astimezone(), version_of("gaitwright"))
+    report(1.0, "writing")  # the last chance to be interrupted: what follows replaces the old results
+    return analysis

@@ -1,0 +1,154 @@
+"""What a batch has done already, kept beside its results: one small file for each session.
+
+They are in a folder of their own, since the folder of a session's results holds only what `analyse` writes. A record
+says of what the results were made and holds their rows of the table. It is written beside and renamed after the
+results were: whatever is killed in between is done again, and nothing else.
+"""
+
+import hashlib
+import json
+import secrets
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from app.cohort.batch.rows import Row
+from app.exports.summary import MOST_BYTES
+from app.storage.files import held
+from devices.files.refusal import FileRefusedError
+
+FORMAT = "gaitwright-batch/1"
+FOLDER = ".gaitwright-batch"
+ABOUT, DONE, WORK, LOCK = "batch.json", "done", "work", "lock"
+MARK_BYTES = 32
+
+
+@dataclass(frozen=True, slots=True)
+class DoneRecord:
+    """What the results of one session were made of (`key`), with what (`making`), and what they are."""
+
+    key: str
+    making: str
+    summary_sha256: str
+    rows: tuple[Row, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class BatchFolder:
+    """OUT of a batch. `mark` is its own: whoever reads the same one sees the same folder, not one of the same name."""
+
+    out: Path
+    mark: str
+
+    @property
+    def work(self) -> Path:
+        """Where results are written until they are whole; what a killed worker left there is swept out."""
+        return self.out / FOLDER / WORK
+
+    def results(self, name: str) -> Path:
+        return self.out / name
+
+    def record(self, name: str) -> DoneRecord | None:
+        """What is kept of a session; None where there is nothing, or nothing whole."""
+        try:
+            told = json.loads(self._path(name).read_text(encoding="utf-8"))
+            return DoneRecord(told["key"], told["making"], told["summary_sha256"], tuple(told["rows"]))
+        except (OSError, ValueError, KeyError, TypeError):
+            return None
+
+    def keep(self, name: str, record: DoneRecord) -> None:
+        """Keep that a session is done, whole or not at all.
+
+        Raises
+        ------
+        OSError
+            It cannot be written.
+        """
+        told = {
+            "key": record.key,
+            "making": record.making,
+            "summary_sha256": record.summary_sha256,
+            "rows": list(record.rows),
+        }
+        path = self._path(name)
+        beside = path.with_suffix(".new")
+        beside.write_text(json.dumps(told, allow_nan=False), encoding="utf-8")
+        beside.replace(path)
+
+    def forget(self, name: str) -> None:
+        """Keep nothing of a session that failed, so that the table has no rows of what it once held.
+
+        Raises
+        ------
+        OSError
+            It cannot be taken away.
+        """
+        self._path(name).unlink(missing_ok=True)
+
+    def _path(self, name: str) -> Path:
+        digest = hashlib.sha256(
+            name.encode("utf-8", "surrogateescape")
+        ).hexdigest()  # a name may be as long as a disk takes
+        return self.out / FOLDER / DONE / f"{digest}.json"
+
+
+def read_mark(out: Path) -> str | None:
+    """The mark of the batch at `out`; None where there is none, or none that is seen from here."""
+    path = out / FOLDER / ABOUT
+    try:
+        if path.stat().st_size > MOST_BYTES:
+            return None
+        told = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError):
+        return None
+    is_ours = isinstance(told, dict) and told.get("format") == FORMAT and isinstance(told.get("mark"), str)
+    return told["mark"] if is_ours else None
+
+
+@contextmanager
+def batch_at(out: Path) -> Iterator[BatchFolder]:
+    """The batch at `out`, or a new one there, as long as this program works at it.
+
+    Raises
+    ------
+    FileRefusedError
+        Something else is there, or another program works at it.
+    OSError
+        The folder cannot be written.
+    """
+    out = out.resolve()
+    mark = read_mark(out)
+    if mark is None:
+        if out.exists() and not (out.is_dir() and _is_begun_or_empty(out)):
+            raise FileRefusedError(str(out), "this is there already and is not a batch", "Choose another --out")
+        (out / FOLDER).mkdir(parents=True, exist_ok=True)
+    try:
+        with held(out / FOLDER / LOCK):
+            mark = read_mark(out) or _begun(out)
+            batch = BatchFolder(out, mark)
+            (out / FOLDER / DONE).mkdir(exist_ok=True)
+            shutil.rmtree(batch.work, ignore_errors=True)
+            batch.work.mkdir()
+            try:
+                yield batch
+            finally:
+                shutil.rmtree(batch.work, ignore_errors=True)
+    except BlockingIOError as problem:
+        what = "another program is working at this batch"
+        raise FileRefusedError(str(out), what, "Wait until it is done, or choose another --out") from problem
+
+
+def _begun(out: Path) -> str:
+    mark = secrets.token_hex(MARK_BYTES)
+    path = out / FOLDER / ABOUT
+    beside = path.with_suffix(".new")
+    beside.write_text(json.dumps({"format": FORMAT, "mark": mark}), encoding="utf-8")
+    beside.replace(path)
+    return mark
+
+
+def _is_begun_or_empty(out: Path) -> bool:
+    """Nothing is there, or only what a batch makes before all else, killed just then."""
+    return all(path.name == FOLDER for path in out.iterdir())

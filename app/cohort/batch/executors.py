@@ -1,0 +1,337 @@
+"""Who does the tasks of a batch: this process, processes of this computer, or the workers of a Dask cluster.
+
+All three are a `concurrent.futures.Executor`. The pool of the standard library gives up as a whole when one of its
+processes is killed, with everything that was given to it; ours has a thread for each process, so that a killed one
+costs the task that it was at, and nobody else notices.
+"""
+
+import logging
+import multiprocessing
+import os
+import pickle
+import signal
+import sys
+import threading
+import warnings
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from contextlib import contextmanager
+from multiprocessing.connection import Connection
+from multiprocessing.context import BaseContext
+from time import monotonic
+from typing import Any, ParamSpec, TypeVar
+
+from app.cohort.batch.spread import ClusterLostError, WorkerLostError, Workers
+from devices.files.refusal import FileRefusedError, one_line
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+Call = tuple[Callable[..., Any], tuple[object, ...], dict[str, object]]
+
+MOST_TRIES = 8  # of a task: where one worker of two is killed every 5 s, one of two seconds loses all in 40 million
+TRIES_OF_CLUSTER = 2  # each of them up to four of the cluster's own (`distributed.scheduler.allowed-failures`)
+ANSWER_S = 10.0  # until a cluster's scheduler answers
+FIRST_WORKER_S = 60.0  # until one of its workers does, which may have to be started for it
+NOBODY_S = 300.0  # without any worker, after which nobody waits for one
+COUNTED_S = 5.0  # how long the number of a cluster's workers is believed
+MOST_STARTS = 20  # of a process that ends before it does anything
+PRELOADED = ("app.cohort.batch.task",)  # and with it all that computes
+BEGUN = "begun"
+CALLS_EACH = 100  # of a process, which is then renewed: what writes reports and logs keeps 2 to 5 MB of each
+ENDING_S = 5.0  # until a process that has nothing to do any more is killed
+
+
+class SerialExecutor(Executor):
+    """Does what it is given at once, here."""
+
+    def submit(self, fn: Callable[P, R], /, *args: P.args, **kwargs: P.kwargs) -> Future[R]:
+        future: Future[R] = Future()
+        try:
+            future.set_result(fn(*args, **kwargs))
+        except Exception as error:  # whoever asks for the result gets it
+            future.set_exception(error)
+        return future
+
+
+class ProcessExecutor(Executor):
+    """Processes of this computer, of which a killed one costs only what it was doing: that raises WorkerLostError."""
+
+    def __init__(self, count: int, preloaded: tuple[str, ...] = ()) -> None:
+        """`preloaded`: modules that are imported once for all of them, so that a new one begins at once."""
+        self._context = _fresh_processes(preloaded)
+        self._threads = ThreadPoolExecutor(count, thread_name_prefix="of a worker")
+        self._own = threading.local()
+        self._lock = threading.Lock()
+        self._processes: set[_WorkerProcess] = set()
+        self._is_stopped = False
+        self._count = count
+
+    def begin(self) -> None:
+        """Start the processes now, so that they import what they need while this one does."""
+        at_once = threading.Barrier(self._count)  # of which each thread comes by once, or one would start them all
+        for _ in range(self._count):
+            self._threads.submit(self._begin, at_once)
+
+    def submit(self, fn: Callable[P, R], /, *args: P.args, **kwargs: P.kwargs) -> Future[R]:
+        return self._threads.submit(self._ask, fn, args, kwargs)
+
+    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
+        self._threads.shutdown(wait, cancel_futures=cancel_futures)
+        with self._lock:
+            processes, self._processes = self._processes, set()
+        for process in processes:
+            process.end()
+
+    def stop(self) -> None:
+        """End at once; what is being done is lost."""
+        with self._lock:
+            self._is_stopped = True
+            for process in self._processes:
+                process.kill()
+        self.shutdown(cancel_futures=True)
+
+    def pids(self) -> tuple[int, ...]:
+        """The processes that are there now."""
+        with self._lock:
+            return tuple(process.pid for process in self._processes)
+
+    def _begin(self, at_once: threading.Barrier) -> None:
+        at_once.wait()
+        self._own.process = self._started(None)
+
+    def _ask(self, fn: Callable[..., R], args: tuple[object, ...], kwargs: dict[str, object]) -> R:
+        """Have this thread's process do it; one that ends before it has begun is no loss but its own.
+
+        Raises
+        ------
+        WorkerLostError
+            The process ended meanwhile, or none begins.
+        """
+        for _ in range(MOST_STARTS):
+            process: _WorkerProcess | None = getattr(self._own, "process", None)
+            if process is None or not process.is_there or process.calls >= CALLS_EACH:
+                process = self._own.process = self._started(process)
+            has_begun = False
+            try:
+                process.give((fn, args, kwargs))
+                has_begun = True
+                answer, error = process.answer()
+            except (EOFError, OSError) as problem:
+                how = process.end()
+                if has_begun or self._is_stopped:
+                    raise WorkerLostError(how) from problem
+                continue
+            if error is not None:
+                raise error
+            return answer
+        raise WorkerLostError(f"{how} before it had begun")
+
+    def _started(self, before: "_WorkerProcess | None") -> "_WorkerProcess":
+        if before is not None:
+            before.end()
+        process = _WorkerProcess(self._context)
+        with self._lock:
+            self._processes.discard(before) if before is not None else None
+            self._processes.add(process)
+            if self._is_stopped:
+                process.kill()
+        return process
+
+
+class _WorkerProcess:
+    """One process and the pipe to it; used by one thread. It ends when nobody holds the other end of the pipe."""
+
+    def __init__(self, context: BaseContext) -> None:
+        self._pipe, theirs = context.Pipe()
+        self._process = context.Process(target=serve, args=(theirs,), name="batch worker", daemon=True)  # type: ignore[attr-defined]  # the stubs lack it
+        self._process.start()
+        theirs.close()
+        self.pid, self.calls = self._process.pid or 0, 0
+
+    @property
+    def is_there(self) -> bool:
+        return self._process.is_alive()
+
+    def give(self, what: Call) -> None:
+        """Say what is to do, and wait until it is begun: a new process has to import first what takes seconds.
+
+        Raises
+        ------
+        EOFError, OSError
+            It has ended.
+        """
+        self.calls += 1
+        self._pipe.send(what)
+        self._pipe.recv()
+
+    def answer(self) -> tuple[Any, Exception | None]:
+        """What came of it, and what it raised; raises as `give`."""
+        return self._pipe.recv()
+
+    def kill(self) -> None:
+        self._process.kill()
+
+    def end(self) -> str:
+        """Let it end, and say how it did."""
+        self._pipe.close()
+        self._process.join(ENDING_S)
+        if self._process.is_alive():
+            self._process.kill()
+            self._process.join()
+        return _how(self._process.exitcode)
+
+
+def _fresh_processes(preloaded: tuple[str, ...]) -> BaseContext:
+    """How processes are started: never as copies of this one, which would take its threads and locks along.
+
+    Where there is one, a server that has imported what they need makes them: a killed worker is back in no time.
+    """
+    if "forkserver" not in multiprocessing.get_all_start_methods():
+        return multiprocessing.get_context("spawn")
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload(list(preloaded))
+    return context
+
+
+def serve(pipe: "Connection[Any, Any]") -> None:
+    """Do what comes through the pipe, until it is closed. The beginning of a worker process."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl C reaches all of a terminal; who asks ends this process
+    logging.getLogger().addHandler(logging.NullHandler())  # the log is the asking process's
+    if not sys.warnoptions:
+        warnings.simplefilter("ignore")
+    while True:
+        try:
+            pipe.send(_answer(pipe.recv_bytes(), pipe))
+        except (EOFError, OSError):  # nobody asks any more
+            return
+
+
+def _answer(asked: bytes, pipe: "Connection[Any, Any]") -> tuple[object, Exception | None]:
+    """What comes of a call, or what it raised; says in between that it is begun."""
+    try:
+        fn, args, kwargs = pickle.loads(asked)  # by the asking process, through a pipe that only it has
+    except Exception as error:  # whoever asked gets it
+        pipe.send(BEGUN)
+        return None, error
+    pipe.send(BEGUN)
+    try:
+        return fn(*args, **kwargs), None
+    except Exception as error:  # whoever asked gets it
+        return None, error
+
+
+def _how(code: int | None) -> str:
+    if code is not None and code < 0:
+        try:
+            return f"it was ended by {signal.Signals(-code).name}"
+        except ValueError:
+            return f"it was ended by signal {-code}"
+    return f"it ended with {code}"
+
+
+@contextmanager
+def of_this_computer(count: int) -> Iterator[Workers]:
+    """This process itself for one worker, else as many processes."""
+    if count == 1:
+        yield Workers(SerialExecutor(), lambda: 1, most_tries=1, has_queue=False, most_together=1)
+        return
+    executor = ProcessExecutor(count, PRELOADED)
+    executor.begin()
+    try:
+        yield Workers(executor, lambda: count, MOST_TRIES)
+    except BaseException:
+        executor.stop()
+        raise
+    executor.shutdown()
+
+
+def processors() -> int:
+    """How many processors this program may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+@contextmanager
+def of_a_cluster(address: str) -> Iterator[Workers]:
+    """The workers of the Dask cluster whose scheduler has this address.
+
+    Raises
+    ------
+    FileRefusedError
+        Dask is not installed, the address or no worker answers, or the workers have another Gaitwright.
+    """
+    try:
+        from distributed import Client
+    except ImportError as problem:
+        what = "this needs Dask, which is not installed"
+        raise FileRefusedError("--dask", what, "Install it with pip install .[cluster]") from problem
+    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what is lost we say ourselves, in our own words
+    try:
+        client = Client(address, timeout=ANSWER_S, set_as_default=False)
+    except (OSError, ValueError, TypeError, RuntimeError) as problem:
+        what = "no scheduler of Dask answers at this address"
+        remedy = "Start the cluster, or give the address that its scheduler prints, such as tcp://192.0.2.1:8786"
+        raise FileRefusedError(one_line(address), what, remedy) from problem
+    try:
+        _check_workers(client, address)
+        executor = client.get_executor(pure=False)
+        yield Workers(executor, ClusterSize(client), TRIES_OF_CLUSTER, translate=_translated)
+    finally:
+        client.close(timeout=ANSWER_S)
+
+
+class ClusterSize:
+    """The number of threads of a cluster's workers, asked for now and then: workers come and go."""
+
+    def __init__(self, client: Any) -> None:
+        self._client, self._count = client, 1
+        self._asked_s = self._seen_s = monotonic() - COUNTED_S
+
+    def __call__(self) -> int:
+        """At least one, though there may be none: it may come back.
+
+        Raises
+        ------
+        ClusterLostError
+            There has been none for long.
+        """
+        now_s = monotonic()
+        if now_s - self._asked_s >= COUNTED_S:
+            count = sum(self._client.nthreads().values())
+            self._asked_s = now_s
+            self._seen_s = now_s if count else self._seen_s
+            self._count = max(1, count)
+            if now_s - self._seen_s > NOBODY_S:
+                raise ClusterLostError("it has no worker any more")
+        return self._count
+
+
+def _check_workers(client: Any, address: str) -> None:
+    from app.cohort.batch.software import software  # here, not above: worker processes begin with this module
+
+    asked = client.submit(software, pure=False)
+    try:
+        theirs = asked.result(timeout=FIRST_WORKER_S)
+    except TimeoutError as problem:
+        what = "no worker of this cluster answers"
+        raise FileRefusedError(one_line(address), what, "Start workers, then give the command again") from problem
+    except (ImportError, AttributeError) as problem:
+        what = "the workers of this cluster have no Gaitwright, or an older one"
+        raise FileRefusedError(one_line(address), what, "Install this version of it on all of them") from problem
+    if theirs != software():
+        what = "the workers of this cluster have another version of Gaitwright"
+        raise FileRefusedError(one_line(address), what, "Install this version of it on all of them")
+
+
+def _translated(error: Exception) -> Exception:
+    from distributed import CancelledError
+    from distributed.comm.core import CommClosedError
+    from distributed.scheduler import KilledWorker
+
+    if isinstance(error, KilledWorker):
+        return WorkerLostError("its workers were killed again and again")
+    if isinstance(error, CancelledError | CommClosedError):
+        return ClusterLostError("the scheduler is gone")
+    return error

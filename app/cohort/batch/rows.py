@@ -1,0 +1,168 @@
+"""The rows of a session in the table of a batch: one for each walk and side, figures and what may be said of each.
+
+Figures, errors and verdicts are those of `summary.json` to the last bit; nothing is judged or rounded here. Nobody's
+name is in a row: a patient is a pseudonym, of notes and operators there is nothing, and an age of 90 or more is 90.
+"""
+
+import hmac
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Any
+
+from app.storage.pseudonyms import SEXES, age_in_words
+from app.system.logs import version_of
+from core.body import Side
+from core.samples import Recording, Session
+from core.verdicts.quantities import OF_BOTH, OF_HIPS, PARAMETERS
+
+Row = dict[str, str | float | int | bool | None]
+
+BOTH = "both"
+UNNUMBERED = "#"  # before what tells a batch's patients apart until the table numbers them
+SPEED = "speed_m_s"
+WALK_SPEED = "walk_speed_m_s"
+
+
+class CellKind(StrEnum):
+    """What the cells of a column hold."""
+
+    TEXT = "text"
+    NUMBER = "number"
+    COUNT = "count"
+    FLAG = "flag"
+
+
+GROUPS: Mapping[str, CellKind] = {
+    "session": CellKind.TEXT,
+    "patient": CellKind.TEXT,
+    "walk": CellKind.TEXT,
+    "condition": CellKind.TEXT,
+    "side": CellKind.TEXT,
+    "is_affected": CellKind.FLAG,
+    "is_prosthetic": CellKind.FLAG,
+    "device": CellKind.TEXT,
+    "aids": CellKind.TEXT,
+    "sex": CellKind.TEXT,
+    "age_years": CellKind.COUNT,
+    "height_m": CellKind.NUMBER,
+    "mass_kg": CellKind.NUMBER,
+    "started": CellKind.TEXT,
+    "is_simulated": CellKind.FLAG,
+    "software": CellKind.TEXT,
+    WALK_SPEED: CellKind.NUMBER,
+    f"{WALK_SPEED}_status": CellKind.TEXT,
+    "strides_used": CellKind.COUNT,
+    "strides_left_out": CellKind.COUNT,
+}
+OF_BOTH_ONLY = tuple(name for name in OF_BOTH if name not in PARAMETERS)  # a leg alone has no such figure
+COLUMNS: Mapping[str, CellKind] = {
+    **GROUPS,
+    **{
+        column: kind
+        for name in PARAMETERS
+        for column, kind in (
+            (name, CellKind.NUMBER),
+            (f"{name}_sd", CellKind.NUMBER),
+            (f"{name}_error", CellKind.NUMBER),
+            (f"{name}_status", CellKind.TEXT),
+        )
+    },
+    **{
+        column: kind
+        for name in OF_BOTH_ONLY
+        for column, kind in ((name, CellKind.NUMBER), (f"{name}_status", CellKind.TEXT))
+    },
+}
+
+
+HIP_COLUMNS: Mapping[str, CellKind] = {  # of a table with a session that had a sensor on the pelvis
+    column: kind
+    for name in OF_HIPS
+    for column, kind in (
+        (name, CellKind.NUMBER),
+        (f"{name}_sd", CellKind.NUMBER),
+        (f"{name}_status", CellKind.TEXT),
+    )
+}
+
+
+@dataclass(frozen=True, slots=True)
+class ToldOf:
+    """Whose session it is, and of when, as the table tells it: a pseudonym and a date."""
+
+    patient: str
+    started: str
+
+
+def told_of_folder(session: Session, mark: str) -> ToldOf:
+    """What tells a batch's patients apart, keyed with its mark, until its table numbers them; and the session's day."""
+    code = session.patient.code
+    if not code:
+        return ToldOf("", session.started[:10])
+    digest = hmac.digest(mark.encode(), code.encode("utf-8", "surrogatepass"), "sha256").hex()
+    return ToldOf(f"{UNNUMBERED}{digest}", session.started[:10])
+
+
+def rows_of(name: str, session: Session, summary: Mapping[str, Any], told: ToldOf) -> tuple[Row, ...]:
+    """The rows of a session whose `summary.json` holds `summary`: its walks in their order, left, right and both."""
+    recordings = {recording.name: recording for recording in session.recordings}
+    rows = []
+    for walk, found in summary["walks"].items():
+        for part in (*(str(side) for side in Side), BOTH):
+            groups = _groups(name, session, recordings[walk], part, told)
+            speed = {WALK_SPEED: found[BOTH][SPEED], f"{WALK_SPEED}_status": found[BOTH][f"{SPEED}_status"]}
+            rows.append({**groups, **speed, **dict(_figures(found[part], is_leg=part != BOTH))})
+    return tuple(rows)
+
+
+def _groups(name: str, session: Session, recording: Recording, part: str, told: ToldOf) -> Row:
+    patient, is_leg = session.patient, part != BOTH
+    age = age_in_words(session)
+    return {
+        "session": text(name),
+        "patient": told.patient or None,
+        "walk": text(recording.name),
+        "condition": text(recording.condition),
+        "side": part,
+        "is_affected": _is_among(part, patient.affected_side) if is_leg else None,
+        "is_prosthetic": _is_among(part, patient.prosthetic_side) if is_leg else None,
+        "device": text(patient.device),
+        "aids": text(patient.aids),
+        "sex": patient.sex if patient.sex in SEXES else None,
+        "age_years": int(age.removesuffix("+")) if age else None,
+        "height_m": patient.height_m,
+        "mass_kg": patient.mass_kg,
+        "started": text(told.started),
+        "is_simulated": session.is_simulated,
+        "software": version_of("gaitwright"),
+    }
+
+
+def _figures(found: Mapping[str, Any], *, is_leg: bool) -> Iterator[tuple[str, str | float | int | None]]:
+    """The columns of a side, or of what both sides have; of a side that was not measured there is none."""
+    if not is_leg:
+        for name in OF_BOTH:
+            yield name, found[name]
+            yield f"{name}_status", found[f"{name}_status"]
+    elif found:
+        yield "strides_used", found["strides_used"]
+        yield "strides_left_out", found["strides_left_out"]
+        for name in PARAMETERS:
+            yield name, found[f"{name}_mean"]
+            for end in ("_sd", "_error", "_status"):
+                yield f"{name}{end}", found[f"{name}{end}"]
+        for name in (one for one in OF_HIPS if f"{one}_mean" in found):
+            yield name, found[f"{name}_mean"]
+            for end in ("_sd", "_status"):
+                yield f"{name}{end}", found[f"{name}{end}"]
+
+
+def _is_among(side: str, told: str) -> bool | None:
+    """Whether a side is meant by left, right, both or none; None where nothing was said."""
+    return told in (side, BOTH) if told else None
+
+
+def text(typed: str) -> str | None:
+    """A text as any file can hold it; None where there is none. A file's name may hold bytes that are no text."""
+    return typed.encode("utf-8", "backslashreplace").decode() or None

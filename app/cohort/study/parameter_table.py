@@ -1,0 +1,107 @@
+"""The table of a batch, opened so that a question can read it and nothing else.
+
+Each question is answered in the limited process (`devices.files.parquet_questions`), which opens this one file.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Self
+
+from app.importing.untrusted_files import ask_foreign_parquet
+from devices.files.refusal import FileRefusedError
+
+PARQUET = "parameters.parquet"  # in the folder of a batch
+VIEW = "parameters"
+NEEDED = ("session", "walk", "side")  # what a row is of
+STATUS, ERROR, SD = "_status", "_error", "_sd"
+NUMBERS = ("DOUBLE", "FLOAT")
+
+
+@dataclass(frozen=True, slots=True)
+class FoundRows:
+    """What a question found: the names of its columns, and its rows."""
+
+    columns: tuple[str, ...]
+    rows: Iterator[tuple[Any, ...]]
+
+
+class ParameterTable:
+    """One row per session, walk and side, as the view `parameters`.
+
+    A number that is none (NaN) is empty there, as a withheld one is, so that no mean has to be told to pass over it.
+    """
+
+    def __init__(self, file: Path) -> None:
+        self._file, self.where = file, str(file)
+        described = self.found(f"SELECT column_name, column_type FROM (DESCRIBE {VIEW})").rows
+        self.columns: Mapping[str, str] = {str(name): str(kind) for name, kind in described}
+        for name in NEEDED:
+            if name not in self.columns:
+                raise FileRefusedError(
+                    self.where,
+                    "this is no table of a batch: there is no column {name}",
+                    "Choose the parameters.parquet that gaitwright batch writes",
+                    name=name,
+                )
+
+    @classmethod
+    @contextmanager
+    def opened(cls, place: Path) -> Iterator[Self]:
+        """Open a Parquet, or that in the folder of a batch.
+
+        Raises
+        ------
+        FileRefusedError
+            There is none, it cannot be read, or it is no table of a batch.
+        """
+        file = place / PARQUET if place.is_dir() else place
+        if not file.is_file():
+            raise FileRefusedError(
+                str(file), "this is not there", "Choose the parameters.parquet that gaitwright batch writes"
+            )
+        yield cls(file)
+
+    @property
+    def measures(self) -> tuple[str, ...]:
+        """The parameters: numbers with a status beside them."""
+        return tuple(
+            name
+            for name, kind in self.columns.items()
+            if kind in NUMBERS and self.columns.get(name + STATUS) == "VARCHAR"
+        )
+
+    def ask(self, sql: str) -> FoundRows:
+        """Answer one question that somebody typed.
+
+        Raises
+        ------
+        FileRefusedError
+            It is no question, more than one, or it cannot be answered.
+        """
+        return self._found(sql, is_typed=True)
+
+    def found(self, sql: str) -> FoundRows:
+        """Answer a question of our own.
+
+        Raises
+        ------
+        FileRefusedError
+            It cannot be answered.
+        """
+        return self._found(sql, is_typed=False)
+
+    def _found(self, sql: str, *, is_typed: bool) -> FoundRows:
+        columns, batches = ask_foreign_parquet(self._file, sql, is_typed)
+        return FoundRows(columns, (row for batch in batches for row in _rows(batch)))
+
+
+def _rows(batch: Sequence[Sequence[Any]]) -> Iterator[tuple[Any, ...]]:
+    return zip(*batch, strict=True)
+
+
+def quoted_name(name: str) -> str:
+    """A column's name as SQL takes it, whatever it holds."""
+    escaped = name.replace('"', '""')
+    return f'"{escaped}"'

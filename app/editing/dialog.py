@@ -1,0 +1,185 @@
+"""Both versions of what two stations changed, side by side: whose is to hold?"""
+
+import datetime
+from collections.abc import Callable
+from functools import partial
+
+from PySide6.QtCore import QEvent, QSize, Qt, Signal
+from PySide6.QtGui import QColor, QPalette
+from PySide6.QtWidgets import QBoxLayout, QButtonGroup, QDialog, QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
+
+from app.editing.question import EditQuestion
+from app.editing.words import by_words, field_word, value_words
+from app.storage.three_way import Contest
+from app.theme.notifier import ThemeNotifier
+from app.widgets.button import Button, ButtonKind
+from app.widgets.text import MEDIUM, SEMIBOLD, Text
+from app.widgets.version_cell import VersionCell
+from app.wording.translation import tr
+
+WIDTH, EDGE = 720, 24
+STACKED_BELOW = 520  # px of the design: below it yours stands over theirs
+LOW_BELOW = 420  # of the window: below it what is asked has the room of what explains it
+MINE, THEIRS = 0, 1
+
+
+class EditDialog(QDialog):
+    """Nothing is chosen to begin with, so that Enter pressed a moment too late decides nothing.
+
+    Signals
+    -------
+    settled
+        The fields of which our own value is to hold, a frozenset; closed with Escape, there are none.
+    """
+
+    settled = Signal(object)
+
+    def __init__(
+        self,
+        look: ThemeNotifier,
+        question: EditQuestion,
+        parent: QWidget,
+        now: Callable[[], datetime.datetime] = datetime.datetime.now,
+    ) -> None:
+        super().__init__(parent)
+        self._look, self._question, self._parent = look, question, parent
+        self.setWindowTitle(tr("Somebody else changed this meanwhile"))
+        self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        self._title = Text(look, tr("Somebody else changed this meanwhile"), size=20, weight=SEMIBOLD, wraps=True)
+        self._lead = Text(
+            look,
+            tr(
+                "{subject}: this was changed here and at another station. Choose what is to hold; what is not chosen "
+                "stays in the history."
+            ).format(subject=question.subject),
+            tone="ink2",
+            wraps=True,
+        )
+        self._table = QWidget()
+        self._scroll = QScrollArea()
+        self._note = Text(look, tr("Choose in each line with the arrows."), tone="ink2", wraps=True)
+        self.save = Button(look, tr("Save these"), ButtonKind.PRIMARY, key=tr("Enter"))
+        self.leave = Button(look, tr("Leave theirs"), ButtonKind.SECONDARY, key=tr("Esc"))
+        self._pairs: list[QBoxLayout] = []
+        self.cells = [self._row(contest, now().astimezone()) for contest in question.contests]
+        self._build()
+        self.save.clicked.connect(self._on_save_clicked)
+        self.leave.clicked.connect(self.reject)
+        self.rejected.connect(self._on_rejected)
+        self._follow()
+        self._fit()
+        self.cells[0][MINE].setFocus()
+
+    @property
+    def chosen(self) -> frozenset[str] | None:
+        """The fields of which our own is chosen; None while a line is left to choose in."""
+        if not all(mine.isChecked() or theirs.isChecked() for mine, theirs in self.cells):
+            return None
+        lines = zip(self._question.contests, self.cells, strict=True)
+        return frozenset(contest.field for contest, (mine, _) in lines if mine.isChecked())
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() is QEvent.Type.StyleChange:
+            self._fit()
+
+    def sizeHint(self) -> QSize:
+        return self.size()
+
+    def _row(self, contest: Contest, now: datetime.datetime) -> tuple[VersionCell, VersionCell]:
+        field = field_word(contest.field)
+        whose = tr("Theirs: {who}").format(who=by_words(contest.by, contest.at, now))
+        mine = VersionCell(self._look, field, value_words(contest.field, contest.mine), tr("Yours"))
+        theirs = VersionCell(self._look, field, value_words(contest.field, contest.theirs), whose)
+        group = QButtonGroup(self)
+        for column, cell in enumerate((mine, theirs)):
+            group.addButton(cell)
+            cell.toggled.connect(self._follow)
+            cell.confirmed.connect(self._on_confirmed)
+            cell.moved.connect(partial(self._on_moved, len(self._pairs), column))
+        self._pairs.append(QBoxLayout(QBoxLayout.Direction.LeftToRight))
+        return mine, theirs
+
+    def _build(self) -> None:
+        rows = QVBoxLayout(self._table)
+        rows.setContentsMargins(0, 0, 0, 0)
+        for contest, pair, cells in zip(self._question.contests, self._pairs, self.cells, strict=True):
+            rows.addWidget(Text(self._look, field_word(contest.field), weight=MEDIUM, wraps=True))
+            for cell in cells:
+                pair.addWidget(cell, 1)
+            rows.addLayout(pair)
+        rows.addStretch(1)
+        self._scroll.setWidgetResizable(True)
+        self._scroll.setFrameShape(QFrame.Shape.NoFrame)
+        self._scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self._scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self._scroll.setAccessibleName(tr("What was changed on both sides"))
+        self._scroll.setWidget(self._table)
+        buttons = QHBoxLayout()
+        buttons.addWidget(self._note, 1)
+        buttons.addWidget(self.leave)
+        buttons.addWidget(self.save)
+        column = QVBoxLayout(self)
+        column.addWidget(self._title)
+        column.addWidget(self._lead)
+        column.addWidget(self._scroll, 1)
+        column.addLayout(buttons)
+
+    def _fit(self) -> None:
+        """Be as large as the window allows, and no larger than needed; where it is narrow, stack the two versions."""
+        px, colours = self._look.theme.px, self._look.theme.colours
+        palette = self.palette()
+        palette.setColor(QPalette.ColorRole.Window, QColor(colours.surface))
+        self.setPalette(palette)
+        window = self._parent.window().size()
+        width = min(px(WIDTH), window.width() - px(EDGE))
+        inside = width - 2 * px(EDGE)
+        self._lead.setVisible(window.height() >= px(LOW_BELOW))
+        for button, key in ((self.save, tr("Enter")), (self.leave, tr("Esc"))):
+            button.set_face(key=key if inside >= px(STACKED_BELOW) else "")
+        is_stacked = inside < px(STACKED_BELOW)
+        direction = QBoxLayout.Direction.TopToBottom if is_stacked else QBoxLayout.Direction.LeftToRight
+        for pair in self._pairs:
+            pair.setDirection(direction)
+            pair.setSpacing(px(8))
+        rows, column = self._table.layout(), self.layout()
+        assert rows is not None
+        assert column is not None
+        rows.setSpacing(px(8))
+        column.setContentsMargins(px(EDGE), px(20), px(EDGE), px(20))
+        column.setSpacing(px(12))
+        around = column.totalHeightForWidth(width) - self._scroll.sizeHint().height()
+        self.resize(width, min(around + rows.totalHeightForWidth(inside) + px(2), window.height() - px(EDGE)))
+
+    def _follow(self) -> None:
+        is_whole = self.chosen is not None
+        self.save.setEnabled(is_whole)
+        self._note.setText("" if is_whole else tr("Choose in each line with the arrows."))
+
+    def _on_moved(self, row: int, column: int, right: int, down: int) -> None:
+        """Left and right choose, up and down go to another line."""
+        if right:
+            cell = self.cells[row][THEIRS if right > 0 else MINE]
+            cell.setChecked(True)
+        else:
+            mine, theirs = self.cells[min(max(row + down, 0), len(self.cells) - 1)]
+            cell = theirs if theirs.isChecked() or (column == THEIRS and not mine.isChecked()) else mine
+        cell.setFocus()
+        self._scroll.ensureWidgetVisible(cell)
+
+    def _on_confirmed(self) -> None:
+        """Save if all is chosen, else go to the first line where it is not."""
+        if self.chosen is not None:
+            self._on_save_clicked()
+            return
+        mine = next(mine for mine, theirs in self.cells if not (mine.isChecked() or theirs.isChecked()))
+        mine.setFocus()
+        self._scroll.ensureWidgetVisible(mine)
+
+    def _on_save_clicked(self) -> None:
+        if (chosen := self.chosen) is not None:
+            self.accept()
+            self.settled.emit(chosen)
+
+    def _on_rejected(self) -> None:
+        self.settled.emit(frozenset())

@@ -1,0 +1,131 @@
+"""What two stations said of the same thing, in words: the fields, their values, and who said them when."""
+
+import datetime
+import json
+from collections.abc import Sequence
+
+import numpy as np
+
+from app.storage.edited_fields import ALIGNMENT, GOALS, KEPT, PLACEMENT, TEST
+from app.storage.three_way import OtherChange, Value
+from app.wording.alignment import since_in_words
+from app.wording.measures import goal_in_words, measure_name, whose_name
+from app.wording.patients import when
+from app.wording.timed_tests import planned_words
+from app.wording.translation import capitalised, figure_text, name_of, short_figure, side_name, tr, tr_n
+from core.alignment import alignment_of_text
+from core.body import Joint, Side, Site
+from core.goals import GoalOf, goals_of_text, held
+from core.timed.protocols import planned_of_text
+
+MINUS = "\N{MINUS SIGN}"
+
+
+def field_word(field: str) -> str:
+    """Name a field as the pages do: "Body height", "Zero, left knee"."""
+    name, _, part = field.partition(".")
+    if name == GOALS:
+        column, _, of = part.partition(".")
+        whose = ", ".join(filter(None, [measure_name(column), whose_name(GoalOf(of))]))
+        return tr("Goal, {whose}").format(whose=whose)
+    if part in list(Joint):
+        of_joint = {"zero_rad": tr("Goniometer, {joint}"), "turned_sign": tr("Sign, {joint}")}
+        return of_joint[name].format(joint=name_of(Joint(part)))
+    if part in list(Side):
+        of_side = {"without_ankle": tr("Ankle joint, {side}"), "left_out_s": tr("Strides left out, {side}")}
+        return of_side[name].format(side=side_name(Side(part)))
+    return {
+        "code": tr("Patient code"),
+        "birth_year": tr("Birth year"),
+        "sex": tr("Sex"),
+        "height_m": tr("Body height"),
+        "mass_kg": tr("Mass"),
+        "device": tr("Device"),
+        "aids": tr("Aids and footwear"),
+        "sides": tr("Side"),
+        "started": tr("Begun"),
+        "operator": tr("Operator"),
+        "surface": tr("Surface"),
+        "notes": tr("Notes"),
+        "software": tr("Software"),
+        "comment": tr("Words on the report"),
+        "cannot_stand": tr("Standing"),
+        "name": tr("Name"),
+        "kind": tr("Kind"),
+        "condition": tr("Condition"),
+        KEPT: tr("Does it count?"),
+        "note": tr("Note"),
+        "is_restrapped_before": tr("Sensors"),
+        ALIGNMENT: tr("Changed at the prosthesis"),
+        TEST: tr("Timed test"),
+        PLACEMENT: tr("Which sensor was worn where"),
+    }[name]
+
+
+def value_words(field: str, value: Value) -> str:
+    """Say a field's value as the pages do: "180 cm", "-1.5°", "turned by hand"."""
+    name = field.partition(".")[0]
+    if isinstance(value, bool):
+        yes, no = {
+            "without_ankle": (tr("none"), tr("there is one")),
+            "cannot_stand": (tr("cannot stand"), tr("can stand")),
+            KEPT: (tr("it counts"), tr("left out")),
+            "is_restrapped_before": (tr("put on anew before"), tr("not put on anew before")),
+        }[name]
+        return yes if value else no
+    if name == "turned_sign":
+        return tr("turned by hand") if value == -1 else tr("confirmed by hand") if value == 1 else tr("as found")
+    if isinstance(value, tuple):
+        amount = tr_n("{count} stride", "{count} strides", len(value)).format(count=len(value))
+        at = ", ".join(tr("{time} s").format(time=figure_text(time_s, ".1f")) for time_s in value)
+        return f"{amount}: {at}" if value else tr("none")
+    if value is None or value == "":
+        return tr("nothing said")
+    if isinstance(value, str):
+        return _text(name, value)
+    number = {
+        "height_m": lambda: tr("{height} cm").format(height=short_figure(value * 100, 1)),
+        "mass_kg": lambda: tr("{mass} kg").format(mass=short_figure(value, 1)),
+        "zero_rad": lambda: f"{short_figure(np.rad2deg(value), 1)}°".replace("-", MINUS),
+    }.get(name)
+    return number() if number is not None else str(value)
+
+
+def by_words(by: str, at: datetime.datetime | None, now: datetime.datetime) -> str:
+    """Say who changed it, and when, as far as that is known: "B. Berger, today 10:32"."""
+    return ", ".join(filter(None, [by or tr("somebody else"), when(at.isoformat(), now) if at is not None else ""]))
+
+
+def others_message(subject: str, others: Sequence[OtherChange], now: datetime.datetime) -> tuple[str, str]:
+    """Tell what another station changed of `subject` while it was edited here: what happened, and the values."""
+    what = tr("Saved. {subject} was also changed at another station meanwhile.").format(subject=subject)
+    said = [
+        tr("{field}: {value} ({who}).").format(
+            field=field_word(one.field), value=value_words(one.field, one.value), who=by_words(one.by, one.at, now)
+        )
+        for one in others
+    ]
+    return what, " ".join(said)
+
+
+def _text(name: str, value: str) -> str:
+    if name == "sex":
+        return {"female": tr("Female"), "male": tr("Male")}.get(value, value)
+    if name == "sides":
+        affected, prosthetic = value.split(",")
+        sides = {"left": tr("left"), "right": tr("right"), "both": tr("both sides")}
+        if prosthetic in sides:
+            return capitalised(tr("{side} prosthetic").format(side=sides[prosthetic]))
+        if affected in sides:
+            return capitalised(tr("{side} affected").format(side=sides[affected]))
+        return tr("Neither") if "none" in (affected, prosthetic) else tr("nothing said")
+    if name == GOALS:
+        return "; ".join(map(goal_in_words, held(goals_of_text(value)))) or tr("taken back")
+    if name == ALIGNMENT:
+        return since_in_words(alignment_of_text(value))
+    if name == TEST:
+        return planned_words(planned_of_text(value))
+    if name == PLACEMENT:
+        worn = json.loads(value).items()
+        return ", ".join(f"{name_of(Site(site))} {sensor}" for site, sensor in worn) or tr("nothing said")
+    return value

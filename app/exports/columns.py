@@ -1,0 +1,435 @@
+"""What does each column of each CSV file mean? `columns.csv`: unit, sign, definition, and what it needs to be known.
+
+What a column needs is told in words: `zero`, `sign`, `both_clocks` (of the two legs), or `parameter`: as the figure
+that its row tells of does. Where that is not to be had its cells are empty, and its status says withheld.
+"""
+
+import csv
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import NamedTuple
+
+from app.exports.csv_report import write_table
+from core.body import LEG_JOINTS, Joint, Side, hip_of
+from core.gait.cycles import PeakWindow
+from core.verdicts.fitting import BY_COLUMN
+from core.verdicts.quantities import EXCURSIONS_BY_COLUMN, FITTING, PARAMETERS, QUANTITIES, WINDOWS, QuantityClass
+
+COLUMNS = "columns.csv"
+HEADER = ("file", "column", "unit", "sign", "definition", "needs")
+# by the end of a name, longer ends first
+UNITS = {"_m_s": "m/s", "percent": "%", "_deg": "deg", "_s": "s", "_mm": "mm", "_m": "m"}
+FLEXION = {"knee": "flexion positive", "ankle": "dorsiflexion positive", "hip": "flexion positive"}
+HEIGHT = "zero sign"
+NEEDS = {
+    QuantityClass.PEAK_TIME: "sign",
+    QuantityClass.EXCURSION: "sign",
+    QuantityClass.HEIGHT: HEIGHT,
+    QuantityClass.BETWEEN: "both_clocks",
+}
+AS_PARAMETER, AS_ROW = "parameter", "as the parameter"
+
+
+class ColumnMeaning(NamedTuple):
+    """What a column means; `unit` None: as its name ends."""
+
+    definition: str
+    needs: str = ""
+    sign: str = ""
+    unit: str | None = None
+
+
+def _word(definition: str) -> ColumnMeaning:
+    """A column of words or counts."""
+    return ColumnMeaning(definition, unit="")
+
+
+def _of_stride(name: str) -> ColumnMeaning:
+    """A column that strides.csv has and the parameters of other tables are."""
+    needs, kind = NEEDS.get(QUANTITIES[name], ""), name.split("_")[0]
+    sign = FLEXION[kind] if QUANTITIES[name] is QuantityClass.HEIGHT else ""
+    if name in WINDOWS:
+        window = WINDOWS[name]
+        what = "largest" if window.is_maximum else "smallest"
+        return ColumnMeaning(f"{what} angle from {window.first} to {window.last} % of the stride", needs, sign)
+    if name in EXCURSIONS_BY_COLUMN:
+        excursion = EXCURSIONS_BY_COLUMN[name]
+        return ColumnMeaning(f"{_extreme(excursion.high, 'largest')} less {_extreme(excursion.low, 'smallest')}", needs)
+    return ColumnMeaning(OF_STRIDE[name], needs, sign)
+
+
+def _of_fitting(name: str) -> ColumnMeaning:
+    """A column of fitting.csv."""
+    sign = FLEXION["knee"] if name == "knee_terminal_extension_deg" else ""
+    return ColumnMeaning(BY_COLUMN[name].definition, NEEDS.get(FITTING[name], ""), sign)
+
+
+def _extreme(window: PeakWindow | None, which: str) -> str:
+    return f"{which} angle from {window.first} to {window.last} %" if window else "angle at initial contact"
+
+
+OF_STRIDE = {
+    "stride_time_s": "from an initial contact to the next of the same foot",
+    "step_time_s": "from the other foot's initial contact to this foot's, which ends the stride",
+    "stance_percent": "share of the stride from initial contact to toe-off",
+    "swing_percent": "share of the stride from toe-off to initial contact",
+    "stride_length_m": "how far the foot travels in the swing that ends the stride",
+    "speed_m_s": "stride length by stride time",
+    "clearance_m": "how high the foot's sensor rises in swing, not the toe",
+    "knee_at_initial_contact_deg": "angle at initial contact",
+    "knee_swing_peak_percent": "when in the stride the largest angle from 55 to 90 % comes",
+    "knee_range_deg": "largest less smallest angle of the stride",
+    "ankle_at_initial_contact_deg": "angle at initial contact",
+    "ankle_range_deg": "largest less smallest angle of the stride",
+}
+TIMES = {
+    "start_s": ColumnMeaning("initial contact that begins the stride"),
+    "full_contact_s": ColumnMeaning("the whole foot comes to the floor"),
+    "heel_rise_s": ColumnMeaning("the heel leaves the floor"),
+    "toe_off_s": ColumnMeaning("the foot leaves the floor"),
+    "end_s": ColumnMeaning("initial contact that ends the stride"),
+}
+ON_CLOCK = ColumnMeaning("on the recording's clock")
+SIDE = _word("left or right")
+USED = _word("true where the stride counts for averages")
+ANGLE_STATUS = _word(
+    "what may be said of the joint: read, care, withheld, range_only (its sign is not known) or no_zero (heights say "
+    "nothing)"
+)
+N = _word("strides behind the mean")
+STATUS = "read, care, withheld or not_measured: what may be said of "
+OF_PART = {
+    "part": _word("letter of the condition or visit"),
+    "name": _word("its name"),
+    "walks": _word("the walks whose strides are taken together"),
+}
+PARAMETER = _word("the column of strides.csv or figure of both legs that is compared")
+MEAN = {
+    "n": N,
+    "mean": ColumnMeaning("mean over the strides used", AS_PARAMETER, AS_ROW, AS_ROW),
+    "sd": ColumnMeaning("standard deviation between the strides used", AS_PARAMETER, "", AS_ROW),
+}
+BY_HAND = {"left_out_by_hand": _word("strides that a person left out")}
+JUDGED = {
+    "difference": ColumnMeaning("the first mean less the second", AS_PARAMETER, AS_ROW, AS_ROW),
+    "error": ColumnMeaning("what a difference has to exceed to be real, at 95 %", AS_PARAMETER, "", AS_ROW),
+    "error_sources": _word("what the error contains"),
+    "status": _word("the worse of what may be said of the two means"),
+    "verdict": _word("exceeds_error, inside_error, withheld, too_few_strides (under 10) or no_published_figure"),
+}
+PERCENT = {"percent": ColumnMeaning("of the stride, from initial contact to the next")}
+
+
+def _of_angles(joint: Joint) -> dict[str, ColumnMeaning]:
+    sign = FLEXION[joint.split("_")[1]]
+    return {
+        f"{joint}_deg": ColumnMeaning("angle: twist of the relative orientation about the joint's axis", HEIGHT, sign),
+        f"{joint}_sd_deg": ColumnMeaning("standard deviation of the angle, estimated"),
+        f"{joint}_published_deg": ColumnMeaning(
+            "angle by the published filter, on the same identification", HEIGHT, sign
+        ),
+        f"{joint}_orientation_deg": ColumnMeaning("angle from the two sensors' orientations", HEIGHT, sign),
+        f"{joint}_status": ANGLE_STATUS,
+    }
+
+
+def _of_hip(joint: Joint) -> dict[str, ColumnMeaning]:
+    """Columns of a hip, which has no axis and no published filter."""
+    return {
+        f"{joint}_deg": ColumnMeaning("flexion of the thigh in the pelvis, from standing", HEIGHT, "flexion positive"),
+        f"{joint}_sd_deg": ColumnMeaning("standard deviation of the flexion, estimated"),
+        f"{joint}_abduction_deg": ColumnMeaning(
+            "abduction from standing; empty where the heading between pelvis and thigh is not sure enough",
+            HEIGHT,
+            "abduction positive",
+        ),
+        f"{joint}_status": ANGLE_STATUS,
+    }
+
+
+OF_PELVIS = {
+    "pelvis_tilt_deg": ColumnMeaning("tilt against the vertical, from standing", "zero", "forward positive"),
+    "pelvis_obliquity_deg": ColumnMeaning("obliquity against the vertical, from standing", "zero", "left up positive"),
+    "pelvis_rotation_deg": ColumnMeaning(
+        "heading against its mean over two strides; empty in turns", sign="to the left positive"
+    ),
+}
+HIP_STRIDES = {
+    "hip_range_deg": ColumnMeaning("largest less smallest hip flexion of the stride"),
+    "hip_flexion_peak_deg": ColumnMeaning(
+        "largest hip flexion of the stride, from standing", HEIGHT, "flexion positive"
+    ),
+    "hip_extension_peak_deg": ColumnMeaning(
+        "largest hip extension of the stride, from standing", HEIGHT, "extension positive"
+    ),
+    "pelvis_obliquity_range_deg": ColumnMeaning("largest less smallest obliquity of the stride"),
+    "pelvis_drop_deg": ColumnMeaning(
+        "how far the side of this leg drops below the other in its swing, from standing", "zero", "dropping positive"
+    ),
+    "pelvis_rotation_range_deg": ColumnMeaning("largest less smallest rotation of the stride; empty in turns"),
+    "hip_abduction_range_deg": ColumnMeaning("largest less smallest hip abduction of the stride"),
+    "hip_abduction_peak_deg": ColumnMeaning(
+        "largest hip abduction of the stride, from standing", HEIGHT, "abduction positive"
+    ),
+    "hip_adduction_peak_deg": ColumnMeaning(
+        "largest hip adduction of the stride, from standing", HEIGHT, "adduction positive"
+    ),
+    "pelvis_tilt_range_deg": ColumnMeaning(
+        "largest less smallest tilt of the stride; empty where its mean is 5 deg or less"
+    ),
+    "pelvis_lean_deg": ColumnMeaning("mean tilt over the stride, from standing", "zero", "forward positive"),
+}
+
+
+def _of_cycles(joint: Joint) -> dict[str, ColumnMeaning]:
+    sign = FLEXION[joint.split("_")[1]]
+    return {
+        f"{joint}_mean_deg": ColumnMeaning("mean angle over the strides used", HEIGHT, sign),
+        f"{joint}_stride_sd_deg": ColumnMeaning("standard deviation between the strides used"),
+        f"{joint}_n": N,
+        f"{joint}_shape_deg": ColumnMeaning("mean angle over the strides used, less its mean", "sign", sign),
+        f"{joint}_status": ANGLE_STATUS,
+    }
+
+
+def _prefixed(prefix: str, columns: Mapping[str, ColumnMeaning], whose: str) -> dict[str, ColumnMeaning]:
+    return {prefix + name: one._replace(definition=f"{one.definition}{whose}") for name, one in columns.items()}
+
+
+def _of_abduction(joint: Joint) -> dict[str, ColumnMeaning]:
+    sign = "abduction positive"
+    return {
+        f"{joint}_abduction_mean_deg": ColumnMeaning(
+            "mean abduction over the strides used; empty where the heading between pelvis and thigh is not sure enough",
+            HEIGHT,
+            sign,
+        ),
+        f"{joint}_abduction_stride_sd_deg": ColumnMeaning("standard deviation between the strides used"),
+        f"{joint}_abduction_n": N,
+        f"{joint}_abduction_status": _word(f"{STATUS}the abduction"),
+    }
+
+
+CYCLES = (
+    PERCENT
+    | {name: column for joint in Joint for name, column in _of_cycles(joint).items()}
+    | {name: column for side in Side for name, column in _of_abduction(hip_of(side)).items()}
+)
+DIFFERENCES = {
+    **OF_PART,
+    **_prefixed("against_", {**OF_PART, **MEAN, **BY_HAND}, ", of what it is compared with"),
+    "side": _word("left, right or both"),
+    "parameter": PARAMETER,
+    **MEAN,
+    **JUDGED,
+    **BY_HAND,
+    "chosen_before": _word("true where a goal of the parameter had been agreed before the session's day"),
+}
+KNOWN: Mapping[str, Mapping[str, ColumnMeaning]] = {
+    "angles.csv": {
+        "time_s": ON_CLOCK,
+        **{name: column for joint in LEG_JOINTS for name, column in _of_angles(joint).items()},
+        **{name: column for side in Side for name, column in _of_hip(hip_of(side)).items()},
+        **OF_PELVIS,
+        **{f"{side}_phase": _word("loading, foot_flat, pre_swing or swing; empty: not known") for side in Side},
+    },
+    "events.csv": {
+        "time_s": ON_CLOCK,
+        "side": SIDE,
+        "event": _word("initial_contact, full_contact, heel_rise or toe_off"),
+    },
+    "strides.csv": {
+        "side": SIDE,
+        **TIMES,
+        **{name: _of_stride(name) for name in PARAMETERS},
+        "used": USED,
+        "reason": _word("why the stride does not count; empty where it does"),
+        "timing_status": _word(f"{STATUS}stride time, stance and swing"),
+        "between_status": _word(f"{STATUS}step time"),
+        "distance_status": _word(f"{STATUS}stride length, speed and clearance"),
+        **{f"{kind}_shape_status": _word(f"{STATUS}the {kind}'s range") for kind in FLEXION},
+        **{f"{kind}_height_status": _word(f"{STATUS}the {kind}'s angles") for kind in FLEXION},
+        **HIP_STRIDES,
+        "hip_abduction_status": _word(f"{STATUS}how far the hip moves outwards and inwards"),
+        "pelvis_status": _word(f"{STATUS}the pelvis"),
+        "pelvis_tilt_status": _word(f"{STATUS}the range of the pelvis's tilt"),
+    },
+    "cycles.csv": CYCLES,
+    "peaks.csv": {
+        "recording": _word("its folder"),
+        "side": SIDE,
+        "start_s": TIMES["start_s"],
+        "used": USED,
+        **{
+            f"{window.name}_percent": ColumnMeaning(
+                f"when the extremum from {window.first} to {window.last} % comes", "sign"
+            )
+            for window in WINDOWS.values()
+        },
+        **{name: _of_stride(name) for name in EXCURSIONS_BY_COLUMN},
+        "hip_flexion_peak_percent": ColumnMeaning("when the largest hip flexion of the stride comes", "sign"),
+        "hip_extension_peak_percent": ColumnMeaning("when the largest hip extension of the stride comes", "sign"),
+        **{f"{kind}_status": _word(f"{STATUS}when the {kind} peaks, and its excursions") for kind in FLEXION},
+    },
+    "fitting.csv": {
+        "side": SIDE,
+        "start_s": TIMES["start_s"],
+        **{name: _of_fitting(name) for name in FITTING},
+        "used": USED,
+        "knee_height_status": _word(f"{STATUS}how straight the knee becomes"),
+        "knee_timing_status": _word(f"{STATUS}when the knee is straight"),
+        "foot_timing_status": _word(f"{STATUS}how long the foot is flat"),
+        "foot_pitch_status": _word(f"{STATUS}the pitch of the foot"),
+        "segment_turn_status": _word(f"{STATUS}by how much the shank turns"),
+        "segment_inclination_status": _word(f"{STATUS}how thigh and shank lean"),
+    },
+    "fitting_means.csv": {
+        "recording": _word("its folder"),
+        "side": SIDE,
+        "measure": _word("the column of fitting.csv, strides.csv or peaks.csv"),
+        **MEAN,
+        "error": ColumnMeaning(
+            "half of what two means as sure, of walks with the sensors left on, have to differ by",
+            AS_PARAMETER,
+            "",
+            AS_ROW,
+        ),
+        "unverified": _word("true where definition or error rests on a source that could not be read"),
+        "status": _word(f"{STATUS}the measure"),
+        "source": _word("where the measure comes from"),
+        "cannot_say": _word("what the measure does not tell"),
+    },
+    "sides.csv": {
+        **OF_PART,
+        "parameter": PARAMETER,
+        **{name: one for side in Side for name, one in _prefixed(f"{side}_", {**MEAN, **BY_HAND}, "").items()},
+        **JUDGED,
+        "symmetry_index_percent": ColumnMeaning("difference by the mean of both legs", AS_PARAMETER),
+    },
+    "goals.csv": {
+        "recording": _word("its folder"),
+        "condition": _word("what was worn or set"),
+        "measure": _word("the column of strides.csv or peaks.csv, or the figure of both legs, that the goal is of"),
+        "side": _word("left, right, both (of the walk), or between (how far the legs are apart)"),
+        "limit": _word("at_least or at_most"),
+        "goal": ColumnMeaning("the value that was agreed", unit=AS_ROW),
+        "unit": _word("of goal, value and error"),
+        "agreed": _word("the day on which it was typed"),
+        "until": _word("the day by which it is to be reached, where one was named"),
+        "agreed_before": _word("true where it was agreed before the session's day: only then its standing is judged"),
+        "value": ColumnMeaning(
+            "mean over the strides used; between the legs, left less right", AS_PARAMETER, AS_ROW, AS_ROW
+        ),
+        "error": ColumnMeaning(
+            "what a difference has to exceed to be real, between visits, or between the legs", AS_PARAMETER, "", AS_ROW
+        ),
+        "status": _word(f"{STATUS}the value"),
+        "standing": _word(
+            "reached or short (by more than the error), reached_inside_error or short_inside_error (not told from the "
+            "goal), not_judged or unknown"
+        ),
+    },
+    "targets.csv": {
+        "recording": _word("its folder"),
+        "condition": _word("what was worn or set"),
+        "measure": _word("what the patient aimed at on a screen of their own, stride by stride, as it was told live"),
+        "side": _word("left or right; empty of both legs"),
+        "target": _word("the value to be reached, in the unit beside it"),
+        "unit": _word("of the target"),
+        "reached": _word("values that, rounded to a whole number, reached the target"),
+        "strides": _word("values that were told"),
+        "reached_percent": ColumnMeaning("share of the values told that reached the target"),
+    },
+    "timed_test.csv": {
+        "recording": _word("its folder"),
+        "condition": _word("what was worn or set"),
+        "test": _word("which test the walk is, in the words of session.toml"),
+        "row": _word(
+            "what the row tells of: test, third, lap, turn, pause, rise, stair (a stride) or silence of a sensor"
+        ),
+        "number": _word("of the rows of this kind, from 1"),
+        "start_s": ColumnMeaning("of a test on the recording's clock, of its parts from the start of the test"),
+        "end_s": ColumnMeaning("likewise"),
+        "time_s": ColumnMeaning("from start to end"),
+        "distance_m": ColumnMeaning("what counts: where a key ended a walk between tapes the tapes', else the feet's"),
+        "sensor_distance_m": ColumnMeaning("by the feet's sensors, turns as arcs"),
+        "speed_m_s": ColumnMeaning("distance by time, pauses included"),
+        "cadence_steps_min": ColumnMeaning("of the median stride, pauses excluded", unit="steps/min"),
+        "turn_deg": ColumnMeaning("how far the body turned", sign="positive: to the left"),
+        "side": _word("of the foot that went up or down"),
+        "climb_m": ColumnMeaning("how much higher the foot came to stand", sign="positive: up"),
+        "started_by": _word("key or motion"),
+        "ended_by": _word("key or motion"),
+        "sensor": _word("the one that was silent"),
+        "missing": _word("why cells of the test are empty"),
+    },
+    "alignments.csv": {
+        "walk": _word("the recording before which it was changed"),
+        "condition": _word("what the walk is called"),
+        "since": _word("the condition that it was changed from"),
+        "part": _word("foot, socket, knee unit or pylon, and which screw"),
+        "angle_deg": ColumnMeaning(
+            "by how much the part was tilted or turned, as somebody told it",
+            sign="positive: plantarflexion or eversion of the foot, toes out, flexion or abduction of the socket",
+        ),
+        "turns": ColumnMeaning("turns of the screw", sign="positive: out", unit="turns"),
+        "shift_mm": ColumnMeaning("shift of the part", sign="positive: back; of inner and outer screws outwards"),
+        "height_mm": ColumnMeaning("height of the part", sign="positive: longer or higher"),
+        "text": _word("what somebody has typed of it"),
+        "in_words": _word("the change in a line"),
+    },
+    **dict.fromkeys(("differences.csv", "visits.csv"), DIFFERENCES),
+    **dict.fromkeys(("compared_cycles.csv", "visits_cycles.csv"), CYCLES),
+}
+LETTERED = ("compared_cycles.csv", "visits_cycles.csv")  # whose columns begin with the letter of a condition or visit
+
+
+def column_of(file: str, name: str) -> ColumnMeaning:
+    """What a column means.
+
+    Raises
+    ------
+    KeyError
+        No such file has such a column.
+    """
+    if file in LETTERED and name not in PERCENT:
+        letter, _, rest = name.partition("_")
+        return KNOWN[file][rest]._replace(definition=f"{KNOWN[file][rest].definition}, of {letter}")
+    return KNOWN[file][name]
+
+
+def write_columns(folder: Path, recordings: list[str]) -> None:
+    """Write what the columns of every table in `folder` mean, as the tables' first lines name them.
+
+    Parameters
+    ----------
+    recordings
+        The folders in it that hold tables too.
+
+    Raises
+    ------
+    OSError
+        A table cannot be read, or this one not written.
+    """
+    write_table(HEADER, _rows(folder, recordings), folder / COLUMNS)
+
+
+def _rows(folder: Path, recordings: list[str]) -> Iterator[tuple[str, ...]]:
+    for file in KNOWN:
+        places = [folder / file, *(folder / recording / file for recording in recordings)]
+        names = dict.fromkeys(name for place in places if place.is_file() for name in names_in(place))
+        for name in names:
+            column = column_of(file, name)
+            yield file, name, unit_of(file, name), column.sign, column.definition, column.needs
+
+
+def names_in(path: Path) -> list[str]:
+    """The columns of a table, as its first line names them."""
+    with path.open(encoding="utf-8", newline="") as file:
+        return next(csv.reader(file), [])
+
+
+def unit_of(file: str, name: str) -> str:
+    """A column's unit; empty where it holds words or counts. Errors as of `column_of`."""
+    unit = column_of(file, name).unit
+    return next((unit for end, unit in UNITS.items() if name.endswith(end)), "") if unit is None else unit

@@ -1,0 +1,68 @@
+"""What had been agreed by the day of each walk, and how the walk stands to it: `goals.csv`, and in `summary.json`.
+
+Who agreed on a goal and what was typed of it stands in the library and in an identified export alone.
+"""
+
+import math
+from collections.abc import Iterator, Sequence
+
+from app.exports.csv_report import typed_cell
+from app.summary.conditions import Part
+from app.summary.goals import GoalFigure, of_part
+from core.goals import AgreedGoals
+from core.results import Analysis, RecordingAnalysis
+from core.samples import Recording, RecordingKind
+from core.verdicts.goals import GoalStanding
+
+GOALS = "goals.csv"
+UNITS = {"deg": "deg", "percent": "%", "m": "m", "s": "m/s", "min": "steps/min"}  # by the end of a column
+HEADER = (
+    *("recording", "condition", "measure", "side", "limit", "goal", "unit", "agreed", "until"),
+    *("agreed_before", "value", "error", "status", "standing"),
+)
+
+
+def goal_rows(analysis: Analysis, recordings: Sequence[Recording], agreed: AgreedGoals) -> Iterator[tuple[str, ...]]:
+    """Give a row for each goal of each walk."""
+    conditions = {one.name: one.condition for one in recordings}
+    for walk in analysis.recordings:
+        if walk.kind is RecordingKind.WALKING and walk.gait:
+            for one in goals_of_walk(analysis, walk, agreed):
+                told = goal_figures(one, agreed)
+                cells = (_cell(told[name]) for name in HEADER[2:])
+                yield typed_cell(walk.folder), typed_cell(conditions.get(walk.name, "")), *cells
+
+
+def goals_of_walk(analysis: Analysis, walk: RecordingAnalysis, agreed: AgreedGoals) -> tuple[GoalFigure, ...]:
+    """How one walk stands to what had been agreed by its day."""
+    return of_part(Part("", walk.name, (walk,), analysis.calibrated_for(walk), agreed=agreed))
+
+
+def goal_figures(found: GoalFigure, agreed: AgreedGoals) -> dict[str, str | float | bool | None]:
+    """A goal and what was measured of it, by the names of the table; None where there is none.
+
+    Of a goal that was not agreed before the day nothing is said but the value.
+    """
+    goal, is_before = found.goal, found.goal in agreed.told
+    return {
+        "measure": goal.column,
+        "side": str(goal.of),
+        "limit": "at_most" if goal.is_at_most else "at_least",
+        "goal": goal.value,
+        "unit": "s" if goal.column.endswith("_time_s") else UNITS[goal.column.rsplit("_", 1)[1]],
+        "agreed": goal.agreed.isoformat(),
+        "until": goal.until.isoformat() if goal.until is not None else None,
+        "agreed_before": is_before,
+        "value": found.value if math.isfinite(found.value) else None,
+        "error": found.error if math.isfinite(found.error) else None,
+        "status": str(found.verdict),
+        "standing": str(found.standing if is_before else GoalStanding.NOT_JUDGED),
+    }
+
+
+def _cell(value: str | float | bool | None) -> str:
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, float):
+        return f"{value:.5f}"
+    return value or ""

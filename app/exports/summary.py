@@ -1,0 +1,299 @@
+"""What was found, in one file that other programs read? Joints, calibrations, walks and findings as JSON."""
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from app.exports.fitting_csv import fitting_of_side
+from app.exports.goals_csv import goal_figures, goals_of_walk
+from app.exports.pelvis_summary import hip_figures, summarise_pelvis
+from app.exports.timed_csv import timed_summary
+from app.summary.comparison import compare_legs, first_and_second
+from app.summary.condition_figures import summarise_conditions
+from app.summary.conditions import Part
+from app.summary.reference_bands import reference_curves
+from app.wording.translation import sentence
+from app.wording.verdicts import gate_sentence
+from core.alignment import alignment_table
+from core.body import Joint, Side, hip_of
+from core.findings import Finding
+from core.gait.chosen_strides import left_out_by_hand
+from core.gait.symmetry import curve_difference, gait_variable_score, symmetry_index_percent
+from core.goals import NO_GOALS, AgreedGoals
+from core.results import Analysis, JointCalibration, RecordingAnalysis
+from core.samples import FloatArray, Recording, RecordingKind
+from core.verdicts.measurement_error import ComparisonKind, whisker
+from core.verdicts.model import Assessment, JointVerdicts, LegVerdicts, Verdict, Verdicts
+from core.verdicts.quantities import (
+    OF_BOTH,
+    PARAMETERS,
+    assessment_of_both,
+    both_sides,
+    mean_curve,
+    side_mean,
+    values_of,
+)
+from core.verdicts.stride_means import mean_of_strides
+
+FORMAT = "gaitwright-analysis/1"
+MOST_BYTES = 50_000_000  # of a file that may be one: ours take a few hundred kilobytes
+BOTH = (*OF_BOTH, "symmetry_index_percent", "curve_difference_deg", "side_difference")
+KINDS = ("knee", "ankle")
+# positive figures only: the index means nothing for signed angles
+SYMMETRIC = (
+    "stride_time_s",
+    "step_time_s",
+    "stance_percent",
+    "swing_percent",
+    "stride_length_m",
+    "knee_range_deg",
+    "ankle_range_deg",
+)
+
+
+def write_summary(
+    analysis: Analysis, path: Path, recordings: Sequence[Recording] = (), agreed: AgreedGoals = NO_GOALS
+) -> None:
+    """Write `summary.json`; `recordings` are the session's, whose alignments are told beside their walks.
+
+    Raises
+    ------
+    OSError
+        The file cannot be written.
+    """
+    text = json.dumps(summarise(analysis, recordings, agreed), indent=2, ensure_ascii=False, allow_nan=False)
+    # a file's name may hold bytes that are no text: what replaces them is an escape of JSON too
+    path.write_text(text + "\n", encoding="utf-8", errors="backslashreplace", newline="\n")
+
+
+def read_summary(path: Path) -> dict[str, Any] | None:
+    """Read what `write_summary` wrote; None when there is no such file, or one of another program."""
+    try:
+        if path.stat().st_size > MOST_BYTES:
+            return None
+        summary = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError):  # ValueError: no JSON, or not even UTF-8
+        return None
+    is_ours = isinstance(summary, dict) and summary.get("format") == FORMAT
+    return summary if is_ours else None
+
+
+def summarise(
+    analysis: Analysis, recordings: Sequence[Recording] = (), agreed: AgreedGoals = NO_GOALS
+) -> dict[str, Any]:
+    """Give the content of `summary.json`; `joints` holds each joint's last calibration.
+
+    A walk before which a prosthesis was changed has `alignment`: since which condition, and each part's figures. One
+    that is a timed test has `timed_test`. Where goals had been agreed by the session's day, each walk has `goals`, by
+    the columns of goals.csv. With `recordings`, `conditions` has the figures of report and screen, over the strides of
+    all walks of a condition.
+    """
+    changed = {one.name: alignment_table(one.alignment) for one in recordings if one.alignment is not None}
+    calibrations = [{"walks": list(span.walks), "joints": _joints(span.joints)} for span in analysis.calibrations]
+    last = {joint: found for span in analysis.calibrations for joint, found in span.joints.items()}
+    walks = [recording for recording in analysis.recordings if recording.kind is RecordingKind.WALKING]
+    return {
+        "format": FORMAT,
+        "simulated": analysis.is_simulated,
+        "joints": _joints(last),
+        "calibrations": calibrations,
+        "walks": {
+            walk.name: _walk(analysis, walk)
+            | ({"alignment": changed[walk.name]} if walk.name in changed else {})
+            | ({"goals": _goals(analysis, walk, agreed)} if agreed.held else {})
+            for walk in walks
+        },
+        **({"conditions": summarise_conditions(analysis, recordings, agreed)} if recordings else {}),
+        "reference_group": _reference_group(),
+        "findings": [_finding(finding) for finding in analysis.findings],
+    }
+
+
+def _goals(analysis: Analysis, walk: RecordingAnalysis, agreed: AgreedGoals) -> list[dict[str, Any]]:
+    return [dict(goal_figures(one, agreed)) for one in goals_of_walk(analysis, walk, agreed)] if walk.gait else []
+
+
+def _reference_group() -> dict[str, Any]:
+    """Say whom the gait variable score compares with."""
+    group = reference_curves()
+    return {"group": group.group, "n": group.n, "speed_m_s": group.speed_m_s, "source": group.source}
+
+
+def _walk(analysis: Analysis, recording: RecordingAnalysis) -> dict[str, Any]:
+    """Give each side's averages over the strides used, what compares both sides, and what may be said of each."""
+    sides = {str(side): _side(side, recording) if side in recording.gait else {} for side in Side}
+    feet = both_sides(recording)
+    both: dict[str, Any] = dict.fromkeys(BOTH)
+    for name in OF_BOTH:
+        both[name] = _number(getattr(feet, name))
+        both[f"{name}_status"] = str(assessment_of_both(recording.verdicts, name).verdict)
+    walk = {**sides, "both": both, "verdicts": _verdicts(recording.verdicts), **summarise_pelvis(recording)}
+    if recording.timed is not None:
+        walk["timed_test"] = timed_summary(recording.timed)
+    if len(recording.gait) < len(Side):
+        return walk
+    one, other = pair = first_and_second(analysis.affected_side)
+    part = Part("", recording.name, (recording,), analysis.calibrated_for(recording))
+    both |= {
+        "symmetry_index_percent": {
+            name: _number(
+                symmetry_index_percent(*(side_mean(recording, side, name).found.mean for side in (one, other)))
+            )
+            for name in SYMMETRIC
+        },
+        "curve_difference_deg": {kind: _number(_difference_deg(recording, kind)) for kind in KINDS},
+        "side_difference": {name: _side_difference(part, name, pair) for name in PARAMETERS if name.endswith("_deg")},
+    }
+    return walk
+
+
+def _side(side: Side, recording: RecordingAnalysis) -> dict[str, Any]:
+    gait = recording.gait[side]
+    used = int(np.count_nonzero(gait.strides.is_used))
+    figures: dict[str, Any] = {
+        "strides_used": used,
+        "strides_left_out": len(gait.strides) - used,
+        "strides_left_out_by_hand": left_out_by_hand(gait),
+    }
+    for name in PARAMETERS:
+        found = side_mean(recording, side, name)
+        strides = mean_of_strides(values_of(recording, side, name)[gait.strides.is_used])
+        error = whisker(name, ComparisonKind.ATTACHED, strides)
+        figures[f"{name}_mean"], figures[f"{name}_sd"] = _number(found.found.mean), _number(found.found.sd)
+        figures[f"{name}_error"], figures[f"{name}_status"] = _number(error), str(found.assessment.verdict)
+    joints = {kind: Joint(f"{side}_{kind}") for kind in KINDS}
+    scores = {kind: _number(_score_deg(recording, joint)) for kind, joint in joints.items()}
+    fitting = fitting_of_side(recording, side)
+    return {**figures, "gait_variable_score_deg": scores, "fitting": fitting, **hip_figures(recording, side)}
+
+
+def _score_deg(recording: RecordingAnalysis, joint: Joint) -> float:
+    """Give the distance from the mean curve of a group that walked at one speed, so another speed counts as well."""
+    if not recording.verdicts.joint(joint).height.is_told:
+        return math.nan
+    group = reference_curves()
+    group_deg = group.knee_mean_deg if joint.is_knee else group.ankle_mean_deg
+    return gait_variable_score(np.rad2deg(mean_curve(recording, joint).mean), group_deg)
+
+
+def _difference_deg(recording: RecordingAnalysis, kind: str) -> float:
+    joints = [Joint(f"{side}_{kind}") for side in Side]
+    if not all(recording.verdicts.joint(joint).height.is_told for joint in joints):
+        return math.nan  # each would be told from a zero of its own
+    means = [mean_curve(recording, joint).mean for joint in joints]
+    return math.degrees(curve_difference(means[0], means[1]))
+
+
+def _side_difference(part: Part, name: str, sides: tuple[Side, Side]) -> dict[str, Any] | None:
+    """Give by how much an angle differs between the sides, and whether that exceeds the measurement error.
+
+    None where either side has no such angle, or it is withheld.
+    """
+    if not all(part.value(side, name).n for side in sides):
+        return None
+    found = compare_legs(part, name, sides)
+    return {
+        "difference_deg": _number(found.difference),
+        "error_deg": _number(found.error),
+        "verdict": str(found.judgement),
+        "error_sources": [str(source) for source in found.sources],
+    }
+
+
+def _verdicts(found: Verdicts) -> dict[str, Any]:
+    """Give every verdict of a walk with its reasons in words; a joint or leg that was not worn says so."""
+    joints = {str(joint): _parts(found.joint(joint), ("shape", "height", "sign")) for joint in found.told_joints}
+    legs = {str(side): _parts(found.leg(side), ("timing", "distance")) for side in Side}
+    more = {}
+    if found.pelvis.verdict is not Verdict.NOT_MEASURED:
+        more = {"pelvis": _assessment(found.pelvis), "pelvis_tilt": _assessment(found.pelvis_tilt)}
+        more |= {f"{hip_of(side)}_abduction": _assessment(one) for side, one in found.abduction.items()}
+    return {**joints, **legs, "between": _assessment(found.between), **more}
+
+
+def _parts(found: JointVerdicts | LegVerdicts, names: tuple[str, ...]) -> dict[str, Any]:
+    return {name: _assessment(getattr(found, name)) for name in names}
+
+
+def _assessment(found: Assessment) -> dict[str, Any]:
+    reasons = [
+        {
+            "gate": reason.gate,
+            "value": _number(reason.value),
+            "limit": _number(reason.limit),
+            "unit": reason.unit,
+            "text": gate_sentence(reason),
+        }
+        for reason in found.reasons
+    ]
+    return {"verdict": str(found.verdict), "reasons": reasons}
+
+
+def _joints(joints: Mapping[Joint, JointCalibration]) -> dict[str, Any]:
+    return {str(joint): _joint(joints[joint]) for joint in Joint if joint in joints}
+
+
+def _joint(found: JointCalibration) -> dict[str, Any]:
+    return {
+        "axis_proximal": _vector(found.axis_proximal),
+        "axis_distal": _vector(found.axis_distal),
+        "centre_proximal_m": _vector(found.centre_proximal_m),
+        "centre_distal_m": _vector(found.centre_distal_m),
+        "axis_sd_deg": _number(found.axis_sd_rad, math.degrees(1)),
+        "centre_sd_mm": _number(found.centre_sd_m, 1000),
+        "sign_margin": _number(found.sign_margin),
+        "clinical_sign": int(found.clinical_sign),
+        "is_sign_certain": bool(found.is_sign_certain),
+        "clinical_sign_margin": _number(found.clinical_sign_margin),
+        "lag_s": _number(found.lag_s),
+        "lag_sd_s": _number(found.lag_sd_s),
+        "hinge_residual_rad_s": _number(found.hinge_residual_rad_s),
+        "is_hinge": bool(found.is_hinge),
+        "gyro_bias_proximal_rad_s": _vector(found.gyro_bias_proximal_rad_s),
+        "gyro_bias_distal_rad_s": _vector(found.gyro_bias_distal_rad_s),
+        "zero": str(found.zero),
+        "axis_source": str(found.axis_source),
+        "method": str(found.method),
+        "from": {
+            "standing": found.standing_from,
+            "free_motion": found.free_motion_from,
+            "walks": list(found.walks_from),
+        },
+    }
+
+
+def _finding(finding: Finding) -> dict[str, Any]:
+    return {
+        "key": finding.key,
+        "severity": str(finding.severity),
+        "where": finding.where,
+        "text": sentence(finding),
+        "numbers": {name: _plain(value) for name, value in finding.numbers.items()},
+    }
+
+
+def _vector(vector: FloatArray | None) -> list[float] | None:
+    """Give a vector as a list; None where any part of it is unknown."""
+    if vector is None or not np.isfinite(vector).all():
+        return None
+    return [float(part) for part in vector]
+
+
+def _number(value: float | None, factor: float = 1.0) -> float | None:
+    """Give a figure as JSON can hold it: None where it could not be found or has no bound."""
+    if value is None or not math.isfinite(value):
+        return None
+    return float(value) * factor
+
+
+def _plain(value: float | int | str) -> float | int | str | None:
+    """Give a finding's figure as JSON can hold it, also where it came out of an array."""
+    if isinstance(value, str):
+        return str(value)
+    if isinstance(value, int | np.integer):
+        return int(value)
+    return _number(value)

@@ -1,0 +1,142 @@
+"""What came of each timed test of a session, as tables for other programs: `timed_test.csv`, and a part of the summary.
+
+One row for the test itself, then one for every third, lap, turn, pause, rise and silence of a sensor. Times of parts
+count from the start of the test. What was not measured is an empty cell, and the row of the test says why.
+"""
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+
+from app.exports.csv_report import typed_cell
+from core.results import Analysis, RecordingAnalysis
+from core.samples import Recording
+from core.timed.found import TimedPart, TimedTest
+
+TIMED = "timed_test.csv"
+HEADER = (
+    *("recording", "condition", "test", "row", "number", "start_s", "end_s", "time_s"),
+    *("distance_m", "sensor_distance_m", "speed_m_s", "cadence_steps_min", "turn_deg", "side", "climb_m"),
+    *("started_by", "ended_by", "sensor", "missing"),
+)
+
+
+def timed_walks(analysis: Analysis) -> list[RecordingAnalysis]:
+    """The walks that are timed tests, in order of time."""
+    return [one for one in analysis.recordings if one.timed is not None]
+
+
+def timed_rows(analysis: Analysis, recordings: Sequence[Recording]) -> Iterator[tuple[str, ...]]:
+    """The rows of every timed test that counts."""
+    conditions = {one.name: one.condition for one in recordings}
+    for walk in timed_walks(analysis):
+        assert walk.timed is not None
+        head = {
+            "recording": typed_cell(walk.folder),
+            "condition": typed_cell(conditions.get(walk.name, "")),
+            "test": str(walk.timed.protocol),
+        }
+        for row in _rows(walk.timed):
+            cells = head | row
+            yield tuple(cells.get(name, "") for name in HEADER)
+
+
+def _rows(test: TimedTest) -> Iterator[dict[str, str]]:
+    yield {
+        "row": "test",
+        "number": "1",
+        **_span(test.start_s, test.end_s, 0.0),
+        "distance_m": figure(test.distance_m, 3),
+        "sensor_distance_m": figure(test.sensor_distance_m, 3),
+        "speed_m_s": figure(test.speed_m_s, 4),
+        "cadence_steps_min": figure(test.cadence_steps_min, 2),
+        "started_by": "key" if test.is_start_by_key else "motion",
+        "ended_by": "key" if test.is_end_by_key else "motion",
+        "missing": " ".join(str(one) for one in test.missing),
+    }
+    for word, parts in (("third", test.thirds), ("lap", test.laps)):
+        for number, part in enumerate(parts, 1):
+            yield {"row": word, "number": str(number), **_part(part, test.start_s)}
+    for number, turn in enumerate(test.turns, 1):
+        angle = {"turn_deg": figure(float(np.rad2deg(turn.angle_rad)), 1)}
+        yield {"row": "turn", "number": str(number), **_span(turn.start_s, turn.end_s, test.start_s), **angle}
+    for number, (start_s, end_s) in enumerate(test.pauses_s, 1):
+        yield {"row": "pause", "number": str(number), **_span(start_s, end_s, test.start_s)}
+    for number, rise in enumerate(test.rises, 1):
+        yield {"row": "rise", "number": str(number), **_span(rise.left_seat_s, rise.upright_s, test.start_s)}
+    for number, stride in enumerate(test.stairs, 1):
+        told = {"side": str(stride.side), "climb_m": figure(stride.climb_m, 3)}
+        yield {"row": "stair", "number": str(number), **_span(stride.start_s, stride.end_s, test.start_s), **told}
+    for number, one in enumerate(test.silences, 1):
+        sensor = {"sensor": str(one.site)}
+        yield {"row": "silence", "number": str(number), **_span(one.start_s, one.end_s, test.start_s), **sensor}
+
+
+def _part(part: TimedPart, from_s: float) -> dict[str, str]:
+    return {
+        **_span(part.start_s, part.end_s, from_s),
+        "distance_m": figure(part.distance_m, 3),
+        "speed_m_s": figure(part.speed_m_s, 4),
+        "cadence_steps_min": figure(part.cadence_steps_min, 2),
+    }
+
+
+def _span(start_s: float, end_s: float, from_s: float) -> dict[str, str]:
+    origin_s = from_s if math.isfinite(from_s) else 0.0
+    return {
+        "start_s": figure(start_s - origin_s, 3),
+        "end_s": figure(end_s - origin_s, 3),
+        "time_s": figure(end_s - start_s, 3),
+    }
+
+
+def figure(value: float, decimals: int) -> str:
+    """A figure, or an empty cell where it was not measured."""
+    return f"{value:.{decimals}f}" if math.isfinite(value) else ""
+
+
+def timed_summary(test: TimedTest) -> dict[str, Any]:
+    """What `summary.json` holds of a timed test, under its walk; null where not measured."""
+    return {
+        "test": str(test.protocol),
+        "start_s": _known(test.start_s, 3),
+        "end_s": _known(test.end_s, 3),
+        "time_s": _known(test.time_s, 3),
+        "started_by": "key" if test.is_start_by_key else "motion",
+        "ended_by": "key" if test.is_end_by_key else "motion",
+        "distance_m": _known(test.distance_m, 3),
+        "sensor_distance_m": _known(test.sensor_distance_m, 3),
+        "speed_m_s": _known(test.speed_m_s, 4),
+        "cadence_steps_min": _known(test.cadence_steps_min, 2),
+        "laps": len(test.laps),
+        "turns": len(test.turns),
+        "pauses": len(test.pauses_s),
+        "paused_s": _known(sum(end - start for start, end in test.pauses_s), 3),
+        "rises": len(test.rises),
+        "stairs": {"up": _stairs(test, is_up=True), "down": _stairs(test, is_up=False)},
+        "thirds_speed_m_s": [_known(one.speed_m_s, 4) for one in test.thirds],
+        "missing": [str(one) for one in test.missing],
+        "errors": [
+            {
+                "quantity": one.quantity,
+                "low": one.low,
+                "high": one.high,
+                "source": one.source,
+                "unverified": not one.is_verified,
+            }
+            for one in test.definition.errors
+        ],
+    }
+
+
+def _stairs(test: TimedTest, *, is_up: bool) -> dict[str, Any]:
+    """How many strides led up, or down, and how long they took on average."""
+    times_s = [one.end_s - one.start_s for one in test.stairs if one.is_up is is_up]
+    mean_s = sum(times_s) / len(times_s) if times_s else math.nan
+    return {"strides": len(times_s), "stride_time_s_mean": _known(mean_s, 3)}
+
+
+def _known(value: float, decimals: int) -> float | None:
+    return round(value, decimals) if math.isfinite(value) else None

@@ -1,0 +1,1 @@
+"""Stored sessions analysed again after the software changed."""

@@ -1,0 +1,198 @@
+"""What leads to the page on which sessions are analysed again, and what is done with those that are ticked."""
+
+import datetime
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+from uuid import UUID
+
+from PySide6.QtCore import QObject, Signal
+from PySide6.QtWidgets import QFileDialog
+
+from app.cohort.batch.again import AgainResult, analyse_again
+from app.cohort.batch.executors import of_this_computer, processors
+from app.home.again.analyse_again_page import AgainLine, AnalyseAgainPage
+from app.storage.kept_analyses import algorithm
+from app.theme.icons import Icon
+from app.theme.notifier import ThemeNotifier
+from app.widgets.action_bar import BarAction, BarState
+from app.widgets.folder_dialog import ask_for_new_folder
+from app.wizard.resuming import session_to_analyse
+from app.wording.patients import when
+from app.wording.translation import tr, tr_n
+from app.workers.background import Report
+from app.workers.library_controller import LibraryController
+
+if TYPE_CHECKING:
+    from app.cohort.batch.run import BatchResult
+    from app.storage.opened import OpenedLibrary
+
+TABLE = "parameters.parquet"  # as app.cohort.batch.table has it
+
+
+class AnalysingAgain(QObject):
+    """One selection at a time.
+
+    Signals
+    -------
+    changed
+        The bar shows something else.
+    working
+        Something takes a while: its title.
+    progressed
+        The share that is done, and how many sessions.
+    done
+        It ended: what came of it, and what to do.
+    table_made
+        The path of a table over many sessions, to be asked.
+    """
+
+    changed = Signal()
+    working = Signal(str)
+    progressed = Signal(float, str)
+    done = Signal(str, str)
+    table_made = Signal(object)
+
+    def __init__(self, look: ThemeNotifier, controller: LibraryController, parent: QObject) -> None:
+        super().__init__(parent)
+        self._controller = controller
+        self._dialog: QFileDialog | None = None
+        self._failures: dict[UUID, str] = {}
+        self._wanted: UUID | None = None
+        self._out = Path()
+        self.is_working = False
+        self.page = AnalyseAgainPage(look)
+        self.page.changed.connect(self.changed)
+
+    @property
+    def bar(self) -> BarState:
+        count = len(self.page.ticked)
+        words = tr_n("Analyse {count} session", "Analyse {count} sessions", count).format(count=count)
+        folder = BarAction(tr("Into a folder, with a table"), icon=Icon.FOLDER, is_wished=False, is_enabled=bool(count))
+        return BarState(BarAction(words, icon=Icon.PLAY, is_enabled=bool(count)), others=(folder,))
+
+    def begin(self, patient_id: UUID | None) -> None:
+        """Show all sessions, with those of this patient ticked, else those that this version has not analysed."""
+        self._wanted, self._failures = patient_id, {}
+        self.page.forget()
+        self._read()
+
+    def analyse(self) -> None:
+        """Analyse those that are ticked, and keep what comes of them."""
+        ids = self.page.ticked
+        if not ids:
+            return
+
+        def work(opened: "OpenedLibrary", report: Report) -> AgainResult:
+            with of_this_computer(processors()) as workers:
+                return analyse_again(ids, lambda session_id: session_to_analyse(opened, session_id), workers, report)
+
+        self._begin(tr("Analysing again"))
+        self._controller.run_long(work, self._on_analysed, self._on_refused, self._on_progressed, self)
+
+    def choose_folder(self) -> None:
+        self._dialog = ask_for_new_folder(
+            self.page.window(), tr("Results and a table of these sessions"), _proposed, self._on_folder
+        )
+
+    def write(self, out: Path) -> None:
+        """Analyse those that are ticked into a folder of their own each, with a table over all of them."""
+        ids, self._out = frozenset(self.page.ticked), out
+
+        def work(opened: "OpenedLibrary", report: Report) -> "BatchResult":
+            from app.cohort.batch.analysed_folder import AnalysisChoices
+            from app.cohort.batch.done import batch_at
+            from app.cohort.batch.library_sessions import LibrarySessions
+            from app.cohort.batch.run import Batch
+            from core.published.angles import DEFAULT_TAU_S
+            from core.results import Method
+
+            sessions, choices = LibrarySessions(opened, ids), AnalysisChoices(Method.ROBUST, DEFAULT_TAU_S)
+            with batch_at(out) as folder, of_this_computer(processors()) as workers:
+                batch = Batch(sessions, folder, choices)
+                batch.run(workers, report)
+            return batch.result
+
+        self._begin(tr("Analysing into a folder"))
+        self._controller.run_long(work, self._on_written, self._on_refused, self._on_progressed, self)
+
+    def stop(self) -> None:
+        """End it; what was done until now is kept."""
+        self._controller.stop_long()
+        self._end(tr("This was stopped."), tr("The sessions that were analysed until then are kept."))
+        self._read()
+
+    def _begin(self, title: str) -> None:
+        self.is_working = True
+        self.working.emit(title)
+
+    def _end(self, what: str, then: str) -> None:
+        self.is_working = False
+        self.done.emit(what, then)
+
+    def _read(self) -> None:
+        self._controller.run(self._lines, self._on_read, self._on_refused, self)
+
+    def _lines(self, opened: "OpenedLibrary") -> tuple[tuple[AgainLine, ...], tuple[UUID, ...]]:
+        now = datetime.datetime.now().astimezone()
+        listed = [one for one in opened.library.sessions.list() if one.recordings]
+        current = opened.library.results.analysed_by(algorithm())
+        lines = tuple(
+            AgainLine(
+                one.id,
+                one.patient_code,
+                when(one.started, now),
+                "; ".join(one.conditions),
+                one.id in current,
+                self._failures.get(one.id, ""),
+            )
+            for one in listed
+        )
+        of_patient = [one.id for one in listed if one.patient_id == self._wanted]
+        return lines, tuple(of_patient or [line.id for line in lines if not line.is_current])
+
+    def _on_read(self, found: tuple[Sequence[AgainLine], Sequence[UUID]]) -> None:
+        self.page.show_lines(*found)
+        self.page.focus()
+
+    def _on_progressed(self, share: float, what: str) -> None:
+        self.progressed.emit(share, what)
+
+    def _on_analysed(self, result: AgainResult) -> None:
+        self._failures, self._wanted = dict(result.failures), None
+        said = tr_n(
+            "{count} session was analysed with this version.",
+            "{count} sessions were analysed with this version.",
+            result.analysed,
+        ).format(count=result.analysed)
+        then = []
+        if result.as_before:
+            before = tr_n("{count} was analysed by it before.", "{count} were analysed by it before.", result.as_before)
+            then.append(before.format(count=result.as_before))
+        if result.failures:
+            then.append(_failed(len(result.failures)))
+        self._end(said, " ".join(then))
+        self._read()
+
+    def _on_written(self, result: "BatchResult") -> None:
+        said = tr("Results and the table are in {folder}.").format(folder=self._out)
+        self._end(said, _failed(len(result.failures)) if result.failures else "")
+        self.table_made.emit(self._out / TABLE)
+
+    def _on_refused(self, what: str, remedy: str) -> None:
+        self._end(what, remedy)
+
+    def _on_folder(self, folder: str) -> None:
+        self.write(Path(folder))
+
+
+def _proposed(place: Path) -> str:
+    name, number = "gaitwright-sessions", 2
+    while (place / name).exists():
+        name, number = f"gaitwright-sessions-{number}", number + 1
+    return name
+
+
+def _failed(count: int) -> str:
+    said = tr_n("{count} could not be analysed: the list says why.", "{count} could not be: the list says why.", count)
+    return said.format(count=count)

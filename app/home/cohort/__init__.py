@@ -1,0 +1,1 @@
+"""The page that compares many sessions of the library, and its controller."""

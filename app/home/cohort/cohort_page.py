@@ -1,0 +1,292 @@
+"""Questions over many sessions: a measure by groups, as a chart and as a table, from the table of a batch."""
+
+from collections.abc import Sequence
+
+from PySide6.QtCore import QSignalBlocker, Qt, Signal
+from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QVBoxLayout, QWidget
+
+from app.cohort.study.groups import GroupAnswer, Grouping, GroupQuestion, GroupRow
+from app.cohort.study.measures import in_order, measure_words
+from app.home.cohort.cohort_table import MOST_ROWS, groups_table
+from app.home.cohort.cohort_text import group_name, grouping_word, notes, sentence
+from app.plots.group_plot import GroupLine, GroupPlot
+from app.theme.icons import Icon
+from app.theme.notifier import ThemeNotifier
+from app.widgets.button import Button, ButtonKind
+from app.widgets.card import Card
+from app.widgets.choice import Choice
+from app.widgets.notice import Notice
+from app.widgets.segmented import Segmented
+from app.widgets.table import CellTable
+from app.widgets.text import MEDIUM, SEMIBOLD, Text
+from app.widgets.themed import Themed
+from app.widgets.toggle import Toggle
+from app.wording.translation import figure_text, tr, tr_n
+
+READ, WITH_CARE = "read", "care"
+LEAST_CHOICE, MOST_CHOICE = 150, 320  # px; a parameter that nobody named may be long
+MARGIN, GAP = 24, 16
+NARROW_BELOW = 860  # px of the design: the table leaves columns out
+MOST_DRAWN = 16  # groups; those with most sessions
+
+
+class QuestionsPage(Themed):
+    """Signals
+    -------
+    table_wished
+        Another table is to be chosen.
+    question_changed
+        What is asked now, a `GroupQuestion`.
+    """
+
+    table_wished = Signal()
+    question_changed = Signal(object)
+
+    def __init__(self, look: ThemeNotifier) -> None:
+        super().__init__()
+        self._look, self._width = look, 1000.0
+        self.found: GroupAnswer | None = None
+        self._title = Text(look, tr("Questions"), size=26, weight=SEMIBOLD)
+        self._name = Text(look, tone="ink2", wraps=True)
+        self.choose_table = Button(look, tr("Choose a table"), ButtonKind.SECONDARY, Icon.FOLDER)
+        self.refusal = Notice(look, size=16)
+        self._empty = Card(look, padding=20, spacing=16)
+        self.first_table = Button(look, tr("Choose a table"), ButtonKind.PRIMARY, Icon.FOLDER, height=56)
+        self._controls = QWidget()
+        self.measure = Choice(look, tr("Measure"))
+        self.grouping = Choice(look, tr("Grouped by"))
+        for choice in (self.measure, self.grouping):
+            choice.let_shrink(LEAST_CHOICE, MOST_CHOICE)
+        self.included = Segmented(
+            look, tr("What counts"), [(READ, tr("Read"), ""), (WITH_CARE, tr("Also with care"), "")]
+        )
+        self.simulated = Toggle(look, tr("Simulated too"), "", is_on=False)
+        self.simulated.set_face(height=48)
+        self.answer = QWidget()
+        self.sentence = Text(look, size=22, weight=SEMIBOLD, wraps=True)
+        self.notes = Text(look, tone="ink2", wraps=True)
+        self.plot = GroupPlot(look)
+        self._legend = Text(
+            look,
+            tr(
+                "Dot: mean over sessions, of each the mean of its walks, then of its legs. Bar: 95 % interval of that "
+                "mean; hollow without one. Whether groups differ is not judged here."
+            ),
+            size=12,
+            tone="ink2",
+            wraps=True,
+        )
+        self.table = CellTable(look, tr("Groups"))
+        self.more = Text(look, size=12, tone="ink2", wraps=True)
+        self._build()
+        self._connect()
+        self.show_nothing()
+        self._on_look_changed()
+
+    @property
+    def question(self) -> GroupQuestion | None:
+        """What is asked now; None without a table."""
+        if self.measure.currentData() is None or self.grouping.currentData() is None:
+            return None
+        return GroupQuestion(
+            str(self.measure.currentData()),
+            Grouping(self.grouping.currentData()),
+            has_care=self.included.choice == WITH_CARE,
+            has_simulated=self.simulated.isChecked(),
+        )
+
+    def focus(self) -> None:
+        (self.first_table if not self._empty.isHidden() else self.measure).setFocus()
+
+    def set_room(self, width: float) -> None:
+        """Lay out for a page of this width, in px of the design."""
+        self._width = width
+        px = self._look.theme.px
+        room = px(width) - 2 * px(MARGIN)
+        halves = (self._first_half, self._second_half)
+        beside = sum(half.sizeHint().width() for half in halves) + px(GAP)
+        is_row = beside <= room
+        self._halves.setDirection(QBoxLayout.Direction.LeftToRight if is_row else QBoxLayout.Direction.TopToBottom)
+        for half in halves:
+            needed = half.sizeHint().width()
+            half.setDirection(
+                QBoxLayout.Direction.LeftToRight if needed <= room or is_row else QBoxLayout.Direction.TopToBottom
+            )
+        self._show_table()
+
+    def show_nothing(self) -> None:
+        """Say how a table comes to be, and let one be chosen."""
+        self.found = None
+        self._name.setText("")
+        self._show_parts(self._empty)
+
+    def show_refused(self, what: str, remedy: str) -> None:
+        """Say why there is no answer; without a table, above how one comes to be."""
+        self.found = None
+        self.refusal.tell(Icon.WARNING, what, remedy, is_caution=True)
+        self._show_parts(self.refusal, self._controls if self.question is not None else self._empty)
+
+    def show_table(self, name: str, measures: Sequence[str], groupings: Sequence[Grouping]) -> None:
+        """Offer what this table can be asked; what was chosen stays where it can."""
+        self._name.setText(name)
+        choices = (
+            (self.measure, [(measure_words(one).name, one) for one in in_order(tuple(measures))]),
+            (self.grouping, [(grouping_word(one), one.value) for one in groupings]),
+        )
+        for choice, offered in choices:
+            before = choice.currentData()
+            with QSignalBlocker(choice):
+                choice.clear()
+                for words, key in offered:
+                    choice.addItem(words, key)
+                choice.setCurrentIndex(max(choice.findData(before), 0) if offered else -1)
+            choice.updateGeometry()
+        self._show_parts(self._controls)
+
+    def show_reading(self, name: str) -> None:
+        """Say which table is being read; its answer is here in a moment."""
+        self.found = None
+        self._name.setText(name)
+        self._show_parts()
+
+    def forget_table(self) -> None:
+        """Offer nothing any more."""
+        for choice in (self.measure, self.grouping):
+            with QSignalBlocker(choice):
+                choice.clear()
+        self.show_nothing()
+
+    def show_answer(self, found: GroupAnswer) -> None:
+        """Show what was found; nothing is said of what it means."""
+        self.found = found
+        words, grouping = measure_words(found.question.measure), found.question.grouping
+        said = notes(found)
+        self.sentence.setText(sentence(found))
+        self.notes.setText(" ".join(said))
+        self.notes.setVisible(bool(said))
+        drawn = _drawn(found)
+        lines = [
+            GroupLine(group_name(grouping, row.group), row.mean, row.half_interval, _sessions(row)) for row in drawn
+        ]
+        in_words = ". ".join(_line_in_words(line, words.decimals, words.unit) for line in lines)
+        self.plot.show_groups(lines, words.with_unit, tr("Means of the groups"), in_words)
+        self.plot.setVisible(bool(lines))
+        self._legend.setVisible(bool(lines))
+        self._show_table()
+        self.more.setText(_more(found, len(drawn)))
+        self.more.setVisible(bool(self.more.text()))
+        self._show_parts(self._controls, self.answer)
+
+    def _show_table(self) -> None:
+        if self.found is not None:
+            is_narrow = self._width < NARROW_BELOW
+            self.table.show_rows(*groups_table(self.found, is_narrow=is_narrow))
+            self.table.setAccessibleDescription(self.sentence.text())
+
+    def _show_parts(self, *shown: QWidget) -> None:
+        for part in (self._empty, self.refusal, self._controls, self.answer):
+            part.setVisible(part in shown)
+        self.choose_table.setVisible(self._empty not in shown)
+        self._name.setVisible(self._empty not in shown and bool(self._name.text()))
+
+    def _build(self) -> None:
+        look = self._look
+        head = QHBoxLayout()
+        head.addWidget(self._title)
+        head.addWidget(self._name, 1)
+        head.addWidget(self.choose_table)
+        how = tr(
+            "Many sessions become one table without names by the command gaitwright batch FOLDER --out OUT. "
+            "It writes parameters.parquet into OUT: choose that file."
+        )
+        self._empty.column.addWidget(Text(look, tr("No table yet"), size=26, weight=SEMIBOLD, wraps=True))
+        self._empty.column.addWidget(Text(look, how, size=16, tone="ink2", wraps=True))
+        self._empty.column.addWidget(self.first_table, 0, Qt.AlignmentFlag.AlignLeft)
+        self._first_half, self._second_half = (
+            QBoxLayout(QBoxLayout.Direction.LeftToRight),
+            QBoxLayout(QBoxLayout.Direction.LeftToRight),
+        )
+        for half, named in (
+            (self._first_half, ((tr("Measure"), self.measure), (tr("Grouped by"), self.grouping))),
+            (self._second_half, ((tr("What counts"), self.included), ("", self.simulated))),
+        ):
+            for label, control in named:
+                part = QVBoxLayout()
+                part.setSpacing(4)
+                part.addWidget(Text(look, label, weight=MEDIUM))
+                part.addWidget(control, 1, Qt.AlignmentFlag.AlignVCenter)  # they are not all of one height
+                half.addLayout(part)
+            half.addStretch(1)
+        self._halves = QBoxLayout(QBoxLayout.Direction.LeftToRight, self._controls)
+        self._halves.setContentsMargins(0, 0, 0, 0)
+        self._halves.addLayout(self._first_half)
+        self._halves.addLayout(self._second_half)
+        self._chart = Card(look)
+        self._chart.column.addWidget(self.plot)
+        self._chart.column.addWidget(self._legend)
+        self._figures = Card(look)
+        self._figures.column.addWidget(self.table)
+        self._figures.column.addWidget(self.more)
+        self._answer_column = QVBoxLayout(self.answer)
+        self._answer_column.setContentsMargins(0, 0, 0, 0)
+        answers: tuple[QWidget, ...] = (self.sentence, self.notes, self._chart, self._figures)
+        for widget in answers:
+            self._answer_column.addWidget(widget)
+        self._column = QVBoxLayout(self)
+        self._column.addLayout(head)
+        for widget in (self.refusal, self._empty, self._controls, self.answer):
+            self._column.addWidget(widget)
+        self._column.addStretch(1)
+
+    def _connect(self) -> None:
+        self.choose_table.clicked.connect(self.table_wished)
+        self.first_table.clicked.connect(self.table_wished)
+        self.measure.currentIndexChanged.connect(self._on_changed)
+        self.grouping.currentIndexChanged.connect(self._on_changed)
+        self.included.chosen.connect(self._on_changed)
+        self.simulated.toggled.connect(self._on_changed)
+
+    def _on_changed(self, _value: object = None) -> None:
+        if (question := self.question) is not None:
+            self.question_changed.emit(question)
+
+    def _on_look_changed(self) -> None:
+        px = self._look.theme.px
+        self._column.setContentsMargins(px(MARGIN), px(16), px(MARGIN), px(20))
+        self._column.setSpacing(px(12))
+        self._answer_column.setSpacing(px(8))
+        for row in (self._halves, self._first_half, self._second_half):
+            row.setSpacing(px(GAP))
+
+
+def _drawn(found: GroupAnswer) -> list[GroupRow]:
+    """The groups with most sessions, in their order."""
+    most = sorted(found.told, key=lambda row: -row.sessions)[:MOST_DRAWN]
+    return [row for row in found.told if row in most]
+
+
+def _sessions(row: GroupRow) -> str:
+    return tr_n("{count} session", "{count} sessions", row.sessions).format(count=row.sessions)
+
+
+def _line_in_words(line: GroupLine, decimals: int, unit: str) -> str:
+    mean = f"{figure_text(line.mean, f'.{decimals}f')} {unit}".rstrip()
+    if line.half != line.half:
+        return f"{line.label}: {mean}, {line.count}"
+    half = tr("plus or minus {half}").format(half=figure_text(line.half, f".{decimals}f"))
+    return f"{line.label}: {mean}, {half}, {line.count}"
+
+
+def _more(found: GroupAnswer, drawn: int) -> str:
+    """How many groups are not in sight, and where they are."""
+    said = []
+    if len(found.told) > drawn:
+        told = tr("The chart has the {drawn} groups with most sessions, of {count}.")
+        said.append(told.format(drawn=drawn, count=len(found.told)))
+    if len(found.rows) > MOST_ROWS:
+        said.append(
+            tr("The table has the first {shown} groups of {count}, the CSV all.").format(
+                shown=MOST_ROWS, count=len(found.rows)
+            )
+        )
+    return " ".join(said)

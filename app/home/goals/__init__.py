@@ -1,0 +1,1 @@
+"""The patient's goals: their page and what stores them."""

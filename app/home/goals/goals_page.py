@@ -1,0 +1,257 @@
+"""What is agreed with a patient: a measure, whose it is, the value to be reached; and what was agreed before."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QVBoxLayout, QWidget
+
+from app.theme.notifier import ThemeNotifier
+from app.widgets.button import Button, ButtonKind
+from app.widgets.card import Card
+from app.widgets.choice import Choice
+from app.widgets.field import Field, NumberField
+from app.widgets.segmented import Segmented
+from app.widgets.tall_page import TallPage
+from app.widgets.text import MEDIUM, SEMIBOLD, Text
+from app.widgets.themed import Themed
+from app.wording.dates import date
+from app.wording.measures import goal_in_words, measure_name, short_unit, wanted, whose_name
+from app.wording.translation import tr
+from core.goals import GOAL_COLUMNS, LEAST, MOST, MOST_NOTE, Goal, GoalKey, GoalOf, held, whose
+
+MARGIN, GAP = 24, 16
+NARROW_BELOW = 820  # px of the design: what was agreed stands below the form
+LONGEST_WEEKS = 104
+AT_LEAST, AT_MOST = "least", "most"
+
+
+@dataclass(frozen=True, slots=True)
+class GoalDraft:
+    """What is to be agreed; `weeks`: within how many, None where nothing was said of that."""
+
+    column: str
+    of: GoalOf
+    value: float
+    is_at_most: bool
+    weeks: int | None
+    note: str
+
+
+class GoalsPage(TallPage):
+    """Proposes nothing: the value is typed.
+
+    Signals
+    -------
+    agreed
+        A `GoalDraft`: it is to hold from now on.
+    taken_back
+        The key of a goal that is to hold no longer.
+    """
+
+    agreed = Signal(object)
+    taken_back = Signal(object)
+
+    def __init__(self, look: ThemeNotifier) -> None:
+        super().__init__()
+        self._look = look
+        self.rows: list[_GoalRow] = []
+        self._title = Text(look, size=26, weight=SEMIBOLD)
+        self._lead = Text(
+            look,
+            tr(
+                "A goal is agreed with the patient and typed here; the day and who typed it are kept. It stands "
+                "wherever the measure is shown, and chooses what is told of visits after today."
+            ),
+            tone="ink2",
+            wraps=True,
+        )
+        self.measure = Choice(look, tr("Measure"))
+        for column in GOAL_COLUMNS:
+            self.measure.addItem(measure_name(column), column)
+        names = {GoalOf.LEFT: tr("Left"), GoalOf.RIGHT: tr("Right"), GoalOf.BETWEEN: tr("Between the legs")}
+        self.whose = Segmented(look, tr("Whose"), [(of.value, word, "") for of, word in names.items()])
+        self.sense = Segmented(look, tr("Limit"), [(AT_LEAST, tr("At least"), ""), (AT_MOST, tr("At most"), "")])
+        self.apart = Text(look, tr("The legs are to differ by at most this much, whichever has more."), wraps=True)
+        self.value = NumberField(look, tr("Value"), low=LEAST, high=1.0, decimals=2)
+        self.weeks = NumberField(look, tr("Within"), low=1, high=LONGEST_WEEKS, unit=tr("weeks"), is_optional=True)
+        self.note = Field(look, tr("Note"), is_optional=True, most=MOST_NOTE)
+        self.none_yet = Text(look, tr("Nothing is agreed yet."), tone="ink2", wraps=True)
+        self._build()
+        self._connect()
+        self._on_measure_chosen()
+        self._on_look_changed()
+
+    @property
+    def tab_order(self) -> list[QWidget]:
+        taking_back = [row.take_back for row in self.rows if row.take_back is not None]
+        form = [self.measure, *self.whose.segments, *self.sense.segments, self.value.line_edit]
+        return [*form, self.weeks.line_edit, self.note.line_edit, *taking_back]
+
+    def focus(self) -> None:
+        self.measure.setFocus()
+
+    def set_room(self, width: float) -> None:
+        """Lay out for a page of this width, in px of the design."""
+        is_narrow = width < NARROW_BELOW
+        way = QBoxLayout.Direction.TopToBottom if is_narrow else QBoxLayout.Direction.LeftToRight
+        self._columns.setDirection(way)
+
+    def show_patient(self, code: str) -> None:
+        """Begin anew, for this patient."""
+        self._title.setText(tr("Goals of {code}").format(code=code) if code else tr("Goals"))
+        self.show_goals(())
+        self._clear()
+        self.measure.setCurrentIndex(0)
+
+    def show_goals(self, goals: Sequence[Goal]) -> None:
+        """Show what holds, then what ended, the latest first."""
+        for row in self.rows:
+            self._list.removeWidget(row)
+            row.hide()
+            row.deleteLater()
+        ordered = [*held(goals[::-1]), *(goal for goal in goals[::-1] if not goal.is_held)]
+        self.rows = [_GoalRow(self._look, goal) for goal in ordered]
+        for at, row in enumerate(self.rows):
+            self._list.insertWidget(at, row)
+            if row.take_back is not None:
+                row.taken_back.connect(self.taken_back)
+        self.none_yet.setVisible(not goals)
+
+    def show_agreed(self) -> None:
+        """Clear what was typed, for it holds now."""
+        self._clear()
+        self.measure.setFocus()
+
+    def submit(self) -> None:
+        """Tell what was typed, or say at its field what is missing."""
+        if self.value.value is None:
+            if not self.value.text.strip():
+                self.value.set_wrong(tr("Type the value that is to be reached."))
+            self.value.setFocus()
+            return
+        if self.weeks.text.strip() and self.weeks.value is None:
+            self.weeks.setFocus()
+            return
+        of, weeks = self._of, self.weeks.value
+        is_at_most = of is GoalOf.BETWEEN or self.sense.choice == AT_MOST
+        note = self.note.text.strip()
+        said = GoalDraft(self._column, of, self.value.value, is_at_most, None if weeks is None else int(weeks), note)
+        self.agreed.emit(said)
+
+    @property
+    def _column(self) -> str:
+        return str(self.measure.currentData())
+
+    @property
+    def _of(self) -> GoalOf:
+        return GoalOf.WALK if GoalOf.WALK in whose(self._column) else GoalOf(self.whose.choice)
+
+    def _clear(self) -> None:
+        self.value.set_value(None)
+        self.weeks.set_value(None)
+        self.note.set_text("")
+
+    def _build(self) -> None:
+        form = self._form = Card(self._look, spacing=12)
+        form.column.addWidget(Text(self._look, tr("Agree on a goal"), size=16, weight=SEMIBOLD))
+        form.column.addWidget(Text(self._look, tr("Measure"), weight=MEDIUM))
+        form.column.addWidget(self.measure)
+        for one in (self.whose, self.sense, self.apart):
+            form.column.addWidget(one)
+        self._figures = QHBoxLayout()
+        self._figures.addWidget(self.value, 1, Qt.AlignmentFlag.AlignTop)
+        self._figures.addWidget(self.weeks, 1, Qt.AlignmentFlag.AlignTop)
+        form.column.addLayout(self._figures)
+        form.column.addWidget(self.note)
+        form.column.addStretch(1)
+        self._held = Card(self._look)
+        self._held.column.addWidget(Text(self._look, tr("Agreed"), size=16, weight=SEMIBOLD))
+        self._held.column.addWidget(self.none_yet)
+        self._list = QVBoxLayout()
+        self._held.column.addLayout(self._list)
+        self._held.column.addStretch(1)
+        self._columns = QBoxLayout(QBoxLayout.Direction.LeftToRight)
+        self._columns.addWidget(self._form, 5)
+        self._columns.addWidget(self._held, 6)
+        self.column.addWidget(self._title)
+        self.column.addWidget(self._lead)
+        self.column.addLayout(self._columns, 1)
+
+    def _connect(self) -> None:
+        self.measure.currentIndexChanged.connect(self._on_measure_chosen)
+        self.whose.chosen.connect(self._show_limits)
+        for field in (self.value, self.weeks, self.note):
+            field.line_edit.returnPressed.connect(self.submit)
+
+    def _on_measure_chosen(self) -> None:
+        """Offer whose figures the measure has; a value of another measure is no value of this one."""
+        can = whose(self._column)
+        self.whose.setVisible(GoalOf.WALK not in can)
+        self.whose.set_offered(GoalOf.BETWEEN, GoalOf.BETWEEN in can)
+        self.sense.choose(AT_MOST if self._column.endswith("_time_s") else AT_LEAST)
+        self.value.set_value(None)
+        self._show_limits()
+
+    def _show_limits(self) -> None:
+        is_between = self._of is GoalOf.BETWEEN
+        self.sense.setVisible(not is_between)
+        self.apart.setVisible(is_between)
+        self.value.low, self.value.high = (0.0 if is_between else LEAST), MOST[self._column]
+        self.value.set_unit(short_unit(self._column).strip())
+
+    def _on_look_changed(self) -> None:
+        px = self._look.theme.px
+        self.column.setContentsMargins(px(MARGIN), px(16), px(MARGIN), px(GAP))
+        self.column.setSpacing(px(12))
+        self._columns.setSpacing(px(GAP))
+        self._figures.setSpacing(px(12))
+        self._list.setSpacing(px(12))
+
+
+class _GoalRow(Themed):
+    """One goal: what it asks for, who agreed on it and when, and a button to take it back while it holds."""
+
+    taken_back = Signal(object)
+
+    def __init__(self, look: ThemeNotifier, goal: Goal) -> None:
+        super().__init__()
+        self._look, self._key = look, goal.key
+        name = ", ".join(filter(None, [measure_name(goal.column), whose_name(goal.of)]))
+        self.words = Text(look, name, weight=SEMIBOLD if goal.is_held else MEDIUM, wraps=True)
+        if not goal.is_held:
+            self.words.set_tone("ink2")
+        self.limit = Text(look, wanted(goal), wraps=True, tone="ink" if goal.is_held else "ink2")
+        self.about = Text(look, about(goal), size=12, tone="ink2", wraps=True)
+        self.take_back: Button | None = None
+        column = QVBoxLayout()
+        column.setSpacing(0)
+        for part in (self.words, self.limit, self.about):
+            column.addWidget(part)
+        self._row = QHBoxLayout(self)
+        self._row.setContentsMargins(0, 0, 0, 0)
+        self._row.addLayout(column, 1)
+        if goal.is_held:
+            self.take_back = Button(look, tr("Take back"), ButtonKind.QUIET, height=36)
+            self.take_back.setAccessibleName(tr("Take back: {goal}").format(goal=goal_in_words(goal)))
+            self.take_back.clicked.connect(self._on_take_back)
+            self._row.addWidget(self.take_back, 0, Qt.AlignmentFlag.AlignTop)
+
+    @property
+    def key(self) -> GoalKey:
+        return self._key
+
+    def _on_take_back(self) -> None:
+        self.taken_back.emit(self._key)
+
+
+def about(goal: Goal) -> str:
+    """Who agreed on a goal and when, by when it is to be reached, when it ended, and what was typed of it."""
+    by = f", {goal.by}" if goal.by else ""
+    said = [tr("agreed {day}").format(day=date(goal.agreed)) + by]
+    if goal.until is not None:
+        said.append(tr("by {day}").format(day=date(goal.until)))
+    if goal.ended is not None:
+        by = f", {goal.ended_by}" if goal.ended_by else ""
+        said.append(tr("ended {day}").format(day=date(goal.ended)) + by)
+    return " · ".join([*said, *filter(None, [goal.note])])

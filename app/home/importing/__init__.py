@@ -1,0 +1,1 @@
+"""The page that makes recordings of other programs' files, and its controller."""

@@ -1,0 +1,296 @@
+"""Recordings of another program and their sensors: what each is and where it was worn, to be confirmed or changed."""
+
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtWidgets import QBoxLayout, QGridLayout, QHBoxLayout, QVBoxLayout, QWidget
+
+from app.home.importing.import_words import (
+    KIND_WORDS,
+    SITE_WORDS,
+    breakable,
+    facts,
+    kind_origin_words,
+    liveliness,
+    origin_words,
+    sensor_name,
+)
+from app.theme.icons import Icon
+from app.theme.notifier import ThemeNotifier
+from app.widgets.button import Button, ButtonKind
+from app.widgets.card import Card
+from app.widgets.choice import Choice
+from app.widgets.heard_order import hear_as_laid_out
+from app.widgets.small_curve import SmallCurve
+from app.widgets.text import SEMIBOLD, Text
+from app.wording.translation import joined, tr, tr_n
+from core.body import LEG_SITES, Side, Site
+from core.samples import RecordingKind
+
+if TYPE_CHECKING:
+    from app.importing.import_drafts import DraftRecording, DraftSensor, Origin, SessionDraft
+    from core.placement.chains import Chains
+
+OPEN, ELSEWHERE = "open", "elsewhere"  # what has no site or kind: left open, and worn elsewhere than on a leg
+
+
+class DraftCards(QWidget):
+    """Signals
+    -------
+    changed
+        A choice was made.
+    placing_wished
+        The motion shall say where the sensors were.
+    """
+
+    changed = Signal()
+    placing_wished = Signal()
+
+    def __init__(self, look: ThemeNotifier, of_code: QWidget) -> None:
+        super().__init__()
+        self._look = look
+        self._recordings: list[_RecordingRow] = []
+        self._sensors: list[_SensorRow] = []
+        self._chains: Chains | None = None
+        self._of_recordings, self._of_sensors = Card(look, padding=20, spacing=12), Card(look, padding=20, spacing=8)
+        self._recordings_title = Text(look, size=16, weight=SEMIBOLD, wraps=True)
+        self._recording_rows = QVBoxLayout()
+        self._sensors_title = Text(look, tr("Where was each sensor worn?"), size=16, weight=SEMIBOLD, wraps=True)
+        self._sensor_rows = QGridLayout()
+        self.place = Button(look, tr("Find from the motion"), ButtonKind.SECONDARY, Icon.WAVE, height=40)
+        self._question = Text(look, wraps=True)
+        self.is_left = Button(look, tr("Left leg"), ButtonKind.SECONDARY, height=40)
+        self.is_right = Button(look, tr("Right leg"), ButtonKind.SECONDARY, height=40)
+        self.trouble = Text(look, tone="ink2", wraps=True)
+        self._build(of_code)
+
+    @property
+    def kinds(self) -> list[RecordingKind | None]:
+        """Of each recording; None: it is left out."""
+        said = [row.kind.currentData() for row in self._recordings]
+        return [RecordingKind(kind) if kind != OPEN else None for kind in said]
+
+    @property
+    def sites(self) -> dict[str, Site | None]:
+        """Of each sensor by its key; None: not on a leg, or not said."""
+        said = {row.sensor.key: row.site.currentData() for row in self._sensors}
+        return {key: Site(site) if site not in (OPEN, ELSEWHERE) else None for key, site in said.items()}
+
+    @property
+    def worn(self) -> list[str]:
+        """The keys of all sensors but those that were not on a leg."""
+        return [row.sensor.key for row in self._sensors if row.site.currentData() != ELSEWHERE]
+
+    @property
+    def what_is_wrong(self) -> str:
+        """Why this cannot be imported yet; empty where it can."""
+        placed = [site for site in self.sites.values() if site is not None]
+        twice = [site for site in LEG_SITES if placed.count(site) > 1]
+        if twice:
+            return tr("{site} is chosen twice.").format(site=tr(SITE_WORDS[twice[0]]))
+        if not placed:
+            return tr("Say of at least one sensor where it was worn.")
+        if not any(self.kinds):
+            return tr("All recordings are left out.")
+        return ""
+
+    @property
+    def tab_order(self) -> list[QWidget]:
+        kinds: list[QWidget] = [row.kind for row in self._recordings]
+        return [*kinds, *(row.site for row in self._sensors), self.place, self.is_left, self.is_right]
+
+    def show_folder(self) -> None:
+        """Show nothing but the code: what a session folder says of its recordings and sensors holds."""
+        self._of_recordings.hide()
+        self._of_sensors.hide()
+
+    def show_draft(self, program: str, draft: "SessionDraft") -> None:
+        """Show what was read, with what is proposed."""
+        self._chains = None
+        self._of_recordings.show()
+        self._of_sensors.show()
+        for shown in self._recordings:
+            shown.remove()
+        for sensor in self._sensors:
+            sensor.remove()
+        count = len(draft.recordings)
+        title = tr_n("{count} recording of {program}", "{count} recordings of {program}", count)
+        self._recordings_title.setText(title.format(count=count, program=program))
+        self._recordings = [_RecordingRow(self._look, self._recording_rows, one) for one in draft.recordings]
+        longest = max(draft.recordings, key=lambda one: max((len(s.block) for s in one.trial.sensors), default=0))
+        self._sensors = [_SensorRow(self._look, self._sensor_rows, one, longest) for one in draft.sensors]
+        for row in self._recordings:
+            row.kind.currentIndexChanged.connect(self._on_changed)
+        for sensor in self._sensors:
+            sensor.site.currentIndexChanged.connect(self._on_changed)
+        for card in (self._of_recordings, self._of_sensors):
+            hear_as_laid_out(card)
+        self._on_changed()
+
+    def show_chains(self, chains: "Chains") -> bool:
+        """Take the legs that the motion tells: ask which of them is the left one, unless a site that was said tells it.
+
+        Returns whether they fit the sites that were said.
+        """
+        said = {key: site for key, site in self.sites.items() if site is not None}
+        fitting = [side for side in Side if all(chains.sites(side).get(key) is site for key, site in said.items())]
+        if not fitting:
+            return False
+        self._chains = chains
+        if len(fitting) == 1:
+            self._on_side(fitting[0])
+        else:
+            self._show_question()
+            self.is_left.setFocus()
+        return True
+
+    def _build(self, of_code: QWidget) -> None:
+        self._of_recordings.column.addWidget(self._recordings_title)
+        self._of_recordings.column.addLayout(self._recording_rows)
+        self._of_recordings.column.addStretch(1)
+        column = self._of_sensors.column
+        column.addWidget(self._sensors_title)
+        column.addLayout(self._sensor_rows)
+        self._sensor_rows.setColumnStretch(0, 1)
+        column.addWidget(self.trouble)
+        column.addWidget(self._question)
+        buttons = QHBoxLayout()
+        for button in (self.place, self.is_left, self.is_right):
+            buttons.addWidget(button)
+        buttons.addStretch(1)
+        column.addLayout(buttons)
+        column.addStretch(1)
+        self._left = QVBoxLayout()
+        self._left.addWidget(self._of_recordings)
+        self._left.addWidget(of_code)
+        self._left.addStretch(1)
+        self._row = QBoxLayout(QBoxLayout.Direction.LeftToRight, self)
+        self._row.setContentsMargins(0, 0, 0, 0)
+        self._row.addLayout(self._left, 1)
+        self._row.addWidget(self._of_sensors, 1)
+        self.place.clicked.connect(self._on_place)
+        self.is_left.clicked.connect(lambda: self._on_side(Side.LEFT))
+        self.is_right.clicked.connect(lambda: self._on_side(Side.RIGHT))
+
+    def set_narrow(self, is_narrow: bool) -> None:
+        """Put the sensors under the recordings."""
+        for layout in (self._row, self._left):
+            layout.setSpacing(self._look.theme.px(16))
+        way = QBoxLayout.Direction.TopToBottom if is_narrow else QBoxLayout.Direction.LeftToRight
+        self._row.setDirection(way)
+
+    def _on_changed(self) -> None:
+        self.trouble.setText(self.what_is_wrong)
+        self.trouble.setVisible(bool(self.what_is_wrong))
+        for row in self._sensors:
+            row.tell()
+        self._show_question()
+        self.changed.emit()
+
+    def _show_question(self) -> None:
+        is_open = any(row.site.currentData() == OPEN for row in self._sensors)
+        is_asking = self._chains is not None
+        self.place.setVisible(is_open and not is_asking and 2 <= len(self.worn) <= 6)
+        self._question.setVisible(is_asking)
+        for button in (self.is_left, self.is_right):
+            button.setVisible(is_asking)
+        if self._chains is not None:
+            names = {row.sensor.key: sensor_name(row.sensor) for row in self._sensors}
+            first = joined([names[key] for key in self._chains.legs[0].sensors])
+            asked = tr("The motion puts {sensors} on one leg, from the thigh down. Which leg is it?")
+            doubt = "" if self._chains.is_certain else tr("It is not sure: compare it with your notes.")
+            self._question.setText(" ".join(filter(None, [asked.format(sensors=first), doubt])))
+
+    def _on_place(self) -> None:
+        self._chains = None
+        self.placing_wished.emit()
+
+    def _on_side(self, side: Side) -> None:
+        from app.importing.import_drafts import (
+            Origin,  # here: the window starts without what reads other programs' files
+        )
+
+        assert self._chains is not None
+        sites = self._chains.sites(side)
+        self._chains = None
+        for row in self._sensors:
+            if row.sensor.key in sites:
+                row.choose(sites[row.sensor.key], Origin.MOTION)
+        self._on_changed()
+
+
+class _RecordingRow:
+    def __init__(self, look: ThemeNotifier, column: QVBoxLayout, recording: "DraftRecording") -> None:
+        self._part = QWidget()
+        grid = QGridLayout(self._part)
+        grid.setContentsMargins(0, 0, 0, 0)
+        grid.setColumnStretch(0, 1)
+        self.kind = Choice(look, tr("What is {name}?").format(name=recording.title))
+        for kind, words in KIND_WORDS.items():
+            self.kind.addItem(tr(words), kind)
+        self.kind.addItem(tr("Left out"), OPEN)
+        self.kind.setCurrentIndex(self.kind.findData(recording.kind))
+        self.kind.setMinimumHeight(self.kind.sizeHint().height())
+        curve = SmallCurve(look, tr("How fast a sensor turned"))
+        curve.show_curve(*liveliness([sensor.block for sensor in recording.trial.sensors]))
+        grid.addWidget(Text(look, breakable(recording.title), weight=SEMIBOLD, wraps=True), 0, 0)
+        grid.addWidget(curve, 0, 1)
+        grid.addWidget(self.kind, 0, 2, Qt.AlignmentFlag.AlignRight)
+        said = f"{facts(recording.trial)} · {kind_origin_words(recording.origin)}"
+        grid.addWidget(Text(look, said, size=12, tone="ink2", wraps=True), 1, 0, 1, 3)
+        for unread in recording.trial.unread:
+            grid.addWidget(Text(look, str(unread.refusal), size=12, tone="ink2", wraps=True), grid.rowCount(), 0, 1, 3)
+        column.addWidget(self._part)
+
+    def remove(self) -> None:
+        self._part.setParent(None)
+        self._part.deleteLater()
+
+
+class _SensorRow:
+    def __init__(self, look: ThemeNotifier, grid: QGridLayout, sensor: "DraftSensor", shown: "DraftRecording") -> None:
+        from app.importing.import_drafts import key_of
+
+        self.sensor = sensor
+        self._origin, self._proposed = sensor.origin, sensor.site
+        name = sensor_name(sensor)
+        self.site = Choice(look, tr("Where was {name} worn?").format(name=name))
+        self.site.addItem(tr("Not said"), OPEN)
+        for site, words in SITE_WORDS.items():
+            self.site.addItem(tr(words), site)
+        self.site.addItem(tr("Not on a leg"), ELSEWHERE)
+        self.site.setCurrentIndex(self.site.findData(sensor.site) if sensor.site is not None else 0)
+        self.site.setMinimumHeight(self.site.sizeHint().height())  # the rows of a grid give way before they scroll
+        self._curve = SmallCurve(look, tr("How fast a sensor turned"))
+        self._curve.show_curve(*liveliness([one.block for one in shown.trial.sensors if key_of(one) == sensor.key]))
+        self._words = Text(look, breakable(name), wraps=True)
+        self._from = Text(look, size=12, tone="ink2")
+        row = grid.rowCount()
+        self._said = QWidget()
+        said = QVBoxLayout(self._said)
+        said.setContentsMargins(0, 0, 0, 0)
+        said.setSpacing(0)
+        said.addWidget(self._words)
+        said.addWidget(self._from)
+        for column, part in enumerate(self._parts):
+            grid.addWidget(part, row, column)
+
+    @property
+    def _parts(self) -> tuple[QWidget, ...]:
+        return self._said, self._curve, self.site
+
+    def choose(self, site: Site, origin: "Origin") -> None:
+        """As something other than the person says."""
+        self._origin, self._proposed = origin, site
+        self.site.setCurrentIndex(self.site.findData(site))
+
+    def tell(self) -> None:
+        """Say where the site comes from, as long as it is the one that was proposed."""
+        is_proposed = self._proposed is not None and self.site.currentData() == self._proposed
+        self._from.setText(origin_words(self._origin) if is_proposed else "")
+        self._from.setVisible(is_proposed)
+
+    def remove(self) -> None:
+        for part in self._parts:
+            part.setParent(None)
+            part.deleteLater()

@@ -1,0 +1,190 @@
+"""What is in these files, and whose is it? Before recordings are taken into the library."""
+
+import datetime
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import Signal
+from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
+
+from app.home.importing.import_draft import DraftCards
+from app.theme.icons import Icon
+from app.theme.notifier import ThemeNotifier
+from app.widgets.button import Button, ButtonKind
+from app.widgets.card import Card
+from app.widgets.field import Field, NumberField
+from app.widgets.findings_list import FindingsList
+from app.widgets.text import SEMIBOLD, Text
+from app.widgets.themed import Themed
+from app.wording.translation import tr, tr_n
+from core.findings import Finding
+
+if TYPE_CHECKING:
+    from app.importing.import_drafts import SessionDraft
+
+RATE_HZ = (1.0, 2000.0)
+NARROW_BELOW = 900  # px of the design
+
+
+class ImportPage(Themed):
+    """Signals
+    -------
+    code_changed, changed
+        What was typed or chosen.
+    files_wished, folder_wished
+        Something is to be chosen.
+    reading_wished
+        What could not be read is to be tried again at a rate, Hz.
+    """
+
+    code_changed = Signal(str)
+    changed = Signal()
+    files_wished = Signal()
+    folder_wished = Signal()
+    reading_wished = Signal(float)
+
+    def __init__(self, look: ThemeNotifier) -> None:
+        super().__init__()
+        self._look = look
+        self._title = Text(look, tr("Import recordings"), size=26, weight=SEMIBOLD, wraps=True)
+        self._folder = Text(look, tone="ink2", wraps=True)
+        self._begin = Card(look, padding=20, spacing=12)
+        self.choose_files = Button(look, tr("Choose files"), ButtonKind.SECONDARY, Icon.FOLDER, height=56)
+        self.choose_folder = Button(look, tr("Choose a folder"), ButtonKind.SECONDARY, Icon.FOLDER, height=56)
+        self._formats = Text(look, tone="ink2", wraps=True)
+        self._recordings_title = Text(look, size=16, weight=SEMIBOLD, wraps=True)
+        self._recordings = Text(look, tone="ink2", wraps=True)
+        self.code = Field(look, tr("Patient's code"), is_code=True)
+        self._hint = Text(look, tone="ink2", wraps=True)
+        self.day_field = Field(look, tr("Day of the session"), is_optional=True, placeholder=tr("year-month-day"))
+        self.findings = FindingsList(look)
+        self._card = Card(look, padding=20, spacing=12)
+        self.draft = DraftCards(look, self._card)
+        self._unread = Card(look, padding=20, spacing=8)
+        self._unread_words = Text(look, tone="ink2", wraps=True)
+        self.rate = NumberField(
+            look,
+            tr("Samples per second, where a file does not tell"),
+            low=RATE_HZ[0],
+            high=RATE_HZ[1],
+            decimals=1,
+            unit=tr("Hz"),
+            is_optional=True,
+        )
+        self.read_again = Button(look, tr("Read again"), ButtonKind.SECONDARY, Icon.IMPORT, height=48)
+        self._build()
+        self._on_look_changed()
+
+    @property
+    def tab_order(self) -> list[QWidget]:
+        codes = [self.code.line_edit, self.day_field.line_edit]
+        chosen = [*self.draft.tab_order, *codes, self.findings, self.rate.line_edit, self.read_again]
+        return [self.choose_files, self.choose_folder, *chosen]
+
+    @property
+    def day(self) -> str | None:
+        """The day of the session, ISO 8601; empty where nobody says it, None where what was typed is none."""
+        try:
+            return datetime.date.fromisoformat(said).isoformat() if (said := self.day_field.text.strip()) else ""
+        except ValueError:
+            return None
+
+    def focus(self) -> None:
+        (self.choose_files if self.draft.isHidden() else self.code).setFocus()
+
+    def set_room(self, width: float) -> None:
+        """Lay out for a page of this width, in px of the design."""
+        self.draft.set_narrow(width < NARROW_BELOW)
+
+    def show_nothing(self, formats: Sequence[str]) -> None:
+        """Show how to begin. `formats`: the programs whose files can be read."""
+        self._formats.setText(tr("Files of {programs}, and session folders.").format(programs=", ".join(formats)))
+        self._folder.setText(tr("Drop files or folders onto this window, or choose them."))
+        self._show_parts(self._begin)
+
+    def show_session(
+        self, folder: str, recordings: Sequence[str], code: str, findings: Sequence[Finding], *, is_simulated: bool
+    ) -> None:
+        """Show a session folder: the names of its recordings, the patient's code as it has it, what was odd."""
+        count = len(recordings)
+        self._folder.setText(folder)
+        self._recordings_title.setText(tr_n("{count} recording", "{count} recordings", count).format(count=count))
+        self._recordings.setText(", ".join(recordings))
+        self._show_code(code, is_simulated=is_simulated)
+        self.findings.show_findings(tuple(findings))
+        self.draft.show_folder()
+        self._show_parts(self.draft, self._recordings_title, self._recordings)
+        self.findings.setVisible(bool(findings))
+
+    def show_draft(self, folder: str, program: str, draft: "SessionDraft") -> None:
+        """Show recordings of another program, to be confirmed or changed; their files do not say whose they are."""
+        self._folder.setText(folder)
+        self.draft.show_draft(program, draft)
+        self._show_code("", is_simulated=False)
+        self.day_field.set_text(draft.started[:10])
+        self.day_field.set_wrong("")
+        self._show_parts(self.draft, self.day_field)
+
+    def show_unread(self, sentences: Sequence[str], *, can_try_again: bool) -> None:
+        """Say what could not be read, and why; `can_try_again`: a rate may be all that is missing."""
+        self._unread_words.setText("\n".join(sentences))
+        self._unread.setVisible(bool(sentences))
+        self.rate.setVisible(can_try_again)
+        self.read_again.setVisible(can_try_again)
+
+    def _build(self) -> None:
+        buttons = QHBoxLayout()
+        for button in (self.choose_files, self.choose_folder):
+            buttons.addWidget(button)
+        buttons.addStretch(1)
+        self._begin.column.addLayout(buttons)
+        self._begin.column.addWidget(self._formats)
+        of_code: tuple[QWidget, ...] = (self._recordings_title, self._recordings, self.code, self._hint, self.day_field)
+        for part in of_code:
+            self._card.column.addWidget(part)
+        self._unread.column.addWidget(Text(self._look, tr("Not read"), size=16, weight=SEMIBOLD))
+        of_unread: tuple[QWidget, ...] = (self._unread_words, self.rate, self.read_again)
+        for part in of_unread:
+            self._unread.column.addWidget(part)
+        self._column = QVBoxLayout(self)
+        cards: tuple[QWidget, ...] = (self._begin, self.draft, self._unread, self.findings)
+        for part in (self._title, self._folder, *cards):
+            self._column.addWidget(part)
+        self._column.addStretch(1)
+        self.code.edited.connect(self.code_changed)
+        self.day_field.edited.connect(self._on_day_edited)
+        self.draft.changed.connect(self.changed)
+        self.choose_files.clicked.connect(self.files_wished)
+        self.choose_folder.clicked.connect(self.folder_wished)
+        self.read_again.clicked.connect(self._on_read_again)
+        self._show_parts(self._begin)
+        self.show_unread((), can_try_again=False)
+
+    def _show_code(self, code: str, *, is_simulated: bool) -> None:
+        self._hint.setText(
+            tr("These are simulated. They belong to a patient whose code starts with DEMO.")
+            if is_simulated
+            else tr("A patient who has this code gets the session; else a new patient is added.")
+        )
+        self.code.set_text(code)
+        self.code.set_wrong("")
+
+    def _show_parts(self, *shown: QWidget) -> None:
+        for part in (self._begin, self.draft, self._recordings_title, self._recordings, self.day_field):
+            part.setVisible(part in shown)
+        self.findings.hide()
+
+    def _on_day_edited(self, _text: str) -> None:
+        self.day_field.set_wrong("" if self.day is not None else tr("Write it as year-month-day, as 2026-03-09."))
+        self.changed.emit()
+
+    def _on_read_again(self) -> None:
+        if self.rate.value is not None:
+            self.reading_wished.emit(self.rate.value)
+        else:
+            self.rate.setFocus()
+
+    def _on_look_changed(self) -> None:
+        px = self._look.theme.px
+        self._column.setContentsMargins(px(24), px(16), px(24), px(20))
+        self._column.setSpacing(px(16))

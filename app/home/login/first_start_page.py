@@ -1,0 +1,302 @@
+"""The first start: whose library is it, what opens it, and what opens it when that is forgotten?
+
+All on one page. The recovery key is shown once; the way on opens when it has been typed back from the paper or file.
+Where a library was opened here before and is missing, the page says so, and makes a new one only if that is asked for.
+"""
+
+from collections.abc import Callable
+
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtGui import QResizeEvent
+from PySide6.QtWidgets import QBoxLayout, QWidget
+
+from app.home.login.typed_entry import COLUMN, EntryPage
+from app.system.passphrases import REFUSED, strength_in_words, strength_of
+from app.theme.icons import Icon
+from app.theme.notifier import ThemeNotifier
+from app.widgets.button import Button, ButtonKind
+from app.widgets.card import Card
+from app.widgets.field import Field
+from app.widgets.key_groups import KeyGroups
+from app.widgets.text import SEMIBOLD, Text
+from app.wording.translation import tr, tr_n
+
+LONGEST_CODE = 12
+
+
+class FirstStartPage(EntryPage):
+    """`is_same_key` compares the recovery key as it was typed back with the one that was shown."""
+
+    made = Signal(str, str, str)  # code, name, passphrase
+    print_wished = Signal(str)  # the recovery key
+    save_wished = Signal(str)
+    done = Signal()  # the recovery key was typed back
+    typed_back = Signal(str)  # a recovery key that is not shown here, to be compared with the library's
+    renew_wished = Signal()
+    put_off = Signal()
+    demonstration_wished = Signal()
+    join_wished = Signal()  # the library that a clinic's stations share
+    look_wished = Signal()  # whether the library that is missing is there now
+
+    def __init__(self, look: ThemeNotifier, shortest: int, is_same_key: Callable[[str, str], bool]) -> None:
+        super().__init__(look)
+        self._shortest, self._is_same_key, self.recovery_key = shortest, is_same_key, ""
+        self._missing = ""
+        self._is_asking = False
+        self._missing_title = Text(look, tr("Your library is missing"), size=26, weight=SEMIBOLD, wraps=True)
+        self.missing_lead = Text(look, tone="ink2", wraps=True)
+        self.look_again = Button(look, tr("Look again"), ButtonKind.PRIMARY, None, tr("Enter"))
+        self.make_another = Button(look, tr("Make a new, empty library instead"), ButtonKind.QUIET, height=44)
+        self._title = Text(look, tr("Your library"), size=26, weight=SEMIBOLD, wraps=True)
+        self._lead = Text(
+            look,
+            tr("Patients and recordings are kept on this computer only, encrypted. What you choose here opens them."),
+            tone="ink2",
+            wraps=True,
+        )
+        self.code = Field(look, tr("Your code, for example your initials"), is_code=True)
+        self.name = Field(look, tr("Your name, as it stands on reports"))
+        self.passphrase = Field(look, tr("Passphrase"), is_secret=True)
+        self._strength = Text(look, tone="ink2", wraps=True)
+        self.again = Field(look, tr("Passphrase again"), is_secret=True)
+        self.make = Button(look, tr("Make the library"), ButtonKind.PRIMARY, None, tr("Enter"))
+        self.demonstration = Button(look, tr("Look at the demonstration first"), ButtonKind.QUIET, Icon.PLAY, height=44)
+        self.join = Button(look, tr("Join the clinic's library"), ButtonKind.QUIET, Icon.NEXT, height=44)
+        self._key_title = Text(look, tr("Your recovery key"), size=26, weight=SEMIBOLD, wraps=True)
+        self._key_lead = Text(
+            look,
+            tr(
+                "It opens the library when the passphrase is forgotten; nothing else does, and nobody has a copy. It "
+                "is shown this once: print it or write it down, and keep it away from this computer."
+            ),
+            tone="ink2",
+            wraps=True,
+        )
+        self._asking_lead = Text(
+            look,
+            tr(
+                "It was made, but nobody has typed it back, so perhaps nobody has it. It opens the library when the "
+                "passphrase is forgotten; nothing else does. Type it from the paper or the file. If it is not to be "
+                "found, make a new one: the old one then opens only older backups."
+            ),
+            tone="ink2",
+            wraps=True,
+        )
+        self._key_words = KeyGroups(look)
+        self.print = Button(look, tr("Print"), ButtonKind.SECONDARY, Icon.PRINT)
+        self.save = Button(look, tr("Save as a file"), ButtonKind.SECONDARY, Icon.IMPORT)
+        self.typed = Field(look, tr("Type it back from the paper or the file"), is_code=True)
+        self.go = Button(look, tr("Go on"), ButtonKind.PRIMARY, None, tr("Enter"))
+        self.renew = Button(look, tr("Make a new recovery key"))
+        self.later = Button(look, tr("Later: ask at the next log in"), ButtonKind.QUIET, height=44)
+        self._build()
+        self._connect()
+        self._show()
+        self._on_look_changed()
+
+    @property
+    def tab_order(self) -> list[QWidget]:
+        fields = [self.code, self.name, self.passphrase, self.again]
+        first = [*(field.line_edit for field in fields), self.make, self.join, self.demonstration]
+        second = [self._key_words, self.print, self.save, self.typed.line_edit, self.go, self.renew, self.later]
+        return [self.look_again, self.make_another, *first, *second]
+
+    @property
+    def is_missing(self) -> bool:
+        """Whether the page says that a library is missing."""
+        return bool(self._missing)
+
+    def show_missing(self, folder: str, waiting: int = 0) -> None:
+        """Say that the library which was in this folder is missing; none: how to make one.
+
+        `waiting` recordings are on this computer until their library is back.
+        """
+        self._missing, self.recovery_key, self._is_asking = folder, "", False
+        told = [tr("It was in {folder}, and is not there now.").format(folder=folder)]
+        if waiting:
+            kept = tr_n(
+                "{count} recording is kept on this computer until its library is back.",
+                "{count} recordings are kept on this computer until their library is back.",
+                waiting,
+            )
+            told.append(kept.format(count=waiting))
+        told.append(tr("Connect its disk, or put its folder back: it then opens by itself."))
+        self.missing_lead.setText(" ".join(told))
+        self._show()
+
+    def show_recovery_key(self, key: str) -> None:
+        """Show the key, once, and forget the passphrase."""
+        self.recovery_key, self._is_asking = key, False
+        groups = key.split("-")
+        self._key_words.show_groups(groups)
+        for field in (self.passphrase, self.again, self.typed):
+            field.set_text("")
+        self._show()
+        self.focus()
+
+    def ask_for_recovery_key(self) -> None:
+        """Let the key be typed back that was shown earlier."""
+        self.recovery_key, self._is_asking = "", True
+        self._key_words.show_groups([])
+        self.typed.set_text("")
+        self._show()
+        self.focus()
+
+    def show_typed_wrong(self, sentence: str) -> None:
+        """Say why what was typed back is not taken."""
+        self.typed.set_wrong(sentence)
+        self.typed.setFocus()
+
+    def show_busy(self, is_busy: bool) -> None:
+        """Say that the library is being made."""
+        self.make.setEnabled(not is_busy)
+        self.make.setText(tr("Making the library") if is_busy else tr("Make the library"))
+        self.make.updateGeometry()
+
+    def refuse(self, sentence: str) -> None:
+        """Say why no library was made."""
+        self.show_busy(False)
+        self.code.set_wrong(sentence)
+        self.code.setFocus()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._fit()
+
+    def _fit(self) -> None:
+        """The other ways stand beside each other where there is the room."""
+        px = self._look.theme.px
+        room = min(px(COLUMN), self.width() - px(48))
+        needed = self.join.sizeHint().width() + self.demonstration.sizeHint().width() + px(4)
+        way = QBoxLayout.Direction.LeftToRight if needed <= room else QBoxLayout.Direction.TopToBottom
+        self._other_ways.setDirection(way)
+
+    def focus(self) -> None:
+        key_part = self.typed if self._is_asking else self.print if self.recovery_key else None
+        (key_part or (self.look_again if self._missing else self.code)).setFocus()
+
+    def _build(self) -> None:
+        self._first = Card(self._look, padding=24, spacing=16)
+        for part in (self.code, self.name, self.passphrase, self._strength, self.again, self.make):
+            self._first.column.addWidget(part)
+        self._other_ways = QBoxLayout(QBoxLayout.Direction.LeftToRight)
+        for way in (self.join, self.demonstration):
+            self._other_ways.addWidget(way, 0, Qt.AlignmentFlag.AlignLeft)
+        self._other_ways.addStretch(1)
+        self._second = Card(self._look, padding=24, spacing=16)
+        self._keep_row = QBoxLayout(QBoxLayout.Direction.LeftToRight)
+        self._keep_row.addWidget(self.print, 1)
+        self._keep_row.addWidget(self.save, 1)
+        self._second.column.addWidget(self._key_words)
+        self._second.column.addLayout(self._keep_row)
+        self._second.column.addWidget(self.typed)
+        self._second.column.addWidget(self.go)
+        self._second.column.addWidget(self.renew)
+        self._second.column.addWidget(self.later)
+        self._missing_card = Card(self._look, padding=24, spacing=16)
+        self._missing_card.column.addWidget(self.look_again)
+        self._missing_card.column.addWidget(self.make_another)
+        for one in (self._missing_title, self.missing_lead, self._missing_card):
+            self.column.addWidget(one)
+        self.column.addWidget(self._title)
+        self.column.addWidget(self._lead)
+        self.column.addWidget(self._first)
+        self.column.addLayout(self._other_ways)
+        self.column.addWidget(self._key_title)
+        self.column.addWidget(self._key_lead)
+        self.column.addWidget(self._asking_lead)
+        self.column.addWidget(self._second)
+
+    def _connect(self) -> None:
+        self.look_again.clicked.connect(self.look_wished)
+        self.make_another.clicked.connect(self._on_make_another)
+        self.make.clicked.connect(self._on_make)
+        self.demonstration.clicked.connect(self.demonstration_wished)
+        self.join.clicked.connect(self.join_wished)
+        self.print.clicked.connect(self._on_print)
+        self.save.clicked.connect(self._on_save)
+        self.go.clicked.connect(self._on_go)
+        self.renew.clicked.connect(self.renew_wished)
+        self.later.clicked.connect(self.put_off)
+        self.typed.line_edit.returnPressed.connect(self._on_go)
+        self.typed.edited.connect(self._on_typed)
+        for field in (self.code, self.name, self.passphrase, self.again):
+            field.edited.connect(self._on_edited)
+            field.line_edit.returnPressed.connect(self._on_make)
+
+    def _show(self) -> None:
+        has_key, is_asking = bool(self.recovery_key), self._is_asking
+        is_first = not has_key and not is_asking
+        for block in (self._missing_title, self.missing_lead, self._missing_card):
+            block.setVisible(is_first and self.is_missing)
+        for block in (self._title, self._lead, self._first):
+            block.setVisible(is_first and not self.is_missing)
+        self.demonstration.setVisible(is_first)
+        self.join.setVisible(is_first and not self.is_missing)
+        for block in (self._key_title, self._second):
+            block.setVisible(has_key or is_asking)
+        for part in (self._key_lead, self._key_words, self.print, self.save):
+            part.setVisible(has_key)
+        for part in (self._asking_lead, self.renew, self.later):
+            part.setVisible(is_asking)
+        self._strength.setText(strength_in_words(self.passphrase.text, self._shortest, self._known))
+
+    @property
+    def _known(self) -> tuple[str, ...]:
+        return self.code.text, self.name.text
+
+    def _on_make_another(self) -> None:
+        self.show_missing("")
+        self.focus()
+
+    def _on_edited(self, _text: str) -> None:
+        for field in (self.code, self.name, self.passphrase, self.again):
+            field.set_wrong("")
+        self._strength.setText(strength_in_words(self.passphrase.text, self._shortest, self._known))
+
+    def _on_make(self) -> None:
+        code = self.code.text.strip()
+        wrong: list[tuple[Field, str]] = []
+        if not code.isalnum() or len(code) > LONGEST_CODE:
+            wrong.append((self.code, tr("Type 1 to {most} letters and figures.").format(most=LONGEST_CODE)))
+        if not self.name.text.strip():
+            wrong.append((self.name, tr("Type your name.")))
+        if strength_of(self.passphrase.text or "-", self._shortest, self._known) in REFUSED:
+            why = strength_in_words(self.passphrase.text or "-", self._shortest, self._known)
+            wrong.append((self.passphrase, why))
+        elif self.passphrase.text != self.again.text:
+            wrong.append((self.again, tr("The two are not the same. Type the second one again.")))
+        for field, sentence in wrong:
+            field.set_wrong(sentence)
+        if wrong:
+            wrong[0][0].setFocus()
+        elif self.make.isEnabled():
+            self.made.emit(code, self.name.text.strip(), self.passphrase.text)
+
+    def _on_print(self) -> None:
+        self.print_wished.emit(self.recovery_key)
+
+    def _on_save(self) -> None:
+        self.save_wished.emit(self.recovery_key)
+
+    def _on_typed(self, _text: str) -> None:
+        self.typed.set_wrong("")
+
+    def _on_go(self) -> None:
+        if self._is_asking:
+            self.typed_back.emit(self.typed.text)
+            return
+        if not self._is_same_key(self.typed.text, self.recovery_key):
+            self.typed.set_wrong(tr("This is not the key above. Compare it group by group."))
+            self.typed.setFocus()
+            return
+        self.recovery_key = ""
+        self._key_words.show_groups([])
+        self.typed.set_text("")
+        self.done.emit()
+
+    def _on_look_changed(self) -> None:
+        super()._on_look_changed()
+        self._keep_row.setSpacing(self._look.theme.px(12))
+        self._other_ways.setSpacing(self._look.theme.px(4))
+        self._fit()

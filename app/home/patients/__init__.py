@@ -1,0 +1,1 @@
+"""The home page: patients, their sessions and progress, deleting and recovering them."""

@@ -1,0 +1,142 @@
+"""Whose sessions does home show? The patients are read from the library, and all of the one who is chosen."""
+
+import datetime
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+from uuid import UUID
+
+from PySide6.QtCore import QObject, Signal
+
+from app.editing.deleted_elsewhere import deleted_by, deletion_message
+from app.home.patients.home_page import HomePage
+from app.home.patients.reading import PatientReading, read_patient
+from app.summary.course_lanes import CourseVisit
+from app.wording.patients import patient_line, person
+from app.workers.library_controller import LibraryController
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from app.storage import stored
+    from app.storage.opened import OpenedLibrary
+
+
+@dataclass(frozen=True, slots=True)
+class _Patients:
+    """All patients, and which of them have a walk that was recovered and is not decided yet.
+
+    `wanted` is to be chosen now that they are read; None: who is chosen then. `deleted_by`: who deleted the patient
+    that was in sight, if another did.
+    """
+
+    every: "tuple[stored.StoredPatient, ...]"
+    undecided: frozenset[UUID]
+    wanted: UUID | None
+    deleted_by: str = ""
+
+
+class PatientsAtHome(QObject):
+    """`is_awaited` tells of a patient's code whether sessions are still being made, as in the demonstration."""
+
+    chosen = Signal()  # who is in sight, or nobody
+    refused = Signal(str, str)
+
+    def __init__(
+        self, controller: LibraryController, page: HomePage, is_awaited: "Callable[[str], bool]", parent: QObject
+    ) -> None:
+        super().__init__(parent)
+        self._controller, self._page, self._is_awaited = controller, page, is_awaited
+        self._patients: dict[UUID, stored.StoredPatient] = {}
+        self._is_forgotten = True
+        self._sessions_of: UUID | None = None  # the patient whose sessions are shown, or being read
+        self._reading: PatientReading | None = None
+        page.patient_chosen.connect(self._on_chosen)
+
+    @property
+    def patient(self) -> "stored.StoredPatient | None":
+        """The patient whose sessions are shown."""
+        return self.known(self._page.patient_id) if self._page.patient_id is not None else None
+
+    def known(self, patient_id: UUID) -> "stored.StoredPatient | None":
+        """A patient of those that were read; None: not among them, or no longer."""
+        return self._patients.get(patient_id)
+
+    @property
+    def visits(self) -> tuple[CourseVisit, ...]:
+        """Those of the patient in sight."""
+        return self._reading.visits(_now()) if self._reading is not None else ()
+
+    def read(self, wanted: UUID | None = None, *, is_deleted_here: bool = False) -> None:
+        """Read the patients anew, and choose one of them, else the one that was chosen.
+
+        Where that one was deleted, it is said by whom, but for `is_deleted_here`.
+        """
+        self._is_forgotten = False
+        shown = None if is_deleted_here else self.patient
+
+        def read(opened: "OpenedLibrary") -> _Patients:
+            undecided = frozenset(walk.patient_id for walk in opened.library.recordings.undecided())
+            every = opened.library.patients.search()
+            is_gone = shown is not None and all(one.id != shown.id for one in every)
+            by = deleted_by(opened, shown.id) if shown is not None and is_gone else ""
+            return _Patients(every, undecided, wanted, by)
+
+        self._controller.run(read, self._on_read, self._on_refused, self)
+
+    def forget(self) -> None:
+        """Keep nothing of any patient, nor what is still being read."""
+        self._is_forgotten = True
+        self._patients.clear()
+        self._sessions_of = self._reading = None
+        self._page.search.clear()
+        self._page.forget_patients()
+        self._page.show_patient("", "")
+
+    def _on_read(self, patients: _Patients) -> None:
+        if self._is_forgotten:  # the library was left meanwhile
+            return
+        before = self.patient
+        if patients.deleted_by and before is not None:
+            self.refused.emit(*deletion_message(before.details.code, patients.deleted_by))
+        self._patients = {patient.id: patient for patient in patients.every}
+        lines = [patient_line(patient, _now(), patient.id in patients.undecided) for patient in patients.every]
+        self._page.show_patients(lines, patients.wanted)
+        self._on_chosen(self._page.patient_id)
+
+    def _on_chosen(self, patient_id: UUID | None) -> None:
+        patient = self.known(patient_id) if patient_id is not None else None
+        self.chosen.emit()
+        if patient is None:
+            self._sessions_of = self._reading = None
+            self._page.show_patient("", "")
+            self._page.forget_sessions()
+            return
+        told = patient.details
+        self._page.show_patient(told.code, " · ".join(filter(None, [person(told), told.device, told.aids])))
+        own = patient.id
+        if own != self._sessions_of:  # what stands there is another patient's
+            self._sessions_of, self._reading = own, None
+            self._page.forget_sessions()
+
+        def read(opened: "OpenedLibrary") -> PatientReading:
+            return read_patient(opened, own)
+
+        self._controller.run(read, self._on_sessions, self._on_refused, self)
+
+    def _on_sessions(self, reading: PatientReading) -> None:
+        if self._is_forgotten or reading.patient_id != self._page.patient_id:
+            return  # another was chosen meanwhile
+        if reading == self._reading:
+            return  # somebody may be moving in what stands there
+        now = _now()
+        self._reading = reading
+        patient = self.patient
+        self._page.panel.say_none_yet(is_awaited=patient is not None and self._is_awaited(patient.details.code))
+        self._page.show_sessions(reading.lines(now), reading.visits(now), reading.next_step(now), reading.goals)
+
+    def _on_refused(self, what: str, remedy: str) -> None:
+        self.refused.emit(what, remedy)
+
+
+def _now() -> datetime.datetime:
+    return datetime.datetime.now().astimezone()

@@ -1,0 +1,71 @@
+"""Visits of a patient that have no figures in the course yet are evaluated, until they are or somebody stops it."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+from uuid import UUID
+
+from PySide6.QtCore import QObject, Signal
+
+from app.home.patients.reading import compute_courses
+from app.wording.translation import tr, tr_n
+from app.workers.background import Report
+from app.workers.library_controller import LibraryController
+
+if TYPE_CHECKING:
+    from app.storage.opened import OpenedLibrary
+
+
+class ComputingCourses(QObject):
+    """One computation at a time.
+
+    Signals
+    -------
+    working
+        It began; what is being done, in words.
+    progressed
+        How much of it is done, 0 to 1, and what is looked at.
+    left
+        It is over, however it ended.
+    told
+        What could not be done, and what to do.
+    """
+
+    working = Signal(str)
+    progressed = Signal(float, str)
+    left = Signal()
+    told = Signal(str, str)
+
+    def __init__(self, controller: LibraryController, parent: QObject) -> None:
+        super().__init__(parent)
+        self._controller = controller
+        self.is_working = False
+
+    def begin(self, missing: Sequence[UUID]) -> None:
+        def work(opened: "OpenedLibrary", report: Report) -> int:
+            return compute_courses(opened, missing, report)
+
+        self.is_working = True
+        self.working.emit(tr("Computing the visits"))
+        self._controller.run_long(work, self._on_computed, self._on_refused, self._on_progressed, self)
+
+    def stop(self) -> None:
+        self._controller.stop_long()
+        self._leave()
+        self.told.emit(tr("This was stopped."), tr("The visits that were computed stay in the course."))
+
+    def _on_progressed(self, share: float, what: str) -> None:
+        self.progressed.emit(share, what)
+
+    def _leave(self) -> None:
+        self.is_working = False
+        self.left.emit()
+
+    def _on_computed(self, unread: int) -> None:
+        self._leave()
+        if unread:
+            said = tr_n("{count} visit could not be computed.", "{count} visits could not be computed.", unread)
+            self.told.emit(said.format(count=unread), tr("Open it to see why."))
+
+    def _on_refused(self, what: str, remedy: str) -> None:
+        self._leave()
+        self.told.emit(what, remedy)

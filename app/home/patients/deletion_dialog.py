@@ -1,0 +1,88 @@
+"""What goes with a patient, until when it can be restored and who works with it, before the patient is deleted."""
+
+import datetime
+
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtGui import QColor, QPalette
+from PySide6.QtWidgets import QDialog, QHBoxLayout, QVBoxLayout, QWidget
+
+from app.editing.words import by_words
+from app.storage.stored import KEPT_DELETED, WhatGoes
+from app.theme.icons import Icon
+from app.theme.notifier import ThemeNotifier
+from app.widgets.button import Button, ButtonKind
+from app.widgets.notice import Notice
+from app.widgets.text import SEMIBOLD, Text
+from app.wording.dates import date
+from app.wording.translation import tr, tr_n
+
+WIDTH, EDGE = 520, 24
+
+
+class DeletionDialog(QDialog):
+    """Enter and Escape both leave the patient where it is: deleting is pressed, or reached by Tab."""
+
+    confirmed = Signal()
+
+    def __init__(self, look: ThemeNotifier, goes: WhatGoes, now: datetime.datetime, parent: QWidget) -> None:
+        super().__init__(parent)
+        self._look = look
+        title = tr("Delete patient {code}?").format(code=goes.code)
+        self.setWindowTitle(title)
+        self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        self._title = Text(look, title, size=20, weight=SEMIBOLD, wraps=True)
+        self.goes = Text(look, _what_goes(goes), wraps=True)
+        self.until = Text(
+            look,
+            tr("You can undo this now, or restore it in Settings until {day}. Then it is destroyed.").format(
+                day=date((now + KEPT_DELETED).date())
+            ),
+            wraps=True,
+        )
+        self.others = Notice(look, 16)
+        self.others.setVisible(bool(words := _others(goes, now)))
+        if words:
+            self.others.tell(Icon.WARNING, words, tr("Ask there before you delete."), is_caution=True)
+        self.delete = Button(look, tr("Delete patient"), ButtonKind.SECONDARY, Icon.DELETE)
+        self.cancel = Button(look, tr("Cancel"), ButtonKind.PRIMARY, key=tr("Esc"))
+        self._build(parent)
+        self.delete.clicked.connect(self._on_delete)
+        self.cancel.clicked.connect(self.reject)
+        self.cancel.setFocus()
+
+    def _build(self, parent: QWidget) -> None:
+        buttons = QHBoxLayout()
+        buttons.addWidget(self.delete)
+        buttons.addStretch(1)
+        buttons.addWidget(self.cancel)
+        column = QVBoxLayout(self)
+        for part in (self._title, self.goes, self.others, self.until):
+            column.addWidget(part)
+        column.addLayout(buttons)
+        px, colours = self._look.theme.px, self._look.theme.colours
+        column.setContentsMargins(px(EDGE), px(20), px(EDGE), px(20))
+        column.setSpacing(px(12))
+        palette = self.palette()
+        palette.setColor(QPalette.ColorRole.Window, QColor(colours.surface))
+        self.setPalette(palette)
+        width = min(px(WIDTH), parent.window().width() - px(EDGE))
+        self.resize(width, column.totalHeightForWidth(width))
+
+    def _on_delete(self) -> None:
+        self.accept()
+        self.confirmed.emit()
+
+
+def _what_goes(goes: WhatGoes) -> str:
+    sessions = tr_n("{count} session", "{count} sessions", goes.sessions).format(count=goes.sessions)
+    recordings = tr_n("{count} recording", "{count} recordings", goes.recordings).format(count=goes.recordings)
+    return tr("With the patient go {sessions} and {recordings}.").format(sessions=sessions, recordings=recordings)
+
+
+def _others(goes: WhatGoes, now: datetime.datetime) -> str:
+    """Say what speaks for somebody who works with the patient now."""
+    if goes.is_being_recorded:
+        return tr("A recording of this patient is running or was not stopped.")
+    if goes.seen_by:
+        return tr("Opened by somebody else: {who}.").format(who=by_words(goes.seen_by, goes.seen_at, now))
+    return ""

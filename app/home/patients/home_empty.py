@@ -1,0 +1,183 @@
+"""What stands in the place of patients as long as there is none: how to begin, what a session needs and how it goes."""
+
+from PySide6.QtCore import QPointF, QRectF, QSize, Qt
+from PySide6.QtGui import QFontMetrics, QPainter, QPaintEvent
+from PySide6.QtWidgets import QBoxLayout, QGridLayout, QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
+
+from app.theme.icons import Icon
+from app.theme.notifier import ThemeNotifier
+from app.widgets.button import Button, ButtonKind
+from app.widgets.card import Card
+from app.widgets.heard_order import hear_as_laid_out
+from app.widgets.icons import IconMark
+from app.widgets.painted_text import CENTRE, PaintedText
+from app.widgets.text import SEMIBOLD, Text
+from app.widgets.themed import Themed
+from app.wording.translation import tr
+
+CIRCLE = 26
+NARROW_BELOW = 760  # px of the design: what a session needs stands under one another
+WIDE_FROM = 960
+PAGE_EDGE, EDGE, NARROW_EDGE, GAP = 24, 80, 24, 16  # from the page's edge to the card, and from that to the words
+LINE = 20
+WIDEST_WORDS = 600
+
+
+class EmptyLibrary(Card):
+    """Passive: whoever holds it connects its buttons."""
+
+    def __init__(self, look: ThemeNotifier) -> None:
+        self._ways, self._needs = QBoxLayout(QBoxLayout.Direction.LeftToRight), QGridLayout()
+        self._edge = EDGE
+        super().__init__(look)
+        self.new_patient = Button(look, tr("New patient"), ButtonKind.PRIMARY, Icon.ADD, tr("Ctrl N"), height=56)
+        self.demonstration = Button(look, tr("Open demonstration"), ButtonKind.SECONDARY, Icon.PLAY, height=56)
+        self.importing = Button(look, tr("Import recordings"), ButtonKind.SECONDARY, Icon.IMPORT, height=56)
+        self.steps = StepsPreview(look)
+        begin = tr(
+            "Begin with a code instead of a name. A first session takes about five minutes; "
+            "the demonstration walks you through one, without sensors."
+        )
+        for button in self.buttons:
+            self._ways.addWidget(button)
+        self._ways.addStretch(1)
+        self._need_parts = [
+            self._need(Icon.WAVE, tr("Six sensors"), tr("thigh, shank, foot; any way round")),
+            self._need(Icon.ARROW, tr("Eight metres of floor"), tr("ten strides of each leg")),
+            self._need(Icon.CHECK, tr("No poses, no tape"), tr("the patient swings the legs freely")),
+        ]
+        self.column.addStretch(2)
+        self.column.addWidget(Text(look, tr("No patients yet"), size=38, weight=SEMIBOLD, wraps=True))
+        self._begin = Text(look, begin, size=16, tone="ink2", wraps=True)
+        begin_row = QHBoxLayout()  # which knows how high the words are at their greatest width
+        begin_row.addWidget(self._begin, 1)
+        begin_row.addStretch(0)
+        self.column.addLayout(begin_row)
+        self.column.addLayout(self._ways)
+        self.column.addStretch(2)
+        self.column.addWidget(Text(look, tr("What a session needs"), size=16, weight=SEMIBOLD, wraps=True))
+        self.column.addLayout(self._needs)
+        self.column.addStretch(1)
+        self.column.addWidget(self.steps)
+        self.column.addStretch(2)
+        self.set_room(1000)
+
+    @property
+    def buttons(self) -> list[QWidget]:
+        return [self.new_patient, self.demonstration, self.importing]
+
+    def set_room(self, width: float) -> None:
+        """Lay out for a page of this width, in px of the design."""
+        px = self._look.theme.px
+        self._edge = EDGE if width >= WIDE_FROM else NARROW_EDGE
+        room = px(width - 2 * PAGE_EDGE) - 2 * px(self._edge)
+        beside = sum(button.sizeHint().width() for button in self.buttons) + (len(self.buttons) - 1) * px(GAP)
+        way = QBoxLayout.Direction.LeftToRight if beside <= room else QBoxLayout.Direction.TopToBottom
+        self._ways.setDirection(way)
+        is_narrow = width < NARROW_BELOW
+        for number, part in enumerate(self._need_parts):
+            self._needs.addWidget(part, number if is_narrow else 0, 0 if is_narrow else number)
+        hear_as_laid_out(self)
+        self.steps.set_room(room)
+        self._begin.setMaximumWidth(px(WIDEST_WORDS))
+        self._on_look_changed()
+
+    def _need(self, icon: Icon, what: str, more: str) -> QWidget:
+        part = QWidget()
+        row = QHBoxLayout(part)
+        row.setContentsMargins(0, 0, 0, 0)
+        words = QVBoxLayout()
+        words.setSpacing(0)
+        words.addWidget(Text(self._look, what, weight=SEMIBOLD, wraps=True))
+        words.addWidget(Text(self._look, more, tone="ink2", wraps=True))
+        row.addWidget(IconMark(self._look, icon, size=24), 0, Qt.AlignmentFlag.AlignTop)
+        row.addLayout(words, 1)
+        return part
+
+    def _on_look_changed(self) -> None:
+        super()._on_look_changed()
+        px = self._look.theme.px
+        self.column.setContentsMargins(px(self._edge), px(24), px(self._edge), px(24))
+        self.column.setSpacing(px(GAP))
+        self._ways.setSpacing(px(GAP))
+        self._needs.setSpacing(px(GAP))
+
+
+class StepsPreview(Themed):
+    """The seven steps of a session on a line, and how long each takes."""
+
+    def __init__(self, look: ThemeNotifier) -> None:
+        super().__init__()
+        self._look, self._rows = look, 1
+        self.steps = (
+            (tr("Patient"), tr("{count} s").format(count=30)),
+            (tr("Sensors"), tr("{count} s").format(count=90)),
+            (tr("Stand still"), tr("{count} s").format(count=3)),
+            (tr("Free motion"), tr("{count} s").format(count=20)),
+            (tr("Walking"), tr("{count} s").format(count=60)),
+            (tr("Results"), tr("at once")),
+            (tr("Report"), tr("at once")),
+        )
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        self.setAccessibleName(tr("The steps of a session"))
+        self.setAccessibleDescription(", ".join(f"{name} {time}" for name, time in self.steps))
+
+    def set_room(self, width: int) -> None:
+        """Take as many rows as the words need in a width, in px of the screen."""
+        self._rows = next((rows for rows in (1, 2, 4) if self._wide(rows) <= width), len(self.steps))
+        self._on_look_changed()
+
+    def sizeHint(self) -> QSize:
+        px = self._look.theme.px
+        return QSize(self._wide(self._rows), self._rows * px(CIRCLE + 8 + 2 * LINE) + (self._rows - 1) * px(12))
+
+    def minimumSizeHint(self) -> QSize:
+        return self.sizeHint()
+
+    def painted_texts(self) -> list[PaintedText]:
+        theme, texts = self._look.theme, []
+        width, circle, line = self.width() / self._in_row, theme.px(CIRCLE), theme.px(LINE)
+        for number, (name, time) in enumerate(self.steps):
+            left, top = self._place(number).x(), self._place(number).y()
+            under = top + theme.px(CIRCLE + 8)
+            in_circle, plain = QRectF(left, top, circle, circle), theme.font(14)
+            texts += [
+                PaintedText(str(number + 1), in_circle, plain, align=CENTRE),
+                PaintedText(name, QRectF(left, under, width, line), theme.font(14, SEMIBOLD)),
+                PaintedText(time, QRectF(left, under + line, width, line), plain, "ink2"),
+            ]
+        return texts
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        theme, half = self._look.theme, self._look.theme.px(CIRCLE) / 2
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.setPen(theme.pen(theme.colours.control, 1.25))
+        for number in range(len(self.steps)):
+            centre = self._place(number) + QPointF(half, half)
+            painter.drawEllipse(centre, half - 1, half - 1)
+            if number + 1 < len(self.steps) and (number + 1) % self._in_row:
+                following = self._place(number + 1) + QPointF(0, half)
+                painter.drawLine(centre + QPointF(half, 0), following)
+        for text in self.painted_texts():
+            text.paint(painter, theme.colours)
+
+    def _wide(self, rows: int) -> int:
+        """How wide so many rows are."""
+        metrics = QFontMetrics(self._look.theme.font(14, SEMIBOLD))
+        widest = max(metrics.horizontalAdvance(name) for name, _ in self.steps) + self._look.theme.px(12)
+        return widest * -(-len(self.steps) // rows)
+
+    @property
+    def _in_row(self) -> int:
+        return -(-len(self.steps) // self._rows)
+
+    def _place(self, number: int) -> QPointF:
+        """The upper left corner of a step."""
+        row, column = divmod(number, self._in_row)
+        px = self._look.theme.px
+        return QPointF(column * self.width() / self._in_row, row * px(CIRCLE + 8 + 2 * LINE + 12))
+
+    def _on_look_changed(self) -> None:
+        self.updateGeometry()
+        self.update()

@@ -1,0 +1,107 @@
+"""What home says above its pages of the library that was opened: its age, and what was done without its server."""
+
+from PySide6.QtCore import QObject, Signal
+
+from app.home.login.controller import ADMINISTRATOR
+from app.theme.notifier import ThemeNotifier
+from app.widgets.banner import Banner
+from app.wording.translation import tr, tr_n
+from app.workers.library_controller import LibraryController
+from app.workers.library_state import OpenedState
+from app.workers.refusals import Refusal
+
+
+class LibraryNotices(QObject):
+    """Two banners: `rollback`, of a library that is older than this computer has seen, and `away`.
+
+    Signals
+    -------
+    log_in_wished
+        The clinic's server answers again.
+    refused
+        Why the older state could not be accepted.
+    """
+
+    log_in_wished = Signal()
+    refused = Signal(str, str)
+
+    def __init__(self, look: ThemeNotifier, controller: LibraryController, parent: QObject) -> None:
+        super().__init__(parent)
+        self._controller = controller
+        self._state: OpenedState | None = None
+        self.rollback, self.away = Banner(look), Banner(look)
+        self.rollback.acted.connect(self._on_accepted)
+        self.away.acted.connect(self.log_in_wished)
+        controller.server_back.connect(self._on_server_back)
+
+    def show(self, state: OpenedState) -> None:
+        self._state = state
+        self._show_rollback(state)
+        self._show_away(state)
+
+    def forget(self) -> None:
+        self._state = None
+        self.rollback.hide()
+        self.away.hide()
+
+    def _show_rollback(self, state: OpenedState) -> None:
+        """Say that the library is an older state than this computer has seen, and let an administrator accept it."""
+        rollback = state.rollback
+        self.rollback.hide()
+        if rollback is None:
+            return
+        is_administrator = state.operator.role.value == ADMINISTRATOR
+        missing = tr("What was done from entry {first} to {last} of its audit is not all in it.")
+        then = tr("If a backup was restored, that is why: accept it. Else somebody put an older copy here.")
+        if not is_administrator:
+            then = tr("Tell an administrator, who can look into it and accept it where a backup was restored.")
+        self.rollback.tell(
+            tr("This library is older than when this computer saw it last."),
+            f"{missing.format(first=rollback.first, last=rollback.last)} {then}",
+            tr("Accept this state") if is_administrator else "",
+        )
+
+    def _on_accepted(self) -> None:
+        if self._state is not None and self._state.rollback is not None:
+            self._controller.accept_rollback(self._state.rollback, self._on_noted, self._on_refused, self)
+
+    def _on_noted(self, _nothing: object) -> None:
+        self.rollback.hide()
+
+    def _on_refused(self, what: str, remedy: str) -> None:
+        self.refused.emit(what, remedy)
+
+    def _show_away(self, state: OpenedState) -> None:
+        """Say that the clinic's server is not there, or what became of what was done when it was not."""
+        self.away.hide()
+        if state.is_away:
+            self.away.tell(
+                tr("You work without the clinic's server."),
+                tr(
+                    "Sessions that begin now are kept on this computer, and are on the server at the first log in once "
+                    "it answers. Patients of the clinic are not shown, and are known again by their codes."
+                ),
+            )
+        elif state.still_away is not None:
+            self.away.tell(*still_away_words(state.still_away))
+        elif state.brought_from_away:
+            said = tr_n(
+                "{count} session that was made without the clinic's server is on it now.",
+                "{count} sessions that were made without the clinic's server are on it now.",
+                state.brought_from_away,
+            )
+            self.away.tell(said.format(count=state.brought_from_away))
+
+    def _on_server_back(self) -> None:
+        self.away.tell(
+            tr("The clinic's server answers again."),
+            tr("Log in to it: what was recorded here is then there for all stations."),
+            tr("Log in to the server"),
+        )
+
+
+def still_away_words(why: Refusal) -> tuple[str, str]:
+    """What is said of sessions that the clinic's server did not take; the reason and what to do about it come last."""
+    what = tr("Sessions that were made without the clinic's server are still on this computer alone.")
+    then = tr("Nothing of them is lost: each log in tries again to bring them to the server.")
+    return what, f"{then} {why.what} {why.remedy}"

@@ -1,0 +1,1 @@
+"""Settings: users, clinic, backups, error reports."""

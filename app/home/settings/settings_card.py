@@ -1,0 +1,28 @@
+"""A card of the settings: a title, texts as wide as the card, and controls as wide as their words."""
+
+from PySide6.QtWidgets import QHBoxLayout, QWidget
+
+from app.theme.notifier import ThemeNotifier
+from app.widgets.card import Card
+from app.widgets.text import SEMIBOLD, Text
+
+PADDING, SPACING = 20, 10
+
+
+class SettingsCard(Card):
+    def __init__(self, look: ThemeNotifier, title: str) -> None:
+        super().__init__(look, padding=PADDING, spacing=SPACING)
+        self.fill(Text(look, title, size=16, weight=SEMIBOLD, wraps=True))
+
+    def fill(self, *parts: QWidget) -> None:
+        """Put parts below each other, as wide as the card."""
+        for part in parts:
+            self.column.addWidget(part)
+
+    def add_left(self, *controls: QWidget) -> None:
+        """Give controls the width that they need, one beside the other."""
+        row = QHBoxLayout()
+        for control in controls:
+            row.addWidget(control)
+        row.addStretch(1)
+        self.column.addLayout(row)

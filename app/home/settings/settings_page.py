@@ -1,0 +1,412 @@
+"""What can be set: how everything looks and sounds, what opens the library, its second copy, who works with it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from uuid import UUID
+
+from PySide6.QtCore import Signal
+from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
+
+from app.home.settings.clinic_cards import MoreStationsCard, StationCard
+from app.home.settings.operators_card import OperatorsCard
+from app.home.settings.settings_card import SettingsCard
+from app.system.passphrases import REFUSED, strength_in_words, strength_of
+from app.theme.icons import Icon
+from app.theme.notifier import SCALES, ThemeNotifier
+from app.widgets.button import Button, ButtonKind
+from app.widgets.choice import Choice
+from app.widgets.field import Field
+from app.widgets.segmented import Segmented
+from app.widgets.tall_page import TallPage
+from app.widgets.text import MEDIUM, SEMIBOLD, Text
+from app.widgets.toggle import Toggle
+from app.wording.translation import LANGUAGES, languages, tr
+
+COLUMN = 720
+FRONT, BEHIND = "front", "behind"
+AS_SYSTEM, LESS_MOTION = "system", "less"
+
+
+@dataclass(frozen=True, slots=True)
+class DeletedLine:
+    """What was deleted and can still be had back: a patient with all sessions, or one session.
+
+    `details`: by whom and when, and until when it can be had back.
+    """
+
+    id: UUID
+    words: str
+    is_patient: bool
+    details: str = ""
+
+
+class SettingsPage(TallPage):
+    """The parts about a library are hidden where they mean nothing: in the demonstration, and for who may not."""
+
+    language_chosen = Signal(str)
+    scheme_chosen = Signal(str)
+    scale_chosen = Signal(float)
+    side_chosen = Signal(bool)  # from behind
+    motion_chosen = Signal(bool)  # less
+    sound_chosen = Signal(bool)
+    passphrase_wished = Signal(str, str)  # old, new
+    recovery_key_wished = Signal()
+    print_wished = Signal(str)
+    save_wished = Signal(str)
+    backup_wished = Signal()
+    backup_folder_wished = Signal()
+    stop_wished = Signal()
+    error_report_wished = Signal()
+    clinic_named = Signal(str)
+    restore_wished = Signal(object, bool)  # id, whether it is a patient's
+
+    def __init__(self, look: ThemeNotifier, shortest: int, roles: Sequence[tuple[str, str]]) -> None:
+        super().__init__()
+        self._look, self._shortest = look, shortest
+        self._own: tuple[str, ...] = ()
+        self._title = Text(look, tr("Settings"), size=26, weight=SEMIBOLD)
+        self.column.addWidget(self._title)
+        self._build_screen()
+        self._build_access()
+        self._build_backup()
+        self.station = StationCard(look)
+        self.more_stations = MoreStationsCard(look)
+        for card in (self.station, self.more_stations):
+            self.column.addWidget(card)
+        self._build_deleted()
+        self._build_clinic()
+        self.operators = OperatorsCard(look, shortest, roles, self.clinic)
+        self.column.addWidget(self.operators)
+        self._build_trouble()
+        self.column.addStretch(1)
+        self._connect()
+        self._on_look_changed()
+
+    @property
+    def tab_order(self) -> list[QWidget]:
+        return [
+            *self.language.segments,
+            *self.scheme.segments,
+            self.scale,
+            *self.side.segments,
+            *self.motion.segments,
+            self.sound,
+            *(field.line_edit for field in (self.old, self.new, self.again)),
+            self.change,
+            self.renew,
+            self.back_up,
+            self.choose_folder,
+            *self.station.tab_order,
+            *self.more_stations.tab_order,
+            self.report_error,
+        ]
+
+    def focus(self) -> None:
+        self.language.focus()
+
+    def show_screen(
+        self, language: str, scheme: str, scale: float, *, is_from_behind: bool, has_sound: bool, has_less_motion: bool
+    ) -> None:
+        self.language.choose(language)
+        self.scheme.choose(scheme)
+        nearest = min(range(len(SCALES)), key=lambda k: abs(SCALES[k] - scale))
+        self.scale.setCurrentIndex(nearest)
+        self.side.choose(BEHIND if is_from_behind else FRONT)
+        self.motion.choose(LESS_MOTION if has_less_motion else AS_SYSTEM)
+        self.sound.setChecked(has_sound)
+
+    def show_library(
+        self,
+        *,
+        has_access: bool,
+        has_backup: bool,
+        has_operators: bool,
+        has_deleted: bool = False,
+        is_station: bool = False,
+        may_move: bool = False,
+        own: tuple[str, ...] = (),
+    ) -> None:
+        """Show what the operator may set, whose code and name are `own`; nothing typed for another is kept."""
+        self._own = own
+        self.access_card.setVisible(has_access)
+        self.backup_card.setVisible(has_backup)
+        self.deleted_card.setVisible(has_deleted)
+        self.station.setVisible(is_station)
+        self.more_stations.setVisible(may_move)
+        self._clinic.setVisible(has_operators)
+        self.operators.setVisible(has_operators)
+        self.forget_typed()
+        self.show_recovery_key("")
+
+    def forget_typed(self) -> None:
+        for field in self._fields:
+            field.set_text("")
+            field.set_wrong("")
+        self.operators.forget_typed()
+        self.more_stations.server.forget_typed()
+        self._said.setText("")
+        self._strength.setText(strength_in_words("", self._shortest))
+
+    def show_passphrase_changed(self) -> None:
+        self.forget_typed()
+        self._said.setText(tr("The passphrase is changed. Only backups made before still open with the old one."))
+
+    def refuse_passphrase(self, sentence: str) -> None:
+        self.old.set_wrong(sentence)
+        self.old.setFocus()
+
+    def show_recovery_key(self, key: str) -> None:
+        """Show a new recovery key, until another page is shown."""
+        self.recovery_key = key
+        self._key_words.setText(key.replace("-", "  "))
+        for part in (self._key_words, self._key_hint, self.print, self.save):
+            part.setVisible(bool(key))
+
+    def show_clinic(self, name: str) -> None:
+        self.clinic.set_text(name)
+
+    def show_deleted(self, lines: Sequence[DeletedLine]) -> None:
+        """Show what can still be had back."""
+        while (item := self.deleted_rows.takeAt(0)) is not None:
+            if (widget := item.widget()) is not None:
+                widget.hide()
+                widget.deleteLater()
+        for line in lines:
+            row = _DeletedRow(self._look, line)
+            row.restored.connect(self.restore_wished)
+            self.deleted_rows.addWidget(row)
+        self.none_deleted.setVisible(not lines)
+
+    def _build_screen(self) -> None:
+        look = self._look
+        self.language = Segmented(look, tr("Language"), [(key, LANGUAGES[key], "") for key in languages()])
+        self.scheme = Segmented(
+            look,
+            tr("Light or dark"),
+            [("system", tr("As the system"), ""), ("light", tr("Light"), ""), ("dark", tr("Dark"), "")],
+        )
+        self.scale = Choice(look, tr("Size of everything"))
+        for scale in SCALES:
+            self.scale.addItem(tr("{percent} %").format(percent=round(scale * 100)), scale)
+        self.side = Segmented(
+            look, tr("The patient is seen"), [(FRONT, tr("From the front"), ""), (BEHIND, tr("From behind"), "")]
+        )
+        self.motion = Segmented(
+            look,
+            tr("Motion on the screen"),
+            [(AS_SYSTEM, tr("As the system"), ""), (LESS_MOTION, tr("Less motion"), "")],
+        )
+        self.sound = Toggle(look, tr("Sounds"), "", is_on=True)
+        self._screen = self._card(tr("Screen and sound"))
+        for label, control in (
+            (tr("Language"), self.language),
+            (tr("Light or dark"), self.scheme),
+            (tr("Size of everything"), self.scale),
+            (tr("The patient is seen"), self.side),
+            (tr("Motion on the screen"), self.motion),
+        ):
+            self._screen.fill(Text(look, label, weight=MEDIUM))
+            self._screen.add_left(control)
+        self._screen.add_left(self.sound)
+
+    def _build_access(self) -> None:
+        look = self._look
+        self.access_card = self._card(tr("Your passphrase and the recovery key"))
+        self.old = Field(look, tr("Passphrase until now"), is_secret=True)
+        self.new = Field(look, tr("New passphrase"), is_secret=True)
+        self._strength = Text(look, strength_in_words("", self._shortest), tone="ink2", wraps=True)
+        self.again = Field(look, tr("New passphrase again"), is_secret=True)
+        self.change = Button(look, tr("Change the passphrase"))
+        self._said = Text(look, tone="ink2", wraps=True)
+        self.renew = Button(look, tr("Make a new recovery key"))
+        self._key_words = Text(look, size=20, weight=SEMIBOLD, is_code=True, wraps=True)
+        self._key_hint = Text(
+            look,
+            tr(
+                "The old recovery key opens only backups made before. Print this one or write it down; it is not shown "
+                "again. You are asked to type it back at your next log in."
+            ),
+            tone="ink2",
+            wraps=True,
+        )
+        self.print = Button(look, tr("Print"), ButtonKind.SECONDARY, Icon.PRINT)
+        self.save = Button(look, tr("Save as a file"), ButtonKind.SECONDARY, Icon.IMPORT)
+        self.access_card.fill(self.old)
+        self.access_card.fill(self.new)
+        self.access_card.fill(self._strength)
+        self.access_card.fill(self.again)
+        self.access_card.add_left(self.change)
+        self.access_card.fill(self._said)
+        self.access_card.add_left(self.renew)
+        self.access_card.fill(self._key_words)
+        self.access_card.fill(self._key_hint)
+        self.access_card.add_left(self.print, self.save)
+        self.show_recovery_key("")
+
+    def _build_backup(self) -> None:
+        look = self._look
+        self._is_backing_up = False
+        self.backup_card = self._card(tr("Backup"))
+        hint = tr(
+            "A second copy of all patients and recordings, encrypted, best on another disk. What is deleted here is "
+            "in older copies for up to 90 days."
+        )
+        self.backup_folder = Text(look, tone="ink2", wraps=True)
+        self.backup_said = Text(look, weight=MEDIUM, wraps=True)
+        self.back_up = Button(look, tr("Back up now"))
+        self.choose_folder = Button(look, tr("Choose the folder"), ButtonKind.QUIET, Icon.FOLDER)
+        self.backup_card.fill(Text(look, hint, tone="ink2", wraps=True))
+        self.backup_card.fill(self.backup_folder)
+        self.backup_card.fill(self.backup_said)
+        self.backup_card.add_left(self.back_up, self.choose_folder)
+        self.show_backup("", "")
+
+    def _build_deleted(self) -> None:
+        look = self._look
+        self.deleted_card = self._card(tr("Deleted in the last 30 days"))
+        self.deleted_rows = QVBoxLayout()
+        self.none_deleted = Text(
+            look, tr("Nothing. What is deleted can be had back from here."), tone="ink2", wraps=True
+        )
+        self.deleted_card.column.addLayout(self.deleted_rows)
+        self.deleted_card.fill(self.none_deleted)
+
+    def _build_clinic(self) -> None:
+        self._clinic = self._card(tr("Your clinic"))
+        self.clinic = Field(self._look, tr("Name, as reports print it"), is_optional=True)
+        self._clinic.fill(self.clinic)
+
+    def _build_trouble(self) -> None:
+        look = self._look
+        self.trouble_card = self._card(tr("If something went wrong"))
+        hint = tr(
+            "An error report says which versions run here, on which kind of computer, and the end of the log: no "
+            "codes, names or paths, and nothing typed. It is saved as a text that you can read; sending it is "
+            "up to you."
+        )
+        self.trouble_card.fill(Text(look, hint, tone="ink2", wraps=True))
+        self.report_error = Button(look, tr("Save an error report"), ButtonKind.SECONDARY, Icon.IMPORT)
+        self.trouble_card.add_left(self.report_error)
+        self._trouble_said = Text(look, tone="ink2", wraps=True)
+        self.trouble_card.fill(self._trouble_said)
+        self._trouble_said.hide()
+
+    @property
+    def trouble_said(self) -> str:
+        return self._trouble_said.text()
+
+    def show_error_report(self, path: str) -> None:
+        """Say where the report is that was just saved."""
+        self._trouble_said.setText(tr("Saved as {path}.").format(path=path))
+        self._trouble_said.show()
+
+    def _connect(self) -> None:
+        self.language.chosen.connect(self.language_chosen)
+        self.scheme.chosen.connect(self.scheme_chosen)
+        self.scale.activated.connect(self._on_scale_chosen)
+        self.side.chosen.connect(self._on_side_chosen)
+        self.motion.chosen.connect(self._on_motion_chosen)
+        self.sound.toggled.connect(self.sound_chosen)
+        self.change.clicked.connect(self._on_change)
+        self.renew.clicked.connect(self.recovery_key_wished)
+        self.print.clicked.connect(self._on_print)
+        self.save.clicked.connect(self._on_save)
+        self.back_up.clicked.connect(self._on_back_up)
+        self.choose_folder.clicked.connect(self.backup_folder_wished)
+        self.clinic.committed.connect(self._on_clinic_named)
+        self.report_error.clicked.connect(self.error_report_wished)
+        for field in self._fields:
+            field.edited.connect(self._on_edited)
+
+    def show_backup(self, sentence: str, folder: str, *, is_running: bool = False) -> None:
+        """Say how the latest backup went, and where backups go."""
+        self.backup_said.setText(sentence)
+        self.backup_said.setVisible(bool(sentence))
+        self.backup_folder.setText(
+            tr("Backups go to {folder}.").format(folder=folder)
+            if folder
+            else tr("No folder is chosen for backups yet.")
+        )
+        self.back_up.setText(tr("Stop") if is_running else tr("Back up now"))
+        self.back_up.updateGeometry()
+        self._is_backing_up = is_running
+        self.choose_folder.setEnabled(not is_running)
+
+    def _card(self, title: str) -> SettingsCard:
+        card = SettingsCard(self._look, title)
+        self.column.addWidget(card)
+        return card
+
+    def _on_scale_chosen(self, _index: int) -> None:
+        self.scale_chosen.emit(float(self.scale.currentData()))
+
+    def _on_side_chosen(self, key: str) -> None:
+        self.side_chosen.emit(key == BEHIND)
+
+    def _on_motion_chosen(self, key: str) -> None:
+        self.motion_chosen.emit(key == LESS_MOTION)
+
+    def _on_edited(self, _text: str) -> None:
+        for field in self._fields:
+            field.set_wrong("")
+        self._strength.setText(strength_in_words(self.new.text, self._shortest, self._known))
+
+    def _on_change(self) -> None:
+        self._on_edited("")
+        new = self.new.text or "-"
+        if strength_of(new, self._shortest, self._known) in REFUSED:
+            self.new.set_wrong(strength_in_words(new, self._shortest, self._known))
+        elif self.new.text != self.again.text:
+            self.again.set_wrong(tr("The two are not the same. Type the second one again."))
+        else:
+            self.passphrase_wished.emit(self.old.text, self.new.text)
+
+    def _on_clinic_named(self) -> None:
+        self.clinic_named.emit(self.clinic.text.strip())
+
+    def _on_print(self) -> None:
+        self.print_wished.emit(self.recovery_key)
+
+    def _on_save(self) -> None:
+        self.save_wished.emit(self.recovery_key)
+
+    def _on_back_up(self) -> None:
+        (self.stop_wished if self._is_backing_up else self.backup_wished).emit()
+
+    @property
+    def _fields(self) -> tuple[Field, ...]:
+        return self.old, self.new, self.again
+
+    @property
+    def _known(self) -> tuple[str, ...]:
+        return *self._own, self.clinic.text
+
+    def _on_look_changed(self) -> None:
+        px = self._look.theme.px
+        self.setMaximumWidth(px(COLUMN + 48))
+        self.column.setContentsMargins(px(24), px(16), px(24), px(20))
+        self.column.setSpacing(px(16))
+        self.deleted_rows.setSpacing(px(4))
+
+
+class _DeletedRow(QWidget):
+    restored = Signal(object, bool)
+
+    def __init__(self, look: ThemeNotifier, line: DeletedLine) -> None:
+        super().__init__()
+        self._line = line
+        row = QHBoxLayout(self)
+        row.setContentsMargins(0, 0, 0, 0)
+        words = QVBoxLayout()
+        words.setSpacing(0)
+        words.addWidget(Text(look, line.words, size=15, wraps=True))
+        words.addWidget(Text(look, line.details, size=14, tone="ink2", wraps=True))
+        row.addLayout(words, 1)
+        self.button = Button(look, tr("Restore"), height=44)
+        self.button.setAccessibleName(f"{self.button.text()}, {line.words}")
+        self.button.setAccessibleDescription(line.details)
+        self.button.clicked.connect(self._on_clicked)
+        row.addWidget(self.button)
+
+    def _on_clicked(self) -> None:
+        self.restored.emit(self._line.id, self._line.is_patient)

@@ -1,0 +1,351 @@
+"""What changed between conditions, or since an earlier visit, and is that more than the measurement error?"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+from app.charts.cycles import Band, is_mean_enough, is_spread_enough
+from app.charts.drawing import MM, Picture
+from app.charts.on_paper import compared_look, draw
+from app.charts.stride_chart import NOT_KNOWN, StrideChart
+from app.reports.blocks import Block, Cell, Column, Row, figures, heading, legend, note, paragraph, table
+from app.summary import panels
+from app.summary.comparison import Compared, Comparison, Contrast, Reservation
+from app.summary.conditions import Part, left_out_of_parts
+from app.summary.error_sources import sources_in_words
+from app.summary.facts import Facts, joint_of, part_of, role
+from app.summary.measure_sentences import measure_in_words
+from app.summary.measures import MEASURES, Measure
+from app.summary.numbers_in_words import (
+    CARE,
+    NOTHING,
+    dagger_note,
+    fixed,
+    judged_in_words,
+    marked,
+    signed,
+    signed_error,
+    spread,
+)
+from app.summary.plain_text import CONDITION_LENGTH, typed
+from app.summary.report_dates import day
+from app.summary.request import ReportRequest
+from app.summary.visits import by_condition, condition_in_words
+from app.wording.alignment import NO_PROOF, change_in_words
+from app.wording.translation import capitalised, joined, tr
+from app.wording.verdicts import verdict_word
+from core.body import JointKind, Side
+from core.verdicts.measurement_error import ComparisonKind, sigma_of
+from core.verdicts.model import Verdict, worst
+from core.verdicts.quantities import EXCURSIONS_BY_COLUMN, OF_HIPS
+
+CHANGES_LENGTH = 300  # letters: three lines of the table
+PLOT_WIDTH = 53 * MM  # with the table of three parts, or a line more of words, this fills a Letter page
+WITH_HIP_WIDTH = 44 * MM  # of three beside each other
+
+
+def comparison_of(request: ReportRequest) -> Comparison | None:
+    """What the report compares: with an earlier visit, else the conditions chosen; None where neither is.
+
+    A walk stands for all walks of its condition, as on the screen, unless another of them was chosen beside it. Of an
+    earlier visit the same condition counts, as it was walked last; where it has no such, nothing is compared.
+    """
+    visit, is_simulated = request.visit, request.visit.analysis.is_simulated
+    if request.earlier is not None:
+        name = visit.recording(request.shown).condition
+        same = by_condition(request.earlier.analysis, request.earlier.session.recordings).get(name)
+        if same is None:
+            return None
+        pair = same, part_of(visit, request.shown)
+        names = tr("Earlier visit, {day}"), tr("This visit, {day}")
+        parts = [
+            replace(part, letter=str(k + 1), name=names[k].format(day=_day_of(of.session.started)))
+            for k, (part, of) in enumerate(zip(pair, (request.earlier, visit), strict=True))
+        ]
+        return Comparison(Contrast.VISITS, tuple(parts), is_simulated=is_simulated)
+    if len(request.walks) < 2:
+        return None
+    conditions = [part_of(visit, name, request.walks) for name in request.walks]
+    return Comparison(Contrast.CONDITIONS, tuple(conditions), is_simulated=is_simulated)
+
+
+def not_compared_page(request: ReportRequest) -> list[Block]:
+    """Say why an earlier visit that was chosen is not compared with; nothing where it is, or none was chosen."""
+    earlier, visit = request.earlier, request.visit
+    if earlier is None or comparison_of(request) is not None:
+        return []
+    before = list(by_condition(earlier.analysis, earlier.session.recordings))
+    said = tr("The visit of {day} has no walk that can be compared.")
+    if before:
+        said = tr(
+            "The visit of {day} has no walk of this condition ({condition}), so it is not compared; it has {others}."
+        )
+    words = said.format(
+        day=_day_of(earlier.session.started),
+        condition=_condition_typed(visit.recording(request.shown).condition),
+        others=", ".join(map(_condition_typed, before)),
+    )
+    return [heading(tr("Comparison of visits")), paragraph(words)]
+
+
+def _condition_typed(condition: str) -> str:
+    return typed(condition, CONDITION_LENGTH) if condition else condition_in_words("")
+
+
+def _day_of(started: str) -> str:
+    return day(started) if started else tr("date not stated")
+
+
+def comparison_page(comparison: Comparison, shown: Facts) -> list[Block]:
+    """`shown` is the walk that the other pages are of: it belongs to the last part."""
+    title = tr("Comparison of visits") if comparison.kind is Contrast.VISITS else tr("Comparison of conditions")
+    sides = [side for side in shown.first_and_second if side in comparison.sides]
+    kinds = [kind for kind in JointKind if any(joint_of(kind, side) in comparison.joints for side in Side)]
+    has_hips = JointKind.HIP in kinds  # three joints beside each other, a row for each leg
+    places = [(side, kind) for side in sides for kind in kinds] if has_hips else [(s, k) for k in kinds for s in sides]
+    pictures = [_panel(comparison, shown, side, kind) for side, kind in places]
+    band = (
+        panels.band_swatches()
+        if any(_band(comparison, shown, kind, side) is not None for kind in kinds for side in comparison.sides)
+        else []
+    )
+    return [
+        heading(title),
+        paragraph(_what_else_changed(comparison)),
+        _parts_table(comparison),
+        *_changes(comparison),
+        *([legend(band, columns=3)] if band else []),
+        figures(pictures, columns=3 if has_hips else 2),
+        _table(comparison, shown, sides),
+        note(" ".join(filter(None, [_how_judged(comparison), left_out_of_parts(comparison.parts)]))),
+    ]
+
+
+def _parts_table(comparison: Comparison) -> Block:
+    """What is compared: the lines of each, its strides and speed, and what may be read of it."""
+    is_visits = comparison.kind is Contrast.VISITS
+    columns = [
+        Column("", is_number=False),
+        Column(tr("Visit") if is_visits else tr("Condition"), "1fr", is_number=False),
+        Column(tr("Strides")),
+        Column(tr("Speed, m/s")),
+        *(Column(head, "25mm", is_number=False) for head in (tr("Shape, range"), tr("Height"), tr("Timing"))),
+    ]
+    rows: list[Row] = []
+    for k, part in enumerate(comparison.parts):
+        looks = [(side, *compared_look(k, len(comparison.parts), side)) for side in comparison.sides]
+        joints = [part.verdicts.joint(joint) for joint in part.joints]
+        worst_of = (
+            worst(found.shape.verdict for found in joints),
+            worst(found.height.verdict for found in joints),
+            worst(part.verdicts.leg(side).timing.verdict for side in part.sides),
+        )
+        strides = ", ".join(f"{side[0].upper()}\u00a0{part.strides(side)}" for side in part.sides)
+        rows.append(
+            [
+                Cell(part.letter, picture=panels.pair_swatch(part.letter, looks)),
+                typed(part.name, CONDITION_LENGTH),
+                strides,
+                fixed(part.of_both("speed_m_s"), 2),
+                *map(verdict_word, worst_of),
+            ]
+        )
+    return table(columns, rows, is_dense=True)
+
+
+def _changes(comparison: Comparison) -> list[Block]:
+    """What was turned at the prosthesis before each condition, and that its walks may not show it."""
+    changed = [part for part in comparison.parts if part.alignment is not None]
+    if not changed:
+        return []
+    columns = [
+        Column("", is_number=False),
+        Column(tr("Changed from"), "35mm", is_number=False),
+        Column(tr("What was changed at the prosthesis"), "1fr", is_number=False),
+    ]
+    rows: list[Row] = []
+    for part in comparison.parts:
+        since, words = tr("starting point"), NOTHING
+        if part.alignment is not None:
+            since = typed(part.alignment.since, CONDITION_LENGTH)
+            words = typed(change_in_words(part.alignment), CHANGES_LENGTH)
+        rows.append([part.letter, since, words])
+    return [table(columns, rows, is_dense=True), note(tr(NO_PROOF))]
+
+
+def _panel(comparison: Comparison, shown: Facts, side: Side, kind: str) -> Picture:
+    is_about_mean = not comparison.has_one_zero_throughout  # heights from different zeros are no comparison
+    curves, alts = [], []
+    for k, part in enumerate(comparison.parts):
+        if joint_of(kind, side) in part.joints:
+            curve = part.curve(joint_of(kind, side), is_about_mean=is_about_mean)
+            angle_deg = NOT_KNOWN if curve.is_few else curve.angle_deg
+            curves.append(replace(curve, order=(k, len(comparison.parts)), angle_deg=angle_deg))
+            alts.append(_alt(part, side, kind))
+    chart = StrideChart(
+        title=_title(shown, kind, side, is_about_mean=is_about_mean),
+        axis=panels.axis_of(shown, kind, is_about_mean=is_about_mean),
+        curves=tuple(curves),
+        band=_band(comparison, shown, kind, side),
+        is_simulated=comparison.is_simulated,
+        alt=" ".join([tr("SIMULATED.")] * comparison.is_simulated + [panels.title_of(shown, kind) + ".", *alts]),
+    )
+    return draw(chart, WITH_HIP_WIDTH if any(joint.is_hip for joint in comparison.joints) else PLOT_WIDTH)
+
+
+def _title(shown: Facts, kind: str, side: Side, *, is_about_mean: bool) -> str:
+    """Short, as the panels are narrow: the table below them takes the page."""
+    if is_about_mean or shown.has_no_zero(kind):
+        return panels.title_with_side(shown, kind, side, is_about_mean=is_about_mean)
+    said = tr("Left: {title}") if side is Side.LEFT else tr("Right: {title}")
+    titles = {
+        JointKind.HIP: tr("hip, degrees (flexion +)"),
+        JointKind.KNEE: tr("knee, degrees (flexion +)"),
+        JointKind.ANKLE: tr("ankle, degrees (dorsiflexion +)"),
+    }
+    title = titles[JointKind(kind)]
+    return said.format(title=title)
+
+
+def _alt(part: Part, side: Side, kind: str) -> str:
+    """One line of a panel in words and numbers."""
+    numbers = [tr("{count} strides").format(count=part.strides(side))]
+    for column in panels.PEAK_COLUMNS[kind]:
+        value = part.value(side, column)
+        if is_mean_enough(value.n):
+            numbers.append(f"{panels.peak_name(column)} {fixed(value.mean, 0)}°")
+    found, off = part.value(side, f"{kind}_range_deg"), part.value(side, "stance_percent")
+    if is_mean_enough(found.n):
+        numbers.append(tr("range {value}°").format(value=fixed(found.mean, 0)))
+    if is_mean_enough(off.n):
+        numbers.append(tr("toe\u2011off at {percent} %").format(percent=fixed(off.mean, 0)))
+    return f"{part.letter}: {', '.join(numbers)}."
+
+
+def _band(comparison: Comparison, shown: Facts, kind: str, side: Side) -> Band | None:
+    return panels.band_of(shown, kind, [side]) if comparison.has_one_zero_throughout else None
+
+
+def _table(comparison: Comparison, shown: Facts, sides: Sequence[Side]) -> Block:
+    is_visits = comparison.kind is Contrast.VISITS
+    columns = [Column(tr("Measure, °"), "1fr", is_number=False), *(Column(part.letter) for part in comparison.parts)]
+    for part in comparison.others:
+        if is_visits:
+            columns += [Column(tr("Change 2 − 1")), Column(tr("Error")), Column(tr("In words"), is_number=False)]
+        else:
+            base = comparison.base_of(part)
+            against = tr("{this} against {first}").format(this=part.letter, first=base.letter)
+            columns += [Column(f"{part.letter} − {base.letter}"), Column(against, is_number=False)]
+    rows: list[Row] = []
+    for side in sides:
+        count = tr("{count}\u00a0in\u00a0{part}")
+        counts = ", ".join(count.format(count=part.strides(side), part=part.letter) for part in comparison.parts)
+        rows.append(tr("{side}: strides {counts}").format(side=capitalised(role(shown, side)), counts=counts))
+        for measure in MEASURES:
+            if not measure.is_of_walk and any(part.is_measured(side, measure.column) for part in comparison.parts):
+                rows.append(_row(comparison, side, measure))
+    rows.append(tr("Both legs"))
+    rows += [_row(comparison, sides[0], measure) for measure in MEASURES if measure.is_of_walk]
+    return table(columns, rows, is_dense=True)
+
+
+def _row(comparison: Comparison, side: Side, measure: Measure) -> list[Cell | str]:
+    cells: list[Cell | str] = [_measure(measure.column)]
+    for part in comparison.parts:
+        value, verdict = part.figure(measure, side)
+        figures = marked(spread(value, measure.decimals), verdict)
+        is_no_peak = not measure.is_of_walk and part.is_no_peak(side, measure.column)
+        shown = tr("no peak") if is_no_peak else figures
+        if verdict is Verdict.WITHHELD:
+            shown = verdict_word(verdict)
+        cells.append(Cell(shown, is_grey=not is_spread_enough(value.n)))
+    for part in comparison.others:
+        compared = _compared(comparison, measure, side, part)
+        found, is_told = compared.difference, compared.is_told
+        words = Cell(judged_in_words(found), is_bold=found.exceeds) if is_told else _why_not(compared)
+        decimals = measure.decimals
+        error = [fixed(found.error, decimals) if is_told else NOTHING] if comparison.kind is Contrast.VISITS else []
+        cells += [signed(found.difference, decimals) if is_told else NOTHING, *error, words]
+    return cells
+
+
+def _compared(comparison: Comparison, measure: Measure, side: Side, part: Part) -> Compared:
+    """A measure of a part and of the one that it is told against."""
+    base = comparison.base_of(part)
+    if measure.is_of_walk:
+        return comparison.compare_walks(measure, part, base)
+    return comparison.compare(measure, side, part, base)
+
+
+def _measure(column: str) -> str:
+    of_leg = {
+        "stance_percent": tr("Stance, % of stride"),
+        "stride_length_m": tr("Stride length, m"),
+        "speed_m_s": tr("Speed, m/s"),
+        "cadence_steps_min": tr("Cadence, steps/min"),
+    }
+    if column in of_leg:
+        return of_leg[column]
+    if column in OF_HIPS:
+        return capitalised(measure_in_words(column))
+    kind = tr("Knee") if column.startswith("knee") else tr("Ankle")
+    if column in EXCURSIONS_BY_COLUMN:
+        return f"{kind}: {panels.excursion_name(column)}"
+    name = tr("range over the stride") if column.endswith("_range_deg") else panels.peak_name(column)
+    return f"{kind}: {name}"
+
+
+def _what_else_changed(comparison: Comparison) -> str:
+    """Open with what besides the condition may make a difference: the straps, the zero, the speed."""
+    if comparison.kind is Contrast.VISITS:
+        said = [tr("Two visits, sensors put on anew.")]
+    elif comparison.is_one_attachment:
+        said = [tr("One session, sensors not moved between walks.")]
+    else:
+        said = [tr("One session, sensors strapped on anew between walks.")]
+    if comparison.has_one_zero_throughout:
+        said.append(tr("The same kind of zero at each."))
+    else:
+        said.append(tr("Zero is missing or differs in kind: only range and timing are compared."))
+    speeds = {part.letter: part.of_both("speed_m_s") for part in comparison.parts}
+    if all(map(math.isfinite, speeds.values())):
+        each = ", ".join(f"{letter}: {fixed(speed, 2)}" for letter, speed in speeds.items())
+        said.append(tr("Speed {speeds} m/s: part of a difference can come from speed.").format(speeds=each))
+    else:
+        said.append(tr("The speed of each is not known, and part of a difference can come from it."))
+    return " ".join(said)
+
+
+def _why_not(compared: Compared) -> Cell | str:
+    return tr("withheld") if compared.reservation in (Reservation.WITHHELD, Reservation.OTHER_ZERO) else NOTHING
+
+
+def _how_judged(comparison: Comparison) -> str:
+    """What the error contains, with what was added for what lies between the walks."""
+    kinds = {comparison.error_kind(part, comparison.base_of(part)) for part in comparison.others}
+    kind = max(kinds, key=list(ComparisonKind).index)
+    knee, stance = (signed_error(sigma_of(name, kind)) for name in ("knee_range_deg", "stance_percent"))
+    rows = [_compared(comparison, row.measure, row.side, row.part) for row in comparison.rows]
+    told = [row.difference for row in rows if row.is_told and row.difference.error > 0]
+    said = tr(
+        "Measurement error: 1.96 times the standard deviation of the difference. It holds {sources}; what lies between "
+        "the walks alone makes {knee}° of knee range and {stance} points of stance."
+    )
+    lines = tr("Vertical lines: toe\u2011off of each. {letters} sit on the lines; the first is thin and pale.")
+    parts = [
+        *([said.format(sources=sources_in_words(told), knee=knee, stance=stance)] if told else []),
+        *([dagger_note()] if any(found.is_unverified for found in told) else []),
+        *([tr("{mark}: read with care.").format(mark=CARE)] if _has_care(comparison) else []),
+        lines.format(letters=joined([p.letter for p in comparison.parts])),
+    ]
+    return " ".join(parts)
+
+
+def _has_care(comparison: Comparison) -> bool:
+    columns = [measure.column for measure in MEASURES]
+    return any(
+        part.assessment(side, column).verdict is Verdict.CARE
+        for part in comparison.parts
+        for side in part.sides
+        for column in columns
+    )

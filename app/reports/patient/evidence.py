@@ -1,0 +1,347 @@
+"""What each joint's verdict rests on, beside what it needs; and how large a difference has to be."""
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from app.reports.blocks import Block, Cell, Column, Row, heading, note, table
+from app.summary.facts import Facts, joint_of
+from app.summary.numbers_in_words import DAGGER, NOTHING, dagger_note, fixed, signed, signed_error
+from app.summary.quality import slipped_straps
+from app.wording.translation import capitalised, name_of, side_name, tr
+from app.wording.verdicts import verdict_word
+from core.body import Joint, JointKind, Side, hip_of
+from core.calibration.clinical_sign import MIN_MARGIN
+from core.calibration.same_joint import DOUBTFUL_DISAGREEMENT, MAX_DISAGREEMENT
+from core.hip.results import ClockStatus, HipIdentification
+from core.results import JointCalibration, ZeroKind
+from core.samples import FloatArray
+from core.verdicts.gates import LIMITS, MIN_STRIDES_TO_SPLIT
+from core.verdicts.measurement_error import ComparisonKind, sigma_of
+from core.verdicts.model import NOT_MEASURED, GateReason, JointVerdicts
+from core.verdicts.quantities import assessment_of, raw_values
+
+JOINT_WIDTH = "23mm"  # takes a verdict; a joint's longer name, as German has them, breaks before its side
+MARGIN_BEYOND = 100.0  # how many times better says no more from here on
+
+
+def evidence(facts: Facts) -> list[Block]:
+    """What each verdict rests on, and how large a difference must be."""
+    return [*evidence_table(facts), *hips_table(facts), *error_table()]
+
+
+def evidence_table(facts: Facts) -> list[Block]:
+    """A row for each gate, a column for each joint that was measured; what fails its limit is bold."""
+    joints = [
+        joint
+        for kind in JointKind
+        for side in Side
+        if facts.is_measured(joint := joint_of(kind, side)) and joint in facts.calibrated
+    ]
+    if not joints:
+        return []
+    columns = [
+        Column(tr("Evidence"), "1fr", is_number=False),
+        *(Column(capitalised(name_of(joint)), JOINT_WIDTH) for joint in joints),
+        Column(tr("Needed for “{word}”").format(word=tr("can be read")), "46mm", is_number=False),
+    ]
+    care, most = LIMITS.axis_sd_deg
+    knee, ankle = LIMITS.knee_range_deg, LIMITS.ankle_range_deg
+    gates: list[tuple[str, str, Callable[[Joint, JointCalibration], str], str]] = [
+        (
+            "axis",
+            tr("Joint axis, 1 SD"),
+            _axis,
+            tr("at most {care}°, with care {most}°").format(care=fixed(care, 1), most=fixed(most, 0)),
+        ),
+        (
+            "pairing",
+            tr("Sensors are neighbours, margin"),
+            _pairing,
+            tr("at least {limit}").format(limit=fixed(LIMITS.pairing_margin, 1)),
+        ),
+        (
+            "disagreement",
+            tr("Disagreement about the joint"),
+            lambda _, found: NOTHING if found.disagreement is None else fixed(found.disagreement, 2),
+            tr("under {limit} to {most}, by margin").format(
+                limit=fixed(DOUBTFUL_DISAGREEMENT, 2), most=fixed(MAX_DISAGREEMENT, 2)
+            ),
+        ),
+        (
+            "sign",
+            tr("Bent or straight, margin"),
+            _sign,
+            tr("at least {limit}, or by hand").format(limit=fixed(MIN_MARGIN, 1)),
+        ),
+        (
+            "lag",
+            tr("Lag between the sensors"),
+            _lag,
+            tr("SD at most {limit} ms").format(limit=fixed(LIMITS.lag_sd_ms[0], 0)),
+        ),
+        (
+            "plausible",
+            tr("Range in walking, median"),
+            lambda joint, _: _degrees(float(np.median(found)) if len(found := _ranges_deg(facts, joint)) else math.nan),
+            tr("knee {knee}°, ankle {ankle}°").format(
+                knee=f"{knee[0]:.0f}–{knee[1]:.0f}", ankle=f"{ankle[0]:.0f}–{ankle[1]:.0f}"
+            ),
+        ),
+        (
+            "halves",
+            tr("Range, second half less first"),
+            lambda joint, _: _degrees(_farthest(halves_apart, facts, joint), is_signed=True),
+            tr("at most {limit}°").format(limit=fixed(LIMITS.halves_deg, 0)),
+        ),
+        (
+            "drift",
+            tr("Range, last third less first"),
+            lambda joint, _: _degrees(_farthest(thirds_apart, facts, joint), is_signed=True),
+            tr("at most {limit}°").format(limit=fixed(LIMITS.thirds_deg, 0)),
+        ),
+        ("strap", tr("Strap"), lambda joint, _: _strap(facts, joint), tr("no slip")),
+        ("zero", tr("Zero"), lambda _, found: _zero(found), tr("standing, or goniometer")),
+    ]
+    rows: list[Row] = [
+        [
+            label,
+            *(
+                Cell(said(joint, facts.calibrated[joint]), is_bold=_has_failed(facts.verdicts.joint(joint), gate))
+                for joint in joints
+            ),
+            limit,
+        ]
+        for gate, label, said, limit in gates
+    ]
+    for label, part in ((tr("Shape, range"), "shape"), (tr("Height"), "height")):
+        words = [verdict_word(getattr(facts.verdicts.joint(joint), part).verdict) for joint in joints]
+        rows.append([Cell(label, is_bold=True), *(Cell(word, is_bold=True) for word in words), ""])
+    return [heading(tr("What each verdict rests on")), table(columns, rows, is_dense=True)]
+
+
+def hips_table(facts: Facts) -> list[Block]:
+    """The same of the hips, which have no axis, and what ties the clocks of both legs; nothing without a pelvis."""
+    hips = {joint: facts.walk.hips[joint] for side in Side if (joint := hip_of(side)) in facts.walk.hips}
+    if not hips:
+        return []
+    columns = [
+        Column(tr("Evidence, hips"), "1fr", is_number=False),
+        *(Column(capitalised(name_of(joint))) for joint in hips),
+        Column(tr("Needed for “{word}”").format(word=tr("can be read")), "58mm", is_number=False),
+    ]
+    centre, apart, of_range = LIMITS.hip_centre_m, LIMITS.hips_apart_m, LIMITS.hip_range_deg
+    gates: list[tuple[str, str, Callable[[Joint, HipIdentification], str], str]] = [
+        (
+            "pairing",
+            tr("Sensors are neighbours, margin"),
+            lambda _, found: _margin(found.margin),
+            tr("at least {limit}").format(limit=fixed(LIMITS.pairing_margin, 1)),
+        ),
+        (
+            "hip_disagreement",
+            tr("Disagreement about the hip"),
+            lambda _, found: fixed(found.disagreement, 2),
+            tr("under {limit}").format(limit=fixed(LIMITS.hip_disagreement, 1)),
+        ),
+        (
+            "hip_centre",
+            tr("Centre from pelvis, thigh sensor"),
+            lambda _, found: _cm(found.centre_proximal_m) + ", " + _cm(found.centre_distal_m),
+            tr("{least} to {most} cm").format(least=fixed(100 * centre[0], 0), most=fixed(100 * centre[1], 0)),
+        ),
+        (
+            "hips_apart",
+            tr("Left hip to the left of the right"),
+            lambda _, found: (
+                NOTHING if found.centres_apart_m is None else f"{fixed(100 * found.centres_apart_m, 0)} cm"
+            ),
+            tr("{least} to {most} cm").format(least=fixed(100 * apart[0], 0), most=fixed(100 * apart[1], 0)),
+        ),
+        (
+            "hip_heading",
+            tr("Heading of pelvis and thigh, 1 SD"),
+            lambda _, found: _degrees(math.degrees(found.heading_sd_rad)),
+            tr("at most {limit}°, of abduction alone").format(limit=fixed(LIMITS.hip_heading_sd_deg, 0)),
+        ),
+        (
+            "plausible",
+            tr("Range in walking, median"),
+            lambda joint, _: _degrees(float(np.median(found)) if len(found := _ranges_deg(facts, joint)) else math.nan),
+            f"{of_range[0]:.0f}–{of_range[1]:.0f}°",
+        ),
+        (
+            "halves",
+            tr("Range, second half less first"),
+            lambda joint, _: _degrees(_farthest(halves_apart, facts, joint), is_signed=True),
+            tr("at most {limit}°").format(limit=fixed(LIMITS.halves_deg, 0)),
+        ),
+    ]
+    rows: list[Row] = [
+        [
+            label,
+            *(
+                Cell(said(joint, hip.identification), is_bold=_has_failed_hip(facts, joint, gate))
+                for joint, hip in hips.items()
+            ),
+            limit,
+        ]
+        for gate, label, said, limit in gates
+    ]
+    said = facts.verdicts
+    verdicts = [
+        (tr("Shape, range"), [said.joint(joint).shape for joint in hips]),
+        (tr("Height"), [said.joint(joint).height for joint in hips]),
+        (tr("Abduction"), [assessment_of(said, joint.side, "hip_abduction_peak_deg") for joint in hips]),
+    ]
+    for label, found in verdicts:
+        words = [Cell(verdict_word(one.verdict), is_bold=True) for one in found]
+        rows.append([Cell(label, is_bold=True), *words, ""])
+    clocks = clocks_in_words(facts)
+    return [table(columns, rows, is_dense=True), *([note(clocks)] if clocks else [])]
+
+
+def clocks_in_words(facts: Facts) -> str:
+    """How the clocks of both legs are tied, and by how much they are apart where the hips tell it."""
+    clock = facts.walk.leg_clock
+    if clock is None:
+        return ""
+    if clock.status is ClockStatus.PROVEN:
+        return tr("Clocks of both legs: proven to be one.")
+    if clock.status is ClockStatus.WITHHELD:
+        return tr("Clocks of both legs: not told by the hips.")
+    side = Side.RIGHT if clock.offset_s > 0 else Side.LEFT
+    pattern = (
+        tr("Clocks of both legs: found through the hips, the {side} leg's {late} ms late, 1 SD {sd} ms, taken out.")
+        if clock.applied_s
+        else tr("Clocks of both legs: found through the hips, the {side} leg's {late} ms late, 1 SD {sd} ms.")
+    )
+    late, sd = fixed(1000 * abs(clock.offset_s), 0), fixed(1000 * clock.sd_s, 0)
+    return pattern.format(side=side_name(side), late=late, sd=sd)
+
+
+def error_table() -> list[Block]:
+    """What has to be exceeded at least, by what lies between two means, and what each comparison contains."""
+    columns = [
+        Column(tr("Comparison"), "46mm", is_number=False),
+        Column(tr("What makes it uncertain"), "1fr", is_number=False),
+        Column(tr("Knee range, °")),
+        Column(tr("Ankle range, °")),
+        Column(tr("Stance, % of stride"), "31mm"),
+    ]
+    told = (
+        (ComparisonKind.ATTACHED, tr("Two walks, sensors left on"), tr("strides, drift, clocks; walk to walk")),
+        (ComparisonKind.LEGS, tr("Left against right"), tr("the same; each leg's straps, bias of the events")),
+        (ComparisonKind.STRAPPINGS, tr("Sensors strapped on anew"), tr("the same; straps")),
+        (ComparisonKind.VISITS, tr("Two visits"), tr("the same; straps, another day")),
+    )
+    rows: list[Row] = []
+    for kind, name, contains in told:
+        cells = []
+        for column in ("knee_range_deg", "ankle_range_deg", "stance_percent"):
+            sigma = sigma_of(column, kind)
+            cells.append(signed_error(sigma) + (DAGGER if sigma is not None and not sigma.is_verified else ""))
+        rows.append([name, contains, *cells])
+    said = tr(
+        "At least so much, before what chance between strides adds (1.96 standard deviations of the difference). A "
+        "sentence on page 1 needs 1.5 times as much where the error is no published upper end."
+    )
+    return [
+        heading(tr("How large a difference must be")),
+        table(columns, rows, is_dense=True),
+        note(f"{said} {dagger_note()}"),
+    ]
+
+
+def halves_apart(values: FloatArray) -> float:
+    """The mean of the second half of some values (k,) less that of the first; NaN of too few."""
+    if len(values) < MIN_STRIDES_TO_SPLIT:
+        return math.nan
+    half = len(values) // 2
+    return float(values[-half:].mean() - values[:half].mean())
+
+
+def thirds_apart(values: FloatArray) -> float:
+    """The mean of the last third of some values (k,) less that of the first; NaN of too few."""
+    if len(values) < MIN_STRIDES_TO_SPLIT:
+        return math.nan
+    third = len(values) // 3
+    return float(values[-third:].mean() - values[:third].mean())
+
+
+def _ranges_of_walks(facts: Facts, joint: Joint) -> list[FloatArray]:
+    """Of every stride used of each walk, as evidence: whatever may be said of the joint."""
+    gaits = [walk.gait[joint.side] for walk in facts.part.walks if joint.side in walk.gait]
+    found = [raw_values(gait, f"{joint.kind}_range_deg")[gait.strides.is_used] for gait in gaits]
+    return [one[np.isfinite(one)] for one in found]
+
+
+def _ranges_deg(facts: Facts, joint: Joint) -> FloatArray:
+    return np.concatenate([np.empty(0), *_ranges_of_walks(facts, joint)])
+
+
+def _farthest(apart: Callable[[FloatArray], float], facts: Facts, joint: Joint) -> float:
+    """Of the walk in which the parts lie farthest apart: each walk has to pass by itself."""
+    found = [value for one in _ranges_of_walks(facts, joint) if math.isfinite(value := apart(one))]
+    return max(found, key=abs, default=math.nan)
+
+
+def _degrees(value: float, *, is_signed: bool = False) -> str:
+    said = signed(value, 1) if is_signed else fixed(value, 1)
+    return said if said == NOTHING else f"{said}°"
+
+
+def _axis(_: Joint, found: JointCalibration) -> str:
+    return _degrees(math.nan if found.axis_sd_rad is None else math.degrees(found.axis_sd_rad))
+
+
+def _pairing(_: Joint, found: JointCalibration) -> str:
+    return NOTHING if found.sign_margin is None else _margin(found.sign_margin)
+
+
+def _margin(margin: float) -> str:
+    if margin > MARGIN_BEYOND:
+        return tr("over {most}").format(most=fixed(MARGIN_BEYOND, 0))
+    return fixed(margin, 2)
+
+
+def _apart(centres_apart_m: float | None) -> str:
+    return NOTHING if centres_apart_m is None else f"{fixed(100 * centres_apart_m, 0)} cm"
+
+
+def _cm(centre_m: FloatArray) -> str:
+    return f"{fixed(100 * float(np.linalg.norm(centre_m)), 0)} cm"
+
+
+def _has_failed_hip(facts: Facts, joint: Joint, gate: str) -> bool:
+    heading = facts.verdicts.abduction.get(joint.side, NOT_MEASURED)
+    is_heading = gate == "hip_heading" and not heading.is_told
+    return is_heading or _has_failed(facts.verdicts.joint(joint), gate)
+
+
+def _sign(_: Joint, found: JointCalibration) -> str:
+    return NOTHING if found.clinical_sign_margin is None else fixed(found.clinical_sign_margin, 2)
+
+
+def _lag(_: Joint, found: JointCalibration) -> str:
+    if found.is_clock_shared:
+        return tr("one clock")
+    if found.lag_sd_s is None:
+        return tr("not resolvable")
+    return f"{fixed(1000 * found.lag_s, 1)} ± {fixed(1000 * found.lag_sd_s, 1)} ms"
+
+
+def _strap(facts: Facts, joint: Joint) -> str:
+    slipped = {joint.proximal, joint.distal}.intersection(slipped_straps(facts))
+    return tr("slipped") if slipped else tr("no slip")
+
+
+def _zero(found: JointCalibration) -> str:
+    names = {ZeroKind.STANDING: tr("standing"), ZeroKind.GONIOMETER: tr("goniometer"), ZeroKind.NONE: tr("none")}
+    return names[found.zero]
+
+
+def _has_failed(verdicts: JointVerdicts, gate: str) -> bool:
+    reasons: tuple[GateReason, ...] = (*verdicts.shape.reasons, *verdicts.height.reasons, *verdicts.sign.reasons)
+    return any(reason.gate == gate for reason in reasons)

@@ -1,0 +1,224 @@
+"""How was this walk measured? Sensors, calibration, filter, angles, events and accuracy, so that others can repeat it.
+
+What the ISB recommends to report of joint angles by inertial sensors (Cereatti et al. 2024, doi
+10.1016/j.jbiomech.2024.112225), as far as it could be read: `packaging/safety/reporting.md` says where each item is.
+What no sensor and no file tells is said to be unknown, never filled in.
+"""
+
+import math
+from collections import Counter
+
+from app.summary.facts import Facts
+from app.summary.numbers_in_words import fixed, signed_error
+from app.summary.plain_text import breakable, isolated, plain, shortened
+from app.wording.translation import WHOLE_SESSION, joined, tr
+from core.body import JointKind, Segment, Side, Site
+from core.calibration.certainty import AXIS_FLOOR_HUMAN_RAD, AXIS_FLOOR_WALKING_RAD
+from core.findings import Finding
+from core.results import AxisSource, Method
+from core.samples import ImuBlock, RateKind, SensorInfo
+from core.signal.orientation import accelerometer_time_constant_s
+from core.signal.tracks import MAX_REPORTED_GAP_S, nominal_step_s
+from core.verdicts.measurement_error import ComparisonKind, sigma_of
+from core.verdicts.norms import KNEE_OVERREAD
+
+MOST_MODELS = 2  # of more, their number is told
+MODEL_LENGTH = 32
+
+Titled = tuple[str, str]
+"""A title and the words under it."""
+
+
+def how_measured(facts: Facts, software_version: str) -> tuple[list[Titled], list[Titled]]:
+    """Title and words of what was measured and how, and of how sure it is and what words mean: two columns."""
+    done = [
+        (tr("Sensors"), _sensors(facts)),
+        (tr("Calibration"), _calibration(facts)),
+        (tr("Angles"), _angles(facts)),
+        (tr("Events and strides"), _strides(facts)),
+    ]
+    said = [
+        (tr("How accurate, and on whom"), _accuracy()),
+        *([(tr("Hips and pelvis"), _hips())] if facts.has_joint(JointKind.HIP) else []),
+        (tr("Words"), _words()),
+        (tr("Software"), _software(facts, software_version)),
+    ]
+    return done, said
+
+
+def _worn(facts: Facts) -> dict[Site, ImuBlock]:
+    return {site: block for site, block in facts.visit.recording(facts.walk.name).imu.items() if len(block)}
+
+
+def _findings(facts: Facts, key: str) -> list[Finding]:
+    """What was noticed of this walk, or of the whole session."""
+    return [
+        one
+        for one in facts.visit.analysis.findings
+        if one.key == key and {facts.walk.name, WHOLE_SESSION} & set(one.where.split(", "))
+    ]
+
+
+def _sensors(facts: Facts) -> str:
+    worn = _worn(facts)
+    told = [facts.visit.session.sensors.get(site, SensorInfo()) for site in worn]
+    said = tr(
+        "{models}, {rates}, on {segments}, strapped in any direction. Their measuring range is not in the "
+        "recording; {end}."
+    )
+    is_reached = bool(_findings(facts, "clipped"))
+    return said.format(
+        models=_models(told),
+        rates=_rates(told, list(worn.values())),
+        segments=_segments(set(worn)),
+        end=tr("samples lie at its end, see the remarks") if is_reached else tr("no samples lie at its end"),
+    )
+
+
+def _models(told: list[SensorInfo]) -> str:
+    """Which sensors, as they or their files tell: "6 × MTi, firmware 4.2"."""
+    named = Counter((_foreign(tr(one.model)), _foreign(one.firmware)) for one in told)
+    if len(named) > MOST_MODELS:
+        return tr("{count} sensors of {kinds} models").format(count=len(told), kinds=len(named))
+    each = []
+    for (model, firmware), count in named.most_common():
+        said = model or tr("sensor whose model is not told")
+        said = tr("{model}, firmware {firmware}").format(model=said, firmware=firmware) if firmware else said
+        each.append(f"{count} × {said}")
+    return joined(each)
+
+
+def _foreign(text: str) -> str:
+    """What a sensor or a file says of itself may be anything, and of any length."""
+    return isolated(breakable(shortened(plain(text).strip(), MODEL_LENGTH)))
+
+
+def _rates(told: list[SensorInfo], blocks: list[ImuBlock]) -> str:
+    """At which rate, as the sensors or their files tell it, and as the stamps show it."""
+    found = [1.0 / nominal_step_s(block.time_s) for block in blocks if len(block) > 1]
+    shown = tr("{rate} Hz by their stamps").format(rate=_span(found, 1)) if found else tr("rate not known")
+    set_to = [one.rate_hz for one in told if one.rate_hz]
+    return ", ".join([tr("set to {rate} Hz").format(rate=_span(set_to, 0)), shown]) if set_to else shown
+
+
+def _span(values: list[float], decimals: int) -> str:
+    low, high = fixed(min(values), decimals), fixed(max(values), decimals)
+    return low if low == high else f"{low}–{high}"
+
+
+def _segments(worn: set[Site]) -> str:
+    words = {Segment.THIGH: tr("thigh"), Segment.SHANK: tr("shank"), Segment.FOOT: tr("foot")}
+    here = [words[segment] for segment in words if any(site.segment is segment for site in worn)]
+    here += [tr("pelvis")] if Site.PELVIS in worn else []
+    sides = {site.side for site in worn if site is not Site.PELVIS}
+    if sides == set(Side):
+        return tr("{parts} of both legs").format(parts=joined(here))
+    side = tr("{parts} of the left leg") if Side.LEFT in sides else tr("{parts} of the right leg")
+    return side.format(parts=joined(here)) if sides else joined(here)
+
+
+def _calibration(facts: Facts) -> str:
+    from_walks = any(found.axis_source is AxisSource.WALKING for found in facts.calibrated.values())
+    motion = (
+        tr("the walks themselves, as no free movement was recorded")
+        if from_walks
+        else tr("the patient's own free movement, the ankle's axis from the walks too")
+    )
+    calibrated = facts.calibrated.values()
+    is_rest_unknown = any(
+        bias is None for one in calibrated for bias in (one.gyro_bias_proximal_rad_s, one.gyro_bias_distal_rad_s)
+    )
+    rest = tr("unknown, as a sensor was never still") if is_rest_unknown else tr("from standing or other still moments")
+    return tr(
+        "Rates at rest: {rest}. Each joint's axis, as both of its sensors see it, from {motion}: no posture, no "
+        "magnetic field, no tape. Zero: the standing posture of this patient on this day, or the goniometer value "
+        "typed in for it; an error in it moves a whole curve and leaves its range and shape."
+    ).format(rest=rest, motion=motion)
+
+
+def _angles(facts: Facts) -> str:
+    kinds = {
+        RateKind.INSTANTANEOUS: tr("rates of instants"),
+        RateKind.AVERAGED: tr("rates averaged by the sensors"),
+        None: tr("rates of a kind that is not told"),
+    }
+    angle = (
+        tr("An angle is the turn of the lower segment against the upper one about the joint's own axis")
+        if facts.visit.analysis.method is Method.ROBUST
+        else tr("An angle is that of equation 15 of the published method, about the joint's own axis")
+    )
+    return tr(
+        "Each sensor's orientation by VQF (Laidig, Seel 2023) forward and back, without magnetometer, time constant "
+        "{tau} s, from {kind}. {angle}: one of its three, no Cardan angle of bony landmarks. Flexion and dorsiflexion "
+        "are positive. Angles are not filtered; gaps up to {gap} s are bridged."
+    ).format(
+        tau=fixed(accelerometer_time_constant_s(), 0),
+        kind=kinds[_kind(facts)],
+        angle=angle,
+        gap=fixed(MAX_REPORTED_GAP_S, 2),
+    )
+
+
+def _hips() -> str:
+    return tr(
+        "A sensor on the sacrum and those of the thighs tell how each thigh turns in the pelvis, from standing. "
+        "Beside optical markers walking hips were 1 to 4° off after removing the mean, deep squats 6° (four "
+        "people, on whom the constants were set); heights read some 5° high. Abduction: 2.5° (1 SD)."
+    )
+
+
+def _kind(facts: Facts) -> RateKind | None:
+    """What one sample of an angular rate stands for, as the sensors tell it or the data showed; None: neither."""
+    told = {info.rate_kind for site, info in facts.visit.session.sensors.items() if site in _worn(facts)}
+    found = {RateKind(str(one.numbers["kind"])) for one in _findings(facts, "rate_kind_found")}
+    known = (told - {None}) | found
+    return known.pop() if len(known) == 1 else None
+
+
+def _strides(facts: Facts) -> str:
+    source = (
+        tr("from the pitch of the feet, or from the shank where a foot has no sensor")
+        if _findings(facts, "events_from_shank")
+        else tr("from the pitch of the feet, of feet that hardly roll from how the sole travels")
+    )
+    return tr(
+        "Contact and toe\u2011off: {source}. Speed and stride length: integrated from stance to stance. Used: steady "
+        "straight walking. Left out: slow or short strides at either end, turns, pauses, missing samples, doubtful "
+        "landings, strides unlike the others and after a strap slipped; each with its reason in the file of strides. "
+        "A peak at the edge of its window is printed as “no peak”."
+    ).format(source=source)
+
+
+def _accuracy() -> str:
+    # the figures stand in resources/help/accuracy.md and README.md; a test holds them together
+    return tr(
+        "Beside optical systems, root mean square, mean removed: two mechanical hinges 0.31° and 0.25°; one person's "
+        "walk 4.3° and 3.1° at the knees, 2.1° at the ankles; heights included, knees about 5°, ankles 7 to 9° "
+        "(recordings that are not published). 57 contacts and toe\u2011offs of a healthy person: SD 7.7 and 7.2 ms, "
+        "contacts 25 ms after the optics'; stride length 0.25 % short, SD 1.5 cm. It has not been tested on patients, "
+        "nor after knee replacement or on real prostheses."
+    )
+
+
+def _words() -> str:
+    return tr(
+        "Band: mean ± 1 and 2 SD of other, healthy people, measured with optical markers; not a target. "
+        "Error: a smaller difference happens by measuring alone in 95 of 100 repeats; of knee range between "
+        "legs and visits at least {knee_error}° (upper end of 3.4–9.2° published, 15 volunteers; for the ankle "
+        "borrowed). Exceeds: larger than that; it says how large a difference is, not whether it is good. "
+        "Certainty of a joint axis is never told below {floor}°, from walking alone below {walking}°. "
+        "Knees are read 9 ± 4 % too flexed, so they are judged as measured and divided by {overread}. "
+        "Withheld: measured, but not fit to be read; the cause is named."
+    ).format(
+        knee_error=signed_error(sigma_of("knee_range_deg", ComparisonKind.VISITS)),
+        floor=fixed(math.degrees(AXIS_FLOOR_HUMAN_RAD), 0),
+        walking=fixed(math.degrees(AXIS_FLOOR_WALKING_RAD), 0),
+        overread=fixed(KNEE_OVERREAD, 2),
+    )
+
+
+def _software(facts: Facts, version: str) -> str:
+    methods = {Method.ROBUST: tr("the robust method"), Method.PUBLISHED: tr("the published method")}
+    return tr("Gaitwright {version}, {method} (after Seel, Raisch, Schauer 2014, Sensors 14:6891).").format(
+        version=_foreign(version), method=methods[facts.visit.analysis.method]
+    )

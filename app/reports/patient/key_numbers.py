@@ -1,0 +1,89 @@
+"""Which few figures of both legs stand on page one? Those that the findings tell first, then always the same."""
+
+from app.charts.cycles import is_spread_enough
+from app.reports.blocks import Block, Cell, Column, Row, heading, note, table
+from app.reports.patient.key_strips import strip
+from app.summary.comparison import Comparison
+from app.summary.facts import Facts
+from app.summary.goals import goal_mark
+from app.summary.numbers_in_words import (
+    DAGGER,
+    NOTHING,
+    band_in_figures,
+    dagger_note,
+    fixed,
+    marked,
+    signed,
+    spread,
+)
+from app.summary.what_differs import LegsRow, what_differs
+from app.summary.what_stands_out import BANDS_ON_PAPER, ranked_findings
+from app.wording.translation import tr
+from core.body import Side
+from core.verdicts.model import Verdict
+
+MOST_ROWS = 5
+ALWAYS = ("knee_stance_to_swing_deg", "ankle_push_off_deg", "stance_percent", "step_time_s", "knee_range_deg")
+
+
+def key_numbers(facts: Facts, comparison: Comparison | None) -> list[Block]:
+    """A table of up to five measures that were worn and are not withheld on both legs; nothing without any."""
+    rows = key_rows(facts, comparison)
+    if not rows:
+        return []
+    one, other = facts.first_and_second
+    columns = [
+        Column(tr("Measure"), "1fr", is_number=False),
+        *(Column(facts.counted(side)) for side in Side),
+        Column(f"{one[0].upper()} − {other[0].upper()}"),
+        Column(tr("Error")),
+        Column(tr("Band")),
+        Column(tr("L above, R below, ± half the error"), "48mm", is_number=False),
+    ]
+    cells: list[Row] = [_cells(row) for row in rows]
+    said = []
+    if any(row.is_judged for row in rows):
+        said.append(tr("Bold: larger than the error of a comparison between the legs (95 %)."))
+    if any(row.is_judged and row.difference.is_unverified for row in rows):
+        said.append(dagger_note())
+    notes = [note(" ".join(said))] if said else []
+    return [heading(tr("Key numbers")), table(columns, cells), *notes]
+
+
+def key_rows(facts: Facts, comparison: Comparison | None) -> list[LegsRow]:
+    """What the findings tell, what goals are of, then what always stands there."""
+    rows = {row.column: row for row in what_differs(facts) if row.values}
+    told = [one.column for one in ranked_findings(facts, comparison, BANDS_ON_PAPER)]
+    columns = dict.fromkeys([*told, *(column for column, row in rows.items() if row.goals), *ALWAYS])
+    return [rows[column] for column in columns if column in rows][:MOST_ROWS]
+
+
+def _cells(row: LegsRow) -> list[Cell | str]:
+    found = row.difference
+    values = [_value(row, side) for side in Side]
+    unit = row.unit.strip()
+    dagger = DAGGER if found.is_unverified else ""
+    return [
+        "; ".join([f"{row.name}, {unit}", *map(goal_mark, row.goals)]),
+        *values,
+        Cell(signed(found.difference, row.decimals) if found.is_told else NOTHING, is_bold=found.exceeds),
+        f"{fixed(found.error, row.decimals)}{dagger}" if row.is_judged else NOTHING,
+        _band(row),
+        Cell("", picture=strip(row)),
+    ]
+
+
+def _value(row: LegsRow, side: Side) -> Cell | str:
+    if side not in row.values:
+        return row.unknown.get(side, NOTHING)
+    value = row.values[side]
+    verdict = row.verdicts.get(side, Verdict.READ)
+    return Cell(marked(spread(value, row.decimals), verdict), is_grey=not is_spread_enough(value.n))
+
+
+def _band(row: LegsRow) -> str:
+    if row.band is None:
+        return tr("no band")
+    low, high = row.band
+    quarter = (high - low) / 4
+    return band_in_figures((low + quarter, high - quarter), row.decimals)

@@ -1,0 +1,115 @@
+"""What did the clinician say, how was it measured, and where does every band come from?"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from datetime import datetime
+
+from app.reports.blocks import Block, bullets, heading, note
+from app.reports.patient.evidence import evidence
+from app.reports.patient.how_measured import how_measured
+from app.reports.patient.time_page import is_evidence_beside_time, speed_class_in_words
+from app.summary import quality
+from app.summary.facts import Facts
+from app.summary.numbers_in_words import fixed
+from app.summary.panels import why_no_band
+from app.summary.plain_text import plain, plain_lines
+from app.summary.request import ReportRequest
+from app.wording.recordings import with_shown_names
+from app.wording.translation import sentence, tr
+from core.findings import Finding, Severity
+from core.verdicts.norms import PUBLISHED
+
+LONG = 14  # lines of words that may not fit into what is left of the page
+# what was corrected by hand, and what changes how a number is read: told, however mild
+TOLD = {
+    "sign_turned",
+    "sign_confirmed",
+    "zero_from_goniometer",
+    "prosthetic_toe_off",
+    "events_from_shank",
+    "rate_from_orientation",
+    "gravity_from_orientation",
+}
+
+
+def words_page(request: ReportRequest, facts: Facts) -> list[Block]:
+    """How sure, how measured, and what the clinician says, whose box takes what is left of the page."""
+    comment = plain_lines(request.comment)
+    return [
+        heading(tr("How sure, how measured")),
+        *([] if is_evidence_beside_time(facts) else evidence(facts)),
+        *_remarks(request, facts),
+        {"kind": "two_columns", "columns": list(how_measured(facts, request.software_version))},
+        note(" ".join([*_sources(facts), _made(request.made_at)])),
+        heading(tr("Clinician's words")),
+        {
+            "kind": "comment",
+            "lines": comment or [tr("No words were entered.")],
+            "is_empty": not comment,
+            "is_long": len(comment) > LONG,
+        },
+        {"kind": "signature", "said": [tr("Name"), tr("Signature"), tr("Date")]},
+    ]
+
+
+def _remarks(request: ReportRequest, facts: Facts) -> list[Block]:
+    """Every finding that touches these walks and is more than information, and those of `TOLD`."""
+    others = {r.name for r in request.visit.session.recordings if r.name not in request.walks}
+    told = [
+        finding
+        for finding in request.visit.analysis.findings
+        if (finding.severity is not Severity.INFO or finding.key in TOLD)
+        and not others.intersection(finding.where.split(", "))
+    ]
+    causes = quality.caveats(facts)
+    names = request.visit.shown_names
+    noticed = [plain(sentence(with_shown_names(finding, names))) for finding in _joined(told)]
+    said = [*(causes if len(causes) > 1 else []), *noticed]
+    return [heading(tr("Remarks on this recording")), bullets(said)] if said else []
+
+
+def _joined(findings: Sequence[Finding]) -> list[Finding]:
+    """Tell what holds alike of several places once, of all of them."""
+    places: dict[tuple[object, ...], dict[str, None]] = {}
+    first: dict[tuple[object, ...], Finding] = {}
+    for finding in findings:
+        alike = finding.key, *finding.numbers.items()
+        first.setdefault(alike, finding)
+        places.setdefault(alike, {}).update(dict.fromkeys(finding.where.split(", ")))
+    return [replace(finding, where=", ".join(places[alike])) for alike, finding in first.items()]
+
+
+def _sources(facts: Facts) -> list[str]:
+    curves, values = facts.curves_group, facts.values_group
+    said = []
+    if curves is not None:
+        pattern = tr(
+            "[1] Curves, peaks, GVS: {n} {group}, {speed} m/s, optical markers. {source}. "
+            "Values and SD are read from the mean curve, which has no SD of range."
+        )
+        speed = fixed(curves.speed_m_s, 2)
+        said.append(pattern.format(n=curves.n, group=tr(curves.group), speed=speed, source=_derived(curves.derivation)))
+    if values is not None:
+        pattern = tr(
+            "[2] Time and distance: {group}, optical markers and force plates; class “{speed_class}” of the Froude "
+            "number ({speed} m/s, n = {n}). {source}."
+        )
+        said.append(
+            pattern.format(
+                group=tr(values.group),
+                speed_class=speed_class_in_words(values.speed_class),
+                speed=fixed(values.speed_m_s, 2),
+                n=values.n,
+                source=_derived(values.derivation),
+            )
+        )
+    return said or [why_no_band(facts, facts.bands.why_no_values)]
+
+
+def _derived(derivation: str) -> str:
+    """Name the source and who derived its figures: the citation stays as it was published."""
+    return tr("{published}, as derived by {derivation}").format(published=PUBLISHED, derivation=derivation)
+
+
+def _made(made_at: datetime) -> str:
+    return tr("This report was made on {moment}.").format(moment=f"{made_at:%Y-%m-%d %H:%M %z}".strip())

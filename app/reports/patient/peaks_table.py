@@ -1,0 +1,244 @@
+"""The table of excursions, ranges and peaks: how the legs differ, and where both lie against the band."""
+
+import math
+from collections.abc import Sequence
+
+from app.charts.cycles import is_spread_enough
+from app.reports.blocks import Block, Cell, Column, Row, note, table
+from app.summary import quality
+from app.summary.comparison import compare_legs
+from app.summary.facts import Facts
+from app.summary.numbers_in_words import (
+    DAGGER,
+    NOTHING,
+    away_in_words,
+    band_in_figures,
+    care_note,
+    dagger_note,
+    each_side,
+    fixed,
+    in_brief,
+    marked,
+    signed,
+    signed_error,
+    spread,
+)
+from app.summary.panels import excursion_name, peak_name
+from app.summary.walk_figures import by_hand_in_words
+from app.wording.translation import capitalised, later, tr
+from app.wording.verdicts import verdict_word
+from core.body import JointKind, Side
+from core.verdicts.measurement_error import ComparisonKind, sigma_of
+from core.verdicts.model import Verdict
+from core.verdicts.norms import KNEE_OVERREAD
+from core.verdicts.quantities import ABDUCTION, EXCURSIONS_BY_COLUMN, WINDOWS
+
+SHAPES = {  # what needs no zero
+    "knee": (
+        "knee_stance_to_swing_deg",
+        "knee_while_loading_deg",
+        "knee_straightening_deg",
+        "knee_range_deg",
+    ),
+    "hip": ("hip_range_deg", "hip_abduction_range_deg"),
+    "ankle": (
+        "ankle_push_off_deg",
+        "ankle_rocker_deg",
+        "ankle_heel_rocker_deg",
+        "ankle_toes_lifted_deg",
+        "ankle_range_deg",
+    ),
+}
+HEIGHTS = {
+    "knee": (
+        "knee_at_initial_contact_deg",
+        "knee_loading_peak_deg",
+        "knee_stance_minimum_deg",
+        "knee_swing_peak_deg",
+    ),
+    "hip": (
+        "hip_flexion_peak_deg",
+        "hip_extension_peak_deg",
+        "hip_abduction_peak_deg",
+        "hip_adduction_peak_deg",
+    ),
+    "ankle": (
+        "ankle_at_initial_contact_deg",
+        "ankle_loading_plantarflexion_deg",
+        "ankle_stance_dorsiflexion_deg",
+        "ankle_push_off_plantarflexion_deg",
+        "ankle_swing_dorsiflexion_deg",
+    ),
+}
+TIMES = {"hip": (), "knee": ("knee_swing_peak_percent",), "ankle": ()}
+MOVEMENTS = {
+    JointKind.HIP: later("Hip: how far it moves"),
+    JointKind.KNEE: later("Knee: how far it moves"),
+    JointKind.ANKLE: later("Ankle: how far it moves"),
+}
+ANGLES = {
+    JointKind.HIP: later("Hip: angles from standing"),
+    JointKind.KNEE: later("Knee: angles (flexion +)"),
+    JointKind.ANKLE: later("Ankle: angles (dorsiflexion +)"),
+}
+
+
+def peaks_table(facts: Facts) -> list[Block]:
+    """Of each joint how far it moves, then its angles; below it what the words and marks mean."""
+    one, other = facts.first_and_second
+    kinds = [kind for kind in facts.kinds if facts.has_joint(kind)]
+    if not kinds:
+        return []
+    columns = [
+        Column(tr("Measure, °"), "1fr", is_number=False),
+        *(_side_column(facts, side) for side in Side),
+        Column(f"{one[0].upper()} − {other[0].upper()}"),
+        Column(tr("Error")),
+        Column(tr("{one} − {other} is").format(one=one[0].upper(), other=other[0].upper()), is_number=False),
+        Column(tr("Band [1]")),
+        Column(tr("Against the band"), "27mm", is_number=False),
+    ]
+    rows: list[Row] = []
+    for kind in kinds:
+        rows.append(tr(MOVEMENTS[kind]))
+        rows += [_row(facts, column) for column in (*SHAPES[kind], *TIMES[kind]) if _is_any_told(facts, kind, column)]
+        rows.append(_head_of_heights(facts, kind))
+        rows += [_row(facts, column) for column in HEIGHTS[kind] if _is_any_told(facts, kind, column)]
+    return [table(columns, rows, is_dense=True), note(" ".join(_notes(facts, kinds)))]
+
+
+def _head_of_heights(facts: Facts, kind: JointKind) -> str:
+    """With how far each leg's whole curve lies from the band."""
+    title = tr(ANGLES[kind])
+    offsets = [
+        f"{side[0].upper()}\u00a0{signed(offset, 1)}°"
+        for side in Side
+        if math.isfinite(offset := facts.offset_deg(side, kind))
+    ]
+    if not offsets:
+        return title
+    said = tr("{title}; whole curve against the band: {offsets}; laboratories differ by 7°")
+    return said.format(title=title, offsets=", ".join(offsets))
+
+
+def hips_note() -> str:
+    """What hips and pelvis cannot say."""
+    return tr(
+        "Of hips and pelvis no error of a difference is known: differences are told and not judged. Rotation of the "
+        "hip is not readable and not given."
+    )
+
+
+def _notes(facts: Facts, kinds: Sequence[JointKind]) -> list[str]:
+    said = [
+        tr("Mean ± SD over strides; each is found stride by stride. Windows in brackets are % of the stride."),
+        _movements(kinds),
+        *quality.caveats(facts, (Verdict.WITHHELD,), is_of_joints=True)[: quality.MAX_SENTENCES],
+    ]
+    if len(facts.gait) == len(Side):
+        judged = tr("Exceeds, inside: the measurement error between legs, at least {error}°.")
+        said.append(judged.format(error=signed_error(sigma_of("knee_range_deg", ComparisonKind.LEGS))))
+        said.append(tr("For the ankle the knee's figure is borrowed.") + " " + dagger_note())
+    if JointKind.HIP in kinds:
+        said.append(hips_note())
+    shown = [
+        (side, column) for side in facts.gait for kind in facts.kinds for column in (*SHAPES[kind], *HEIGHTS[kind])
+    ]
+    if any(math.isfinite(facts.away_sd(side, column)) for side, column in shown):
+        judged = tr("Against the band: after laying it at each curve's height; knees as measured and divided by {by}.")
+        said.append(judged.format(by=fixed(KNEE_OVERREAD, 2)))
+    if any(_verdict(facts, side, column) is Verdict.CARE for side, column in shown):
+        said.append(care_note())
+    return [*said, by_hand_in_words(*facts.part.walks)]
+
+
+def _side_column(facts: Facts, side: Side) -> Column:
+    said = tr("Left") if side is Side.LEFT else tr("Right")
+    count = f"n = {facts.strides(side)}" if side in facts.gait else ""
+    return Column(f"{said}\n{count}".strip())
+
+
+def measure(column: str) -> str:
+    """Name a row, with the window its peak is looked for in."""
+    if column == "hip_abduction_range_deg":
+        return tr("Abduction, range over the stride")
+    if column.startswith("hip") and column.endswith("_peak_deg"):
+        return capitalised(peak_name(column))
+    if column.endswith("_at_initial_contact_deg"):
+        return tr("At initial contact")
+    if column.endswith("_range_deg"):
+        return tr("Range over the stride")
+    if column.endswith("_percent"):
+        return tr("Time of most flexion in swing, %")
+    if column in EXCURSIONS_BY_COLUMN:
+        return capitalised(excursion_name(column))
+    window = WINDOWS[column]
+    return f"{capitalised(peak_name(column))} ({window.first}–{window.last}\u00a0%)"
+
+
+def _movements(kinds: Sequence[JointKind]) -> str:
+    """Between which parts of the stride each movement is measured."""
+    each = []
+    for column in (column for kind in kinds for column in SHAPES[kind] if column in EXCURSIONS_BY_COLUMN):
+        excursion = EXCURSIONS_BY_COLUMN[column]
+        ends = [f"{end.first}–{end.last}" if end is not None else "0" for end in (excursion.high, excursion.low)]
+        each.append(
+            tr("{movement} {high} less {low}").format(movement=excursion_name(column), high=ends[0], low=ends[1])
+        )
+    said = tr(
+        "How far a joint moves is the highest angle of one part of the stride less the lowest of another, in %: {each}."
+    )
+    return said.format(each=", ".join(each))
+
+
+def _verdict(facts: Facts, side: Side, column: str) -> Verdict:
+    if not facts.is_worn(side, column):
+        return Verdict.NOT_MEASURED
+    return facts.assessment(side, column).verdict
+
+
+def _is_any_told(facts: Facts, kind: JointKind, column: str) -> bool:
+    """Whether a row has anything to tell: at initial contact, and of a hip outwards, there is nothing but a height."""
+    return ("initial_contact" not in column and not column.startswith(ABDUCTION)) or any(
+        _verdict(facts, side, column) in (Verdict.READ, Verdict.CARE) for side in Side
+    )
+
+
+def _row(facts: Facts, column: str) -> list[Cell | str]:
+    cells: list[Cell | str] = [measure(column)]
+    cells += [value_cell(facts, side, column) for side in Side]
+    is_any = any(facts.value(side, column).n for side in facts.sides_with_band)
+    band, kind = facts.band(column) if is_any else None, column.split("_")[0]
+    group_range = facts.group_range_deg(kind) if is_any and column == f"{kind}_range_deg" else None
+    if band is not None:
+        in_band = band_in_figures(band, 1)
+        away = {side: facts.away_sd(side, column) for side in Side}
+        against = each_side({side: away_in_words(sd) for side, sd in away.items() if math.isfinite(sd)})
+    else:
+        in_band = fixed(group_range, 1) if group_range is not None else tr("no band")
+        against = tr("band has no SD") if group_range is not None else NOTHING
+    return [*cells, *_difference_cells(facts, column), in_band, against]
+
+
+def value_cell(facts: Facts, side: Side, column: str) -> Cell | str:
+    """Give mean ± SD, or why there is none."""
+    verdict = _verdict(facts, side, column)
+    if verdict in (Verdict.WITHHELD, Verdict.NOT_MEASURED):
+        return verdict_word(verdict)
+    if facts.is_no_peak(side, column):
+        return NOTHING if column in EXCURSIONS_BY_COLUMN else tr("no peak")
+    value = facts.value(side, column)
+    return Cell(marked(spread(value, 1), verdict), is_grey=not is_spread_enough(value.n))
+
+
+def _difference_cells(facts: Facts, column: str) -> list[Cell | str]:
+    """The difference, its error, and both in words. Of what is withheld on either leg there is none."""
+    if not all(facts.value(side, column).n for side in Side):
+        return [NOTHING] * 3
+    found = compare_legs(facts.part, column, facts.first_and_second)
+    if not found.is_told:
+        return [NOTHING] * 3
+    dagger = DAGGER if found.is_unverified else ""
+    error = f"{fixed(found.error, 1)}{dagger}" if found.error > 0 else NOTHING
+    words = in_brief(found.judgement)
+    return [Cell(signed(found.difference, 1), is_bold=found.exceeds), error, Cell(words, is_bold=found.exceeds)]

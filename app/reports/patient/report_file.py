@@ -1,0 +1,120 @@
+"""Where does a report go? Beside its place first, so that it is whole or not there; only a report replaces a report."""
+
+import os
+import tempfile
+from datetime import datetime
+from pathlib import Path
+
+from app.exports.result_folder import OWN_SESSION, REPORT, SUMMARY, VISITS, VISITS_CYCLES, describe_tables
+from app.reports.patient.comparison_page import comparison_of
+from app.reports.patient.document import make_report
+from app.summary.comparison import Contrast
+from app.summary.differences import rows_of, write_compared_cycles, write_differences
+from app.summary.request import AnalysedVisit, ReportRequest, default_walks
+from core.results import Analysis
+from core.samples import Session
+from devices.files.refusal import FileRefusedError
+from devices.files.session_toml import FILE_NAME as SESSION_FILE
+
+PDF = b"%PDF-"
+
+
+def write_report(session: Session, analysis: Analysis, folder: Path, made_at: datetime, version: str) -> None:
+    """Write `report.pdf` into a folder of results; without a walk there is nothing to report.
+
+    Raises
+    ------
+    OSError
+        The disk is full or cannot be written to.
+    """
+    visit = AnalysedVisit(session, analysis)
+    walks = default_walks(visit)
+    if walks:
+        request = ReportRequest(visit, walks, made_at, version)
+        (folder / REPORT).write_bytes(make_report(request))
+
+
+def write_visits(request: ReportRequest, folder: Path) -> None:
+    """Write what a report with an earlier visit compares, as tables; without one, nothing.
+
+    Raises
+    ------
+    OSError
+        The disk is full or cannot be written to.
+    """
+    comparison = comparison_of(request)
+    if comparison is not None and comparison.kind is Contrast.VISITS:
+        write_differences(rows_of(comparison), folder / VISITS)
+        write_compared_cycles(comparison.parts, folder / VISITS_CYCLES)
+        describe_tables(request.visit.analysis, folder)
+
+
+def chosen_walks(visit: AnalysedVisit, wanted: list[str], session: str) -> tuple[str, ...]:
+    """Give the walks that were asked for, or those a report shows when none was.
+
+    Raises
+    ------
+    FileRefusedError
+        There is no such walk, or none at all.
+    """
+    names = visit.walk_names()
+    for name in wanted:
+        if name not in names:
+            what = f"there is no kept walk named {name}"
+            raise FileRefusedError(session, what, f"Choose of: {', '.join(names) or 'none'}")
+    walks = tuple(wanted) or default_walks(visit)
+    if not walks:
+        raise FileRefusedError(session, "this holds no kept walk, so there is nothing to report", "Record a walk first")
+    return walks
+
+
+def session_of(place: Path) -> Path:
+    """Give the session folder that a report is made from: the place itself, or the recordings inside its results.
+
+    Raises
+    ------
+    FileRefusedError
+        Results without their recordings: there are no angles in them to draw from.
+    """
+    if (place / SUMMARY).is_file() and not (place / SESSION_FILE).is_file():
+        if (place / OWN_SESSION / SESSION_FILE).is_file():
+            return place / OWN_SESSION
+        what = "this holds results without the recordings they were made from"
+        raise FileRefusedError(str(place), what, "Give the session folder instead")
+    return place
+
+
+def check_report_place(out: Path) -> None:
+    """See whether a report may stand at `out`.
+
+    Raises
+    ------
+    FileRefusedError
+        Something else than a PDF is there.
+    """
+    if out.is_dir():
+        raise FileRefusedError(str(out), "this is a folder", "Give the report a file's name, such as report.pdf")
+    if out.exists():
+        with out.open("rb") as file:
+            is_pdf = file.read(len(PDF)) == PDF
+        if not is_pdf:
+            raise FileRefusedError(str(out), "this is there already and is no PDF", "Choose another --out")
+
+
+def replace_report(pdf: bytes, out: Path) -> None:
+    """Put a report in its place, whole.
+
+    Raises
+    ------
+    OSError
+        The disk is full or cannot be written to.
+    """
+    out.parent.mkdir(parents=True, exist_ok=True)
+    handle, beside = tempfile.mkstemp(prefix=f".{out.name}-", dir=out.parent)
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(pdf)
+        Path(beside).replace(out)
+    except BaseException:
+        Path(beside).unlink(missing_ok=True)
+        raise

@@ -1,0 +1,230 @@
+"""The patient's course over the visits under one condition: what has changed, and whether beyond its error."""
+
+import datetime
+import math
+from collections.abc import Sequence
+
+from app.charts.drawing import Picture
+from app.reports.blocks import Block, Cell, Column, Row, bullets, figures, heading, note, table
+from app.reports.patient.trend_chart import trend_chart
+from app.summary.course import KNEE, PUSH_OFF, SPEED, STANCE
+from app.summary.course_lanes import CourseVisit
+from app.summary.facts import Facts, role
+from app.summary.goals import goal_mark, goal_sentence, in_course
+from app.summary.measure_sentences import measure_in_words, unit_and_decimals
+from app.summary.numbers_in_words import DAGGER, NOTHING, dagger_note, fixed, in_brief, signed
+from app.summary.plain_text import CONDITION_LENGTH, shortened, typed
+from app.summary.trend_lines import TrendLine, trend_columns, trend_lines, walked_visits
+from app.summary.visits import condition_in_words
+from app.wording.dates import date, short_date
+from app.wording.measures import least_span, measure_name, short_unit, unit_name
+from app.wording.translation import capitalised, tr
+from core.body import Side
+from core.goals import Goal, GoalOf
+from core.timed.measures import COLUMNS, PROTOCOLS
+from core.timed.protocols import TimedProtocol
+
+MOST_COLUMNS = 6  # of visits in the table: the first, and the latest
+MOST_SENTENCES = 3
+MOST_GOALS = 5  # in sentences; all of them are in goals.csv
+BY_LENGTH = 16
+
+
+def trend_page(visits: Sequence[CourseVisit], condition: str, facts: Facts) -> list[Block]:
+    """A page of its own; nothing where fewer than two visits have a value under this condition.
+
+    Parameters
+    ----------
+    visits
+        In order of time; the last is that of the report.
+    """
+    walked = walked_visits(visits, condition)
+    agreed = facts.part.agreed
+    columns = trend_columns(agreed)
+    lines = trend_lines(walked, condition, (*columns, *COLUMNS.values()), agreed)
+    shown = [line for line in lines if len(line.told) > 1]
+    if not shown:
+        return []
+    days = [visit.day for visit in walked]
+    title = tr("Course over {count} visits, {first} to {last}").format(
+        count=len(walked), first=date(days[0]), last=date(days[-1])
+    )
+    stated = typed(condition, CONDITION_LENGTH) if condition else condition_in_words("")
+    said = [
+        tr("Condition: {condition}. Sensors put on anew at each visit.").format(condition=stated),
+        tr("Whisker: half of the error of a change, so that whiskers apart are a change larger than its error."),
+        tr("Dates to scale. A gap: withheld at that visit."),
+    ]
+    if without := len(visits) - len(walked):
+        said.append(tr("Visits without a walk of this condition, or not computed: {count}.").format(count=without))
+    return [
+        heading(title),
+        note(" ".join(said)),
+        bullets([*_sentences(shown, facts, len(walked)), *_goals(walked, condition, facts)]),
+        figures([_chart(column, shown, days, facts) for column in columns if _of(shown, column)], columns=2),
+        heading(tr("The numbers"), level=2),
+        _table(shown, len(walked)),
+        note(_below(shown)),
+    ]
+
+
+def charts_of_tests(visits: Sequence[CourseVisit], condition: str, facts: Facts) -> dict[TimedProtocol, Picture]:
+    """One for each timed test that two visits and more have under a condition."""
+    walked, columns = walked_visits(visits, condition), tuple(COLUMNS.values())
+    lines = trend_lines(walked, condition, columns, facts.part.agreed)
+    shown, days = [line for line in lines if len(line.told) > 1], [visit.day for visit in walked]
+    return {PROTOCOLS[column]: _chart(column, shown, days, facts) for column in columns if _of(shown, column)}
+
+
+def _goals(walked: Sequence[CourseVisit], condition: str, facts: Facts) -> list[str]:
+    """Each goal that was agreed before this visit: at which visit it was first reached, and how it stands now."""
+    said = []
+    for goal in facts.part.agreed.told:
+        parts = [(number, visit) for number, visit in enumerate(walked, start=1) if visit.day > goal.agreed]
+        found = [
+            (number, in_course(goal, part))
+            for number, visit in parts
+            if visit.course is not None and (part := visit.course.condition(condition)) is not None
+        ]
+        if not found or not (now := goal_sentence(found[-1][1])):
+            continue
+        first = next((number for number, one in found if one.standing.is_reached), None)
+        if first is not None and found[-1][1].standing.is_reached and first != found[-1][0]:
+            now = f"{now} {tr('First reached at visit {number}.').format(number=first)}"
+        said.append(now)
+    return said[:MOST_GOALS]
+
+
+def _of(lines: Sequence[TrendLine], column: str) -> list[TrendLine]:
+    return [line for line in lines if line.column == column]
+
+
+def _chart(column: str, lines: Sequence[TrendLine], days: Sequence[datetime.date], facts: Facts) -> Picture:
+    _, decimals = unit_and_decimals(column)
+    drawn = {line.side: line.values for line in _of(lines, column)}
+    held = [goal for goal in facts.part.agreed.of(column) if goal.of is not GoalOf.BETWEEN]
+    goals = [(goal.value, _agreed_in_words(goal)) for goal in held]
+    least = least_span(column) if column in PROTOCOLS else 0.0
+    return trend_chart(
+        _name(column), decimals, days, drawn, is_simulated=facts.is_simulated, goals=goals, least_span=least
+    )
+
+
+def _agreed_in_words(goal: Goal) -> str:
+    """A goal and when it was agreed, by whom."""
+    by = f", {typed(shortened(goal.by, BY_LENGTH), BY_LENGTH)}" if goal.by else ""
+    return tr("{goal}, agreed {day}").format(goal=goal_mark(goal), day=short_date(goal.agreed)) + by
+
+
+def _name(column: str) -> str:
+    names = {
+        KNEE: tr("Knee, stance to swing, °"),
+        PUSH_OFF: tr("Ankle push\u2011off, °"),
+        STANCE: tr("Stance, % of stride"),
+        SPEED: tr("Walking speed, m/s"),
+    }
+    if column in names:
+        return names[column]
+    if column in PROTOCOLS:
+        return tr("{measure}, {unit}").format(measure=measure_name(column), unit=short_unit(column).strip())
+    unit = "°" if column.endswith("_deg") else unit_name(column)
+    return tr("{measure}, {unit}").format(measure=measure_name(column), unit=unit)
+
+
+def _sentences(lines: Sequence[TrendLine], facts: Facts, visits: int) -> list[str]:
+    """The changes since the first visit that are large enough for a sentence, the largest against its error first."""
+    first, _ = facts.first_and_second
+    worth = [
+        line
+        for line in lines
+        if line.since_first is not None and line.since_first.is_worth_a_sentence and line.side in (None, first)
+    ]
+    if not worth:
+        judged = [line.since_first for line in lines if line.since_first is not None and line.since_first.error > 0]
+        if not judged:
+            return [tr("No change could be judged.")]
+        if any(one.exceeds for one in judged):
+            said = tr(
+                "No change is so much larger than its error that it is told here; the table marks what exceeds it."
+            )
+            return [said]
+        return [tr("No change is larger than its error.")]
+    ordered = sorted(worth, key=lambda line: -line.since_first.ratio if line.since_first is not None else 0.0)
+    told = {_movement(line): line for line in reversed(ordered)}  # of each the largest
+    return [_sentence(line, facts, visits) for line in ordered if told[_movement(line)] is line][:MOST_SENTENCES]
+
+
+def _movement(line: TrendLine) -> tuple[str, Side | None]:
+    """What is told of once: speed is one, in a timed test or out of it."""
+    return (SPEED if line.column.endswith(SPEED) else line.column), line.side
+
+
+def _sentence(line: TrendLine, facts: Facts, visits: int) -> str:
+    found, last = line.since_first, line.values[-1]
+    assert found is not None  # those without one are not told
+    unit, decimals = unit_and_decimals(line.column)
+    first = next(one for one in line.values if one.visit == line.first)
+    name = measure_in_words(line.column)
+    who = name if line.side is None else f"{role(facts, line.side)}, {name}"
+    said = tr("{who}: {a} at visit {first}, {b} at visit {last}; {change}, error between visits {error}.").format(
+        who=capitalised(who),
+        a=fixed(first.value, decimals) + unit,
+        b=fixed(last.value, decimals) + unit,
+        first=line.first + 1,
+        last=visits,
+        change=signed(found.difference, decimals) + unit,
+        error=fixed(found.error, decimals) + unit,
+    )
+    since = line.since_last
+    if since is None or line.before == line.first:
+        return said
+    if not since.error > 0:
+        return said
+    words = (
+        tr("Since visit {number} {change}: larger than the error.")
+        if since.exceeds
+        else tr("Since visit {number} {change}: inside the error.")
+    )
+    return f"{said} {words.format(number=line.before + 1, change=signed(since.difference, decimals) + unit)}"
+
+
+def _table(lines: Sequence[TrendLine], visits: int) -> Block:
+    shown = list(range(visits)) if visits <= MOST_COLUMNS else [0, *range(visits - MOST_COLUMNS + 1, visits)]
+    columns = [
+        Column(tr("Measure"), "1fr", is_number=False),
+        Column("", is_number=False),
+        *(Column(str(visit + 1)) for visit in shown),
+        Column(tr("since last")),
+        Column(tr("since first")),
+        Column(tr("Error")),
+        Column(tr("since first is"), is_number=False),
+    ]
+    rows: list[Row] = []
+    for line in lines:
+        _, decimals = unit_and_decimals(line.column)
+        values = {one.visit: one.value for one in line.values}
+        cells: list[Cell | str] = [_name(line.column), line.side[0].upper() if line.side is not None else ""]
+        for visit in shown:
+            is_withheld = visit in values and not math.isfinite(values[visit])
+            cells.append(tr("withheld") if is_withheld else fixed(values.get(visit, math.nan), decimals))
+        found, since = line.since_first, line.since_last
+        is_told = found is not None and found.is_told
+        cells.append(signed(since.difference, decimals) if since is not None and line.before != line.first else NOTHING)
+        if found is None or not is_told:
+            rows.append([*cells, NOTHING, NOTHING, NOTHING])
+            continue
+        dagger = DAGGER if found.is_unverified else ""
+        cells += [
+            Cell(signed(found.difference, decimals), is_bold=found.exceeds),
+            f"{fixed(found.error, decimals)}{dagger}" if found.error > 0 else NOTHING,
+            Cell(in_brief(found.judgement), is_bold=found.exceeds),
+        ]
+        rows.append(cells)
+    return table(columns, rows, is_dense=True)
+
+
+def _below(lines: Sequence[TrendLine]) -> str:
+    said = [tr("Heights are left out: each visit has a zero of its own. First: the first visit that can be read.")]
+    if any(line.since_first is not None and line.since_first.is_unverified for line in lines):
+        said.append(dagger_note())
+    return " ".join(said)

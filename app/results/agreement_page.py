@@ -1,0 +1,121 @@
+"""What do the angles of a session and those of an optical system differ by? The pages that are saved, to be read."""
+
+from collections.abc import Sequence
+
+from PySide6.QtCore import Signal
+from PySide6.QtWidgets import QFrame, QHBoxLayout, QStackedWidget, QVBoxLayout, QWidget
+
+from app.theme.icons import Icon
+from app.theme.notifier import ThemeNotifier
+from app.widgets.button import Button, ButtonKind
+from app.widgets.reading_area import ReadingArea
+from app.widgets.sentence_page import SentencePage
+from app.widgets.sheets import Sheet, Sheets
+from app.widgets.text import Text
+from app.widgets.themed import Themed
+from app.wording.translation import joined, later, tr
+
+KINDS = later(
+    "CSV with time_s and left_knee, left_ankle, right_knee, right_ankle in degrees, OpenSim .mot, C3D, or the text of "
+    "Visual3D. Clocks and signs are found from the motion."
+)
+
+
+class AgreementPage(Themed):
+    """It is computed elsewhere.
+
+    Signals
+    -------
+    closed
+        Back to the results.
+    reference_wished
+        Files of an optical system are to be chosen.
+    save_wished
+        PDF and tables as files.
+    """
+
+    closed = Signal()
+    reference_wished = Signal()
+    save_wished = Signal()
+
+    def __init__(self, look: ThemeNotifier) -> None:
+        super().__init__()
+        self._look = look
+        self.back = Button(look, tr("Back to the results"), ButtonKind.SECONDARY, Icon.BACK)
+        self.choose = Button(look, tr("Choose the reference"), ButtonKind.SECONDARY, Icon.FOLDER)
+        self.save = Button(look, tr("Save PDF and CSV"), ButtonKind.SECONDARY, Icon.FOLDER)
+        self.note = Text(look, tone="ink2", wraps=True)
+        self.waiting = SentencePage(look)
+        self.sheets = Sheets(look)
+        self.reading = ReadingArea()
+        self.reading.setFrameShape(QFrame.Shape.NoFrame)
+        self.reading.setWidgetResizable(True)
+        self.reading.setWidget(self.sheets)
+        self.reading.setAccessibleName(tr("The agreement's pages"))
+        self._stack = QStackedWidget()
+        for page in (self.waiting, self.reading):
+            self._stack.addWidget(page)
+        self._head = QHBoxLayout()
+        self._head.addWidget(self.back)
+        self._head.addWidget(self.note, 1)
+        self._head.addWidget(self.choose)
+        self._head.addWidget(self.save)
+        self._column = QVBoxLayout(self)
+        self._column.addLayout(self._head)
+        self._column.addWidget(self._stack, 1)
+        self.back.clicked.connect(self.closed)
+        self.choose.clicked.connect(self.reference_wished)
+        self.waiting.pressed.connect(self.reference_wished)
+        self.save.clicked.connect(self.save_wished)
+        self.show_nothing()
+        self._on_look_changed()
+
+    @property
+    def tab_order(self) -> list[QWidget]:
+        return [self.back, self.choose, self.save, self.waiting.button, self.reading]
+
+    def focus(self) -> None:
+        (self.waiting.button if self.waiting.button.isVisibleTo(self) else self.back).setFocus()
+
+    def show_nothing(self) -> None:
+        """Ask for what the optical system measured."""
+        self._say(tr("What did the optical system measure?"), tr(KINDS), tr("Choose the reference"))
+
+    def show_working(self, names: Sequence[str]) -> None:
+        self._say(tr("Looking for these walks in {files}.").format(files=joined(list(names))), "", "")
+
+    def show_refused(self, what: str, remedy: str) -> None:
+        self._say(what, remedy, tr("Choose another reference"))
+
+    def show_pages(self, pages: Sequence[bytes], left_over: Sequence[str]) -> None:
+        """Show pages, each a PNG; `left_over` are walks and trials that found no partner."""
+        said = tr("Not compared, as nothing fits them: {names}.").format(names=", ".join(left_over))
+        self.note.setText(said if left_over else "")
+        self.sheets.show_pages([Sheet(page) for page in pages])
+        self.choose.show()
+        self.save.show()
+        self.reading.verticalScrollBar().setValue(0)
+        self._stack.setCurrentWidget(self.reading)
+        self.reading.setFocus()
+
+    def show_sharper(self, pages: Sequence[bytes]) -> None:
+        """Show the same pages drawn finer, where they are being read."""
+        self.sheets.show_pages([Sheet(page) for page in pages])
+
+    def show_saved(self, folder: str) -> None:
+        self.note.setText(tr("Saved in {folder}.").format(folder=folder))
+
+    def _say(self, what: str, then: str, button: str) -> None:
+        """Say a sentence in the place of pages; nothing of another agreement stays in sight."""
+        self.note.setText("")
+        self.choose.hide()
+        self.save.hide()
+        self.sheets.show_pages([])
+        self.waiting.show_sentence(what, then, button)
+        self._stack.setCurrentWidget(self.waiting)
+
+    def _on_look_changed(self) -> None:
+        px = self._look.theme.px
+        self._column.setContentsMargins(px(24), px(16), px(24), px(12))
+        self._column.setSpacing(px(12))
+        self._head.setSpacing(px(12))

@@ -1,0 +1,167 @@
+"""A walk against what stands beside it, in the answer's table and key figures."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from app.results.compared_table import head_cell, value_cell
+from app.results.compared_words import (
+    change_in_words,
+    error_in_figures,
+    error_in_sentence,
+    is_judged,
+    unit_behind,
+    why_not_told,
+)
+from app.summary.answer import Answer, Outcome
+from app.summary.comparison import Compared, Comparison
+from app.summary.numbers_in_words import DAGGER, NOTHING, fixed, in_words, judged_in_words
+from app.summary.plain_text import shortened
+from app.theme.icons import Icon
+from app.widgets.chip import LETTERS
+from app.widgets.fact_strip import KeyFigure
+from app.widgets.table import TableColumn, TableRow
+from app.widgets.table_cells import CENTRE, EMPTY, RIGHT, ErrorStrip, TableCell, TextCell
+from app.widgets.text import REGULAR, SEMIBOLD
+from app.wording.translation import side_name, tr
+from core.verdicts.measurement_error import Judgement
+
+LONGEST_TITLE, LONGEST_HEAD = 28, 20  # letters of a walk's name, over the measures and over its figures
+SCALE = 1.8  # errors, to either edge of a strip
+
+
+def beside_columns(found: Comparison) -> list[TableColumn]:
+    """The leg, the measure, this walk, the other, and what their difference is worth.
+
+    A name that somebody typed at length is cut here; the sentence over the curves has it whole.
+    """
+    heads, beside = (tr("this walk"), found.against.name, tr("change")), tr("Beside {walk}")
+    title = TextCell(
+        beside.format(walk=shortened(found.against.name, LONGEST_TITLE)),
+        weight=SEMIBOLD,
+        spoken=beside.format(walk=found.against.name),
+    )
+    return [
+        TableColumn(),
+        TableColumn(title, share=3),
+        *(TableColumn(head_cell(shortened(head, LONGEST_HEAD), spoken=head), share=1) for head in heads),
+        TableColumn(TextCell(tr("grey: error"), align=CENTRE, size=12, tone="ink2"), share=2),
+        TableColumn(head_cell(tr("error")), share=1),
+        TableColumn(TextCell(tr("in words"), size=12, tone="ink2"), share=1),
+    ]
+
+
+def beside_rows(found: Comparison) -> list[TableRow]:
+    """What differs by most errors first, then what is not judged, then what may not be told."""
+    ordered = sorted(found.rows, key=lambda row: (not row.is_told, not is_judged(row), -row.difference.ratio))
+    return [_row(row) for row in ordered]
+
+
+def key_figures_beside(figures: Sequence[KeyFigure], found: Comparison) -> list[KeyFigure]:
+    """The walk's key figures, each with its change and what that is worth in place of its band."""
+    told = []
+    for figure in figures:
+        rows = [row for row in found.rows if row.measure.column == figure.key]
+        if figure.value == NOTHING or not rows:
+            told.append(figure)
+            continue
+        note = ", ".join(_in_short(row) for row in rows)
+        words = tr("{name}: {value}, {change} beside {walk}.").format(
+            name=figure.name, value=f"{figure.value} {figure.unit}".strip(), change=note, walk=found.against.name
+        )
+        told.append(replace(figure, note=note, words=words))
+    return told
+
+
+def answer_beside(found: Comparison) -> Answer:
+    """What differs by most errors as a sentence, or that nothing does; the legs' answer is of this walk alone."""
+    walk = found.against.name
+    told = [row for row in found.rows if is_judged(row)]
+    worth = [row for row in told if row.difference.is_worth_a_sentence]
+    if worth:
+        most = max(worth, key=lambda row: row.difference.ratio)
+        then = tr("Larger than its error ({error}).").format(error=error_in_sentence(most))
+        return Answer(Outcome.DIFFERS, _sentence(most), then)
+    if not told:
+        return Answer(Outcome.OPEN, tr("Nothing can be compared with {walk}.").format(walk=walk), "")
+    if any(row.exceeds for row in told):
+        first = tr("No change from {walk} is far larger than its error.").format(walk=walk)
+        return Answer(Outcome.OPEN, first, tr("The table marks those that exceed it."))
+    return Answer(Outcome.NOTHING, tr("No change from {walk} is larger than its error.").format(walk=walk), "")
+
+
+def _sentence(row: Compared) -> str:
+    """Subtracted before rounding; where rounded figures disagree with that, all have a decimal more."""
+    measure, change = row.measure, row.difference.difference
+    value, other = row.value.mean, row.other.mean
+    decimals = measure.decimals
+    if round(round(value, decimals) - round(other, decimals), decimals) != round(change, decimals):
+        decimals += 1
+    name = tr(measure.name)
+    name = name.rpartition(",")[0] if unit_behind(measure) and not measure.kind else name  # the unit is with the figure
+    pattern = (
+        tr("{measure}: {size} less than {walk}, {value} against {other}.")
+        if change < 0
+        else tr("{measure}: {size} more than {walk}, {value} against {other}.")
+    )
+    return pattern.format(
+        measure=name if measure.is_of_walk else f"{LETTERS[row.side]} {name}",
+        size=fixed(abs(change), decimals) + unit_behind(measure),
+        walk=row.against.name,
+        value=fixed(value, decimals),
+        other=fixed(other, decimals),
+    )
+
+
+def _in_short(row: Compared) -> str:
+    """The change of the walk with its verdict; of one leg, which has two beside one another, without it."""
+    if not row.is_told:
+        return why_not_told(row)
+    change = change_in_words(row.difference.difference, row.measure)
+    leg = "" if row.measure.is_of_walk else LETTERS[row.side]
+    return " ".join(filter(None, [leg, change, "" if leg else in_words(row.difference.judgement)]))
+
+
+def _row(row: Compared) -> TableRow:
+    found, measure = row.difference, row.measure
+    weight = SEMIBOLD if row.exceeds else REGULAR
+    name = tr(measure.name)
+    who = name if measure.is_of_walk else f"{LETTERS[row.side]} {name}"
+    values = [value_cell(*part.figure(measure, row.side), measure.decimals) for part in (row.part, row.against)]
+    heads = (tr("this walk"), row.against.name)
+    change = change_in_words(found.difference, measure) if row.is_told else ""
+    return TableRow(
+        (
+            EMPTY if measure.is_of_walk else TextCell(side=row.side, spoken=side_name(row.side)),
+            TextCell(name, weight=weight),
+            *(replace(cell, spoken=f"{who}, {head}: {cell.words}") for head, cell in zip(heads, values, strict=True)),
+            TextCell(
+                change,
+                align=RIGHT,
+                weight=weight,
+                mark=Icon.WARNING if row.exceeds else None,
+                spoken=f"{who}, {tr('change')}: {change}" if change else "",
+            ),
+            _strip(row),
+            TextCell(_error(row), align=RIGHT, tone="ink2"),
+            TextCell(
+                in_words(found.judgement) if row.is_told else why_not_told(row),
+                size=12,
+                weight=weight,
+                tone="ink" if row.exceeds else "ink2",
+            ),
+        )
+    )
+
+
+def _strip(row: Compared) -> TableCell:
+    found = row.difference
+    if not row.is_told:
+        return TextCell(tr("no difference is given"), align=CENTRE, size=12, tone="ink2")
+    if not is_judged(row):
+        word = tr("too few strides") if found.judgement is Judgement.TOO_FEW_STRIDES else tr("no published error")
+        return TextCell(word, align=CENTRE, size=12, tone="ink2")
+    return ErrorStrip(found.difference, found.error, SCALE * found.error, is_judged=True, spoken=judged_in_words(found))
+
+
+def _error(row: Compared) -> str:
+    return error_in_figures(row) + (DAGGER if is_judged(row) and row.difference.is_unverified else "")

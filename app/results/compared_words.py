@@ -1,0 +1,163 @@
+"""How is a comparison told? Its parts, its figures, a sentence for what lies beyond the error, and what that holds."""
+
+from collections.abc import Callable, Sequence
+
+from app.summary.comparison import Compared, Comparison, Reservation, SideRow
+from app.summary.conditions import Part
+from app.summary.error_sources import sources_in_words
+from app.summary.measures import Measure
+from app.summary.numbers_in_words import DAGGER, NOTHING, fixed, signed
+from app.summary.walk_figures import reason_in_words
+from app.widgets.chip import LETTERS
+from app.wording.dates import day_in_words
+from app.wording.recordings import name_in_words
+from app.wording.translation import capitalised, later, side_name, tr, within_sentence
+from app.wording.verdicts import verdict_word
+from core.body import Joint, Side
+from core.verdicts.measurement_error import Difference, Judgement
+from core.verdicts.model import Verdict
+
+MINUS = "\N{MINUS SIGN}"
+BRIEF = ("knee_stance_to_swing_deg", "knee_while_loading_deg", "ankle_push_off_deg", "stance_percent")
+JUDGED = (Judgement.EXCEEDS_ERROR, Judgement.INSIDE_ERROR)
+MOST_SAID = 3  # sentences about differences; the table has all of them
+
+ERROR = later("Grey: measurement error. It holds {sources}.")
+BORROWED = later("For the ankle the knee's figure is borrowed.")
+UNVERIFIED = later("\N{DAGGER} rests on a figure whose source could not be verified.")
+
+
+def part_in_words(part: Part, name: str) -> str:
+    """A part's letter and name, and how many strides it has of each leg."""
+    strides = ", ".join(f"{LETTERS[side]} {part.strides(side)}" for side in part.sides)
+    called = f"{part.letter} {name_in_words(name)}"
+    return f"{called} · {strides}" if strides else called
+
+
+def days_of(parts: Sequence[Part]) -> list[str]:
+    """The day of each visit, or its name where the day is not known."""
+    days = [part.day for part in parts if part.day is not None]
+    return [part.name if part.day is None else day_in_words(part.day, days) for part in parts]
+
+
+def change_in_words(value: float, measure: Measure) -> str:
+    """A difference with its sign; the unit is in the measure's name or the title."""
+    return signed(value, measure.decimals) + (measure.unit if measure.unit == "°" else "")
+
+
+def unit_behind(measure: Measure) -> str:
+    """As it stands behind a figure; a share of the stride is named before it, since "3 % more" means another thing."""
+    if measure.unit == "%":
+        return ""
+    return measure.unit if measure.unit == "°" else f"\N{NO-BREAK SPACE}{tr(measure.unit)}"
+
+
+def is_judged(row: Compared | SideRow) -> bool:
+    """Whether it is known to be larger than its error or inside it."""
+    return row.is_told and row.difference.judgement in JUDGED
+
+
+def error_in_figures(row: Compared | SideRow) -> str:
+    """What a difference must exceed, as in a table, whose names have the units; a dash where none was judged."""
+    degree = "°" if row.measure.unit == "°" else ""  # as its difference
+    return fixed(row.difference.error, row.measure.decimals) + degree if is_judged(row) else NOTHING
+
+
+def error_in_sentence(row: Compared | SideRow) -> str:
+    """The same with its unit, and a mark where it rests on what could not be verified."""
+    figures = fixed(row.difference.error, row.measure.decimals) + unit_behind(row.measure)
+    return figures + (DAGGER if row.difference.is_unverified else "")
+
+
+def why_not_told(row: Compared | SideRow) -> str:
+    """Why a difference has no figure."""
+    if isinstance(row, Compared) and row.reservation is Reservation.OTHER_ZERO:
+        return tr("no zero")
+    withheld = isinstance(row, Compared) and row.reservation is Reservation.WITHHELD
+    is_withheld = withheld or row.difference.judgement is Judgement.WITHHELD
+    if not is_withheld and row.difference.judgement is Judgement.NO_PUBLISHED_FIGURE:
+        return tr("not compared")
+    return verdict_word(Verdict.WITHHELD) if is_withheld else tr("no value")
+
+
+def withheld_in_words(part: Part, joint: Joint) -> str:
+    """Why a part's curve is not drawn."""
+    pattern = tr("{letter}: withheld. {reason}")
+    return pattern.format(letter=part.letter, reason=reason_in_words(part.verdicts.joint(joint)))
+
+
+def weight_in(found: Comparison) -> Callable[[Compared], tuple[int, float]]:
+    """What is said first: of the latest part what lies furthest beyond the error."""
+    return lambda row: (-found.parts.index(row.part), -row.difference.ratio)
+
+
+def side_weight(row: SideRow) -> float:
+    return -row.difference.ratio
+
+
+def sentence(row: Compared) -> str:
+    """A difference that lies beyond the measurement error."""
+    pattern = tr("{measure} {change} from {first} to {last}: larger than its error ({error}).")
+    if not row.measure.is_of_walk:
+        pattern = tr("{side} {measure} {change} from {first} to {last}: larger than its error ({error}).")
+    measure = tr(row.measure.name)
+    return pattern.format(
+        side=capitalised(side_name(row.side)),
+        measure=measure if row.measure.is_of_walk else within_sentence(measure),
+        change=change_in_words(row.difference.difference, row.measure),
+        first=row.against.letter,
+        last=row.part.letter,
+        error=error_in_sentence(row),
+    )
+
+
+def side_sentence(row: SideRow, first: Side, second: Side) -> str:
+    """A difference between the legs that lies beyond the measurement error."""
+    pattern = tr("{measure} {change}, {first} against {second}: larger than its error ({error}).")
+    return pattern.format(
+        measure=tr(row.measure.name),
+        change=change_in_words(row.difference.difference, row.measure),
+        first=LETTERS[first],
+        second=LETTERS[second],
+        error=error_in_sentence(row),
+    )
+
+
+def conclusion(worth: Sequence[str], told: Sequence[Difference], latest: Part | None = None) -> list[str]:
+    """The sentences that are worth it; without one, whether any difference exceeds its error.
+
+    Parameters
+    ----------
+    told
+        The differences that the table shows; of no others anything is said.
+    latest
+        The visit that all of them lead to; None: they are those of any parts.
+    """
+    if len(worth) > MOST_SAID:
+        return [*worth[:MOST_SAID], tr("The table has all of them.")]
+    if worth:
+        return list(worth)
+    if any(found.exceeds for found in told):
+        none = tr("No difference is so much larger than its error that it is said here; the table marks them.")
+        of_visit = tr(
+            "No change to visit {visit} is so much larger than its error that it is said here; the table marks those "
+            "that are larger."
+        )
+    elif any(found.error > 0 for found in told):
+        none = tr("No difference is larger than its error.")
+        of_visit = tr("No change to visit {visit} is larger than its error.")
+    else:
+        none = tr("No difference could be judged.")
+        of_visit = tr("No change to visit {visit} could be judged.")
+    return [none if latest is None else of_visit.format(visit=latest.letter)]
+
+
+def error_in_words(told: Sequence[Difference], *, is_borrowed: bool) -> str:
+    """What the error contains, and what of it is not to be relied on."""
+    judged = [found for found in told if found.error > 0]
+    if not judged:
+        return ""
+    said = [tr(ERROR).format(sources=sources_in_words(judged))]
+    said += [tr(BORROWED)] if is_borrowed else []
+    said += [tr(UNVERIFIED)] if any(found.is_unverified for found in judged) else []
+    return " ".join(said)

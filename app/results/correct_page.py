@@ -1,0 +1,229 @@
+"""What was said or found wrongly, and is put right after the fact: conditions, what counts, signs and sides."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QVBoxLayout, QWidget
+
+from app.theme.icons import Icon
+from app.theme.notifier import ThemeNotifier
+from app.widgets.button import Button, ButtonKind
+from app.widgets.card import Card
+from app.widgets.chip import Chip
+from app.widgets.field import Field
+from app.widgets.text import SEMIBOLD, Text
+from app.widgets.themed import Themed
+from app.widgets.toggle import Toggle
+from app.wording.translation import capitalised, name_of, tr
+from core.body import Joint
+
+
+@dataclass(frozen=True, slots=True)
+class WalkLine:
+    """One walk; `note` says when it was and what it holds."""
+
+    key: str
+    name: str
+    note: str
+    condition: str
+    is_kept: bool
+
+
+@dataclass(frozen=True, slots=True)
+class JointLine:
+    """One joint; `note` says what is known of its sign."""
+
+    joint: Joint
+    is_turned: bool
+    note: str
+
+
+class CorrectPage(Themed):
+    """Each correction is told at once; the page is shown what came of it.
+
+    Signals
+    -------
+    condition_typed, kept_turned, sign_turned
+        A walk's key and its condition or whether it counts; a joint and whether its sign is turned.
+    sides_swapped
+        Left and right were worn the other way round.
+    closed
+        Back to the results.
+    """
+
+    condition_typed = Signal(str, str)
+    kept_turned = Signal(str, bool)
+    sign_turned = Signal(str, bool)
+    sides_swapped = Signal()
+    closed = Signal()
+
+    def __init__(self, look: ThemeNotifier) -> None:
+        super().__init__()
+        self._look = look
+        self.walk_rows: dict[str, _WalkRow] = {}
+        self.joint_rows: dict[Joint, _JointRow] = {}
+        self.back = Button(look, tr("Back to the results"), ButtonKind.SECONDARY, Icon.BACK)
+        self.note = Text(
+            look, tr("Every correction is kept with who made it, and can be undone."), tone="ink2", wraps=True
+        )
+        self.walks = Card(look)
+        self.walks.column.addWidget(Text(look, tr("Walks"), size=16, weight=SEMIBOLD))
+        self.joints = Card(look)
+        self.joints.column.addWidget(Text(look, tr("Joints"), size=16, weight=SEMIBOLD))
+        self.sides = Card(look)
+        self.sides.column.addWidget(Text(look, tr("Sides"), size=16, weight=SEMIBOLD))
+        self.swap = Button(look, tr("Left and right were swapped"), ButtonKind.SECONDARY, Icon.REPEAT)
+        self.swap_note = Text(look, size=14, tone="ink2", wraps=True)
+        self._build()
+        self.back.clicked.connect(self.closed)
+        self.swap.clicked.connect(self.sides_swapped)
+        self._on_look_changed()
+
+    @property
+    def tab_order(self) -> list[QWidget]:
+        walks = [widget for row in self.walk_rows.values() for widget in (row.condition, row.kept)]
+        return [self.back, *walks, *(row.turned for row in self.joint_rows.values()), self.swap]
+
+    def show_walks(self, lines: Sequence[WalkLine]) -> None:
+        """Show the walks; what is being typed stays."""
+        for key in [key for key in self.walk_rows if key not in {line.key for line in lines}]:
+            row = self.walk_rows.pop(key)
+            row.hide()
+            row.deleteLater()
+        for line in lines:
+            if line.key not in self.walk_rows:
+                row = self.walk_rows[line.key] = _WalkRow(self._look, line)
+                row.condition.committed.connect(self._on_condition_committed)
+                row.kept.toggled.connect(self._on_kept_toggled)
+                self.walks.column.insertWidget(self.walks.column.count() - 1, row)
+            self.walk_rows[line.key].show_line(line)
+
+    def show_joints(self, lines: Sequence[JointLine]) -> None:
+        for line in lines:
+            if line.joint not in self.joint_rows:
+                row = self.joint_rows[line.joint] = _JointRow(self._look, line.joint)
+                row.turned.toggled.connect(self._on_sign_toggled)
+                self.joints.column.insertWidget(self.joints.column.count() - 1, row)
+            self.joint_rows[line.joint].show_line(line)
+        known = {line.joint for line in lines}
+        for joint, row in self.joint_rows.items():
+            row.setVisible(joint in known)
+
+    def show_sides(self, why_not: str) -> None:
+        """Offer to swap the sides, or say why that is not possible here."""
+        self.swap.setEnabled(not why_not)
+        said = tr("All recordings of this visit take the other leg's name, and are read anew.")
+        self.swap_note.setText(why_not or said)
+
+    def set_room(self, width: float, _height: float) -> None:
+        is_narrow = width < 940
+        way = QBoxLayout.Direction.TopToBottom if is_narrow else QBoxLayout.Direction.LeftToRight
+        self._columns.setDirection(way)
+        for row in self.walk_rows.values():
+            row.set_narrow(is_narrow and width < 700)
+
+    def focus(self) -> None:
+        self.back.setFocus()
+
+    def _build(self) -> None:
+        for card in (self.walks, self.joints):
+            card.column.addStretch(1)
+        self.sides.column.addWidget(self.swap, 0, Qt.AlignmentFlag.AlignLeft)
+        self.sides.column.addWidget(self.swap_note)
+        head = QHBoxLayout()
+        head.setSpacing(16)
+        head.addWidget(self.back)
+        head.addWidget(self.note, 1)
+        right = QVBoxLayout()
+        right.setSpacing(12)
+        right.addWidget(self.joints)
+        right.addWidget(self.sides)
+        right.addStretch(1)
+        self._columns = QBoxLayout(QBoxLayout.Direction.LeftToRight)
+        self._columns.addWidget(self.walks, 3)
+        self._columns.addLayout(right, 2)
+        self._page = QVBoxLayout(self)
+        self._page.addLayout(head)
+        self._page.addLayout(self._columns, 1)
+
+    def _on_condition_committed(self) -> None:
+        field = self.sender()
+        for key, row in self.walk_rows.items():
+            if row.condition is field:
+                self.condition_typed.emit(key, row.condition.text.strip())
+
+    def _on_kept_toggled(self, is_kept: bool) -> None:
+        toggle = self.sender()
+        for key, row in self.walk_rows.items():
+            if row.kept is toggle:
+                self.kept_turned.emit(key, is_kept)
+
+    def _on_sign_toggled(self, is_turned: bool) -> None:
+        toggle = self.sender()
+        for joint, row in self.joint_rows.items():
+            if row.turned is toggle:
+                self.sign_turned.emit(str(joint), is_turned)
+
+    def _on_look_changed(self) -> None:
+        px = self._look.theme.px
+        self._page.setContentsMargins(px(16), px(16), px(16), px(12))
+        self._page.setSpacing(px(12))
+        self._columns.setSpacing(px(12))
+
+
+class _WalkRow(QWidget):
+    def __init__(self, look: ThemeNotifier, line: WalkLine) -> None:
+        super().__init__()
+        self._line = line
+        self._name = Text(look, size=15, weight=SEMIBOLD, wraps=True)
+        self._note = Text(look, size=12, tone="ink2", wraps=True)
+        self.condition = Field(look, "", has_label=False, placeholder=tr("condition"))
+        self.kept = Toggle(look, tr("Counts"), "", is_on=line.is_kept)
+        words = QVBoxLayout()
+        words.setSpacing(0)
+        words.addWidget(self._name)
+        words.addWidget(self._note)
+        self._row = QBoxLayout(QBoxLayout.Direction.LeftToRight, self)
+        self._row.setContentsMargins(0, 0, 0, 0)
+        self._row.setSpacing(12)
+        self._row.addLayout(words, 2)
+        self._row.addWidget(self.condition, 3)
+        self._row.addWidget(self.kept, 0, Qt.AlignmentFlag.AlignLeft)
+
+    def show_line(self, line: WalkLine) -> None:
+        if line.condition != self._line.condition or not self.condition.text:
+            self.condition.set_text(line.condition)
+        self._line = line
+        self._name.setText(line.name)  # its condition is part of it
+        self.condition.set_label(tr("Condition of {walk}").format(walk=line.name))
+        self.kept.setAccessibleName(tr("{walk} counts").format(walk=line.name))
+        self._note.setText(line.note)
+        self.kept.show_on(line.is_kept)
+
+    def set_narrow(self, is_narrow: bool) -> None:
+        way = QBoxLayout.Direction.TopToBottom if is_narrow else QBoxLayout.Direction.LeftToRight
+        self._row.setDirection(way)
+
+
+class _JointRow(QWidget):
+    def __init__(self, look: ThemeNotifier, joint: Joint) -> None:
+        super().__init__()
+        self.turned = Toggle(look, tr("This joint bends the wrong way"), "", is_on=False)
+        name = capitalised(name_of(joint))
+        self.turned.setAccessibleName(tr("{joint}: this joint bends the wrong way").format(joint=name))
+        self._note = Text(look, size=12, tone="ink2", wraps=True)
+        head = QHBoxLayout()
+        head.setSpacing(8)
+        head.addWidget(Chip(look, joint.side))
+        head.addWidget(Text(look, tr("Knee") if joint.is_knee else tr("Ankle"), size=15, weight=SEMIBOLD))
+        head.addWidget(self._note, 1)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(4)
+        column.addLayout(head)
+        column.addWidget(self.turned, 0, Qt.AlignmentFlag.AlignLeft)
+
+    def show_line(self, line: JointLine) -> None:
+        self._note.setText(line.note)
+        self.turned.show_on(line.is_turned)

@@ -1,0 +1,180 @@
+"""Who answers "How was this found?" One joint at a time, computed beside the screen, shown, and saved as files."""
+
+import logging
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+from uuid import UUID
+
+from PySide6.QtCore import QObject, Signal
+from PySide6.QtWidgets import QFileDialog
+
+from app.exports.proposed_names import free_name, session_name
+from app.results.found_page import FoundPage
+from app.storage.audit import about
+from app.storage.stored import Action, LibraryError
+from app.summary.diagnostics import write_diagnostics
+from app.widgets.folder_dialog import ask_for_new_folder
+from app.wording.recordings import ShownName, shown_names, with_shown_names
+from app.wording.translation import tr
+from app.workers.background import Background, Report, Work
+from core.body import Joint
+from core.results import Analysis, JointCalibration, RecordingAnalysis
+from core.verdicts.diagnostics import JointDiagnostics, diagnostics_of
+
+if TYPE_CHECKING:
+    from app.storage.opened import OpenedLibrary
+    from core.findings import Finding
+    from core.samples import Session
+
+_log = logging.getLogger(__name__)
+
+WHAT = "how-found"  # in the name of the folder that is proposed
+
+
+class DiagnosticsController(QObject):
+    """Works for one page; a newer question takes the older one's place.
+
+    Signals
+    -------
+    refused
+        What could not be shown, and what follows.
+    writing
+        The folder that was chosen, and the call that writes the files into it: whoever shows the page knows on which
+        thread, and who must be told of an export.
+    """
+
+    refused = Signal(str, str)
+    writing = Signal(object, object)
+
+    def __init__(self, page: FoundPage, background: Background, parent: QObject) -> None:
+        super().__init__(parent)
+        self._page, self._background = page, background
+        self._session: Session | None = None
+        self._analysis: Analysis | None = None
+        self._recording: RecordingAnalysis | None = None
+        self._calibrated: Mapping[Joint, JointCalibration] = {}
+        self._joint = Joint.LEFT_KNEE
+        self._found: JointDiagnostics | None = None
+        self._dialog: QFileDialog | None = None
+        self._background.done.connect(self._on_done)
+        self._background.failed.connect(self._on_failed)
+        page.joint_chosen.connect(self._on_joint_chosen)
+        page.save_wished.connect(self._on_save_wished)
+
+    def show(self, session: "Session", analysis: Analysis, recording: RecordingAnalysis) -> None:
+        """Answer for a recording of a session: for the joint that was looked at last, else the first it holds."""
+        self._session, self._analysis, self._recording = session, analysis, recording
+        calibrated = analysis.calibrated_for(recording)
+        self._calibrated = {joint: calibrated[joint] for joint in recording.joints if joint in calibrated}
+        if self._joint not in self._calibrated:
+            self._joint = next(iter(self._calibrated), self._joint)
+        self._page.show_joints(list(self._calibrated), self._joint)
+        self._begin()
+
+    def stop(self) -> None:
+        """Nobody looks any more."""
+        self._background.stop()
+
+    def _begin(self) -> None:
+        self._found = None
+        calibration = self._calibrated.get(self._joint)
+        if calibration is None or self._session is None or self._recording is None:
+            self._background.stop()
+            self._page.show_nothing(self._joint)
+            return
+        self._page.show_working(self._joint)
+        self._background.start(_finding(self._session, calibration, self._recording.name))
+
+    def _noticed(self) -> "list[Finding]":
+        """What the analysis noticed about the joint and its two sensors: everywhere, or in this recording."""
+        assert self._analysis is not None
+        assert self._recording is not None
+        others = {recording.name for recording in self._analysis.recordings} - {self._recording.name}
+        placed = [(finding, set(finding.where.split(", "))) for finding in self._analysis.findings]
+        parts = {str(part) for part in (self._joint, self._joint.proximal, self._joint.distal)}
+        found = [finding for finding, where in placed if parts & where and not where & others]
+        return [with_shown_names(finding, self._names) for finding in found]
+
+    @property
+    def _names(self) -> dict[str, ShownName]:
+        return shown_names(self._session.recordings) if self._session is not None else {}
+
+    def _on_joint_chosen(self, joint: str) -> None:
+        self._joint = Joint(joint)
+        self._begin()
+
+    def _on_done(self, found: JointDiagnostics | None) -> None:
+        self._found = found
+        if found is None:
+            self._page.show_nothing(self._joint)
+        else:
+            assert self._session is not None
+            names = self._names
+            called = replace(
+                found,
+                walk=str(names.get(found.walk, found.walk)),
+                from_recordings=tuple(str(names.get(name, name)) for name in found.from_recordings),
+            )
+            self._page.show_found(called, self._noticed(), self._session.is_simulated)
+
+    def _on_failed(self, error: Exception) -> None:
+        _log.error("how a joint was found could not be shown", exc_info=error)
+        self._page.show_nothing(self._joint)
+        self.refused.emit(tr("How this joint was found cannot be shown."), tr("The log holds the details."))
+
+    def _on_save_wished(self) -> None:
+        if self._found is None or self._session is None:
+            return
+        name = session_name("", "", WHAT)  # its files name no patient, so neither does their folder
+        self._dialog = ask_for_new_folder(
+            self._page,
+            tr("Save these figures into a new folder"),
+            lambda place: free_name(place, name),
+            self._on_folder_selected,
+        )
+
+    def _on_folder_selected(self, folder: str) -> None:
+        if self._found is not None and self._session is not None:
+            out = Path(folder)
+            self.writing.emit(out, _writing(self._found, self._session.is_simulated, out))
+
+
+def saved_from_library(
+    opened: "OpenedLibrary", session_id: UUID, what: str, folder: Path, write: Callable[[], None]
+) -> Path:
+    """Note an export of figures of a session and make it, on the library's thread; `what` is one of the WHATs.
+
+    Raises
+    ------
+    LibraryError
+        It cannot be noted, or the folder cannot be written.
+    """
+    opened.library.audit.note(Action.EXPORT, about("session", session_id), format=what)
+    try:
+        write()
+    except OSError as problem:
+        raise LibraryError(*cannot_write(folder)) from problem
+    return folder
+
+
+def cannot_write(folder: Path) -> tuple[str, str]:
+    """What is said of a folder that takes no files."""
+    return tr("{folder} cannot be written").format(folder=folder.name), tr(
+        "Choose another folder; the recordings are untouched"
+    )
+
+
+def _finding(session: "Session", calibration: JointCalibration, recording: str) -> Work:
+    def work(_report: Report) -> object:
+        return diagnostics_of(session, calibration, recording)
+
+    return work
+
+
+def _writing(found: JointDiagnostics, is_simulated: bool, folder: Path) -> Callable[[], None]:
+    def write() -> None:
+        write_diagnostics(found, is_simulated, folder)
+
+    return write

@@ -1,0 +1,463 @@
+"""How was this found? The paper's Figures 3, 4 and 6 on this patient's recordings, each with what it says in words."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtWidgets import (
+    QBoxLayout,
+    QFrame,
+    QGridLayout,
+    QHBoxLayout,
+    QStackedWidget,
+    QVBoxLayout,
+    QWidget,
+)
+
+from app.charts.on_screen import SIMULATED
+from app.plots.cost_map import CostMap
+from app.plots.projected_rates_plot import ProjectedRatesPlot
+from app.plots.two_ways_chart import TwoWaysChart
+from app.summary.diagnostics import MARGIN_BEYOND, FoundFigure, figures_of
+from app.theme.icons import SEVERITY_ICONS, Icon
+from app.theme.notifier import ThemeNotifier
+from app.widgets.button import Button, ButtonKind
+from app.widgets.card import Card
+from app.widgets.chip import Chip
+from app.widgets.findings_list import ORDER, FindingRow
+from app.widgets.heard_order import hear_as_laid_out
+from app.widgets.line_keys import LineKeys
+from app.widgets.reading_area import ReadingArea
+from app.widgets.segmented import Segmented
+from app.widgets.sentence_page import SentencePage
+from app.widgets.text import MEDIUM, SEMIBOLD, Text
+from app.widgets.themed import Themed
+from app.wording.body import segment_name
+from app.wording.translation import capitalised, figure_text, joined, name_of, sentence, tr
+from core.body import Joint, Side
+from core.findings import Finding
+from core.results import Method
+from core.verdicts.diagnostics import JointDiagnostics
+
+SIDE_BY_SIDE_FROM = 940  # what the first two pictures need beside each other
+MAPS_FROM = 500  # what both maps need beside each other
+WHOLE, TEN_SECONDS = "whole", "ten-seconds"
+CLOSE_S = 10.0
+MIN_APART = 0.2  # of how alike the curves are; less apart, this second tells no pairing
+
+
+class FoundPage(Themed):
+    """One joint at a time; it is computed elsewhere.
+
+    Signals
+    -------
+    closed
+        Back to the results.
+    joint_chosen
+        Another joint is asked for.
+    save_wished
+        The numbers behind the pictures, as files.
+    """
+
+    closed = Signal()
+    joint_chosen = Signal(str)
+    save_wished = Signal()
+
+    def __init__(self, look: ThemeNotifier) -> None:
+        super().__init__()
+        self._look, self._width = look, 0.0
+        self.back = Button(look, tr("Back to the results"), ButtonKind.SECONDARY, Icon.BACK)
+        names = [(str(joint), capitalised(name_of(joint)), "") for joint in _IN_ORDER]
+        self.joints = Segmented(look, tr("Joint"), names)
+        self.save = Button(look, tr("Save these figures as CSV"), ButtonKind.SECONDARY, Icon.FOLDER)
+        self.note = Text(look, tone="ink2", wraps=True)
+        self.waiting = SentencePage(look)
+        self.axis = _AxisCard(look)
+        self.pairing = _PairingCard(look)
+        self.angle = _AngleCard(look)
+        self.figures = _FiguresCard(look)
+        self.noticed = Card(look)
+        self.cards = ReadingArea()
+        self._stack = QStackedWidget()
+        self._build()
+        self.back.clicked.connect(self.closed)
+        self.joints.chosen.connect(self.joint_chosen)
+        self.save.clicked.connect(self.save_wished)
+        self._on_look_changed()
+
+    @property
+    def tab_order(self) -> list[QWidget]:
+        return [self.back, *self.joints.segments, self.save, self.cards, *self.angle.stretch.segments]
+
+    def show_joints(self, joints: Sequence[Joint], chosen: Joint) -> None:
+        """Offer the joints that were measured."""
+        self.joints.setVisible(bool(joints))
+        self.joints.blockSignals(True)
+        for joint in sorted(_IN_ORDER, key=lambda one: one is not chosen):  # what is chosen must be there first
+            self.joints.set_offered(str(joint), joint in joints or joint is chosen)
+            if joint is chosen:
+                self.joints.choose(str(joint))
+        self.joints.blockSignals(False)
+
+    def show_working(self, joint: Joint) -> None:
+        """Say that the recordings are being looked through; nothing of another joint stays in sight."""
+        self.save.setEnabled(False)
+        self.note.setText("")
+        self.waiting.show_sentence(tr("Looking through the recordings of the {joint}.").format(joint=name_of(joint)))
+        self._stack.setCurrentWidget(self.waiting)
+
+    def show_nothing(self, joint: Joint) -> None:
+        self.save.setEnabled(False)
+        self.waiting.show_sentence(
+            tr("This recording shows nothing of the {joint}.").format(joint=name_of(joint)),
+            tr("Choose another joint, or another recording among the results."),
+        )
+        self._stack.setCurrentWidget(self.waiting)
+
+    def show_found(self, found: JointDiagnostics, findings: Sequence[Finding], is_simulated: bool) -> None:
+        """Show one joint, and what was noticed about it."""
+        figures = figures_of(found)
+        self.save.setEnabled(True)
+        self.note.setText(
+            tr("{joint}, found from {recordings}; the angle is that of {walk}.").format(
+                joint=capitalised(name_of(found.joint)), recordings=joined(found.from_recordings), walk=found.walk
+            )
+        )
+        for card in (self.axis, self.pairing, self.angle):
+            card.head.show_joint(found.joint.side, is_simulated)
+            card.show_found(found, figures)
+        self.figures.show_figures(list(figures.values()))
+        self._show_findings(findings)
+        self.cards.verticalScrollBar().setValue(0)
+        self._stack.setCurrentWidget(self.cards)
+
+    def show_saved(self, folder: str) -> None:
+        self.note.setText(tr("Saved in {folder}.").format(folder=folder))
+
+    def set_room(self, width: float, _height: float) -> None:
+        self._width = width
+        self._place_head()
+        ways = QBoxLayout.Direction
+        is_wide = width >= SIDE_BY_SIDE_FROM
+        self._pictures.setDirection(ways.LeftToRight if is_wide else ways.TopToBottom)
+        self.axis.set_side_by_side(width / (2 if is_wide else 1) >= MAPS_FROM)
+        self.figures.set_columns(2 if is_wide else 1)
+
+    def focus(self) -> None:
+        self.back.setFocus()
+
+    def _build(self) -> None:
+        self._head = QGridLayout()
+        self._head.setColumnStretch(1, 1)
+        self._pictures = QBoxLayout(QBoxLayout.Direction.LeftToRight)
+        for card in (self.axis, self.pairing):
+            self._pictures.addWidget(card, 1)
+        column = QWidget()
+        self._cards = QVBoxLayout(column)
+        self._cards.addLayout(self._pictures)
+        for widget in (self.angle, self.figures, self.noticed):
+            self._cards.addWidget(widget)
+        self._cards.addStretch(1)
+        self.cards.setWidget(column)
+        self.cards.setWidgetResizable(True)
+        self.cards.setFrameShape(QFrame.Shape.NoFrame)
+        self.cards.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self.cards.setFocusPolicy(Qt.FocusPolicy.StrongFocus)  # so that the keys can scroll it
+        self.cards.setAccessibleName(tr("How this joint was found"))
+        for page in (self.waiting, self.cards):
+            self._stack.addWidget(page)
+        self._page = QVBoxLayout(self)
+        self._page.addLayout(self._head)
+        self._page.addWidget(self.note)
+        self._page.addWidget(self._stack, 1)
+
+    def _place_head(self) -> None:
+        """Put the joints between both buttons, or under them where that is too wide."""
+        px = self._look.theme.px
+        for widget in (self.back, self.joints, self.save):
+            self._head.removeWidget(widget)
+        needed = sum(widget.sizeHint().width() for widget in (self.back, self.joints, self.save))
+        self._head.addWidget(self.back, 0, 0)
+        self._head.addWidget(self.save, 0, 2)
+        left = Qt.AlignmentFlag.AlignLeft
+        if needed + px(2 * 12 + 2 * 16) <= px(self._width):
+            self._head.addWidget(self.joints, 0, 1, left)
+        else:
+            self._head.addWidget(self.joints, 1, 0, 1, 3, left)
+        hear_as_laid_out(self)
+
+    def _show_findings(self, findings: Sequence[Finding]) -> None:
+        _empty(self.noticed)
+        column = self.noticed.column
+        column.addWidget(Text(self._look, tr("Noticed about this joint"), size=16, weight=SEMIBOLD))
+        for finding in sorted(findings, key=lambda one: ORDER.index(one.severity)):
+            icon = SEVERITY_ICONS[finding.severity]
+            column.addWidget(FindingRow(self._look, icon, finding.severity, sentence(finding)))
+        self.noticed.setVisible(bool(findings))
+
+    def _on_look_changed(self) -> None:
+        px = self._look.theme.px
+        self._page.setContentsMargins(px(16), px(16), px(16), px(12))
+        self._page.setSpacing(px(12))
+        for layout in (self._head, self._pictures, self._cards):
+            layout.setSpacing(px(12))
+        self._cards.setContentsMargins(0, 0, px(4), 0)
+        self._place_head()
+
+
+_IN_ORDER = (Joint.LEFT_KNEE, Joint.RIGHT_KNEE, Joint.LEFT_ANKLE, Joint.RIGHT_ANKLE)
+
+
+class _Head(QHBoxLayout):
+    """A picture's title, the figure of the paper that it is, the leg, and whether it is simulated."""
+
+    def __init__(self, look: ThemeNotifier, title: str, figure: str) -> None:
+        super().__init__()
+        self._look = look
+        self._chips = {side: Chip(look, side) for side in Side}
+        self._simulated = Text(look, tr(SIMULATED), size=12, weight=SEMIBOLD)
+        self.setSpacing(8)
+        for chip in self._chips.values():
+            self.addWidget(chip)
+        self.addWidget(Text(look, title, size=16, weight=SEMIBOLD, wraps=True), 1)
+        self.addWidget(Text(look, figure, size=12, tone="ink2"))
+        self.addWidget(self._simulated)
+
+    def show_joint(self, side: Side, is_simulated: bool) -> None:
+        for one, chip in self._chips.items():
+            chip.setVisible(one is side)
+        self._simulated.setVisible(is_simulated)
+
+
+class _AxisCard(Card):
+    """Figure 3: the cost over the sphere, for both sensors."""
+
+    def __init__(self, look: ThemeNotifier) -> None:
+        super().__init__(look)
+        self.head = _Head(look, tr("Where the joint axis lies"), tr("Figure 3"))
+        self.maps = (CostMap(look), CostMap(look))
+        self._names = [Text(look, size=14, weight=MEDIUM) for _ in self.maps]
+        self._verdict = Text(look, weight=MEDIUM, wraps=True)
+        words = tr(
+            "Each map is the globe of all directions that the axis could have in one sensor. Full colour: a hinge with "
+            "that axis would move as this joint did (equation 6). An axis has two ends, so there are two such spots."
+        )
+        marks = tr(
+            "Cross: the axis in use. Circle: its certainty, 2 SD. Ring: what fits best in this picture. Scale: misfit "
+            "of equation 3, root mean square."
+        )
+        self._row = QBoxLayout(QBoxLayout.Direction.LeftToRight)
+        for name, chart in zip(self._names, self.maps, strict=True):
+            column = QVBoxLayout()
+            column.addWidget(name)
+            column.addWidget(chart)
+            self._row.addLayout(column, 1)
+        self.column.addLayout(self.head)
+        self.column.addWidget(Text(look, words, tone="ink2", wraps=True))
+        self.column.addLayout(self._row)
+        self.column.addWidget(Text(look, marks, size=12, tone="ink2", wraps=True))
+        self.column.addWidget(self._verdict)
+        self.column.addStretch(1)
+
+    def set_side_by_side(self, is_side_by_side: bool) -> None:
+        ways = QBoxLayout.Direction
+        self._row.setDirection(ways.LeftToRight if is_side_by_side else ways.TopToBottom)
+
+    def show_found(self, found: JointDiagnostics, figures: dict[str, FoundFigure]) -> None:
+        calibration = found.calibration
+        segments = [segment_name(site.segment) for site in (found.joint.proximal, found.joint.distal)]
+        for name, chart, cost, segment in zip(self._names, self.maps, found.costs, segments, strict=True):
+            sensor = tr("{segment} sensor").format(segment=segment)
+            name.setText(sensor)
+            chart.show_cost(cost, found.joint.side, calibration.axis_sd_rad, sensor)
+        near, far = (figures[f"lowest_{sensor}_apart_deg"].in_words for sensor in ("proximal", "distal"))
+        said = tr("The axis in use lies {near} and {far} from the best fit and is certain to {axis_sd} (1 SD).")
+        said = said.format(near=near, far=far, axis_sd=figures["axis_sd_deg"].in_words)
+        self._verdict.setText(f"{said} {_why_apart(found)}".strip())
+
+
+def _why_apart(found: JointDiagnostics) -> str:
+    if found.calibration.method is Method.PUBLISHED:
+        return ""
+    if found.calibration.is_hinge:
+        return tr("This joint moves like a true hinge, so this picture decides.")
+    return tr("A living joint is no hinge, so this picture alone does not decide: the whole relative motion does.")
+
+
+class _PairingCard(Card):
+    """Figure 4: the projected rates, as paired and with one axis reversed."""
+
+    def __init__(self, look: ThemeNotifier) -> None:
+        super().__init__(look)
+        self.head = _Head(look, tr("Whether both axes point the same way"), tr("Figure 4"))
+        self.plot = ProjectedRatesPlot(look)
+        self._keys = LineKeys(look)
+        self._verdict = Text(look, weight=MEDIUM, wraps=True)
+        words = tr(
+            "One second in which the joint hardly bends: both segments then turn alike beside the axis. One curve is "
+            "turned to fit the other. If the two axes point the same way they lie on each other; if not, one is the "
+            "other's mirror image."
+        )
+        self.column.addLayout(self.head)
+        self.column.addWidget(Text(look, words, tone="ink2", wraps=True))
+        self.column.addWidget(self._keys)
+        self.column.addWidget(self.plot)
+        self.column.addWidget(self._verdict)
+        self.column.addStretch(1)
+
+    def show_found(self, found: JointDiagnostics, figures: dict[str, FoundFigure]) -> None:
+        near, far = (segment_name(site.segment) for site in (found.joint.proximal, found.joint.distal))
+        self._keys.show_keys([(self.plot.near_pen, near), (self.plot.far_pen, far)])
+        self.plot.show_rates(found.projected, found.joint.side)
+        self.plot.setVisible(found.projected is not None)
+        self._keys.setVisible(found.projected is not None)
+        self._verdict.setText(" ".join(filter(None, [_paired(found, figures), _decided(found, figures)])))
+
+
+def _paired(found: JointDiagnostics, figures: dict[str, FoundFigure]) -> str:
+    if found.projected is None:
+        return tr("No second of this motion turned enough beside the axis to draw it.")
+    apart = found.projected.congruence - found.projected.reversed_congruence
+    paired, reverse = (figures[f"{name}congruence_percent"].in_words for name in ("", "reversed_"))
+    if abs(apart) < MIN_APART:
+        return tr("Both fit: {paired} and {reverse} alike. This second tells no pairing.").format(
+            paired=paired, reverse=reverse
+        )
+    said = tr("As paired {paired} alike, reversed {reverse}: the pairing holds.")
+    if apart < 0:
+        said = tr("As paired {paired} alike, reversed {reverse}: this second speaks against the pairing.")
+    return said.format(paired=paired, reverse=reverse)
+
+
+def _decided(found: JointDiagnostics, figures: dict[str, FoundFigure]) -> str:
+    margin = found.calibration.sign_margin
+    if found.calibration.method is Method.PUBLISHED or margin is None:
+        return ""
+    if margin > MARGIN_BEYOND:
+        return tr("It was decided by the accelerations: the next best answer fits over {most} times worse.").format(
+            most=f"{MARGIN_BEYOND:.0f}"
+        )
+    return tr("It was decided by the accelerations: the next best answer fits {times} times worse.").format(
+        times=figures["pairing_margin"].in_words
+    )
+
+
+class _AngleCard(Card):
+    """Figure 6: the gyroscopes' angle, the accelerometers', and both together."""
+
+    def __init__(self, look: ThemeNotifier) -> None:
+        super().__init__(look)
+        self.head = _Head(look, tr("The angle, found in two ways"), tr("Figure 6"))
+        self.stretch = Segmented(
+            look, tr("Stretch of time"), [(WHOLE, tr("Whole recording"), ""), (TEN_SECONDS, tr("Ten seconds"), "")]
+        )
+        self.chart = TwoWaysChart(look)
+        self._keys = LineKeys(look)
+        self._cut = Text(look, size=12, tone="ink2", wraps=True)
+        self._verdict = Text(look, weight=MEDIUM, wraps=True)
+        words = tr(
+            "The gyroscopes alone (equation 11) are smooth and drift away. The accelerometers alone (equation 14) stay "
+            "in place and scatter. Together (equation 15) they do neither: that is the published angle, which stands "
+            "beside the result under Whole walk."
+        )
+        self.column.addLayout(self.head)
+        self.column.addWidget(Text(look, words, tone="ink2", wraps=True))
+        self.column.addWidget(self.stretch, 0, Qt.AlignmentFlag.AlignLeft)
+        self.column.addWidget(self._keys)
+        self.column.addWidget(self.chart, 1)
+        self.column.addWidget(self._cut)
+        self.column.addWidget(self._verdict)
+        self.stretch.chosen.connect(self._on_stretch_chosen)
+
+    def show_found(self, found: JointDiagnostics, figures: dict[str, FoundFigure]) -> None:
+        ways = found.ways
+        angles = (ways.from_rates_rad, ways.from_accelerations_rad, ways.fused_rad)
+        self.chart.show_angles(found.joint, ways.time_s, *(np.rad2deg(found.clinical(angle)) for angle in angles))
+        self._keys.show_keys(
+            [
+                (self.chart.forces_pen, tr("Accelerometers")),
+                (self.chart.rates_pen, tr("Gyroscopes")),
+                (self.chart.fused_pen, tr("Both together")),
+            ]
+        )
+        self._verdict.setText(_drifted(found, figures))
+        self.chart.setAccessibleName(tr("The angle in two ways, {joint}").format(joint=name_of(found.joint)))
+        self.chart.setAccessibleDescription(self._verdict.text())
+        self._on_stretch_chosen()
+
+    def _on_stretch_chosen(self) -> None:
+        first, last = self.chart.whole_s
+        middle = (first + last) / 2
+        is_whole = self.stretch.choice == WHOLE or last - first <= CLOSE_S
+        self.chart.see(*((first, last) if is_whole else (middle - CLOSE_S / 2, middle + CLOSE_S / 2)))
+        percent = 100 * self.chart.cut_share
+        cut = tr("{percent} % of the accelerometers' angle lies beyond this axis and is cut off here.")
+        self._cut.setText(cut.format(percent=figure_text(percent, ".1f")) if percent >= 0.05 else "")
+        self._cut.setVisible(bool(self._cut.text()))
+
+
+def _drifted(found: JointDiagnostics, figures: dict[str, FoundFigure]) -> str:
+    scatter = tr("The accelerometers scatter by {scatter}.").format(scatter=figures["scatter_deg"].in_words)
+    if not math.isfinite(found.ways.drift_rad_s):
+        return scatter
+    drift = tr("The gyroscopes drift by {drift}, their bias taken off.")
+    if found.bias_drift_rad_s is None:
+        drift = tr("The gyroscopes drift by {drift}; their bias is not known.")
+    return f"{drift.format(drift=figures['drift_deg_s'].in_words)} {scatter}"
+
+
+class _FiguresCard(Card):
+    """All figures of the joint as a list of names and values."""
+
+    def __init__(self, look: ThemeNotifier) -> None:
+        self._grid = QGridLayout()
+        super().__init__(look)
+        self._figures: Sequence[FoundFigure] = ()
+        self._columns = 2
+        self.column.addWidget(Text(look, tr("In figures"), size=16, weight=SEMIBOLD))
+        self.column.addLayout(self._grid)
+        self._texts: list[Text] = []
+
+    def show_figures(self, figures: Sequence[FoundFigure]) -> None:
+        self._figures = figures
+        self._place()
+
+    def set_columns(self, columns: int) -> None:
+        if columns != self._columns:
+            self._columns = columns
+            self._place()
+
+    def _place(self) -> None:
+        for text in self._texts:
+            self._grid.removeWidget(text)
+            text.hide()
+            text.deleteLater()
+        self._texts = []
+        rows = -(-len(self._figures) // self._columns)
+        for k, figure in enumerate(self._figures):
+            column, row = divmod(k, max(rows, 1))
+            name = Text(self._look, figure.name, tone="ink2", wraps=True)
+            value = Text(self._look, figure.in_words, size=15, weight=SEMIBOLD)
+            value.setAccessibleName(f"{figure.name}: {figure.in_words}")
+            self._grid.addWidget(name, row, 3 * column)
+            self._grid.addWidget(value, row, 3 * column + 1, Qt.AlignmentFlag.AlignRight)
+            self._texts += [name, value]
+        for column in range(6):
+            is_name = column % 3 == 0 and column < 3 * self._columns
+            self._grid.setColumnStretch(column, 1 if is_name else 0)
+            self._grid.setColumnMinimumWidth(
+                column, self._look.theme.px(24) if column == 2 < 3 * self._columns - 1 else 0
+            )
+
+    def _on_look_changed(self) -> None:
+        super()._on_look_changed()
+        self._grid.setHorizontalSpacing(self._look.theme.px(12))
+        self._grid.setVerticalSpacing(self._look.theme.px(4))
+
+
+def _empty(card: Card) -> None:
+    while (item := card.column.takeAt(0)) is not None:
+        if (widget := item.widget()) is not None:
+            widget.hide()
+            widget.deleteLater()

@@ -1,0 +1,328 @@
+"""How far can a walk be trusted? What can be read, what stands against the rest and what to do, joint by joint."""
+
+from collections.abc import Mapping, Sequence
+from functools import partial
+from types import MappingProxyType
+
+from PySide6.QtCore import QPointF, QRectF, Qt, Signal
+from PySide6.QtGui import QColor, QPainter, QPaintEvent
+from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QScrollArea, QSizePolicy, QVBoxLayout, QWidget
+
+from app.results.compared_card import scrolling
+from app.summary.data_quality import DataQuality, QualityLine
+from app.theme.icons import VERDICT_ICONS, Icon, paint_icon
+from app.theme.notifier import ThemeNotifier
+from app.widgets.body_figure import SENSOR, BodyFigure, SensorMark
+from app.widgets.body_shapes import body_shapes
+from app.widgets.button import Button, ButtonKind
+from app.widgets.card import Card
+from app.widgets.facts_table import fact_columns, fact_rows, hip_columns, hip_rows
+from app.widgets.findings_list import FindingsList
+from app.widgets.icons import IconMark
+from app.widgets.table import CellTable
+from app.widgets.text import SEMIBOLD, Text
+from app.widgets.themed import Themed
+from app.widgets.toggle import Toggle
+from app.wording.translation import name_of, tr
+from app.wording.verdicts import verdict_word
+from core.body import Joint, Side, Site
+from core.findings import Finding
+from core.hip.results import HipAngle
+from core.results import JointCalibration
+from core.verdicts.model import Verdict
+
+SENTENCE_PX = 22
+FIGURE_WIDTH = 320
+BESIDE = 78  # px at either side of the legs: a verdict and its word
+MARK = (56, 32)
+HIP_BELOW = 14  # units of the drawing, from the upper edge of the thigh
+
+
+class QualityPage(Themed):
+    """Signals: `repeat_wished` of a leg's free motion."""
+
+    repeat_wished = Signal(object)  # Side
+
+    def __init__(self, look: ThemeNotifier) -> None:
+        super().__init__()
+        self._look = look
+        self.lines: tuple[QualityLine, ...] = ()
+        self._can_repeat = False
+        self._line_cards: list[LineCard] = []
+        self.first = Text(look, size=SENTENCE_PX, weight=SEMIBOLD, wraps=True)
+        self.then = Text(look, tone="ink2", wraps=True)
+        self.in_order = Text(look, wraps=True)
+        self.engineering = Toggle(look, tr("Engineering figures"), tr("E"), is_on=False)
+        self.how_found = Button(look, tr("How was this found?"), ButtonKind.SECONDARY, Icon.SEARCH, height=52)
+        self.agreement = Button(look, tr("Beside an optical system"), ButtonKind.SECONDARY, Icon.SEARCH, height=52)
+        self.facts = CellTable(look, tr("How each joint was found"), head=36)
+        self.hip_facts = CellTable(look, tr("How each hip was found"), head=36)
+        self.findings = FindingsList(look)
+        self.figure = JointsFigure(look)
+        self.strides = Text(look, size=12, tone="ink2", wraps=True)
+        self._build()
+        self.engineering.toggled.connect(self._show_parts)
+        self._on_look_changed()
+        self._show_parts()
+
+    @property
+    def tab_order(self) -> list[QWidget]:
+        return [
+            *self._repeats(),
+            self.engineering,
+            self.how_found,
+            self.agreement,
+            self.facts,
+            self.hip_facts,
+            self.findings,
+        ]
+
+    def focus(self) -> None:
+        (next(iter(self._repeats()), None) or self.engineering).setFocus()
+
+    def show_quality(
+        self,
+        found: DataQuality,
+        joints: Mapping[Joint, Verdict],
+        worn: Sequence[Site],
+        strides: str,
+        *,
+        can_repeat: bool = False,
+    ) -> None:
+        """Say it of one walk.
+
+        Parameters
+        ----------
+        joints
+            Of each joint that was measured the verdict of its shape.
+        strides
+            How many were used and left out, in words.
+        can_repeat
+            Whether sensors are worn, so that a free motion can be repeated now.
+        """
+        self.first.setText(found.first)
+        self.then.setText(found.then)
+        self.then.setVisible(bool(found.then))
+        self.in_order.setText(found.in_order)
+        self._order_card.setVisible(bool(found.in_order))
+        self.strides.setText(strides)
+        self.figure.show_joints(joints, worn)
+        if (found.lines, can_repeat) != (self.lines, self._can_repeat):
+            self.lines, self._can_repeat = found.lines, can_repeat
+            self._fill()
+
+    def show_engineering(
+        self,
+        calibrated: Mapping[Joint, JointCalibration],
+        findings: Sequence[Finding],
+        hips: Mapping[Joint, HipAngle] = MappingProxyType({}),
+    ) -> None:
+        self.facts.show_rows(fact_columns(calibrated), fact_rows(calibrated))
+        self.hip_facts.show_rows(hip_columns(hips), hip_rows(hips))
+        self.hip_facts.setVisible(bool(hips))
+        self.findings.show_findings(findings)
+
+    def set_room(self, width: int, *, is_compact: bool, is_narrow: bool) -> None:
+        """Leave the figure out where it has no room, and let the doors stand below each other in `width` px."""
+        px = self._look.theme.px
+        self._figure_card.setVisible(not is_compact)
+        beside = 0 if is_compact else px(FIGURE_WIDTH) + self._columns.spacing()
+        doors = (self.engineering, self.how_found, self.agreement)
+        needed = sum(door.sizeHint().width() for door in doors) + 2 * self._doors.spacing()
+        self._place_doors(1 if is_narrow else 3 if needed + beside <= width else 2)
+
+    def _build(self) -> None:
+        self._list = QVBoxLayout()
+        self._list.addStretch(1)
+        self._cards = QWidget()
+        self._cards.setLayout(self._list)
+        self._scroll = QScrollArea()
+        self._scroll.setWidgetResizable(True)
+        self._scroll.setFrameShape(QFrame.Shape.NoFrame)
+        self._scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self._scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self._scroll.setWidget(self._cards)
+        for part in (self._cards, self._scroll.viewport()):
+            part.setAutoFillBackground(False)
+        self._order_card = Card(self._look)
+        order = QHBoxLayout()
+        order.setSpacing(12)
+        order.addWidget(IconMark(self._look, Icon.READ), 0, Qt.AlignmentFlag.AlignTop)
+        order.addWidget(self.in_order, 1)
+        self._order_card.column.addLayout(order)
+        self._figures_card = Card(self._look, padding=12)
+        tables = QWidget()
+        found = QVBoxLayout(tables)
+        found.setContentsMargins(0, 0, 0, 0)
+        for table in (self.facts, self.hip_facts):
+            found.addWidget(table)
+        found.addStretch(1)
+        self._figures_card.column.addWidget(scrolling(tables), 2)
+        self._figures_card.column.addWidget(Text(self._look, tr("Everything noticed"), size=16, weight=SEMIBOLD))
+        self._figures_card.column.addWidget(self.findings, 1)
+        self._doors = QGridLayout()
+        self._place_doors(3)
+        self._left = QVBoxLayout()
+        self._left.addWidget(self._scroll, 1)
+        self._left.addWidget(self._figures_card, 1)
+        self._left.addWidget(self._order_card)
+        self._left.addLayout(self._doors)
+        self._figure_card = Card(self._look)
+        self._figure_card.column.addWidget(Text(self._look, tr("Joints and sensors"), size=16, weight=SEMIBOLD))
+        self._figure_card.column.addWidget(self.figure, 1)
+        self._figure_card.column.addWidget(self.strides)
+        self._columns = QHBoxLayout()
+        self._columns.addLayout(self._left, 1)
+        self._columns.addWidget(self._figure_card)
+        self._words = QVBoxLayout()
+        self._words.addWidget(self.first)
+        self._words.addWidget(self.then)
+        self._page = QVBoxLayout(self)
+        self._page.setContentsMargins(0, 0, 0, 0)
+        self._page.addLayout(self._words)
+        self._page.addLayout(self._columns, 1)
+
+    def _place_doors(self, in_row: int) -> None:
+        """Put so many beside each other; of two rows the first has one door, as wide as both below it."""
+        places = {1: ((0, 0), (1, 0), (2, 0)), 2: ((0, 0, 1, 2), (1, 0), (1, 1)), 3: ((0, 0), (0, 1), (0, 2))}
+        for door, place in zip((self.engineering, self.how_found, self.agreement), places[in_row], strict=True):
+            self._doors.removeWidget(door)
+            self._doors.addWidget(door, *place)
+
+    def _fill(self) -> None:
+        """Make a card of each line anew."""
+        for card in self._line_cards:
+            self._list.removeWidget(card)
+            card.hide()
+            card.deleteLater()
+        self._line_cards = [LineCard(self._look, line, can_repeat=self._can_repeat) for line in self.lines]
+        for number, card in enumerate(self._line_cards):
+            if card.repeat is not None:
+                card.repeat.clicked.connect(partial(self.repeat_wished.emit, card.side))
+            self._list.insertWidget(number, card)
+
+    def _repeats(self) -> list[QWidget]:
+        return [card.repeat for card in self._line_cards if card.repeat is not None]
+
+    def _show_parts(self) -> None:
+        is_folded = not self.engineering.isChecked()
+        self._scroll.setVisible(is_folded)
+        self._figures_card.setVisible(not is_folded)
+
+    def _on_look_changed(self) -> None:
+        px = self._look.theme.px
+        self._page.setSpacing(px(12))
+        self._words.setSpacing(px(4))
+        self._columns.setSpacing(px(16))
+        self._left.setSpacing(px(12))
+        self._doors.setSpacing(px(12))
+        self._list.setSpacing(px(12))
+        self._list.setContentsMargins(0, 0, 0, 0)
+        self._figure_card.setFixedWidth(px(FIGURE_WIDTH))
+        self.figure.keep_beside(px(BESIDE))
+
+
+class LineCard(Themed):
+    """One thing that stands against a figure: yellow where it withholds one."""
+
+    def __init__(self, look: ThemeNotifier, line: QualityLine, *, can_repeat: bool) -> None:
+        super().__init__()
+        self._look, self._line = look, line
+        is_grave = line.is_grave
+        tone, quiet = ("caution_ink", "caution_ink") if is_grave else ("ink", "ink2")
+        title = f"{line.where}: {verdict_word(line.verdict)}" if line.where else verdict_word(line.verdict)
+        self.setAccessibleName(" ".join(filter(None, [f"{title}.", line.why, line.to_do])))
+        self.repeat: Button | None = None
+        words = QVBoxLayout()
+        words.setSpacing(2)
+        words.addWidget(Text(look, title, size=16, weight=SEMIBOLD, tone=tone, wraps=True))
+        words.addWidget(Text(look, line.why, tone=quiet, wraps=True))
+        if line.to_do:
+            to_do = QHBoxLayout()
+            to_do.setSpacing(12)
+            to_do.addWidget(Text(look, tr("To do"), weight=SEMIBOLD, tone=tone), 0, Qt.AlignmentFlag.AlignTop)
+            to_do.addWidget(Text(look, line.to_do, tone=tone, wraps=True), 1)
+            words.addLayout(to_do)
+        self._row = QHBoxLayout(self)
+        self._row.addWidget(IconMark(look, VERDICT_ICONS[line.verdict], tone=tone), 0, Qt.AlignmentFlag.AlignTop)
+        self._row.addLayout(words, 1)
+        if can_repeat and line.side is not None:
+            word = tr("Repeat left leg") if line.side is Side.LEFT else tr("Repeat right leg")
+            self.repeat = Button(look, word, ButtonKind.SECONDARY, Icon.REPEAT, height=44)
+            self._row.addWidget(self.repeat, 0, Qt.AlignmentFlag.AlignBottom)
+        self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Preferred)
+        self._on_look_changed()
+
+    @property
+    def side(self) -> Side | None:
+        """The leg whose free motion mends it."""
+        return self._line.side
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        c, box = self._look.theme.colours, QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5)
+        is_grave = self._line.is_grave
+        fill, edge = (c.caution, c.caution_edge) if is_grave else (c.surface, c.control)
+        self._look.theme.paint_box(QPainter(self), box, fill, edge, 1)
+
+    def _on_look_changed(self) -> None:
+        px = self._look.theme.px
+        self._row.setContentsMargins(px(16), px(12), px(16), px(12))
+        self._row.setSpacing(px(12))
+
+
+class JointsFigure(BodyFigure):
+    """The legs with their sensors, and beside each joint that was measured what may be read of it."""
+
+    def __init__(self, look: ThemeNotifier) -> None:
+        super().__init__(look, legs_only=True)
+        self._joints: dict[Joint, Verdict] = {}
+        self._has_pelvis = False
+
+    def joint_anchor(self, joint: Joint) -> QPointF:
+        """Where a joint lies; a hip in the upper end of its thigh, which the drawing does not mark."""
+        if not joint.is_hip:
+            return super().joint_anchor(joint)
+        thigh = body_shapes().outlines[joint.distal].boundingRect()
+        return self._placed().map(QPointF(thigh.center().x(), thigh.top() + HIP_BELOW))
+
+    def show_joints(self, joints: Mapping[Joint, Verdict], worn: Sequence[Site]) -> None:
+        self._joints = dict(joints)
+        self._has_pelvis = Site.PELVIS in worn
+        self.show_worn(dict.fromkeys((site for site in worn if site is not Site.PELVIS), SensorMark.WORN))
+        said = [f"{name_of(joint)}: {verdict_word(verdict)}" for joint, verdict in joints.items()]
+        self.setAccessibleDescription("; ".join([*said, self.accessibleDescription()]))
+        self.update()
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        super().paintEvent(event)
+        theme = self._look.theme
+        c, px = theme.colours, theme.px
+        painter = QPainter(self)
+        if self._has_pelvis:
+            box = QRectF(0, 0, px(SENSOR[0]), px(SENSOR[1]))
+            box.moveCenter(self._placed().map(body_shapes().outlines["pelvis"].boundingRect().center()))
+            painter.setPen(theme.pen(c.surface, 1))
+            painter.setBrush(QColor(c.ink))
+            painter.drawRoundedRect(box, px(3), px(3))
+            painter.setBrush(Qt.BrushStyle.NoBrush)
+        painter.setFont(theme.font(12, SEMIBOLD))
+        for joint, verdict in self._joints.items():
+            at, is_right = self.joint_anchor(joint), joint.side is Side.RIGHT
+            width, height = px(MARK[0]), px(MARK[1])
+            box = QRectF(1 if is_right else self.width() - 1 - width, at.y() - height / 2, width, height)
+            is_grave = verdict is Verdict.WITHHELD
+            painter.setPen(theme.pen(c.control, 1))
+            edge = box.right() if is_right else box.left()
+            painter.drawLine(
+                round(edge), round(at.y()), round(at.x() - px(7) if is_right else at.x() + px(7)), round(at.y())
+            )
+            fill, line = (c.caution, c.caution_edge) if is_grave else (c.sunken, c.control)
+            theme.paint_box(painter, box, fill, line, 1)
+            icon = px(18)
+            mark = QRectF(box.center().x() - icon / 2, box.center().y() - icon / 2, icon, icon)
+            paint_icon(painter, VERDICT_ICONS[verdict], mark, c.caution_ink if is_grave else c.ink)
+            painter.setPen(QColor(c.ink))
+            side = Qt.AlignmentFlag.AlignLeft if is_right else Qt.AlignmentFlag.AlignRight
+            # beside the hips the letters of both legs stand
+            words = QRectF(0, box.bottom() + px(2) if joint.is_hip else box.top() - px(18), self.width(), px(16))
+            painter.drawText(words, side | Qt.AlignmentFlag.AlignVCenter, verdict_word(verdict))

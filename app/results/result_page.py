@@ -1,0 +1,587 @@
+"""What came of one session: the answer to a walk first, then its curves, what differs most, and how sure that is."""
+
+from collections.abc import Mapping, Sequence
+from enum import Enum, auto
+
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtGui import QKeySequence, QShortcut
+from PySide6.QtWidgets import QBoxLayout, QGridLayout, QHBoxLayout, QVBoxLayout, QWidget
+
+from app.results.beside_choice import Beside, BesideChoice
+from app.results.beside_words import answer_beside, key_figures_beside
+from app.results.differs_card import DiffersCard
+from app.results.result_parts import PageRoom, ResultParts
+from app.results.summary_text import door_words, figures_in_short, key_figures, strides_in_short
+from app.summary.agreed import agreed_with
+from app.summary.answer import Outcome, answer_of
+from app.summary.beside import changes_on_curves
+from app.summary.comparison import Comparison
+from app.summary.conditions import Part, conditions_of
+from app.summary.course_lanes import CourseVisit
+from app.summary.data_quality import data_quality, quality_without_walk
+from app.summary.facts import Facts
+from app.summary.marks_on_curves import deviations_of, gaps_of
+from app.summary.mean_legs import mean_legs
+from app.summary.reference_bands import age_and_height
+from app.summary.request import AnalysedVisit, default_walks
+from app.summary.visits import ComparedVisits
+from app.theme.icons import Icon
+from app.theme.notifier import ThemeNotifier
+from app.widgets.button import Button, ButtonKind
+from app.widgets.choice import Choice
+from app.widgets.door import Door
+from app.widgets.fact_strip import FactStrip
+from app.widgets.heard_order import hear_as_laid_out
+from app.widgets.notice import Notice
+from app.widgets.segmented import Segmented
+from app.widgets.themed import Themed
+from app.widgets.toggle import Toggle
+from app.wording.recordings import with_shown_names
+from app.wording.translation import later, tr
+from core.body import Joint, JointKind, Side, Site
+from core.results import RecordingAnalysis
+from core.samples import FloatArray, RecordingKind
+
+LEG_KINDS = (JointKind.KNEE, JointKind.ANKLE)  # whose charts are always there
+
+# the views
+ANSWER, COMPARE, WHOLE, STRIDES = "answer", "compare", "whole", "strides"
+WALK, RECORDING = later("Whole walk"), later("Whole recording")
+
+ANSWER_PX = 22
+RECORDINGS = (146, 280)  # px: the narrowest and the widest that their box becomes
+BOTTOM = 44  # px high: the row that closes the answer
+BESIDE_TABLE, WITHHELD, NOTE = 484, 40, 24  # px high: all else on a page, a withheld curve, strides left out by hand
+GAP = 12  # px between what stands in one row
+PELVIS = 56  # px high: above the legs
+ANSWER_ICONS = {
+    Outcome.DIFFERS: Icon.WARNING,
+    Outcome.NOTHING: Icon.READ,
+    Outcome.OPEN: Icon.INFO,
+    Outcome.UNREADABLE: Icon.WITHHELD,
+}
+
+
+class Behind(Enum):
+    """What somebody looks at behind the answer, in place of its curves."""
+
+    NOTHING = auto()
+    FIGURES = auto()
+    QUALITY = auto()
+
+
+class ResultPage(Themed):
+    """`parts`: those that were made before. `told`: what is said in the bar beneath the page has changed."""
+
+    told = Signal()
+
+    def __init__(self, look: ThemeNotifier, parts: ResultParts | None = None) -> None:
+        super().__init__()
+        parts = parts or ResultParts(look)
+        self._look = look
+        self._visit: AnalysedVisit | None = None
+        self._facts: Facts | None = None  # of the walk on the screen
+        self._found: Comparison | None = None  # with what it stands beside
+        self._can_choose = self._is_live = False
+        self._course: tuple[CourseVisit, ...] = ()
+        self._stride: Mapping[Joint, FloatArray] = {}  # in force
+        self._room = PageRoom()
+        self._width = self._height = 0.0
+        self._has_tools = False  # views, recordings and methods in one row
+        self._has_choices = False  # views and what else is chosen in one row
+        self._behind = Behind.NOTHING
+        self._wanted = ANSWER  # of a walk; kept while recordings without it are looked at
+        self.view = Segmented(
+            look,
+            tr("View"),
+            [
+                (ANSWER, tr("Answer"), ""),
+                (COMPARE, tr("Compare"), ""),
+                (WHOLE, tr(WALK), ""),
+                (STRIDES, tr("Strides"), ""),
+            ],
+        )
+        self.to_answer = Button(look, tr("Answer"), ButtonKind.SECONDARY, Icon.BACK, tr("Esc"))
+        self.recordings = Choice(look, tr("Recording"))
+        self.beside = BesideChoice(look)
+        self.recordings.let_shrink(*RECORDINGS)  # conditions are typed
+        self.answer = Notice(look, ANSWER_PX, padding=4)
+        self.key_figures = FactStrip(look)
+        self.differs = DiffersCard(look)
+        self.door = Door(look, tr("Q"))
+        self.all_figures = Toggle(look, tr("All figures"), tr("F"), is_on=False)
+        self.show_legs = Toggle(look, tr("Legs"), tr("G"), is_on=False)
+        self.cycles = parts.cycles
+        self.legs = parts.legs
+        self.strides = parts.strides
+        self.compare = parts.compare
+        self.whole = parts.whole
+        self.quality = parts.quality
+        self._build()
+        self._connect()
+
+    def show_visit(
+        self,
+        visit: AnalysedVisit,
+        *,
+        can_choose: bool = False,
+        is_live: bool = False,
+        course: tuple[CourseVisit, ...] = (),
+    ) -> None:
+        """Show the recording that was on the screen, if `visit` has it, else the walk of a report or the first.
+
+        Parameters
+        ----------
+        can_choose
+            Whether somebody keeps which strides are left out: see `strides`.
+        is_live
+            Whether the sensors are still worn, so that a free motion can be repeated.
+        course
+            The patient's visits in order of time, this one the last: the answer tells the changes since.
+        """
+        self._visit, self._can_choose, self._is_live, self._course = visit, can_choose, is_live, course
+        session, analysis = visit.session, visit.analysis
+        shown, called = self.recordings.currentData(), visit.shown_names
+        is_prosthetic = session.patient.prosthetic_side in set(Side)
+        parts = conditions_of(analysis, session.recordings, agreed=agreed_with(session))
+        self.compare.show_conditions(analysis, parts, is_prosthetic, age_and_height(session))
+        self.beside.show_visit(visit)
+        names = [recording.name for recording in analysis.recordings]
+        self.recordings.blockSignals(True)
+        self.recordings.clear()
+        for name in names:
+            self.recordings.addItem(str(called.get(name, name)), name)
+        proposed = default_walks(visit)
+        first = names.index(proposed[-1]) if proposed else 0
+        self.recordings.setCurrentIndex(names.index(shown) if shown in names else first)
+        self.recordings.blockSignals(False)
+        self.recordings.updateGeometry()
+        self.recordings.setVisible(bool(names))
+        if self._is_placed_otherwise():
+            self._place()
+        self._on_recording_changed()
+        self._fit_parts()
+
+    def set_has_visits(self, has_visits: bool) -> None:
+        """Offer earlier visits to compare with."""
+        self.compare.set_has_visits(has_visits)
+
+    def show_visits(self, visits: Sequence[ComparedVisits], walked: str = "", every: Sequence[Part] = ()) -> None:
+        """Show earlier visits, which `compare` wished for, as `ComparePage.show_visits` says."""
+        self.compare.show_visits(visits, walked, every)
+        if self.beside.currentData() is Beside.LAST_VISIT:
+            self._show_beside()
+
+    def set_room(self, width: float, height: float) -> None:
+        """Fold the page as far as its room, in px of the design, asks for it.
+
+        Where there is little room the key figures join the sentence, and the controls take two rows.
+        """
+        room = PageRoom.of(width, height)
+        self._width, self._height = width, height
+        if room != self._room or self._is_placed_otherwise():
+            self._room = room
+            self._place()
+        self._fit_parts()
+        self._fit_table()
+
+    def _fit_table(self) -> None:
+        """Show as many rows of what differs as leave the charts their room."""
+        frames = self.cycles.charts.frames
+        is_withheld = any(panel.text for frame in frames for panel in frame.withheld.values())
+        taken = BESIDE_TABLE + (WITHHELD if is_withheld else 0) + (NOTE if self.cycles.by_hand.text() else 0)
+        taken += PELVIS if self.show_legs.isChecked() and len(frames) > len(LEG_KINDS) else 0
+        self.differs.set_room(self._height - taken)
+
+    def focus(self) -> None:
+        """Give the focus to the first choice of the page."""
+        if self._behind is Behind.QUALITY:
+            self.quality.focus()
+        else:
+            (self.whole.methods if self.view.isHidden() else self.view).focus()
+
+    def leave_behind(self) -> bool:
+        """Go back to the answer from what stands behind it; whether there was anything to leave."""
+        if self._behind is Behind.NOTHING:
+            return False
+        self._show_behind(Behind.NOTHING)
+        self.door.setFocus()
+        return True
+
+    @property
+    def recording(self) -> RecordingAnalysis | None:
+        """The recording on the screen; None in a session without any that moves."""
+        if self._visit is None or not self._visit.analysis.recordings:
+            return None
+        return self._visit.analysis.recordings[self.recordings.currentIndex()]
+
+    @property
+    def band_words(self) -> str:
+        """Whose band stands behind the curves and how fast this walk was; empty where no curve stands on one."""
+        is_shown = self.view.choice == ANSWER and self._behind is not Behind.QUALITY
+        return self.cycles.band_words if is_shown and self.beside.currentData() is Beside.BAND else ""
+
+    @property
+    def tab_order(self) -> list[QWidget]:
+        """What takes the focus, in the order of reading."""
+        choices = [
+            self.to_answer,
+            *self.view.segments,
+            self.recordings,
+            self.beside,
+            self.show_legs,
+            *self.whole.methods.segments,
+        ]
+        shown = [
+            *self.whole.tab_order,
+            *self.strides.tab_order,
+            self.differs.table,
+            *self.cycles.tables,
+            *self.compare.tab_order,
+        ]
+        return [*choices, *shown, *self.quality.tab_order, self.door, self.all_figures]
+
+    def _build(self) -> None:
+        self._controls = QGridLayout()
+        self._against = QWidget()
+        self._against_row = QHBoxLayout(self._against)
+        self._against_row.setContentsMargins(0, 0, 0, 0)
+        self._against_row.addWidget(self.compare.kinds)
+        self._against_row.addWidget(self.compare.bases)
+        self._compared_as = QWidget()  # the choice of the comparison's views, where its card has no room for it
+        compared_as = QHBoxLayout(self._compared_as)
+        compared_as.setContentsMargins(0, 0, 0, 0)
+        self._choices = QWidget()
+        choices = QHBoxLayout(self._choices)
+        choices.setContentsMargins(0, 0, 0, 0)
+        for widget in (self.recordings, self.beside, self.show_legs, self._against):
+            choices.addWidget(widget)
+        self._head = QHBoxLayout()
+        self._head.addWidget(self.answer, 1)
+        self._head.addWidget(self.key_figures, 0, Qt.AlignmentFlag.AlignTop)
+        self._figures = QWidget()
+        self._tables = QBoxLayout(QBoxLayout.Direction.LeftToRight, self._figures)
+        self._tables.setContentsMargins(0, 0, 0, 0)
+        self._tables.addWidget(self.cycles.peaks, 1)
+        right = QVBoxLayout()
+        right.addWidget(self.cycles.time_distance, 1)
+        right.addWidget(self.cycles.hips, 1)
+        self._tables.addLayout(right, 1)
+        self._columns = QHBoxLayout()
+        for widget, share in (
+            (self.whole, 1),
+            (self.cycles, 1),
+            (self.legs, 0),
+            (self.strides, 0),
+            (self.compare, 1),
+            (self._figures, 1),
+            (self.quality, 1),
+        ):
+            self._columns.addWidget(widget, share)
+        self._bottom = QHBoxLayout()
+        self._bottom.addWidget(self.door, 1)
+        self._bottom.addWidget(self.all_figures)
+        self.all_figures.set_face(height=BOTTOM)
+        self._page = QVBoxLayout(self)
+        self._page.addLayout(self._controls)
+        self._page.addWidget(self._compared_as, 0, Qt.AlignmentFlag.AlignLeft)
+        self._page.addLayout(self._head)
+        self._page.addLayout(self._columns, 1)
+        self._page.addWidget(self.differs)
+        self._page.addLayout(self._bottom)
+        self._place()
+
+    def _connect(self) -> None:
+        self.view.chosen.connect(self._on_view_chosen)
+        self.recordings.currentIndexChanged.connect(self._on_recording_changed)
+        self.beside.currentIndexChanged.connect(self._on_beside_changed)
+        self.strides.chosen.connect(self._on_stride_chosen)
+        self.cycles.charts.picked.connect(self._on_stride_picked)
+        self.show_legs.toggled.connect(self._on_legs_toggled)
+        self.legs.moved.connect(lambda: self.cycles.charts.show_cursor(self.legs.places))
+        self.door.clicked.connect(self._on_door)
+        self.to_answer.clicked.connect(self.leave_behind)
+        self.all_figures.toggled.connect(lambda is_on: self._show_behind(Behind.FIGURES if is_on else Behind.NOTHING))
+        for key, button in (
+            (tr("Q"), self.door),
+            (tr("F"), self.all_figures),
+            (tr("G"), self.show_legs),
+            (tr("E"), self.quality.engineering),
+        ):
+            shortcut = QShortcut(QKeySequence(key), button)  # asleep while its button is hidden
+            shortcut.activated.connect(button.click)
+
+    def _place(self) -> None:
+        """Put the controls into one row, where they fit; the methods go under the curves where they do not."""
+        for widget in (self.view, self.to_answer, self.whole.methods, self._choices):
+            self._controls.removeWidget(widget)
+        left = Qt.AlignmentFlag.AlignLeft
+        self._has_tools, self._has_choices = self._do_tools_fit(), self._do_choices_fit()
+        self._controls.addWidget(self.view, 0, 0, left)
+        self._controls.addWidget(self.to_answer, 0, 1, left)
+        self._controls.setColumnStretch(4, 1)
+        if self._has_choices:
+            self._controls.addWidget(self._choices, 0, 2)
+        else:
+            self._controls.addWidget(self._choices, 1, 0, 1, 4, left)
+        if self._room.is_narrow:
+            self._against_row.insertWidget(2, self.compare.view)
+        elif self._room.is_compact and (row := self._compared_as.layout()) is not None:
+            row.addWidget(self.compare.view)
+        room, has_methods = self._room, self._has_tools and not self._room.is_narrow
+        self.whole.place(has_methods=not has_methods, is_narrow=room.is_narrow, is_wide=room.has_two_tables)
+        if has_methods:
+            self._controls.addWidget(self.whole.methods, 0, 3)
+        self.compare.set_room(room.is_compact, room.is_spacious, room.has_two_charts, has_view=not room.is_narrow)
+        self.strides.set_charts_beside(self._room.has_strides_beside)
+        self.legs.set_brief(self._room.is_compact)
+        hear_as_laid_out(self)
+        self._on_look_changed()
+        self._tell_answer()
+        self._offer()
+
+    def _fit_parts(self) -> None:
+        """Put beside each other what has its room there: tables of figures, the doors, the phases' legend."""
+        room, cycles = self._room, self.cycles
+        self.quality.set_room(self._inner_width, is_compact=room.is_compact, is_narrow=room.is_narrow)
+        self.whole.fit_phases(self._inner_width, is_narrow=room.is_narrow)
+        right = [card for card in (cycles.time_distance, cycles.hips) if not card.isHidden()]
+        needed = _least_width(cycles.peaks) + max(map(_least_width, right), default=0) + self._tables.spacing()
+        does_fit = room.has_two_tables and needed <= self._inner_width
+        across, down = QBoxLayout.Direction.LeftToRight, QBoxLayout.Direction.TopToBottom
+        self._tables.setDirection(across if does_fit else down)
+
+    @property
+    def _inner_width(self) -> int:
+        """Between the margins of the page, in pixels."""
+        return self._look.theme.px(self._width - 2 * self._side)
+
+    @property
+    def _side(self) -> int:
+        """The margin at either side, as of the bar beneath, in px of the design."""
+        return 24 if self._room.is_on_grid else 16
+
+    def _is_placed_otherwise(self) -> bool:
+        return (self._has_tools, self._has_choices) != (self._do_tools_fit(), self._do_choices_fit())
+
+    def _do_tools_fit(self) -> bool:
+        """Whether views, recordings and methods fit into one row."""
+        tools = (self.view, self.recordings, self.whole.methods)
+        return self._inner_width >= sum(one.sizeHint().width() for one in tools) + self._look.theme.px(3 * GAP)
+
+    def _do_choices_fit(self) -> bool:
+        """Whether the views fit into one row with what is chosen of an answer, and with what of a comparison."""
+        if self._room.is_narrow:
+            return False
+        of_answer = _least_width(self.recordings) + _least_width(self.beside) + self.show_legs.sizeHint().width()
+        of_comparison = self.compare.kinds.sizeHint().width() + self.compare.bases.sizeHint().width()
+        needed = self.view.sizeHint().width() + max(of_answer, of_comparison) + self._look.theme.px(3 * GAP)
+        return self._inner_width >= needed
+
+    def _offer(self) -> None:
+        """Offer the views that this recording has."""
+        recording = self.recording
+        is_walk = recording is not None and recording.kind is RecordingKind.WALKING
+        has_strides = recording is not None and any(len(gait.strides) for gait in recording.gait.values())
+        self.view.blockSignals(True)
+        self.view.set_word(WHOLE, tr(WALK if is_walk else RECORDING))
+        for view in (ANSWER, COMPARE, STRIDES):
+            self.view.set_offered(view, is_walk)
+            self.view.set_reason(view, "" if has_strides else tr("no strides"))
+        if self.view.choice in (ANSWER, WHOLE):
+            self.view.choose(self._wanted if is_walk and has_strides else WHOLE)
+        self.view.blockSignals(False)
+        self._show_parts()
+
+    def _show_behind(self, behind: Behind) -> None:
+        self._behind = behind
+        self.all_figures.show_on(behind is Behind.FIGURES)
+        self._show_parts()
+
+    def _show_parts(self) -> None:
+        """Show what belongs to the view, or what stands behind the answer."""
+        recording, view = self.recording, self.view.choice
+        is_walk = recording is not None and recording.kind is RecordingKind.WALKING
+        has_answer = is_walk and view == (ANSWER if self.view.segments[0].isEnabled() else WHOLE)
+        has_door = self._visit is not None and view in (ANSWER, WHOLE)
+        behind = self._behind if has_answer or (has_door and self._behind is Behind.QUALITY) else Behind.NOTHING
+        is_answer = view == ANSWER and behind is Behind.NOTHING
+        has_curves = is_answer and not (self._room.is_compact and self.show_legs.isChecked())
+        is_quality = behind is Behind.QUALITY
+        self.view.setVisible(is_walk and not is_quality)
+        self.to_answer.setVisible(is_quality)
+        self.whole.methods.setVisible(view == WHOLE and not is_quality)
+        self.recordings.setVisible(view != COMPARE and self.recordings.count() > 0)
+        self.beside.setVisible(view == ANSWER and not is_quality and (has_curves or behind is Behind.FIGURES))
+        self.show_legs.setVisible(view == ANSWER and behind is Behind.NOTHING)
+        self._against.setVisible(view == COMPARE)
+        self._compared_as.setVisible(view == COMPARE and self._room.is_compact and not self._room.is_narrow)
+        self.compare.setVisible(view == COMPARE)
+        self.answer.setVisible(has_answer and behind is Behind.NOTHING and bool(self.answer.text))
+        self.key_figures.setVisible(is_answer and not self._room.is_compact)
+        self.whole.setVisible(view == WHOLE and not is_quality)
+        self.cycles.setVisible(has_curves or (view == STRIDES and self._room.has_strides_beside))
+        has_legs = is_answer and self.show_legs.isChecked()
+        has_table = not has_legs or self._room.is_spacious
+        self.legs.setVisible(has_legs)
+        if not has_legs:
+            self.cycles.charts.show_cursor({})
+        room, charts = self._room, self.cycles.charts
+        has_hips = len(charts.frames) > len(LEG_KINDS)
+        is_beside = view == ANSWER and (has_hips or (room.has_two_charts and (room.is_spacious or not has_legs)))
+        is_crowded = has_hips and (has_legs or not room.is_spacious)
+        charts.set_side_by_side(is_beside)
+        charts.set_tight(is_tight=is_crowded, is_narrow=is_crowded and is_beside and (room.is_narrow or has_legs))
+        charts.set_brief(room.is_compact or view == STRIDES or is_crowded)
+        self.cycles.set_notes_shown(is_answer)
+        self.strides.setVisible(view == STRIDES)
+        self._show_strides()
+        self._figures.setVisible(behind is Behind.FIGURES)
+        self.quality.setVisible(is_quality)
+        self.differs.setVisible(is_answer and has_table and not self._room.is_compact and self.differs.has_rows)
+        self.door.setVisible(has_door and not is_quality)
+        self.all_figures.setVisible(view == ANSWER and not is_quality)
+        self._page.activate()  # now, else the charts would be painted once too small and once right
+        self.told.emit()
+
+    def _on_view_chosen(self) -> None:
+        if self.view.choice in (ANSWER, WHOLE) and self.view.segments[0].isEnabled():
+            self._wanted = self.view.choice
+        self._show_parts()
+
+    def _on_door(self) -> None:
+        self._show_behind(Behind.QUALITY)
+        self.quality.focus()
+
+    def _on_recording_changed(self) -> None:
+        recording, visit = self.recording, self._visit
+        self._show_quality()
+        called = self._called(recording.name) if recording is not None else ""
+        self.whole.show_recording(recording, called, is_simulated=visit is not None and visit.analysis.is_simulated)
+        if recording is None or visit is None:
+            self._facts = self._found = None
+            self._offer()
+            return
+        self.strides.show_walk(recording, self._can_choose)
+        self.beside.offer(recording.name, has_visits=self.compare.has_visits)
+        self._show_beside()
+        self._offer()
+
+    def _called(self, name: str) -> str:
+        """What a recording of this session is called."""
+        return str(self._visit.shown_names.get(name, name)) if self._visit is not None else name
+
+    def _show_beside(self) -> None:
+        """Show the walk with what it stands beside: its curves, what differs and the key figures."""
+        recording, visit = self.recording, self._visit
+        if recording is None or visit is None or recording.kind is not RecordingKind.WALKING:
+            self._facts = self._found = None
+            self._tell_answer()
+            return
+        chosen = self.beside.currentData()
+        if chosen is Beside.LAST_VISIT:
+            self.compare.wish_visits()
+        facts = self._facts = Facts(visit, recording, self.beside.walks, self._course)
+        found, words = self.beside.compared(facts, self.compare.visits)
+        self._found = found
+        self.cycles.show_walk(facts.part, recording, facts.is_simulated, age_and_height(visit.session))
+        charts = self.cycles.charts
+        charts.set_band_shown(chosen is Beside.BAND)
+        charts.show_beside(found, words)
+        if found is None:
+            self.key_figures.show_figures(key_figures(facts))
+            charts.show_marks(deviations_of(facts), gaps_of(facts))
+        else:
+            self.key_figures.show_figures(key_figures_beside(key_figures(facts), found))
+            charts.show_marks(changes_on_curves(found))
+        self.differs.show_facts(facts, found)
+        self._tell_answer()
+        self._fit_table()
+        if self.show_legs.isChecked():
+            self._show_moving_legs()
+
+    def _show_quality(self) -> None:
+        """Say what can be read of a walk, and of anything else what was noticed."""
+        recording, visit = self.recording, self._visit
+        if visit is None:
+            return
+        if recording is not None and recording.kind is RecordingKind.WALKING:
+            facts = Facts(visit, recording)
+            found, strides, calibrated = data_quality(facts), strides_in_short(facts), facts.calibrated
+            joints = {joint: facts.verdicts.joint(joint).shape.verdict for joint in Joint if facts.is_measured(joint)}
+        else:
+            found, strides, joints = quality_without_walk(visit, recording.name if recording else ""), "", {}
+            calibrated = visit.analysis.calibrated_for(recording) if recording is not None else {}
+        sites = [site for site in Site if any(site in one.imu for one in visit.session.recordings)]
+        self.door.tell(door_words(found))
+        self.quality.show_quality(found, joints, sites, strides, can_repeat=self._is_live)
+        names = visit.shown_names
+        self.quality.show_engineering(
+            calibrated,
+            [with_shown_names(finding, names) for finding in visit.analysis.findings],
+            recording.hips if recording is not None else {},
+        )
+
+    def _tell_answer(self) -> None:
+        """Say what came of the walk; the key figures follow where there is no room for them beside it."""
+        facts, found = self._facts, self._found
+        if facts is None:
+            self.answer.tell(None, "")
+            return
+        answer = answer_of(facts)
+        if found is not None and answer.outcome is not Outcome.UNREADABLE:
+            answer = answer_beside(found)
+        then = [answer.then, figures_in_short(facts) if self._room.is_compact else ""]
+        self.answer.tell(ANSWER_ICONS[answer.outcome], answer.first, " ".join(filter(None, then)))
+
+    def _show_strides(self) -> None:
+        """Draw single strides where they are chosen from; the one in force only there."""
+        is_choosing = self.view.choice == STRIDES
+        self.cycles.charts.set_strides_shown(is_choosing)
+        self.cycles.charts.show_stride(self._stride if is_choosing else {})
+
+    def _on_stride_chosen(self, curves_deg: Mapping[Joint, FloatArray]) -> None:
+        self._stride = curves_deg
+        self._show_strides()
+
+    def _on_legs_toggled(self, is_on: bool) -> None:
+        if is_on:
+            self._show_moving_legs()
+        self._fit_table()
+        self._show_parts()
+        if is_on:
+            self.legs.setFocus()
+
+    def _show_moving_legs(self) -> None:
+        recording, visit = self.recording, self._visit
+        if recording is not None and visit is not None:
+            self.legs.show_legs(mean_legs(visit.session, visit.analysis, recording))
+
+    def _on_stride_picked(self, kind: JointKind, percent: float, angle_deg: float) -> None:
+        if self.legs.isVisible():
+            self.legs.show_percent(percent)
+        elif self.view.choice == STRIDES:
+            self.strides.choose_nearest(kind, percent, angle_deg, self.cycles.charts.heights_deg)
+
+    def _on_beside_changed(self) -> None:
+        self._show_beside()
+        self._show_parts()
+
+    def _on_look_changed(self) -> None:
+        px, is_compact = self._look.theme.px, self._room.is_compact
+        side = px(self._side)
+        self._page.setContentsMargins(side, px(12 if is_compact else 16), side, px(8 if is_compact else 12))
+        self._page.setSpacing(px(12))
+        self._controls.setSpacing(px(8 if is_compact else 12))
+        self._columns.setSpacing(px(12))
+        self._head.setSpacing(px(24))
+        self._bottom.setSpacing(px(12))
+        self._tables.setSpacing(px(12))
+        for part in (self._against, self._choices):
+            layout = part.layout()
+            assert layout is not None
+            layout.setSpacing(px(8 if is_compact and part is self._choices else 12))
+
+
+def _least_width(widget: QWidget) -> int:
+    return widget.minimumSizeHint().width()

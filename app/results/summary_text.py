@@ -1,0 +1,86 @@
+"""What stands round a walk's curves: its key figures, and in one line how far all of it can be trusted."""
+
+import math
+from collections.abc import Sequence
+from statistics import fmean
+
+from app.charts.cycles import is_mean_enough
+from app.summary.data_quality import DataQuality
+from app.summary.facts import Facts
+from app.summary.goals import goal_mark
+from app.summary.numbers_in_words import NOTHING, fixed
+from app.summary.walk_figures import Figure
+from app.widgets.door import DoorWords
+from app.widgets.fact_strip import KeyFigure
+from app.wording.translation import tr, tr_n
+from app.wording.verdicts import verdict_word
+from core.gait.strides import Reason
+from core.goals import Goal
+from core.verdicts.model import Verdict
+
+KEY_COLUMNS = ("speed_m_s", "cadence_steps_min", "stride_length_m")
+
+
+def door_words(found: DataQuality) -> DoorWords:
+    """The verdict of the gravest remark, where it holds, what to do or why, and how many there are."""
+    if not found.lines:
+        is_judged = bool(found.in_order)
+        first = tr("Everything that was measured can be read.") if is_judged else found.first
+        return DoorWords(Verdict.READ, first, found.in_order)
+    line = found.lines[0]
+    pattern = tr("{where}: {verdict}.") if line.where else tr("Data: {verdict}.")
+    first = pattern.format(where=line.where, verdict=verdict_word(line.verdict))
+    then = line.to_do or line.why if line.is_grave else line.why
+    count = len(found.lines)
+    remarks = tr_n("{count} remark", "{count} remarks", count).format(count=count)
+    return DoorWords(line.verdict, first, then, remarks, is_caution=line.is_grave)
+
+
+def key_figures(facts: Facts) -> list[KeyFigure]:
+    """Speed, cadence and stride length of a walk whose legs were measured."""
+    return [_of_row(facts.time_distance[column], facts.part.agreed.of(column)) for column in KEY_COLUMNS]
+
+
+def _of_row(row: Figure, goals: Sequence[Goal]) -> KeyFigure:
+    told = {side: value.mean for side, value in row.sides.items() if is_mean_enough(value.n)}
+    value = row.both if row.both is not None else fmean(told.values()) if told else math.nan
+    is_known = math.isfinite(value)
+    withheld = row.unknown_both or next(iter(row.unknown.values()), "")
+    note = ""
+    if not is_known:
+        note = tr(withheld) if withheld else tr("not measured")
+    elif row.with_care:
+        note = verdict_word(Verdict.CARE)
+    elif told:
+        note = ", ".join(f"{side[0].upper()} {fixed(mean, row.decimals)}" for side, mean in told.items())
+    elif row.band is not None:
+        low, high = (fixed(edge, row.decimals) for edge in row.band)
+        note = tr("band {low} to {high}").format(low=low, high=high)
+    if is_known and goals:  # in place of the legs' values or the band, but not of a doubt
+        doubt = [note] if row.with_care else []
+        note = ", ".join([*doubt, *map(goal_mark, goals)])
+    shown = fixed(value, row.decimals) if is_known else NOTHING
+    unit = row.unit if is_known else ""
+    words = tr("{name}: {value}.").format(name=row.name, value=" ".join(filter(None, [shown, unit, note])))
+    return KeyFigure(row.column, row.name, shown, unit, note, words)
+
+
+def figures_in_short(facts: Facts) -> str:
+    """The same in one line, of those that are known."""
+    told = [
+        f"{one.name} {one.value}\N{NO-BREAK SPACE}{one.unit}".strip()
+        for one in key_figures(facts)
+        if one.value != NOTHING
+    ]
+    return " · ".join(told)
+
+
+def strides_in_short(facts: Facts) -> str:
+    """How many strides of each leg were used and left out, and for which reasons."""
+    sides = facts.part.sides
+    used = ", ".join(f"{side[0].upper()} {facts.strides(side)}" for side in sides)
+    if not used:
+        return tr("No stride was found.")
+    out = {side: facts.part.reasons(side) for side in sides}
+    left_out = ", ".join(f"{side[0].upper()} {out[side].total() - out[side][Reason.USED]}" for side in sides)
+    return tr("Strides used: {used}. Left out: {left_out}.").format(used=used, left_out=left_out)

@@ -1,0 +1,76 @@
+"""The answer to a walk, as a screen tells it before anything else: one sentence, and one beside it.
+
+They are the sentences of the report's first page, so that nobody reads on paper what the screen did not say.
+"""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from app.charts.cycles import is_mean_enough
+from app.summary import quality
+from app.summary.facts import Facts
+from app.summary.goals import goal_sentence
+from app.summary.what_stands_out import (
+    BANDS_ON_SCREEN,
+    judged_differences,
+    nothing_found,
+    ranked_findings,
+)
+from app.wording.translation import joined, tr, within_sentence
+from core.body import Side
+from core.verdicts.model import Verdict
+
+
+class Outcome(StrEnum):
+    """What kind of answer there is.
+
+    DIFFERS: something is so much larger than its error, or beyond a band, that it is told. NOTHING: differences were
+    judged, and none exceeds its error. OPEN: nothing is told, and yet something exceeds its error or nothing could be
+    judged. UNREADABLE: a mean cannot be told of either leg.
+    """
+
+    DIFFERS = "differs"
+    NOTHING = "nothing"
+    OPEN = "open"
+    UNREADABLE = "unreadable"
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """`first` is the sentence that is read from afar, `then` what belongs to it; `then` may be empty."""
+
+    outcome: Outcome
+    first: str
+    then: str = ""
+
+
+def answer_of(facts: Facts) -> Answer:
+    """The weightiest finding of a walk and the one after it, or the caveat where there is no other."""
+    strides = {side: facts.strides(side) for side in facts.gait}
+    if not strides:
+        first = tr("Nothing can be read of this walk: no foot or shank sensor told a stride.")
+        return Answer(Outcome.UNREADABLE, first)
+    if not any(map(is_mean_enough, strides.values())):
+        counted = joined([f"{side[0].upper()}\u00a0{strides[side]}" for side in Side if side in strides])
+        first = tr("Too few strides for a mean: {counted}.").format(counted=counted)
+        return Answer(Outcome.UNREADABLE, first, tr("Walk once more, further or longer."))
+    last = _brief_caveat(facts)
+    if found := ranked_findings(facts, None, BANDS_ON_SCREEN):
+        beside = [found[1].said] if len(found) > 1 else last
+        said = [found[0].evidence, *_goal(facts), *beside]
+        return Answer(Outcome.DIFFERS, found[0].said, " ".join(filter(None, said)))
+    first, *others = nothing_found(facts, None)
+    judged = judged_differences(facts, None)
+    is_none = bool(judged) and not any(one.exceeds for one in judged.values())
+    return Answer(Outcome.NOTHING if is_none else Outcome.OPEN, first, " ".join([*others, *_goal(facts), *last]))
+
+
+def _goal(facts: Facts) -> list[str]:
+    """How the walk stands to a goal that was agreed before: to the first that is judged."""
+    return [said for one in facts.told_goals if (said := goal_sentence(one))][:1]
+
+
+def _brief_caveat(facts: Facts) -> list[str]:
+    """Which joint or leg cannot be read; why, and what to do, stands one step behind the answer."""
+    withheld = [cause.where for cause in quality.causes(facts, (Verdict.WITHHELD,)) if not cause.is_aside]
+    return [tr("Withheld: {where}.").format(where=within_sentence(withheld[0]))] if withheld else []

@@ -1,0 +1,70 @@
+"""The key figures of each condition of a session: those of report, screen and course, for files that leave."""
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from app.summary.conditions import Part, conditions_of
+from app.summary.measures import MEASURES
+from core.body import Side
+from core.gait.spatiotemporal import MeanAndSd
+from core.goals import NO_GOALS, AgreedGoals
+from core.results import Analysis
+from core.samples import Recording
+from core.verdicts.measurement_error import ComparisonKind, whisker
+from core.verdicts.model import Verdict
+
+
+@dataclass(frozen=True, slots=True)
+class ConditionFigure:
+    """One mean over the strides of a condition; `side` None: of the walk. NaN where it is withheld or not known.
+
+    `error` is half of what the difference of two visits has to exceed.
+    """
+
+    column: str
+    side: Side | None
+    found: MeanAndSd
+    error: float
+    verdict: Verdict
+
+
+def condition_figures(part: Part) -> Iterator[ConditionFigure]:
+    """Every measure that is compared, of each leg or of the walk, as far as it was measured."""
+    for measure in MEASURES:
+        column = measure.column
+        for side in part.sides:
+            if measure.is_of_walk and side is not part.sides[0]:
+                continue
+            found, verdict = part.figure(measure, side)
+            if verdict is Verdict.NOT_MEASURED:
+                continue
+            kind = ComparisonKind.VISITS
+            mean = part.of_walk(column, kind) if measure.is_of_walk else part.mean(side, column, kind)
+            of = None if measure.is_of_walk else side
+            yield ConditionFigure(column, of, found, whisker(column, kind, mean), verdict)
+
+
+def summarise_conditions(
+    analysis: Analysis, recordings: Sequence[Recording], agreed: AgreedGoals = NO_GOALS
+) -> list[dict[str, Any]]:
+    """Give what `summary.json` has of each condition: its walks, and the figures of each leg and of both."""
+    told = []
+    for part in conditions_of(analysis, recordings, agreed=agreed):
+        sides: dict[str, dict[str, Any]] = {str(side): {"strides_used": part.strides(side)} for side in part.sides}
+        sides["both"] = {}
+        for one in condition_figures(part):
+            sides["both" if one.side is None else str(one.side)] |= {
+                f"{one.column}_mean": _number(one.found.mean),
+                f"{one.column}_sd": _number(one.found.sd),
+                f"{one.column}_error": _number(one.error),
+                f"{one.column}_status": str(one.verdict),
+            }
+        walks = [walk.name for walk in part.walks]
+        told.append({"letter": part.letter, "condition": part.name, "walks": walks, **sides})
+    return told
+
+
+def _number(value: float) -> float | None:
+    return float(value) if math.isfinite(value) else None

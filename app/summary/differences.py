@@ -1,0 +1,258 @@
+"""By how much do conditions, visits or legs differ, and is that more than the measurement error? The tables of it.
+
+`rows_of` tells every figure of a stride, those of both legs, and how far the mean curves lie apart; screen and
+report show some of them.
+"""
+
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from app.exports.csv_report import figure_cell, typed_cell, write_table
+from app.summary.agreed import agreed_with
+from app.summary.comparison import Comparison, Contrast, Reservation, compare_legs
+from app.summary.conditions import Part, conditions_of
+from app.summary.measures import MEASURES, Measure
+from app.summary.status import status_of
+from app.summary.visits import by_condition
+from core.body import Joint, Side
+from core.gait.cycles import POINTS
+from core.gait.spatiotemporal import MeanAndSd
+from core.gait.symmetry import curve_difference, symmetry_index_percent
+from core.results import Analysis
+from core.samples import Session
+from core.verdicts.measurement_error import Difference, Judgement
+from core.verdicts.model import Verdict, together
+from core.verdicts.norms import MIN_STRIDES_FOR_MEAN
+from core.verdicts.quantities import CLASSES, FITTING, OF_BOTH, OF_HIPS, QUANTITIES, QuantityClass, assessment_of_both
+
+DIFFERENCES = "differences.csv"
+COMPARED_CYCLES = "compared_cycles.csv"
+SIDES = "sides.csv"
+OF_PART = ("part", "name", "walks")
+JUDGED = ("difference", "error", "error_sources", "status", "verdict")
+OF_CURVE = ("mean_deg", "stride_sd_deg", "n", "shape_deg", "status")
+HEADER = (
+    *OF_PART,
+    *(f"against_{what}" for what in OF_PART),
+    *("side", "parameter", "n", "mean", "sd", "against_n", "against_mean", "against_sd"),
+    *JUDGED,
+    *("left_out_by_hand", "against_left_out_by_hand", "chosen_before"),
+)
+
+OF_WALKS = {measure.column: measure for measure in MEASURES if measure.is_of_walk}
+
+COMPARED = (*QUANTITIES, *FITTING, *OF_HIPS)  # of hips and pelvis no error of a difference is known: none is judged
+SIGNED = ("foot_pitch_at_contact_deg",)  # whose nought is no less of it: a share of it says nothing
+
+WITHHELD = Difference(math.nan, math.nan, Judgement.WITHHELD)
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One figure of `part` and of the one it is told against. `side` None: of both. NaN where it is not known.
+
+    `status` is the worse of what may be said of the two.
+    """
+
+    part: Part
+    against: Part
+    side: Side | None
+    parameter: str
+    value: MeanAndSd
+    other: MeanAndSd
+    difference: Difference
+    status: Verdict
+
+
+def comparisons_of(visits: Sequence[tuple[Session, Analysis]]) -> list[Comparison]:
+    """Within each visit its conditions, then each later visit against the first.
+
+    Between visits a condition is told against the same one of the first, and never against another; what is not
+    compared for that reason `without_common_condition` tells. Letters of several visits have the visit's number before
+    them.
+    """
+    of_visits = []
+    for number, (session, analysis) in enumerate(visits, start=1):
+        prefix = str(number) if len(visits) > 1 else ""
+        of_visits.append(conditions_of(analysis, session.recordings, prefix, agreed_with(session)))
+    are_simulated = [analysis.is_simulated for _, analysis in visits]
+    found = [
+        Comparison(Contrast.CONDITIONS, parts, is_simulated=is_simulated)
+        for parts, is_simulated in zip(of_visits, are_simulated, strict=True)
+        if len(parts) > 1
+    ]
+    walked = _by_condition(visits)
+    for of_visit, is_simulated in list(zip(walked, are_simulated, strict=True))[1:]:
+        for condition in [condition for condition in of_visit if condition in walked[0]]:
+            pair = (walked[0][condition], of_visit[condition])
+            found.append(Comparison(Contrast.VISITS, pair, is_simulated=is_simulated or are_simulated[0]))
+    return found
+
+
+def without_common_condition(visits: Sequence[tuple[Session, Analysis]]) -> list[int]:
+    """Numbers, from 1, of the later visits that have strides, but under no condition of the first."""
+    walked = _by_condition(visits)
+    return [
+        number
+        for number, of_visit in enumerate(walked, start=1)
+        if number > 1 and of_visit and not of_visit.keys() & walked[0].keys()
+    ]
+
+
+def _by_condition(visits: Sequence[tuple[Session, Analysis]]) -> list[Mapping[str, Part]]:
+    return [
+        by_condition(analysis, session.recordings, str(number), agreed_with(session))
+        for number, (session, analysis) in enumerate(visits, start=1)
+    ]
+
+
+def rows_of(comparison: Comparison) -> Iterator[Row]:
+    """Every figure that a part and the one it is told against both measured; those withheld without figures."""
+    against = comparison.against
+    for part in comparison.others:
+        for side in Side:
+            for column in COMPARED:
+                found = comparison.compare(Measure.of(column), side, part)
+                if found.reservation is Reservation.NOT_MEASURED:
+                    continue
+                status = together(one.assessment(side, column) for one in (part, against)).verdict
+                if found.reservation is Reservation.NONE:
+                    yield Row(part, against, side, column, found.value, found.other, found.difference, status)
+                else:
+                    yield Row(part, against, side, column, found.value, found.other, WITHHELD, Verdict.WITHHELD)
+            yield from _curves(comparison, part, side)
+        yield from _of_both(comparison, part)
+
+
+def rows_along_chain(comparison: Comparison) -> Iterator[Row]:
+    """The same, then each part against the one that its alignment was changed from, where that is another."""
+    yield from rows_of(comparison)
+    for part in comparison.others:
+        if (base := comparison.base_of(part)) is not comparison.against:
+            yield from rows_of(replace(comparison, parts=(base, part), base=0))
+
+
+def write_differences(found: Iterable[Row], path: Path) -> None:
+    """Write the table.
+
+    Raises
+    ------
+    OSError
+        The file cannot be written.
+    """
+    write_table(HEADER, map(_cells, found), path)
+
+
+def write_compared_cycles(parts: Sequence[Part], path: Path) -> None:
+    """Write the mean cycles that are laid over one another.
+
+    Raises
+    ------
+    OSError
+        The file cannot be written.
+    """
+    curves = [(part, joint) for joint in Joint for part in parts if joint in part.joints]
+    cells = [list(_curve(part, joint)) for part, joint in curves]
+    heads = [f"{part.letter}_{joint}_{of}" for part, joint in curves for of in OF_CURVE]
+    lines = [[str(percent), *(cell for curve in cells for cell in curve[percent])] for percent in range(POINTS)]
+    write_table(["percent", *heads], lines, path)
+
+
+def _curve(part: Part, joint: Joint) -> Iterator[tuple[str, ...]]:
+    """The cells of one mean curve, as in cycles.csv: of a joint without a height its shape alone."""
+    said, cycle = part.verdicts.joint(joint), part.cycle(joint)
+    shape = cycle.mean - cycle.mean.mean()
+    for percent in range(POINTS):
+        height = float(cycle.mean[percent]) if said.height.is_told else math.nan
+        known = (
+            figure_cell(height),
+            figure_cell(float(cycle.sd[percent])),
+            str(cycle.n),
+            figure_cell(float(shape[percent])),
+        )
+        yield (*known, status_of(said))
+
+
+def write_sides(parts: Sequence[Part], sides: tuple[Side, Side], path: Path) -> None:
+    """Write the legs of each part side by side, the first of `sides` less the second; nothing with one leg only.
+
+    Raises
+    ------
+    OSError
+        The file cannot be written.
+    """
+    each = [f"{side}_{what}" for side in sides for what in ("n", "mean", "sd")]
+    by_hand = [f"{side}_left_out_by_hand" for side in sides]
+    lines = []
+    for part in parts:
+        left_out = [str(part.left_out_by_hand(side)) for side in sides]
+        for column in COMPARED:
+            one, other = (part.value(side, column) for side in sides)
+            if not all(part.is_measured(side, column) for side in sides):
+                continue
+            status = together(part.assessment(side, column) for side in sides).verdict
+            is_size = CLASSES[column] is not QuantityClass.HEIGHT and column not in SIGNED
+            difference = compare_legs(part, column, sides)
+            has_index = is_size and difference.is_told and min(one.n, other.n) >= MIN_STRIDES_FOR_MEAN
+            symmetry = symmetry_index_percent(one.mean, other.mean) if has_index else math.nan
+            cells = [*_named(part), column, *_mean(one), *_mean(other)]
+            judged = _judged(difference, status)
+            lines.append([*cells, *judged, figure_cell(symmetry), *left_out])
+    if lines:
+        write_table([*OF_PART, "parameter", *each, *JUDGED, "symmetry_index_percent", *by_hand], lines, path)
+
+
+def _curves(comparison: Comparison, part: Part, side: Side) -> Iterator[Row]:
+    """How far apart the mean curves lie on average, where the heights of both are told from the same kind of zero."""
+    nothing = MeanAndSd(math.nan, math.nan, 0)
+    for joint in comparison.joints:
+        if joint.side is not side or not comparison.has_one_zero(joint):
+            continue
+        said = together(of.verdicts.joint(joint).height for of in (part, comparison.against))
+        if not said.is_told:
+            continue
+        cycles = part.cycle(joint), comparison.against.cycle(joint)
+        difference = curve_difference(cycles[0].mean, cycles[1].mean)
+        if min(cycle.n for cycle in cycles) >= MIN_STRIDES_FOR_MEAN and math.isfinite(difference):
+            name = f"{joint.kind}_curve_difference_deg"
+            found = Difference(difference, math.nan, Judgement.NO_PUBLISHED_FIGURE)
+            yield Row(part, comparison.against, side, name, nothing, nothing, found, said.verdict)
+
+
+def _of_both(comparison: Comparison, part: Part) -> Iterator[Row]:
+    against = comparison.against
+    for name in OF_BOTH:
+        value, other = (MeanAndSd(one.of_both(name), math.nan, 0) for one in (part, against))
+        status = together(assessment_of_both(one.verdicts, name) for one in (part, against)).verdict
+        if status is Verdict.WITHHELD:
+            yield Row(part, against, None, name, value, other, WITHHELD, status)
+        elif math.isfinite(difference := value.mean - other.mean):
+            found = Difference(difference, math.nan, Judgement.NO_PUBLISHED_FIGURE)
+            if name in OF_WALKS:
+                found = comparison.compare_walks(OF_WALKS[name], part, against).difference
+            yield Row(part, against, None, name, value, other, found, status)
+
+
+def _cells(row: Row) -> list[str]:
+    parts = [*_named(row.part), *_named(row.against)]
+    side = "both" if row.side is None else str(row.side)
+    judged = _judged(row.difference, row.status)
+    by_hand = [str(part.left_out_by_hand(row.side)) for part in (row.part, row.against)]
+    is_chosen = row.part.agreed.is_chosen(row.parameter, Side if row.side is None else (row.side,))
+    figures = [*_mean(row.value), *_mean(row.other), *judged, *by_hand]
+    return [*parts, side, row.parameter, *figures, str(is_chosen).lower()]
+
+
+def _named(part: Part) -> list[str]:
+    return [part.letter, typed_cell(part.name), typed_cell("; ".join(walk.name for walk in part.walks))]
+
+
+def _mean(value: MeanAndSd) -> list[str]:
+    return [str(value.n) if value.n else "", figure_cell(value.mean), figure_cell(value.sd)]
+
+
+def _judged(found: Difference, status: Verdict) -> list[str]:
+    sources = " ".join(found.sources)
+    return [figure_cell(found.difference), figure_cell(found.error), sources, str(status), str(found.judgement)]

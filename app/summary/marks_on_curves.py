@@ -1,0 +1,150 @@
+"""Which places of a walk's curves does the answer speak of? What differs most, and where a curve leaves the band."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from app.charts.cycles import Band, is_mean_enough
+from app.charts.marks import BAND_SDS, Deviation, Gap, Point, extreme_of, gaps_outside, laid_at_height_of
+from app.summary.comparison import Comparison
+from app.summary.facts import KINDS, Facts, joint_of
+from app.summary.numbers_in_words import fixed
+from app.summary.what_differs import LegsRow, what_differs
+from app.summary.what_stands_out import (
+    BANDS_ON_PAPER,
+    BANDS_ON_SCREEN,
+    Candidate,
+    Since,
+    printed_findings,
+    ranked_findings,
+)
+from app.wording.translation import tr
+from core.body import Joint, Side
+from core.samples import FloatArray
+from core.verdicts.norms import KNEE_OVERREAD
+from core.verdicts.quantities import CLASSES, EXCURSIONS_BY_COLUMN, QuantityClass
+
+CONTACT, ALL = (0.0, 0.0), (0.0, 100.0)  # percent of the stride
+
+
+def deviations_of(facts: Facts) -> list[Deviation]:
+    """Of each kind of joint the excursion between the legs that the findings tell first, on the first leg.
+
+    Degrees as measured: the screen takes away the height of a curve without a zero, and of its marks with it.
+    """
+    rows = {row.column: row for row in what_differs(facts)}
+    told = [rows[one.column] for one in ranked_findings(facts, None, BANDS_ON_SCREEN) if _is_between(one, rows)]
+    found: list[Deviation] = []
+    for kind in facts.kinds:
+        row = next((row for row in told if _has_extremes(row, kind)), None)
+        if row is not None:
+            found.append(_on_leg(facts, row, kind))
+    return found
+
+
+def brackets_of(facts: Facts, comparison: Comparison | None) -> dict[Joint, Deviation]:
+    """The same for paper, which has a panel for each leg: the first leg's has the number of its sentence.
+
+    The other leg's bracket shows the same movement, without a number.
+    """
+    printed = [one.said for one in printed_findings(facts, comparison)]
+    found: dict[Joint, Deviation] = {}
+    for candidate, row in _told_between_legs(facts):
+        kind = next((kind for kind in facts.kinds if _has_extremes(row, kind)), None)
+        if kind is None or joint_of(kind, Side.LEFT) in found or joint_of(kind, Side.RIGHT) in found:
+            continue
+        number = printed.index(candidate.said) + 1 if candidate.said in printed else None
+        for side in facts.first_and_second:
+            if np.isfinite(facts.mean_curve_deg(side, kind)).all():
+                size = fixed(row.values[side].mean, row.decimals) + row.unit
+                low, high = _extremes(row, joint_of(kind, side), facts.mean_curve_deg(side, kind))
+                is_first = side is facts.first_and_second[0]
+                words = f"{side[0].upper()} {size}"
+                found[joint_of(kind, side)] = Deviation(
+                    low, high, words=words, size=size, number=number if is_first else None
+                )
+    return found
+
+
+def _told_between_legs(facts: Facts) -> list[tuple[Candidate, LegsRow]]:
+    """The findings between the legs, each with its figures."""
+    rows = {row.column: row for row in what_differs(facts)}
+    return [(one, rows[one.column]) for one in ranked_findings(facts, None, BANDS_ON_PAPER) if _is_between(one, rows)]
+
+
+def _is_between(one: Candidate, rows: Mapping[str, LegsRow]) -> bool:
+    """Whether a finding is between the legs, and no change since a visit."""
+    return one.since is Since.NOTHING and one.column in rows
+
+
+def _has_extremes(row: LegsRow, kind: str) -> bool:
+    return row.column.startswith(kind) and CLASSES[row.column] in (QuantityClass.SHAPE, QuantityClass.EXCURSION)
+
+
+def _on_leg(facts: Facts, row: LegsRow, kind: str) -> Deviation:
+    """The extremes of the first leg's mean curve; the sizes are means of the strides, as everywhere."""
+    first, second = facts.first_and_second
+    low, high = _extremes(row, joint_of(kind, first), facts.measured_curve_deg(first, kind))
+    size = fixed(row.values[first].mean, row.decimals) + row.unit
+    pattern = tr("{size} less than {other}") if row.difference.difference < 0 else tr("{size} more than {other}")
+    apart = fixed(abs(row.difference.difference), row.decimals) + row.unit
+    return Deviation(
+        low,
+        high,
+        words=f"{first[0].upper()} {size}",
+        more=pattern.format(size=apart, other=second[0].upper()),
+        is_larger_than_error=True,
+        size=size,
+    )
+
+
+def _extremes(row: LegsRow, joint: Joint, curve: FloatArray) -> tuple[Point, Point]:
+    """The lowest and the highest point of a leg's mean curve (101,), degrees, that a movement goes between."""
+    high, low = windows_of(row.column)
+    return extreme_of(joint, curve, *low, is_maximum=False), extreme_of(joint, curve, *high, is_maximum=True)
+
+
+def windows_of(column: str) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Where an excursion has its highest and its lowest angle; a range has them anywhere."""
+    if column not in EXCURSIONS_BY_COLUMN:
+        return ALL, ALL
+    excursion = EXCURSIONS_BY_COLUMN[column]
+    high, low = (
+        (window.first, window.last) if window is not None else CONTACT for window in (excursion.high, excursion.low)
+    )
+    return high, low
+
+
+def gaps_of(facts: Facts) -> list[Gap]:
+    """Where a leg's curve lies beyond 2 SD both of the band as drawn and of the band laid at the curve's height.
+
+    A knee has to do so as measured and divided by what knees over-read; without a height nothing is said, and of hips,
+    whose group has another zero, neither.
+    """
+    group = facts.curves_group
+    if group is None or facts.bands.are_curves_of_other_ages:
+        return []
+    found: list[Gap] = []
+    for side in Side:
+        for kind in KINDS:
+            joint = joint_of(kind, side)
+            curve = facts.measured_curve_deg(side, kind)
+            is_judged = side in facts.sides_with_band and facts.verdicts.joint(joint).height.is_told
+            if is_judged and np.isfinite(curve).all() and is_mean_enough(facts.strides(side)):
+                found += _beyond(joint, curve, Band(*group.mean_and_sd_deg(kind)))
+    return found
+
+
+def _beyond(joint: Joint, curve: FloatArray, band: Band) -> tuple[Gap, ...]:
+    limits = [_limits(band), _limits(laid_at_height_of(curve, band))]
+    if joint.is_knee:
+        low, high = _limits(laid_at_height_of(curve / KNEE_OVERREAD, band))
+        limits.append((KNEE_OVERREAD * low, KNEE_OVERREAD * high))
+    low = np.min([one for one, _ in limits], axis=0)
+    high = np.max([one for _, one in limits], axis=0)
+    return gaps_outside(joint, curve, low, high, tr("more than 2 SD from the band"))
+
+
+def _limits(band: Band) -> tuple[FloatArray, FloatArray]:
+    reach = BAND_SDS * band.sd_deg
+    return band.mean_deg - reach, band.mean_deg + reach

@@ -1,0 +1,118 @@
+"""A measure's name, unit and decimals inside a sentence, and how it differs between the legs."""
+
+from app.summary.facts import Facts, role
+from app.summary.numbers_in_words import fixed
+from app.summary.panels import peak_name
+from app.wording.measures import decimals, short_unit
+from app.wording.timed_tests import name_of_test
+from app.wording.translation import capitalised, tr
+from core.timed.measures import PROTOCOLS
+from core.verdicts.measurement_error import Difference
+from core.verdicts.quantities import joint_of as joint_of_column
+
+
+def unit_and_decimals(column: str) -> tuple[str, int]:
+    """A column's unit as it follows a number, and its decimals."""
+    if column in PROTOCOLS:
+        return short_unit(column), decimals(column)
+    if column.endswith("_deg"):
+        return "°", 1
+    if column.endswith("_m_s"):
+        return "\u00a0m/s", 2
+    if column.endswith("_steps_min"):
+        return f"\u00a0{tr('steps/min')}", 0
+    return ("\u00a0%", 1) if column.endswith("_percent") else (f"\u00a0{column.rsplit('_', 1)[1]}", 2)
+
+
+def measure_in_words(column: str) -> str:
+    """A column's name inside a sentence."""
+    if column in PROTOCOLS:
+        return name_of_test(PROTOCOLS[column])
+    names = {
+        "stance_percent": tr("stance, share of the stride"),
+        "step_time_s": tr("step time"),
+        "stride_length_m": tr("stride length"),
+        "speed_m_s": tr("walking speed"),
+        "cadence_steps_min": tr("cadence"),
+        "knee_stance_to_swing_deg": tr("knee bend from stance to swing"),
+        "knee_while_loading_deg": tr("knee bend while loading"),
+        "knee_straightening_deg": tr("knee straightening in stance"),
+        "ankle_push_off_deg": tr("ankle push\u2011off"),
+        "ankle_rocker_deg": tr("ankle rocker"),
+        "ankle_heel_rocker_deg": tr("ankle, heel rocker"),
+        "ankle_toes_lifted_deg": tr("ankle, toes lifted in swing"),
+        "knee_range_deg": tr("knee range over the stride"),
+        "ankle_range_deg": tr("ankle range over the stride"),
+        "hip_range_deg": tr("hip range over the stride"),
+        "hip_extension_peak_deg": tr("hip, most extended"),
+        "pelvis_obliquity_range_deg": tr("pelvis, obliquity over the stride"),
+        "pelvis_drop_deg": tr("pelvis drop in swing"),
+    }
+    if column in names:
+        return names[column]
+    kind = tr("knee") if column.startswith("knee") else tr("ankle")
+    return f"{kind} {peak_name(column)}"
+
+
+def leg_beside_leg(facts: Facts, column: str, found: Difference) -> str:
+    """How one leg's figure differs from the other's, in the words of who would say it."""
+    first, second = facts.first_and_second
+    unit, decimals = unit_and_decimals(column)
+    is_less = found.difference < 0
+    match column:
+        case "knee_range_deg" | "ankle_range_deg":
+            pattern = (
+                tr("The {joint} moves {size} less over the stride than the {second}: {value} against {other}.")
+                if is_less
+                else tr("The {joint} moves {size} more over the stride than the {second}: {value} against {other}.")
+            )
+        case "knee_stance_to_swing_deg":
+            pattern = (
+                tr("The {joint} bends {size} less from stance to swing than the {second}: {value} against {other}.")
+                if is_less
+                else tr(
+                    "The {joint} bends {size} more from stance to swing than the {second}: {value} against {other}."
+                )
+            )
+        case "knee_while_loading_deg":
+            pattern = (
+                tr("The {joint} bends {size} less while loading than the {second}: {value} against {other}.")
+                if is_less
+                else tr("The {joint} bends {size} more while loading than the {second}: {value} against {other}.")
+            )
+        case "knee_straightening_deg":
+            pattern = (
+                tr("The {joint} straightens {size} less in stance than the {second}: {value} against {other}.")
+                if is_less
+                else tr("The {joint} straightens {size} more in stance than the {second}: {value} against {other}.")
+            )
+        case "stance_percent":
+            pattern = (
+                tr("Stance is {size} of the stride shorter {first} than {second}: {value} against {other}.")
+                if is_less
+                else tr("Stance is {size} of the stride longer {first} than {second}: {value} against {other}.")
+            )
+        case "step_time_s":
+            pattern = (
+                tr("The step takes {size} less {first} than {second}: {value} against {other}.")
+                if is_less
+                else tr("The step takes {size} more {first} than {second}: {value} against {other}.")
+            )
+        case _:
+            pattern = (
+                tr("{measure} is {size} less {first} than {second}: {value} against {other}.")
+                if is_less
+                else tr("{measure} is {size} more {first} than {second}: {value} against {other}.")
+            )
+    joint = joint_of_column(column, first)
+    return pattern.format(
+        measure=capitalised(measure_in_words(column)),
+        joint=tr("{side} {joint}").format(side=role(facts, first), joint=tr("knee") if joint.is_knee else tr("ankle"))
+        if joint
+        else "",
+        first=role(facts, first),
+        second=role(facts, second),
+        size=fixed(abs(found.difference), decimals) + unit,
+        value=fixed(facts.value(first, column).mean, decimals) + unit,
+        other=fixed(facts.value(second, column).mean, decimals) + unit,
+    )

@@ -1,0 +1,119 @@
+"""How does a number stand on paper? Fixed decimals, a true minus, and words for where it lies against a band."""
+
+import math
+from collections.abc import Mapping
+
+from app.wording.translation import figure_text, tr
+from core.body import Side
+from core.gait.spatiotemporal import MeanAndSd
+from core.verdicts.measurement_error import Z95, Difference, Judgement, Sigma
+from core.verdicts.model import Verdict
+from core.verdicts.norms import MIN_STRIDES_FOR_MEAN, MIN_STRIDES_FOR_SD
+
+MINUS = "\u2212"
+NOTHING = "–"
+DAGGER = "\u2020"
+CARE = "*"  # beside what is to be read with care
+Band = tuple[float, float]
+"""Mean less and plus 1 SD of the group."""
+
+
+def fixed(value: float | None, decimals: int) -> str:
+    """Write a number with its decimals; what is not known is a dash, and nothing is minus zero."""
+    if value is None or not math.isfinite(value):
+        return NOTHING
+    text = figure_text(value, f".{decimals}f")
+    if text.startswith("-"):
+        text = text[1:] if not text.strip("-0.,") else MINUS + text[1:]
+    return text
+
+
+def signed(value: float | None, decimals: int) -> str:
+    """Write a difference, always with its sign but for a zero."""
+    text = fixed(value, decimals)
+    return text if text == NOTHING or text.startswith(MINUS) or not text.strip("0.,") else f"+{text}"
+
+
+def spread(found: MeanAndSd, decimals: int) -> str:
+    """Write mean ± SD; from fewer strides than a spread or a mean needs, without it."""
+    if found.n < MIN_STRIDES_FOR_MEAN:
+        return NOTHING
+    mean = fixed(found.mean, decimals)
+    return mean if found.n < MIN_STRIDES_FOR_SD or mean == NOTHING else f"{mean} ± {fixed(found.sd, decimals)}"
+
+
+def band_in_figures(band: Band, decimals: int) -> str:
+    return f"{fixed((band[0] + band[1]) / 2, decimals)} ± {fixed((band[1] - band[0]) / 2, decimals)}"
+
+
+def against_band(value: float, band: Band) -> str:
+    """Say how far a value lies from the group's mean, in its SD; never whether that is good."""
+    return away_in_words((value - (band[0] + band[1]) / 2) / ((band[1] - band[0]) / 2))
+
+
+def away_in_words(away_sd: float) -> str:
+    """Say how many SD something lies from the group's mean."""
+    if abs(away_sd) <= 1:
+        return tr("inside\u00a01\u00a0SD")
+    if abs(away_sd) <= 2:
+        return tr("1–2\u00a0SD\u00a0below") if away_sd < 0 else tr("1–2\u00a0SD\u00a0above")
+    return tr("more than 2\u00a0SD\u00a0below") if away_sd < 0 else tr("more than 2\u00a0SD\u00a0above")
+
+
+def each_side(said: Mapping[Side, str]) -> str:
+    """Words for both legs, in one line where they agree."""
+    if len(said) == len(Side) and len(set(said.values())) == 1:
+        return f"L, R {said[Side.LEFT]}"
+    return "\n".join(f"{side[0].upper()} {words}" for side, words in said.items()) or NOTHING
+
+
+def sides_against_band(values: Mapping[Side, MeanAndSd], band: Band | None) -> str:
+    """Say where both legs lie."""
+    if band is None:
+        return NOTHING
+    return each_side({s: against_band(v.mean, band) for s, v in values.items() if math.isfinite(v.mean)})
+
+
+def marked(said: str, verdict: Verdict) -> str:
+    """A figure with the mark of what is to be read with care."""
+    return f"{said}\u00a0{CARE}" if verdict is Verdict.CARE and said != NOTHING else said
+
+
+def care_note() -> str:
+    return tr("{mark}: read with care; page 1 says why.").format(mark=CARE)
+
+
+def in_words(verdict: Judgement) -> str:
+    """Say in a table whether a difference is larger than the measurement error."""
+    return {
+        Judgement.EXCEEDS_ERROR: tr("exceeds error"),
+        Judgement.INSIDE_ERROR: tr("inside error"),
+        Judgement.WITHHELD: tr("withheld"),
+        Judgement.TOO_FEW_STRIDES: tr("too few strides"),
+        Judgement.NO_PUBLISHED_FIGURE: tr("not judged"),
+    }[verdict]
+
+
+def in_brief(verdict: Judgement) -> str:
+    """The same in a narrow column, whose head says what is judged against what."""
+    return {Judgement.EXCEEDS_ERROR: tr("exceeds"), Judgement.INSIDE_ERROR: tr("inside")}.get(
+        verdict, in_words(verdict)
+    )
+
+
+def judged_in_words(found: Difference) -> str:
+    """The same with a mark where the error rests on a figure whose source could not be read."""
+    return (
+        f"{in_words(found.judgement)}\u00a0{DAGGER}"
+        if found.is_unverified and found.error > 0
+        else in_words(found.judgement)
+    )
+
+
+def dagger_note() -> str:
+    return tr("{dagger}: the error rests on a figure whose source could not be verified.").format(dagger=DAGGER)
+
+
+def signed_error(sigma: Sigma | None) -> str:
+    """What a spread between walks or strappings alone makes of the error of a difference."""
+    return NOTHING if sigma is None else fixed(Z95 * math.sqrt(2) * sigma.value, 1)

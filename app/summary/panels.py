@@ -1,0 +1,307 @@
+"""What have all curves of the report in common? Axes, the colours of legs and conditions, swatches, words for them."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from app.charts.axes import title_in_words
+from app.charts.cycles import Band, is_mean_enough, is_spread_enough
+from app.charts.drawing import COLOURS, DASHES, Picture, box, line, picture, text
+from app.charts.marks import Deviation, laid_at_height_of
+from app.charts.on_paper import PLAIN
+from app.charts.stride_chart import NO_STRIDES, Axis, StrideChart, StrideCurve, usual_range_deg
+from app.summary import quality
+from app.summary.facts import KINDS, Facts, joint_of
+from app.summary.numbers_in_words import fixed
+from app.summary.reference_bands import OTHER_AGES, WHY_NO_BAND
+from app.theme.colours import PAPER
+from app.wording.translation import capitalised, joined, name_of, side_name, tr, within_sentence
+from core.body import Joint, JointKind, Side
+from core.verdicts.model import Verdict
+from core.verdicts.norms import NoBand
+
+SWATCH_WIDTH, SWATCH_HEIGHT = 30.0, 9.0
+DOT = 6.4
+PEAK_COLUMNS = {
+    "knee": ("knee_loading_peak_deg", "knee_swing_peak_deg"),
+    "ankle": ("ankle_stance_dorsiflexion_deg", "ankle_push_off_plantarflexion_deg"),
+    "hip": (),  # its peaks are those of the whole stride
+}
+
+
+def axis_of(facts: Facts, kind: str, *, is_about_mean: bool = False) -> Axis:
+    """The same in every report; without a zero, about the mean of the stride."""
+    low, high = usual_range_deg(JointKind(kind), is_about_mean=is_about_mean or facts.has_no_zero(kind))
+    if kind == JointKind.ANKLE:
+        return Axis(low, high, 10, 10, tr("toes up"), tr("toes down"))
+    return Axis(low, high, 20, 10, tr("bent"), tr("straight") if kind == JointKind.KNEE else tr("extended"))
+
+
+def title_of(facts: Facts, kind: str) -> str:
+    if facts.has_no_zero(kind):
+        from_mean = {
+            JointKind.HIP: tr("Hip angle, degrees from the mean of the stride (flexion +)"),
+            JointKind.KNEE: tr("Knee angle, degrees from the mean of the stride (flexion +)"),
+            JointKind.ANKLE: tr("Ankle angle, degrees from the mean of the stride (dorsiflexion +)"),
+        }
+        return from_mean[JointKind(kind)]
+    measured = {
+        JointKind.HIP: tr("Hip angle, degrees (flexion +, extension −)"),
+        JointKind.KNEE: tr("Knee angle, degrees (flexion +, extension −)"),
+        JointKind.ANKLE: tr("Ankle angle, degrees (dorsiflexion +, plantarflexion −)"),
+    }
+    return measured[JointKind(kind)]
+
+
+def title_with_side(facts: Facts, kind: str, side: Side, *, is_about_mean: bool = False) -> str:
+    said = tr("Left: {title}") if side is Side.LEFT else tr("Right: {title}")
+    return said.format(title=small_title(facts, kind, is_about_mean=is_about_mean))
+
+
+def small_title(facts: Facts, kind: str, *, is_about_mean: bool = False) -> str:
+    """Of a panel half as wide as the page, as it goes on behind a side."""
+    short = {
+        "knee": tr("knee, degrees from the mean (flexion +)"),
+        "ankle": tr("ankle, degrees from the mean (dorsiflexion +)"),
+        "hip": tr("hip, degrees from the mean (flexion +)"),
+    }
+    title = title_of(facts, kind)
+    return short[kind] if is_about_mean or facts.has_no_zero(kind) else within_sentence(title)
+
+
+def band_of(facts: Facts, kind: str, sides: Sequence[Side]) -> Band | None:
+    """Mean and SD of band [1]; None where there is none for any of these legs, or nothing to compare.
+
+    At the hip its zero is another one, so it is drawn only where it is laid at the height of one curve.
+    """
+    group = facts.curves_group
+    if group is None or kind == JointKind.HIP or facts.has_no_zero(kind) or facts.sides_with_band.isdisjoint(sides):
+        return None
+    if not any(np.isfinite(facts.mean_curve_deg(side, kind)).any() for side in sides if side in facts.sides_with_band):
+        return None
+    return Band(*group.mean_and_sd_deg(kind))
+
+
+def curve_of(facts: Facts, side: Side, kind: str) -> StrideCurve:
+    """One leg of one walk: its mean, or its single strides where they are too few for one."""
+    letter = side[0].upper()
+    off = facts.value(side, "stance_percent")
+    is_known = is_mean_enough(off.n)
+    label = tr("{side} toe\u2011off {percent} %").format(side=letter, percent=fixed(off.mean, 1))
+    return StrideCurve(
+        letter=letter,
+        side=side,
+        angle_deg=facts.mean_curve_deg(side, kind),
+        toe_off_percent=off.mean if is_known else math.nan,
+        toe_off_sd=off.sd if is_spread_enough(off.n) else math.nan,
+        toe_off_label=label,
+        strides_deg=NO_STRIDES if is_known else facts.strides_deg(side, kind),
+    )
+
+
+def leg_chart(facts: Facts, joint: Joint, bracket: Deviation | None) -> StrideChart:
+    """One leg's joint with the band laid at its curve's height, so that the picture judges its shape alone."""
+    side, kind = joint.side, joint.kind
+    own = curve_of(facts, side, kind)
+    band, said = None, [curve_alt(facts, kind, [side])]
+    group = facts.curves_group
+    if group is not None and own.is_known and side in facts.sides_with_band:
+        band = laid_at_height_of(own.angle_deg, Band(*group.mean_and_sd_deg(kind)))
+    return StrideChart(
+        title=joint_title(facts, side, kind),
+        axis=axis_of(facts, kind),
+        curves=(replace(own, toe_off_label=toe_off_in_words(own.toe_off_percent)),),
+        band=band,
+        is_simulated=facts.is_simulated,
+        alt=" ".join(said),
+        withheld=why_withheld(facts, joint),
+        deviations=(bracket,) if bracket is not None and own.is_known else (),
+    )
+
+
+def toe_off_in_words(percent: float) -> str:
+    return tr("toe\u2011off {percent} %").format(percent=fixed(percent, 0)) if math.isfinite(percent) else ""
+
+
+def joint_title(facts: Facts, side: Side, kind: str) -> str:
+    """Of a narrow panel."""
+    name = capitalised(name_of(joint_of(kind, side)))
+    return tr("{joint}, ° from its mean").format(joint=name) if facts.has_no_zero(kind) else f"{name}, °"
+
+
+def narrow_title(facts: Facts, kind: JointKind) -> str:
+    """Of both legs in a panel a third as wide as the page."""
+    name = title_in_words(kind)
+    return tr("{joint}, ° from its mean").format(joint=name) if facts.has_no_zero(kind) else f"{name}, °"
+
+
+def why_withheld(facts: Facts, joint: Joint) -> str:
+    """Why neither mean nor single strides of a joint may be drawn; empty where one of them may."""
+    side, kind = joint.side, joint.kind
+    if np.isfinite(facts.mean_curve_deg(side, kind)).any() or len(facts.strides_deg(side, kind)):
+        return ""
+    for cause in quality.causes(facts, (Verdict.WITHHELD,), is_of_joints=True):
+        if joint in cause.places and cause.gate not in quality.HEIGHT_GATES:
+            return cause.words.why
+    return tr("No stride of this joint could be used.")
+
+
+def why_missing(facts: Facts, joint: Joint) -> str:
+    """What stands in a joint's place beside those that were measured."""
+    if joint.side not in facts.gait:
+        return tr("{joint}: not measured.").format(joint=capitalised(name_of(joint)))
+    worn = facts.visit.recording(facts.walk.name).imu
+    missing = [name_of(site) for site in (joint.proximal, joint.distal) if site not in worn]
+    if missing:
+        said = tr("{joint}: not measured, no sensor on {sites}.")
+        return said.format(joint=capitalised(name_of(joint)), sites=joined(missing))
+    return tr("{joint}: not measured.").format(joint=capitalised(name_of(joint)))
+
+
+def why_no_joint(facts: Facts, kind: str) -> str:
+    """Why neither leg has a kind of joint."""
+    worn = facts.visit.recording(facts.walk.name).imu
+    without = [side_name(side) for side in Side if joint_of(kind, side).distal not in worn]
+    if kind == "ankle":
+        if without:
+            return tr("Ankle not measured: no sensor on the {sides} foot.").format(sides=joined(without))
+        return tr("Ankle not measured.")
+    return tr("Knee not measured.")
+
+
+def why_no_band(facts: Facts, why: NoBand | None) -> str:
+    """Why no band stands beside this walk; empty where one does."""
+    if facts.gait and not facts.sides_with_band:
+        return tr("No band: a prosthetic leg is not compared with other people's.")
+    return tr(WHY_NO_BAND[why]) if why is not None else ""
+
+
+def band_in_words(facts: Facts, *, is_at_height: bool) -> str:
+    """Whose band is drawn and how it is laid, or why there is none."""
+    group = facts.curves_group
+    if group is None:
+        return why_no_band(facts, facts.bands.why_no_curves)
+    if not is_at_height and all(facts.has_no_zero(kind) for kind in KINDS if facts.has_joint(kind)):
+        return tr("No band: without a zero there is no height to compare.")
+    said = [
+        tr("Grey: mean, ±1 and ±2 SD of {n} young adults, barefoot, on a treadmill at {speed} m/s [1].").format(
+            n=group.n, speed=fixed(group.speed_m_s, 2)
+        )
+    ]
+    if is_at_height:
+        said.append(tr("It is laid at the height of each curve, so the picture judges shape; height stands beside it."))
+    elif JointKind.HIP in facts.kinds:
+        said.append(tr("At the hip it has another zero and is on page 1 alone."))
+    if facts.bands.are_curves_of_other_ages:
+        said.append(tr(OTHER_AGES))
+    if not facts.sides_with_band.issuperset(facts.gait):
+        sides = joined([side_name(side) for side in Side if side in facts.sides_with_band])
+        said.append(tr("It is for the {side} leg alone.").format(side=sides))
+    return " ".join(said)
+
+
+def dot(verdict: Verdict) -> Picture:
+    """Full where something can be read, half where with care, empty where it is withheld, a dash where not measured."""
+    x = y = DOT / 2
+    radius = DOT / 2 - 0.6
+    if verdict is Verdict.NOT_MEASURED:
+        return picture([line(1, y, DOT - 1, y, PAPER.note, 1.0)], DOT, DOT)
+    ring = f'<circle cx="{x}" cy="{y}" r="{radius}" fill="{{fill}}" stroke="{PAPER.ink}" stroke-width="0.9"/>'
+    if verdict is Verdict.READ:
+        return picture([ring.format(fill=PAPER.ink)], DOT, DOT)
+    parts = [ring.format(fill=PAPER.paper)]
+    if verdict is Verdict.CARE:
+        parts.append(f'<path d="M{x} {y - radius}A{radius} {radius} 0 0 0 {x} {y + radius}Z" fill="{PAPER.ink}"/>')
+    return picture(parts, DOT, DOT)
+
+
+def swatch(side: Side, colour: str | None = None, width: float = PLAIN) -> Picture:
+    y = SWATCH_HEIGHT / 2
+    return picture(
+        [line(0, y, SWATCH_WIDTH, y, colour or COLOURS[side], width, DASHES[side])], SWATCH_WIDTH, SWATCH_HEIGHT
+    )
+
+
+def pair_swatch(letter: str, looks: Sequence[tuple[Side, str, float]]) -> Picture:
+    """A letter, and the lines of both legs that it stands for."""
+    y, parts = SWATCH_HEIGHT / 2, [text(0, 7, letter, 7.6, weight=600)]
+    for k, (side, colour, width) in enumerate(looks):
+        x = 10 + 22 * k
+        parts.append(line(x, y, x + 19, y, colour, width, DASHES[side]))
+    return picture(parts, 53, SWATCH_HEIGHT)
+
+
+def band_swatches() -> list[tuple[Picture, str]]:
+    inner = [
+        box(0.2, 1, SWATCH_WIDTH - 0.4, 7, PAPER.band_1sd, PAPER.band_1sd_edge, 0.35),
+        line(0, 4.5, SWATCH_WIDTH, 4.5, PAPER.band_mean, 0.6),
+    ]
+    outer = [box(0.2, 1, SWATCH_WIDTH - 0.4, 7, PAPER.band_2sd, PAPER.band_2sd_edge, 0.35)]
+    return [
+        (picture(inner, SWATCH_WIDTH, SWATCH_HEIGHT), tr("Band mean, ±1 SD [1]")),
+        (picture(outer, SWATCH_WIDTH, SWATCH_HEIGHT), tr("±2 SD [1]")),
+    ]
+
+
+def not_drawn(facts: Facts, kind: str) -> list[str]:
+    """Say of each leg whose curve is missing why it is."""
+    said = []
+    for side in Side:
+        joint = name_of(joint_of(kind, side))
+        if not np.isfinite(facts.mean_curve_deg(side, kind)).any() and not len(facts.strides_deg(side, kind)):
+            found = facts.verdicts.joint(joint_of(kind, side))
+            is_withheld = Verdict.WITHHELD in (found.shape.verdict, found.sign.verdict)
+            pattern = tr("Not drawn: {joint}, withheld.") if is_withheld else tr("Not drawn: {joint}.")
+            said.append(pattern.format(joint=joint))
+    return said
+
+
+def curve_alt(facts: Facts, kind: str, sides: Sequence[Side]) -> str:
+    """The figure in words and numbers, for who does not see it."""
+    said = [title_of(facts, kind) + "."]
+    for side in sides:
+        numbers = [tr("{count} strides").format(count=facts.strides(side))]
+        for column in PEAK_COLUMNS[kind]:
+            value, at = facts.value(side, column), facts.peak_percent(side, column)
+            if is_mean_enough(value.n):
+                peak = tr("{name} {value}° at {percent} %")
+                name = peak_name(column)
+                numbers.append(peak.format(name=name, value=fixed(value.mean, 0), percent=fixed(at.mean, 0)))
+        found = facts.value(side, f"{kind}_range_deg")
+        if is_mean_enough(found.n):
+            numbers.append(tr("range {value}°").format(value=fixed(found.mean, 0)))
+        off = facts.value(side, "stance_percent")
+        if is_mean_enough(off.n):
+            numbers.append(tr("toe\u2011off at {percent} %").format(percent=fixed(off.mean, 0)))
+        said.append(f"{capitalised(side_name(side))}: {', '.join(numbers)}.")
+    return " ".join([tr("SIMULATED.")] * facts.is_simulated + said)
+
+
+def peak_name(column: str) -> str:
+    return {
+        "knee_loading_peak_deg": tr("most flexed, loading"),
+        "knee_stance_minimum_deg": tr("least flexed, stance"),
+        "knee_swing_peak_deg": tr("most flexed, swing"),
+        "ankle_loading_plantarflexion_deg": tr("most plantarflexed, loading"),
+        "ankle_stance_dorsiflexion_deg": tr("most dorsiflexed, stance"),
+        "ankle_push_off_plantarflexion_deg": tr("most plantarflexed, push\u2011off"),
+        "ankle_swing_dorsiflexion_deg": tr("most dorsiflexed, swing"),
+        "hip_flexion_peak_deg": tr("most flexed"),
+        "hip_extension_peak_deg": tr("most extended"),
+        "hip_abduction_peak_deg": tr("most abducted"),
+        "hip_adduction_peak_deg": tr("most adducted"),
+    }[column]
+
+
+def excursion_name(column: str) -> str:
+    return {
+        "knee_while_loading_deg": tr("bend while loading"),
+        "knee_straightening_deg": tr("straightening in stance"),
+        "knee_stance_to_swing_deg": tr("stance to swing"),
+        "ankle_heel_rocker_deg": tr("heel rocker"),
+        "ankle_rocker_deg": tr("ankle rocker"),
+        "ankle_push_off_deg": tr("push\u2011off"),
+        "ankle_toes_lifted_deg": tr("toes lifted"),
+    }[column]

@@ -1,0 +1,110 @@
+"""What is a report made of? A visit, the walks that were chosen from it, and what the clinic said to it."""
+
+from dataclasses import dataclass
+from datetime import datetime
+
+from app.summary.course_lanes import CourseVisit
+from app.summary.visits import by_condition
+from app.wording.recordings import ShownName, shown_names
+from core.results import Analysis, RecordingAnalysis
+from core.samples import Recording, RecordingKind, Session
+
+MAX_CONDITIONS = 3  # more lines in one panel cannot be told apart
+PAPERS = ("a4", "letter")
+
+
+@dataclass(frozen=True, slots=True)
+class AnalysedVisit:
+    """One session and its analysis."""
+
+    session: Session
+    analysis: Analysis
+
+    def walk(self, name: str) -> RecordingAnalysis:
+        """Give the analysis of one walk.
+
+        Raises
+        ------
+        KeyError
+            There is no such walk among those analysed.
+        """
+        for recording in self.analysis.recordings:
+            if recording.name == name and recording.kind is RecordingKind.WALKING:
+                return recording
+        raise KeyError(name)
+
+    def recording(self, name: str) -> Recording:
+        """Give the recording as it was told."""
+        return next(recording for recording in self.session.recordings if recording.name == name)
+
+    def condition_of(self, name: str) -> str:
+        """Under which condition a recording was walked, as it was typed; empty where none was stated."""
+        return next((one.condition for one in self.session.recordings if one.name == name), "")
+
+    @property
+    def shown_names(self) -> dict[str, ShownName]:
+        """What each recording is called, by its name."""
+        return shown_names(self.session.recordings)
+
+    def walk_names(self) -> tuple[str, ...]:
+        return tuple(r.name for r in self.analysis.recordings if r.kind is RecordingKind.WALKING)
+
+
+@dataclass(frozen=True, slots=True)
+class ReportRequest:
+    """What the report of a visit shows.
+
+    Attributes
+    ----------
+    walks
+        Names of the walks: one, or up to three conditions in the order of their letters. The last one is shown on
+        every page.
+    made_at
+        When the report is made; must know its time zone.
+    earlier
+        A visit before this one to compare with, in place of the conditions.
+    course
+        The patient's visits in order of time, this one the last; of two and more a page tells the course.
+    patient_language
+        In which language a page for the patient is added, as "de"; empty: none is.
+    """
+
+    visit: AnalysedVisit
+    walks: tuple[str, ...]
+    made_at: datetime
+    software_version: str
+    comment: str = ""
+    operator: str = ""
+    clinic: str = ""
+    paper: str = "a4"
+    earlier: AnalysedVisit | None = None
+    course: tuple[CourseVisit, ...] = ()
+    patient_language: str = ""
+
+    def __post_init__(self) -> None:
+        if self.made_at.tzinfo is None:
+            raise ValueError("made_at has no time zone")
+        if self.paper not in PAPERS:
+            raise ValueError(f"paper is {self.paper}, expected one of {PAPERS}")
+        if not 1 <= len(self.walks) <= MAX_CONDITIONS:
+            raise ValueError(f"{len(self.walks)} walks, expected 1 to {MAX_CONDITIONS}")
+
+    @property
+    def shown(self) -> str:
+        return self.walks[-1]
+
+
+def default_walks(visit: AnalysedVisit) -> tuple[str, ...]:
+    """Choose of each of the last conditions the walk with most usable strides, of its last strapping.
+
+    Walks without a stride that is used come last, but a report of them still says why. Empty: no walk was analysed.
+    """
+    names = visit.walk_names()
+    parts = by_condition(visit.analysis, visit.session.recordings).values()
+    by_time = sorted(parts, key=lambda part: max(names.index(walk.name) for walk in part.walks))
+    most = [max(part.walks, key=_usable_strides).name for part in by_time]
+    return tuple(most[-MAX_CONDITIONS:]) or names[-1:]
+
+
+def _usable_strides(walk: RecordingAnalysis) -> int:
+    return sum(int(gait.strides.is_used.sum()) for gait in walk.gait.values())

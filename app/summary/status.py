@@ -1,0 +1,84 @@
+"""What may be said, as the files have it: a word per joint, a word per sample, and the verdicts with their reasons."""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from app.wording.verdicts import gate_sentence
+from core.body import Joint, Side
+from core.results import Analysis, RecordingAnalysis
+from core.samples import BoolArray, RecordingKind
+from core.verdicts.model import Assessment, JointVerdicts, Verdict, together
+
+READ, CARE, WITHHELD = str(Verdict.READ), str(Verdict.CARE), str(Verdict.WITHHELD)
+RANGE_ONLY, NO_ZERO = "range_only", "no_zero"
+WITH_HEIGHT = (READ, CARE)
+
+
+class Said(NamedTuple):
+    """One line of the table of verdicts."""
+
+    recording: str
+    subject: str
+    quantity: str
+    assessment: Assessment
+
+
+def joint_status(recording: RecordingAnalysis, joint: Joint) -> str:
+    """What holds of a joint's angle in one recording, as `status_of` has it."""
+    return status_of(recording.verdicts.joint(joint))
+
+
+def status_of(found: JointVerdicts) -> str:
+    """What holds of a joint's angle in one word: read, care, withheld, range_only or no_zero; empty: not measured.
+
+    `range_only`: the sign is not known, so the curve may be mirrored. `no_zero`: its height says nothing.
+    """
+    if found.shape.verdict is Verdict.NOT_MEASURED:
+        return ""
+    if not found.shape.is_told:
+        return WITHHELD
+    if not found.sign.is_told:
+        return RANGE_ONLY
+    return str(together((found.shape, found.height)).verdict) if found.height.is_told else NO_ZERO
+
+
+def why_status(recording: RecordingAnalysis, joint: Joint) -> str:
+    """Why a joint's status is no better, in sentences, the gravest first; empty where it can be read."""
+    found = recording.verdicts.joint(joint)
+    status = joint_status(recording, joint)
+    decisive = {RANGE_ONLY: found.sign, NO_ZERO: found.height, WITHHELD: found.shape}
+    return why(decisive.get(status, together((found.shape, found.height))))
+
+
+def is_slipped(recording: RecordingAnalysis, side: Side, rows: slice = slice(None)) -> BoolArray:
+    """Which of some samples come after a strap of this side slipped: there no angle of it holds."""
+    from_s = recording.slipped_from_s.get(side, np.inf)
+    return np.asarray(recording.time_s[rows] >= from_s, dtype=bool)
+
+
+def why(found: Assessment) -> str:
+    """The sentences of its gates, the gravest first."""
+    return " ".join(dict.fromkeys(gate_sentence(reason) for reason in found.reasons))
+
+
+def all_that_is_said(analysis: Analysis) -> Iterator[Said]:
+    """Every verdict of every recording: joints, then, of a walk, legs and what compares them."""
+    for recording in analysis.recordings:
+        for joint in recording.verdicts.told_joints:
+            of_joint = recording.verdicts.joint(joint)
+            for name in ("shape", "height", "sign"):
+                yield Said(recording.name, joint.replace("_", " "), name, getattr(of_joint, name))
+        if recording.kind is RecordingKind.WALKING:
+            for side in Side:
+                of_leg = recording.verdicts.leg(side)
+                for name in ("timing", "distance"):
+                    yield Said(recording.name, f"{side} leg", name, getattr(of_leg, name))
+            yield Said(recording.name, "both legs", "between", recording.verdicts.between)
+        if recording.verdicts.pelvis.verdict is not Verdict.NOT_MEASURED:
+            yield Said(recording.name, "pelvis", "angles", recording.verdicts.pelvis)
+            for side, found in recording.verdicts.abduction.items():
+                yield Said(recording.name, f"{side} hip", "abduction", found)
+            if recording.kind is RecordingKind.WALKING:
+                yield Said(recording.name, "pelvis", "tilt range", recording.verdicts.pelvis_tilt)

@@ -1,0 +1,302 @@
+"""Which figures of a condition's walks does a clinician read? Peaks, ranges, time, distance, beside a cited group's.
+
+The window and the report show the same rows, so that no number stands in one that the other computes differently.
+"""
+
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from app.charts.cycles import SideCycle, is_mean_enough, is_spread_enough
+from app.wording.translation import NAMES, capitalised, joined, later, side_name, tr, tr_n
+from app.wording.verdicts import GateWords, gate_words
+from core.body import Joint, JointKind, Side
+from core.gait.chosen_strides import left_out_by_hand
+from core.gait.cycles import ANKLE_WINDOWS, KNEE_WINDOWS, find_peak, mean_cycle
+from core.gait.spatiotemporal import MeanAndSd
+from core.gait.strides import Reason
+from core.results import RecordingAnalysis
+from core.verdicts.model import JointVerdicts, Verdict, worst
+from core.verdicts.norms import MIN_STRIDES_FOR_MEAN, MIN_STRIDES_FOR_SD, ReferenceCurves, ReferenceValues
+
+if TYPE_CHECKING:  # it tells what was left out by hand, as this does
+    from app.summary.conditions import Part
+
+
+@dataclass(frozen=True, slots=True)
+class Figure:
+    """One row: a figure of each side, or one of both sides together, and the group's mean less and plus 1 SD.
+
+    `column` is that of strides.csv, or the name in `BothFeet`. A side whose figure would say nothing is missing in
+    `sides`, and `unknown` says why; `unknown_both` says it of a figure of both sides. `with_care` are the sides whose
+    figure is to be read with care.
+    """
+
+    column: str
+    name: str
+    unit: str
+    decimals: int
+    sides: Mapping[Side, MeanAndSd]
+    both: float | None = None
+    band: tuple[float, float] | None = None
+    unknown: Mapping[Side, str] = field(default_factory=dict)
+    unknown_both: str = ""
+    with_care: frozenset[Side] = frozenset()
+
+    @property
+    def judged_band(self) -> tuple[float, float] | None:
+        """The band, where words may say how far from it a figure lies."""
+        return None if self.column in WITHOUT_BAND_WORDS else self.band
+
+
+# its band's SD holds no error of ours: with the source's alone half of healthy walks lay beyond 2 SD
+WITHOUT_BAND_WORDS = frozenset({"stance_percent"})
+PEAKS = (  # name of the column in strides.csv, name for the reader, window of the band's peak
+    ("at_initial_contact_deg", later("At initial contact"), None),
+    ("loading_peak_deg", later("Loading peak"), "knee_loading_peak"),
+    ("stance_minimum_deg", later("Stance minimum"), "knee_stance_minimum"),
+    ("swing_peak_deg", later("Swing peak"), "knee_swing_peak"),
+    ("swing_peak_percent", later("Swing peak at, %"), None),
+    ("range_deg", later("Range"), None),
+    ("stance_dorsiflexion_deg", later("Stance dorsiflexion"), "ankle_stance_dorsiflexion"),
+    ("push_off_plantarflexion_deg", later("Push-off plantarflexion"), "ankle_push_off_plantarflexion"),
+    ("swing_dorsiflexion_deg", later("Swing dorsiflexion"), "ankle_swing_dorsiflexion"),
+)
+KNEE_ROWS, ANKLE_ROWS = PEAKS[:6], (PEAKS[0], *PEAKS[6:], PEAKS[5])
+HIP_ROWS = (
+    ("range_deg", later("Range"), None),
+    ("flexion_peak_deg", later("Most flexed"), None),
+    ("extension_peak_deg", later("Most extended"), None),
+    ("abduction_range_deg", later("Abduction, range"), None),
+    ("abduction_peak_deg", later("Most abducted"), None),
+    ("adduction_peak_deg", later("Most adducted"), None),
+)
+ROWS = {JointKind.HIP: HIP_ROWS, JointKind.KNEE: KNEE_ROWS, JointKind.ANKLE: ANKLE_ROWS}
+PELVIS_ROWS = (
+    ("pelvis_obliquity_range_deg", later("Obliquity, range")),
+    ("pelvis_drop_deg", later("Drop in swing")),
+    ("pelvis_rotation_range_deg", later("Rotation, range")),
+    ("pelvis_lean_deg", later("Lean, forward +")),
+    ("pelvis_tilt_range_deg", later("Tilt, range")),
+)
+WITHHELD, MAY_BE_MIRRORED = later("withheld"), later("sign unsure")
+NO_ZERO, NO_HEIGHT = later("no zero"), later("height withheld")
+
+
+def strides_in_words(part: "Part", side: Side) -> str:
+    """How many strides stand behind the averages, and why the others do not."""
+    used = part.strides(side)
+    left_out: Counter[str] = Counter()
+    for reason, count in part.reasons(side).items():
+        if reason is not Reason.USED:
+            left_out[tr(NAMES["reason"][reason])] += count
+    letter = side[0].upper()
+    if not left_out:
+        return tr_n("{side}: {used} stride used.", "{side}: {used} strides used.", used).format(side=letter, used=used)
+    reasons = [f"{count} {words}" for words, count in left_out.most_common()] if len(left_out) > 1 else list(left_out)
+    said = tr_n(
+        "{side}: {used} stride used, {out} left out ({reasons}).",
+        "{side}: {used} strides used, {out} left out ({reasons}).",
+        used,
+    )
+    return said.format(side=letter, used=used, out=left_out.total(), reasons=", ".join(reasons))
+
+
+def by_hand_in_words(*walks: RecordingAnalysis) -> str:
+    """How many strides of which side a person has left out; empty where none was."""
+    said = []
+    for side in Side:
+        gaits = [walk.gait[side] for walk in walks if side in walk.gait]
+        if count := sum(map(left_out_by_hand, gaits)):
+            told = tr("{count} of {of} {side} strides left out by hand.")
+            said.append(told.format(count=count, of=sum(len(g.strides) for g in gaits), side=side_name(side)))
+    return " ".join(said)
+
+
+def few_strides_in_words(part: "Part") -> str:
+    """What is missing for want of strides; empty where there are enough."""
+    counts = {side[0].upper(): part.strides(side) for side in part.sides}
+    without_mean = [side for side, n in counts.items() if n and not is_mean_enough(n)]
+    without_spread = [side for side, n in counts.items() if is_mean_enough(n) and not is_spread_enough(n)]
+    said = []
+    if without_mean:
+        none = tr("{sides}: under {count} strides, so without a mean.")
+        said.append(none.format(sides=joined(without_mean), count=MIN_STRIDES_FOR_MEAN))
+    if without_spread:
+        bare = tr("{sides}: under {count} strides, so without spread.")
+        said.append(bare.format(sides=joined(without_spread), count=MIN_STRIDES_FOR_SD))
+    return " ".join(said)
+
+
+def side_cycle(part: "Part", joint: Joint) -> SideCycle:
+    """The joint's strides that are used and known over all of the stride."""
+    strides_deg = part.strides_deg(joint)
+    strides_deg = strides_deg[np.isfinite(strides_deg).all(axis=1)]
+    return SideCycle(mean_cycle(strides_deg), strides_deg, part.stance_percent(joint.side))
+
+
+def peak_figures(part: "Part", reference: ReferenceCurves | None) -> dict[str, tuple[Figure, ...]]:
+    """Rows of each kind of joint, degrees and percent of the stride; the band by the same windows on its mean curve.
+
+    The band stands where its source has it; None: none may stand beside this walk.
+    """
+    found: dict[str, tuple[Figure, ...]] = {}
+    for kind, rows in ROWS.items():
+        joints = {side: joint for side in part.sides if (joint := kind.of(side)) in part.joints}
+        if not joints:
+            continue
+        doubts = {side: why for side, joint in joints.items() if (why := doubt_in(part.verdicts.joint(joint)))}
+        figures = []
+        for column, name, window in rows:
+            of_joint = f"{kind}_{column}"
+            told = {side: part.assessment(side, of_joint) for side in joints}
+            unknown = {side: doubts.get(side, WITHHELD) for side, one in told.items() if not one.is_told}
+            sides = {side: part.value(side, of_joint) for side in joints if side not in unknown}
+            unit, decimals = ("%", 0) if column.endswith("_percent") else ("°", 1)
+            band = band_of_peak(reference, kind, column, window) if reference is not None and sides else None
+            care = frozenset(side for side, one in told.items() if one.verdict is Verdict.CARE)
+            figures.append(
+                Figure(of_joint, tr(name), unit, decimals, sides, band=band, unknown=unknown, with_care=care)
+            )
+        found[kind] = tuple(figures)
+    return found
+
+
+def pelvis_figures(part: "Part") -> dict[str, tuple[Figure, ...]]:
+    """Rows of the pelvis over each leg's strides, degrees; none without a sensor on it."""
+    if not part.has_pelvis:
+        return {}
+    figures = []
+    for column, name in PELVIS_ROWS:
+        found = {side: part.assessment(side, column) for side in part.sides}
+        told = {side: part.value(side, column) for side, one in found.items() if one.is_told}
+        unknown = {side: WITHHELD for side, one in found.items() if not one.is_told}
+        care = frozenset(side for side, one in found.items() if one.verdict is Verdict.CARE)
+        figures.append(Figure(column, tr(name), "°", 1, told, unknown=unknown, with_care=care))
+    return {"pelvis": tuple(figures)}
+
+
+def pelvis_in_words(part: "Part") -> list[str]:
+    """Why figures of pelvis and abduction are withheld, what holds alike of both once; how often the body turned."""
+    if not part.has_pelvis:
+        return []
+    said = part.verdicts
+    withheld: dict[str, list[str]] = {}
+    for name, found in (
+        (tr("pelvis"), said.pelvis),
+        *((tr("abduction, {side}").format(side=side_name(side)), one) for side, one in said.abduction.items()),
+        (tr("tilt"), said.pelvis_tilt if said.pelvis.is_told else said.pelvis),
+    ):
+        for reason in found.reasons[:1]:
+            if reason.verdict is Verdict.WITHHELD:
+                withheld.setdefault(gate_words(reason).why, []).append(name)
+    told = [f"{capitalised(joined(list(dict.fromkeys(names))))}: {why}" for why, names in withheld.items()]
+    turns = sum(len(walk.turns) for walk in part.walks)
+    return [*told, tr_n("{count} turn.", "{count} turns.", turns).format(count=turns)] if turns else told
+
+
+def time_distance_figures(
+    part: "Part", group: ReferenceValues | None, sides_with_band: frozenset[Side]
+) -> tuple[Figure, ...]:
+    """Rows of time and distance beside the group of this speed, None without one.
+
+    What both legs make together stands beside it only where both may be compared with other people's.
+    """
+    is_any, is_all = bool(sides_with_band), sides_with_band.issuperset(part.sides)
+
+    def row(label: str, name: str, unit: str, decimals: int, band: tuple[float, float] | None = None) -> Figure:
+        found = {side: part.assessment(side, name) for side in part.sides}
+        told = {side: part.value(side, name) for side, one in found.items() if one.is_told}
+        withheld = [side for side, one in found.items() if one.verdict is Verdict.WITHHELD]
+        care = frozenset(side for side, one in found.items() if one.verdict is Verdict.CARE)
+        unknown = dict.fromkeys(withheld, WITHHELD)
+        return Figure(
+            name, label, unit, decimals, told, band=band if is_any and told else None, unknown=unknown, with_care=care
+        )
+
+    def both(label: str, name: str, unit: str, decimals: int, band: tuple[float, float] | None = None) -> Figure:
+        verdict = part.assessment_of_walk(name).verdict
+        care = frozenset(part.sides) if verdict is Verdict.CARE else frozenset()
+        why = WITHHELD if verdict is Verdict.WITHHELD else ""
+        shown = band if is_all else None
+        return Figure(name, label, unit, decimals, {}, part.of_both(name), shown, unknown_both=why, with_care=care)
+
+    def band(name: str, factor: float = 1.0) -> tuple[float, float] | None:
+        if group is None:
+            return None
+        value = group.values[name]
+        return factor * (value.mean - value.sd), factor * (value.mean + value.sd)
+
+    return (
+        # the class is chosen by speed, so its speed would be no comparison
+        both(tr("Walking speed"), "speed_m_s", "m/s", 2),
+        both(tr("Cadence"), "cadence_steps_min", tr("steps/min"), 0, band("cadence")),
+        row(tr("Stride time"), "stride_time_s", "s", 2),
+        # a subject's stride is the two steps of which the group's step length is the mean
+        row(tr("Stride length"), "stride_length_m", "m", 2, band("step_length", 2.0)),
+        row(tr("Stance"), "stance_percent", "%", 1, band("stance")),
+        # it holds the biases of all four events, and nobody has yet looked how large these are
+        both(tr("Double support"), "double_support_percent", "%", 1),
+    )
+
+
+def doubt_in(found: JointVerdicts) -> str | None:
+    """Why a joint's curve does not say all that a curve can: the gravest of what is withheld; None where nothing is."""
+    if found.shape.verdict is Verdict.WITHHELD:
+        return WITHHELD
+    if found.sign.verdict is Verdict.WITHHELD:
+        return MAY_BE_MIRRORED
+    if found.height.verdict is not Verdict.WITHHELD:
+        return None
+    return NO_ZERO if any(reason.gate == "zero" for reason in found.height.reasons) else NO_HEIGHT
+
+
+def verdict_of(found: JointVerdicts) -> Verdict:
+    """What may be read of a joint's curve as it is drawn; a height that is withheld is said beside it."""
+    parts = (part.verdict for part in (found.shape, found.sign, found.height))
+    gravest = worst(part for part in parts if part is not Verdict.NOT_MEASURED)
+    return Verdict.CARE if gravest is Verdict.WITHHELD and doubt_in(found) != WITHHELD else gravest
+
+
+def reason_in_words(found: JointVerdicts) -> str:
+    """The gravest reason against a joint's curve and what to do: of a withheld shape, else of a height, else care."""
+    return " ".join(filter(None, _words_of(found)))
+
+
+def why_in_words(found: JointVerdicts) -> str:
+    """The same without what to do."""
+    return _words_of(found).why
+
+
+def _words_of(found: JointVerdicts) -> GateWords:
+    for wanted in (Verdict.WITHHELD, Verdict.CARE):
+        for part in (found.shape, found.height):
+            for reason in part.reasons:
+                if reason.verdict is wanted:
+                    return gate_words(reason)
+    return GateWords("")
+
+
+def band_of_peak(
+    reference: ReferenceCurves, kind: str, column: str, window_name: str | None
+) -> tuple[float, float] | None:
+    """1 SD about the group's mean curve where its peak lies; None for what its mean curve cannot tell."""
+    at = peak_place(reference, kind, column, window_name)
+    if at is None:
+        return None
+    mean, sd = reference.mean_and_sd_deg(kind)
+    return float(mean[at] - sd[at]), float(mean[at] + sd[at])
+
+
+def peak_place(reference: ReferenceCurves, kind: str, column: str, window_name: str | None) -> int | None:
+    """Percent of the stride at which the group's mean curve has a peak; None where it has none, as of a range."""
+    if column == "at_initial_contact_deg":
+        return 0
+    windows = [window for window in (*KNEE_WINDOWS, *ANKLE_WINDOWS) if window.name == window_name]
+    if not windows:
+        return None
+    percent = find_peak(reference.mean_and_sd_deg(kind)[0][None, :], windows[0]).percent[0]
+    return int(percent) if np.isfinite(percent) else None

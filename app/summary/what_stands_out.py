@@ -1,0 +1,372 @@
+"""What does who reads page one only have to know? At most three findings larger than their error, and one caveat."""
+
+import math
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from enum import IntEnum
+
+from app.reports.patient.peaks_table import HEIGHTS
+from app.summary import quality
+from app.summary.comparison import Compared, Comparison, Contrast, compare_legs
+from app.summary.facts import KINDS, Facts, joint_of, role
+from app.summary.measure_sentences import leg_beside_leg, measure_in_words, unit_and_decimals
+from app.summary.numbers_in_words import band_in_figures, fixed, signed
+from app.summary.panels import peak_name
+from app.summary.plain_text import CONDITION_LENGTH, typed
+from app.summary.trend_lines import TrendLine, trend_columns, trend_lines, walked_visits
+from app.wording.dates import date
+from app.wording.translation import capitalised, later, name_of, tr
+from core.body import Joint, Side
+from core.results import ZeroKind
+from core.timed.measures import COLUMNS, PROTOCOLS
+from core.verdicts.measurement_error import Z95, ComparisonKind, Difference, sigma_of
+from core.verdicts.model import Verdict
+from core.verdicts.quantities import CLASSES, QuantityClass
+from core.verdicts.quantities import joint_of as joint_of_column
+
+MAX_FINDINGS = 3
+BANDS_ON_PAPER = later("band [1]"), later("band [2]")  # with the numbers of the sources on its last page
+BANDS_ON_SCREEN = later("the band"), later("the band")
+MAX_AWAY_SD = 2.0  # of a band: what lies nearer is inside of it
+MAX_OFFSET_DEG = 10.0  # laboratories differ by 7 deg in the height of their curves, a standing zero by 3 deg
+BETWEEN_LEGS = (
+    "knee_stance_to_swing_deg",
+    "knee_while_loading_deg",
+    "knee_straightening_deg",
+    "knee_range_deg",
+    "ankle_push_off_deg",
+    "ankle_rocker_deg",
+    "ankle_heel_rocker_deg",
+    "ankle_toes_lifted_deg",
+    "ankle_range_deg",
+    "stance_percent",
+    "step_time_s",
+    "hip_range_deg",  # no error of a difference is known: it stands in tables and never in a sentence
+)  # not the stride's length: in walking straight on both feet travel equally far
+
+
+class Since(IntEnum):
+    """What a finding is told against; that which is told first is least."""
+
+    CHOSEN = 0
+    LAST_VISIT = 1
+    FIRST_VISIT = 2
+    NOTHING = 3
+    """Of this visit alone: the legs, and the bands."""
+
+
+class Rank(IntEnum):
+    """Which kind of finding is told first."""
+
+    SHAPE = 0
+    TIMING = 1
+    BETWEEN = 2
+    DISTANCE = 3
+    HEIGHT = 4
+
+
+_RANKS = {
+    QuantityClass.SHAPE: Rank.SHAPE,
+    QuantityClass.PEAK_TIME: Rank.SHAPE,
+    QuantityClass.EXCURSION: Rank.SHAPE,
+    QuantityClass.TIMING: Rank.TIMING,
+    QuantityClass.BETWEEN: Rank.BETWEEN,
+    QuantityClass.DISTANCE: Rank.DISTANCE,
+    QuantityClass.HEIGHT: Rank.HEIGHT,
+}
+FAMILIES = {"knee_range_deg": "knee_stance_to_swing_deg", "ankle_range_deg": "ankle_push_off_deg"}
+FIRST_OF_ALIKE = ("knee_stance_to_swing_deg", "knee_while_loading_deg", "stance_percent", "speed_m_s")
+Topic = tuple[Joint | Side | None, Rank | None, bool]
+"""A joint, or a leg and a kind of figure, with the direction: of each, one finding is told."""
+
+
+@dataclass(frozen=True, slots=True)
+class Candidate:
+    """A finding that may be told; `ratio` is how many times it is as large as what it has to exceed.
+
+    `said` is its sentence, `evidence` a second one that says what it exceeds, where the first does not. `column` is
+    the measure's, empty where it is a band's.
+    """
+
+    rank: Rank
+    ratio: float
+    topics: tuple[Topic, ...]
+    said: str
+    evidence: str = ""
+    column: str = ""
+    since: Since = Since.NOTHING
+
+    @property
+    def weight(self) -> tuple[Since, Rank, float, int]:
+        """What is told first is least; ratios that are alike leave it to the measure."""
+        among = FIRST_OF_ALIKE.index(self.column) if self.column in FIRST_OF_ALIKE else len(FIRST_OF_ALIKE)
+        return self.since, self.rank, -round(self.ratio, 1), among
+
+
+def printed_findings(facts: Facts, comparison: Comparison | None) -> list[Candidate]:
+    """The findings that are told on paper, the weightiest first."""
+    return ranked_findings(facts, comparison, BANDS_ON_PAPER)
+
+
+def ranked_findings(facts: Facts, comparison: Comparison | None, bands: tuple[str, str]) -> list[Candidate]:
+    """What is told: changes first, then by kind, then what exceeds its error most; one per joint and direction.
+
+    `bands` names the cited groups of the curves and of time and distance, inside a sentence.
+    """
+    candidates = [
+        *_changes(facts, comparison),
+        *_since_visits(facts),
+        *_between_legs(facts),
+        *_beyond_band(facts, bands),
+        *_heights(facts),
+    ]
+    told: list[Candidate] = []
+    known: set[Topic] = set()
+    for candidate in sorted(_without_family(candidates), key=lambda one: one.weight):
+        if known.isdisjoint(candidate.topics):
+            told.append(candidate)
+        known.update(candidate.topics)
+    return told[:MAX_FINDINGS]
+
+
+def _without_family(candidates: list[Candidate]) -> list[Candidate]:
+    """A range and the excursion that makes most of it are one movement: the excursion is told."""
+    movements = {topic for one in candidates if one.column in FAMILIES.values() for topic in one.topics}
+    return [one for one in candidates if not (one.column in FAMILIES and movements.intersection(one.topics))]
+
+
+def nothing_found(facts: Facts, comparison: Comparison | None) -> list[str]:
+    """What is said where no finding is told: whether anything exceeds its error, and whether the band holds all."""
+    judged = judged_differences(facts, comparison)
+    away = [abs(sd) for side, column in _peaks(facts) if math.isfinite(sd := facts.away_sd(side, column))]
+    said = []
+    has_angles = any(joint_of_column(column, Side.LEFT) is not None for column in judged)
+    if any(difference.exceeds for difference in judged.values()):
+        said.append(
+            tr("No difference is so much larger than its error that it is told here; the tables mark what exceeds it.")
+        )
+    elif judged and (has_angles or not any(map(facts.is_measured, Joint))):
+        said.append(tr("No difference is larger than its error."))
+    elif judged:
+        said.append(tr("No angle can be compared. No difference of times or steps is larger than its error."))
+    if away and max(away) <= MAX_AWAY_SD:
+        said.append(tr("Every peak that could be judged lies within 2\u00a0SD of the band, at its curve's height."))
+    return said or [tr("Nothing could be judged.")]
+
+
+def judged_differences(facts: Facts, comparison: Comparison | None) -> dict[str, Difference]:
+    """Those that are told and have an error, whether they exceed it or not: of each column the largest."""
+    found: dict[str, Difference] = {}
+    for column, one in _differences(facts, comparison):
+        if one.is_told and one.error > 0 and (column not in found or one.ratio > found[column].ratio):
+            found[column] = one
+    return found
+
+
+def _differences(facts: Facts, comparison: Comparison | None) -> Iterator[tuple[str, Difference]]:
+    if comparison is not None:
+        yield from ((row.measure.column, row.difference) for row in comparison.rows if row.is_told)
+    for line in _course(facts):
+        yield from ((line.column, found) for found in (line.since_last, line.since_first) if found is not None)
+    if len(facts.gait) == len(Side):
+        yield from ((column, compare_legs(facts.part, column, facts.first_and_second)) for column in BETWEEN_LEGS)
+
+
+def _changes(facts: Facts, comparison: Comparison | None) -> Iterator[Candidate]:
+    """What differs from the first part. A height is a finding only where both parts share one zero."""
+    for row in comparison.rows if comparison is not None else ():
+        is_height = (
+            row.measure.needs_height
+            and comparison is not None
+            and not comparison.is_same_attachment(row.part, row.against)
+        )
+        if row.is_told and row.difference.is_worth_a_sentence and not is_height:
+            column, found = row.measure.column, row.difference
+            topic = _topic(None if row.measure.is_of_walk else row.side, column, found.difference > 0)
+            said = _changed(facts, comparison, row)
+            yield Candidate(_rank(column), found.ratio, (topic,), said, column=column, since=Since.CHOSEN)
+
+
+def _course(facts: Facts) -> list[TrendLine]:
+    """What the page of the course tells of the condition that is shown, in the same lines."""
+    walked, agreed = walked_visits(facts.course, facts.condition), facts.part.agreed
+    return trend_lines(walked, facts.condition, (*trend_columns(agreed), *COLUMNS.values()), agreed)
+
+
+def _since_visits(facts: Facts) -> Iterator[Candidate]:
+    """What has changed since the last visit under this condition, and since the first, by the course's judgement."""
+    walked = walked_visits(facts.course, facts.condition)
+    for line in _course(facts):
+        for since, found, at in (
+            (Since.LAST_VISIT, line.since_last, line.before),
+            (Since.FIRST_VISIT, line.since_first, line.first),
+        ):
+            if found is None or not found.is_worth_a_sentence:
+                continue
+            unit, decimals = unit_and_decimals(line.column)
+            values = {one.visit: one.value for one in line.values}
+            measure = measure_in_words(line.column)
+            of_leg = measure if line.side is None else f"{role(facts, line.side)}, {measure}"
+            said = tr("{what}: {value}, on {day} {other}; difference {difference}, error {error}.").format(
+                what=capitalised(of_leg),
+                value=fixed(line.values[-1].value, decimals) + unit,
+                day=date(walked[at].day),
+                other=fixed(values[at], decimals) + unit,
+                difference=signed(found.difference, decimals) + unit,
+                error=fixed(found.error, decimals) + unit,
+            )
+            topic = _topic(line.side, line.column, found.difference > 0)
+            yield Candidate(_rank(line.column), found.ratio, (topic,), said, column=line.column, since=since)
+
+
+def _between_legs(facts: Facts) -> Iterator[Candidate]:
+    """What differs between the legs. Each has a zero of its own, so no height is among them."""
+    if len(facts.gait) < len(Side):
+        return
+    first, second = facts.first_and_second
+    for column in BETWEEN_LEGS:
+        found = compare_legs(facts.part, column, (first, second))
+        if not (found.is_told and found.is_worth_a_sentence) or CLASSES[column] is QuantityClass.HEIGHT:
+            continue
+        is_more = found.difference > 0
+        topics = (_topic(first, column, is_more), _topic(second, column, not is_more))
+        unit, decimals = unit_and_decimals(column)
+        evidence = tr("Measurement error between the legs: {error}.").format(error=fixed(found.error, decimals) + unit)
+        said = leg_beside_leg(facts, column, found)
+        yield Candidate(_rank(column), found.ratio, topics, said, evidence, column)
+
+
+def _beyond_band(facts: Facts, bands: tuple[str, str]) -> Iterator[Candidate]:
+    """Peaks more than 2 SD from band [1] laid at their curve's height; time and distance, from band [2]."""
+    for side, column in _peaks(facts):
+        away, band, kind = facts.away_sd(side, column), facts.band(column), column.split("_")[0]
+        if not abs(away) > MAX_AWAY_SD or band is None:
+            continue
+        offset = facts.offset_deg(side, kind)
+        pattern = (
+            tr("{joint} {peak}: {value}°; {group} at the curve's height {band}°: more than 2\u00a0SD below.")
+            if away < 0
+            else tr("{joint} {peak}: {value}°; {group} at the curve's height {band}°: more than 2\u00a0SD above.")
+        )
+        said = pattern.format(
+            joint=capitalised(name_of(joint_of(kind, side))),
+            group=tr(bands[0]),
+            peak=tr("at initial contact") if "initial_contact" in column else peak_name(column),
+            value=fixed(facts.value(side, column).mean, 1),
+            band=band_in_figures((band[0] + offset, band[1] + offset), 1),
+        )
+        yield Candidate(Rank.SHAPE, abs(away) / MAX_AWAY_SD, (_topic(side, column, away > 0),), said)
+    for column in ("stance_percent", "stride_length_m"):
+        figure = facts.time_distance[column]
+        for side in facts.sides_with_band.intersection(figure.sides):
+            value = facts.value(side, column)
+            if figure.judged_band is None or not math.isfinite(value.mean):
+                continue
+            low, high = figure.judged_band
+            away = (value.mean - (low + high) / 2) / ((high - low) / 2)
+            if abs(away) > MAX_AWAY_SD:
+                unit, decimals = unit_and_decimals(column)
+                pattern = (
+                    tr("{measure}, {side}: {value}; {group} {band}: more than 2\u00a0SD below.")
+                    if away < 0
+                    else tr("{measure}, {side}: {value}; {group} {band}: more than 2\u00a0SD above.")
+                )
+                said = pattern.format(
+                    measure=capitalised(measure_in_words(column)),
+                    side=role(facts, side),
+                    group=tr(bands[1]),
+                    value=fixed(value.mean, decimals) + unit,
+                    band=band_in_figures(figure.judged_band, decimals) + unit,
+                )
+                rank = _rank(column)
+                yield Candidate(rank, abs(away) / MAX_AWAY_SD, (_topic(side, column, away > 0),), said)
+
+
+def _heights(facts: Facts) -> Iterator[Candidate]:
+    for side in facts.gait:
+        for kind in KINDS:
+            offset = facts.offset_deg(side, kind)
+            if abs(offset) > MAX_OFFSET_DEG:
+                said = tr("{joint}: the whole curve lies {offset}° from the band: look at the zero first.").format(
+                    joint=capitalised(name_of(joint_of(kind, side))), offset=signed(offset, 1)
+                )
+                topics: tuple[Topic, ...] = ((joint_of(kind, side), Rank.HEIGHT, offset > 0),)
+                yield Candidate(Rank.HEIGHT, abs(offset) / MAX_OFFSET_DEG, topics, said)
+
+
+def caveat(facts: Facts, comparison: Comparison | None) -> list[str]:
+    """The one that weighs most: the gravest of what is withheld, else speed, else height."""
+    if withheld := quality.caveats(facts, (Verdict.WITHHELD,)):
+        return withheld[:1]
+    speeds = _speeds_apart(comparison)
+    if speeds:
+        return [tr("Speed {speeds} m/s: part of a difference can come from speed.").format(speeds=speeds)]
+    if any(found.zero is ZeroKind.STANDING for found in facts.calibrated.values()):
+        return [tr("Zero is the standing posture: how the patient stood moves a whole curve up or down.")]
+    return []
+
+
+def _speeds_apart(comparison: Comparison | None) -> str:
+    """The speeds of what is compared, where one differs from the first by more than its error."""
+    if comparison is None:
+        return ""
+    speeds = {part.letter: part.of_both("speed_m_s") for part in comparison.parts}
+    first = speeds[comparison.against.letter]
+    if not all(map(math.isfinite, speeds.values())):
+        return ""
+    for part in comparison.others:
+        error = _speed_error(comparison.error_kind(part), (first + speeds[part.letter]) / 2)
+        if abs(speeds[part.letter] - first) > error:
+            return ", ".join(f"{letter}: {fixed(speed, 2)}" for letter, speed in speeds.items())
+    return ""
+
+
+def _speed_error(kind: ComparisonKind, mean_m_s: float) -> float:
+    """What lies between two walks makes of the error of their speeds' difference."""
+    sigma = sigma_of("speed_m_s", kind)
+    if sigma is None:
+        return math.inf
+    return Z95 * math.sqrt(2) * sigma.value * (0.01 * mean_m_s if sigma.is_relative else 1.0)
+
+
+def _changed(facts: Facts, comparison: Comparison | None, row: Compared) -> str:
+    """One figure of one part beside that of the first."""
+    unit, decimals = unit_and_decimals(row.measure.column)
+    is_visits = comparison is not None and comparison.kind is Contrast.VISITS
+    pattern = (
+        tr("{what}: {value}, at the earlier visit {other}; difference {difference}, error {error}.")
+        if is_visits
+        else tr("{what}: {value} at {this}, {other} at {first}; difference {difference}, error {error}.")
+    )
+    measure = measure_in_words(row.measure.column)
+    of_leg = tr("{side}, {measure}").format(side=role(facts, row.side), measure=measure)
+    return pattern.format(
+        what=capitalised(measure if row.measure.is_of_walk else of_leg),
+        value=fixed(row.value.mean, decimals) + unit,
+        other=fixed(row.other.mean, decimals) + unit,
+        this=typed(row.part.name, CONDITION_LENGTH),
+        first=typed(row.against.name, CONDITION_LENGTH),
+        difference=signed(row.difference.difference, decimals) + unit,
+        error=fixed(row.difference.error, decimals) + unit,
+    )
+
+
+def _peaks(facts: Facts) -> Iterable[tuple[Side, str]]:
+    return [
+        (side, column)
+        for side in facts.gait
+        for kind in KINDS
+        if facts.is_measured(joint_of(kind, side))
+        for column in HEIGHTS[kind]
+    ]
+
+
+def _topic(side: Side | None, column: str, is_more: bool) -> Topic:
+    joint = joint_of_column(column, side) if side is not None else None
+    return (joint, None, is_more) if joint is not None else (side, _rank(column), is_more)
+
+
+def _rank(column: str) -> Rank:
+    if column in PROTOCOLS:
+        return Rank.TIMING if column.endswith("_s") and not column.endswith("_m_s") else Rank.DISTANCE
+    return _RANKS[CLASSES[column]]

@@ -1,0 +1,119 @@
+"""What does a user of this computer want to see and hear? Kept for the next start; nothing about patients."""
+
+from enum import StrEnum
+
+from PySide6.QtCore import QObject, QSettings, Signal
+
+from app.wording.translation import languages
+
+FROM, TO = 0.8, 2.0
+
+
+class Scheme(StrEnum):
+    SYSTEM = "system"
+    LIGHT = "light"
+    DARK = "dark"
+
+
+class Settings(QObject):
+    """Typed access; whatever a damaged file holds counts as not set."""
+
+    changed = Signal()
+    language_changed = Signal()
+
+    def __init__(self, kept: QSettings, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self._kept = kept
+
+    @property
+    def scheme(self) -> Scheme:
+        try:
+            return Scheme(str(self._kept.value("scheme", "")))
+        except ValueError:
+            return Scheme.SYSTEM
+
+    @scheme.setter
+    def scheme(self, scheme: Scheme) -> None:
+        self._put("scheme", scheme.value)
+
+    @property
+    def scale(self) -> float:
+        """The size of everything."""
+        try:
+            return min(max(float(str(self._kept.value("scale", "1"))), FROM), TO)
+        except ValueError:
+            return 1.0
+
+    @scale.setter
+    def scale(self, scale: float) -> None:
+        self._put("scale", str(scale))
+
+    @property
+    def language(self) -> str:
+        """What is spoken on the screen, as "de"."""
+        language = str(self._kept.value("language", ""))
+        return language if language in languages() else "en"
+
+    @language.setter
+    def language(self, language: str) -> None:
+        if language != self.language:
+            self._put("language", language)
+            self.language_changed.emit()
+
+    @property
+    def is_from_behind(self) -> bool:
+        """Whether figures show the patient from behind."""
+        return self._kept.value("is_from_behind", "") == "yes"
+
+    @is_from_behind.setter
+    def is_from_behind(self, is_from_behind: bool) -> None:
+        self._put("is_from_behind", "yes" if is_from_behind else "no")
+
+    @property
+    def has_sound(self) -> bool:
+        return self._kept.value("has_sound", "") != "no"
+
+    @has_sound.setter
+    def has_sound(self, has_sound: bool) -> None:
+        self._put("has_sound", "yes" if has_sound else "no")
+
+    @property
+    def has_less_motion(self) -> bool:
+        """Whether nothing may move by itself; else that is as the system was asked for."""
+        return self._kept.value("has_less_motion", "") == "yes"
+
+    @has_less_motion.setter
+    def has_less_motion(self, has_less_motion: bool) -> None:
+        self._put("has_less_motion", "yes" if has_less_motion else "no")
+
+    @property
+    def latest_operator(self) -> str:
+        """The code of whoever logged in last here."""
+        return str(self._kept.value("latest_operator", ""))
+
+    @latest_operator.setter
+    def latest_operator(self, code: str) -> None:
+        self._put("latest_operator", code)
+
+    @property
+    def latest_library(self) -> str:
+        """The folder of the library that was opened last; where it is not there any more, it is missing."""
+        return str(self._kept.value("latest_library", ""))
+
+    @latest_library.setter
+    def latest_library(self, folder: str) -> None:
+        self._put("latest_library", folder)
+
+    @property
+    def latest_table(self) -> str:
+        """The table of a batch that was asked last; where it is not there any more, it is missing."""
+        return str(self._kept.value("latest_table", ""))
+
+    @latest_table.setter
+    def latest_table(self, path: str) -> None:
+        self._put("latest_table", path)
+
+    def _put(self, name: str, value: str) -> None:
+        if self._kept.value(name, None) != value:
+            self._kept.setValue(name, value)
+            self.changed.emit()

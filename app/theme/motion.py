@@ -1,0 +1,22 @@
+"""May things move? How long a transition takes: nothing where less motion is asked for, here or in the system."""
+
+import ctypes
+import sys
+
+from PySide6.QtWidgets import QApplication, QStyle
+
+from app.theme.theme import Theme
+
+
+def duration_ms(usual_ms: int, theme: Theme) -> int:
+    """Give how long a transition of `usual_ms` may take: all of it, or 0."""
+    return usual_ms if not theme.has_less_motion and _is_motion_wanted() else 0
+
+
+def _is_motion_wanted() -> bool:
+    if sys.platform == "win32":
+        is_wanted = ctypes.c_int(1)
+        spi_getclientareaanimation = 0x1042  # "Show animations in Windows"
+        ctypes.windll.user32.SystemParametersInfoW(spi_getclientareaanimation, 0, ctypes.byref(is_wanted), 0)
+        return bool(is_wanted.value)
+    return QApplication.style().styleHint(QStyle.StyleHint.SH_Widget_Animation_Duration) > 0

@@ -1,0 +1,1 @@
+"""All sentences: translation, names of measures, verdicts, dates."""

@@ -1,0 +1,169 @@
+"""What was changed at a prosthesis, in words: signs are said, "½ out, +2° plantar", "4 mm back", "+3 mm"."""
+
+from collections.abc import Iterable, Mapping, Sequence
+
+from app.wording.translation import capitalised, figure_text, later, tr, within_sentence
+from core.alignment import AlignmentChange, NetChange, PartChange, ProsthesisPart, net_of
+
+MINUS = "\N{MINUS SIGN}"
+EIGHTHS = ("", "⅛", "¼", "⅜", "½", "⅝", "¾", "⅞")
+NAMES = {
+    ProsthesisPart.FOOT_FRONT_SCREW: later("Foot, front screw"),
+    ProsthesisPart.FOOT_BACK_SCREW: later("Foot, back screw"),
+    ProsthesisPart.FOOT_INNER_SCREW: later("Foot, inner screw"),
+    ProsthesisPart.FOOT_OUTER_SCREW: later("Foot, outer screw"),
+    ProsthesisPart.FOOT_ROTATION: later("Foot, rotation"),
+    ProsthesisPart.SOCKET_FRONT_SCREW: later("Socket, front screw"),
+    ProsthesisPart.SOCKET_BACK_SCREW: later("Socket, back screw"),
+    ProsthesisPart.SOCKET_INNER_SCREW: later("Socket, inner screw"),
+    ProsthesisPart.SOCKET_OUTER_SCREW: later("Socket, outer screw"),
+    ProsthesisPart.KNEE_UNIT: later("Knee unit"),
+    ProsthesisPart.PYLON: later("Pylon"),
+    ProsthesisPart.SHOE: later("Heel or shoe"),
+    ProsthesisPart.OTHER: later("Other part"),
+}
+# Jonkergouw et al. 2019, Gait Posture 68:122-129, doi:10.1016/j.gaitpost.2018.11.004; its abstract and highlights were
+# read, not the figures
+NO_PROOF = later(
+    "Angles and times may not show what was changed: in ten people with a prosthesis below the knee, induced changes "
+    "of alignment affected neither (Jonkergouw 2019, Gait Posture 68:122; abstract and highlights read)."
+)
+OF_FOOT, OF_SOCKET = later("Foot"), later("Socket")  # what a screw's shift and height are of
+PLANTAR = later("plantar"), later("dorsal")
+EVERTED = later("eversion"), later("inversion")
+FLEXED = later("flexion"), later("extension")
+ABDUCTED = later("abduction"), later("adduction")
+DIRECTIONS: Mapping[ProsthesisPart, tuple[str, str]] = {
+    ProsthesisPart.FOOT_FRONT_SCREW: PLANTAR,
+    ProsthesisPart.FOOT_BACK_SCREW: PLANTAR,
+    ProsthesisPart.FOOT_INNER_SCREW: EVERTED,
+    ProsthesisPart.FOOT_OUTER_SCREW: EVERTED,
+    ProsthesisPart.FOOT_ROTATION: (later("toes out"), later("toes in")),
+    ProsthesisPart.SOCKET_FRONT_SCREW: FLEXED,
+    ProsthesisPart.SOCKET_BACK_SCREW: FLEXED,
+    ProsthesisPart.SOCKET_INNER_SCREW: ABDUCTED,
+    ProsthesisPart.SOCKET_OUTER_SCREW: ABDUCTED,
+}
+
+
+def part_name(part: ProsthesisPart) -> str:
+    """Name a part: "Foot, front screw"."""
+    return tr(NAMES[part])
+
+
+def angle_words(part: ProsthesisPart, angle_deg: float) -> str:
+    """Say an angle with its direction, "+2° plantar"; of a part whose maker counts, with its sign."""
+    amount = figure_text(abs(angle_deg), "g") + "°"
+    if part not in DIRECTIONS:
+        return ("+" if angle_deg >= 0 else MINUS) + amount
+    return f"+{amount} {tr(DIRECTIONS[part][angle_deg < 0])}"
+
+
+def direction_words(part: ProsthesisPart) -> tuple[str, str]:
+    """Say which way an angle and a shift of a part are positive, as captions: "Angle, plantar +", "Shift, back +"."""
+    angle = tr("Angle")
+    if part in DIRECTIONS:
+        angle = tr("Angle, {direction} +").format(direction=tr(DIRECTIONS[part][0]))
+    return angle, tr("Shift, outwards +") if part.is_frontal else tr("Shift, back +")
+
+
+def turns_words(turns: float) -> str:
+    """Say how far a screw was turned: "½ out", "1¼ in"."""
+    return (tr("{amount} in") if turns < 0 else tr("{amount} out")).format(amount=_eighths(turns))
+
+
+def shift_words(part: ProsthesisPart, shift_mm: float) -> str:
+    """Say a shift: "4 mm back", or "2 mm inwards" at an inner or outer screw."""
+    if part.is_frontal:
+        said = tr("{amount} mm inwards") if shift_mm < 0 else tr("{amount} mm outwards")
+    else:
+        said = tr("{amount} mm forward") if shift_mm < 0 else tr("{amount} mm back")
+    return said.format(amount=figure_text(abs(shift_mm), "g"))
+
+
+def height_words(height_mm: float) -> str:
+    return tr("{sign}{amount} mm").format(sign=MINUS if height_mm < 0 else "+", amount=figure_text(abs(height_mm), "g"))
+
+
+def change_lines(change: AlignmentChange | None) -> list[tuple[str, str]]:
+    """Say a change as a list shows it: name of the part and what was done."""
+    return [] if change is None else net_lines(net_of(change.parts))
+
+
+def net_lines(changes: Sequence[NetChange]) -> list[tuple[str, str]]:
+    """The same of changes that were added up."""
+    return [line for change in changes for line in _lines(change)]
+
+
+def change_in_words(change: AlignmentChange | Sequence[PartChange] | None) -> str:
+    """Say a change in one line: "Foot, front screw ½ turn out, +2° plantar; foot 4 mm back"; empty for none."""
+    if change is None:
+        return ""
+    parts = change.parts if isinstance(change, AlignmentChange) else change
+    return _line(net_of(parts), has_angle_beside_turns=True)
+
+
+def since_in_words(change: AlignmentChange | None) -> str:
+    """Say a change and since when: "Changed from Alignment A: pylon +3 mm"."""
+    if change is None:
+        return ""
+    said = change_in_words(change)
+    if not change.since:
+        return tr("Changed: {changes}").format(changes=said)
+    return tr("Changed from {condition}: {changes}").format(condition=change.since, changes=said)
+
+
+def to_do_in_words(changes: Sequence[NetChange]) -> str:
+    """Say what is to be turned; where a screw is turned its angle comes by itself and is not said.
+
+    "Foot, front screw ½ turn in; foot 4 mm forward; pylon −3 mm".
+    """
+    return _line(changes, has_angle_beside_turns=False)
+
+
+def _lines(change: NetChange) -> list[tuple[str, str]]:
+    own = [turns_words(change.turns)] if change.turns else []
+    own += [angle_words(change.part, change.angle_deg)] if change.angle_deg else []
+    name, body = part_name(change.part), _body(change.part)
+    lines = [(name, ", ".join(own))] if own else []
+    if change.shift_mm:
+        lines.append((tr("{part}, shift").format(part=body), shift_words(change.part, change.shift_mm)))
+    if change.height_mm:
+        lines.append((tr("{part}, height").format(part=body), height_words(change.height_mm)))
+    return lines + [(name, text) for text in _texts(change)]
+
+
+def _line(changes: Iterable[NetChange], *, has_angle_beside_turns: bool) -> str:
+    said: list[str] = []
+    for change in changes:
+        has_angle = bool(change.angle_deg) and (has_angle_beside_turns or not change.turns)
+        own = [_turn(change.turns)] if change.turns else []
+        own += [angle_words(change.part, change.angle_deg)] if has_angle else []
+        name, body = within_sentence(part_name(change.part)), within_sentence(_body(change.part))
+        if own:
+            said.append(f"{name} {', '.join(own)}")
+        if change.shift_mm:
+            said.append(f"{body} {shift_words(change.part, change.shift_mm)}")
+        if change.height_mm:
+            said.append(f"{body} {height_words(change.height_mm)}")
+        said += [f"{name}: {text}" for text in _texts(change)]
+    return capitalised("; ".join(said))
+
+
+def _texts(change: NetChange) -> list[str]:
+    return [*change.done, *(tr("take back: {text}").format(text=text) for text in change.undone)]
+
+
+def _turn(turns: float) -> str:
+    return (tr("{amount} turn in") if turns < 0 else tr("{amount} turn out")).format(amount=_eighths(turns))
+
+
+def _eighths(turns: float) -> str:
+    whole, eighths = divmod(round(abs(turns) * 8), 8)
+    return f"{whole or ''}{EIGHTHS[eighths]}" or "0"
+
+
+def _body(part: ProsthesisPart) -> str:
+    if part.startswith("foot_"):
+        return tr(OF_FOOT)
+    return tr(OF_SOCKET) if part.startswith("socket_") else part_name(part)

@@ -1,0 +1,15 @@
+"""What are parts of the body called where they stand on their own, and as the patient is spoken to?"""
+
+from app.wording.translation import tr
+from core.body import Joint, Segment
+
+
+def segment_name(segment: Segment) -> str:
+    """Name a segment beside the chip of its side: "Thigh"."""
+    names = {Segment.THIGH: tr("Thigh"), Segment.SHANK: tr("Shank"), Segment.FOOT: tr("Foot")}
+    return (names | {Segment.PELVIS: tr("Pelvis")})[segment]
+
+
+def joint_name(joint: Joint) -> str:
+    """Name a joint beside the chip of its side: "Knee"."""
+    return tr("Hip") if joint.is_hip else tr("Knee") if joint.is_knee else tr("Ankle")

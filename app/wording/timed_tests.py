@@ -1,0 +1,178 @@
+"""What is said of a timed test, on the screen and on paper: its name, its result, what is missing and how sure it is.
+
+A sentence comes from what was measured: without a time no time is told, without a tape nothing is compared with one.
+"""
+
+import math
+
+from app.wording.translation import figure_text, joined, later, name_of, tr, tr_n
+from core.timed.found import NotMeasured, TimedTest
+from core.timed.protocols import DEFINITIONS, KnownError, PlannedTest, TimedProtocol
+
+ALLOWED_PERCENT = 3.0  # more than that off the tape, the sensors' distance is not to be read
+DAGGER = "\N{DAGGER}"
+TIMES = "\N{MULTIPLICATION SIGN}"
+
+
+def name_of_test(protocol: TimedProtocol) -> str:
+    """What a test is called."""
+    return {
+        TimedProtocol.TEN_METRES: tr("10-metre walk"),
+        TimedProtocol.TWO_MINUTES: tr("2-minute walk"),
+        TimedProtocol.SIX_MINUTES: tr("6-minute walk"),
+        TimedProtocol.UP_AND_GO: tr("Timed up and go"),
+        TimedProtocol.SIT_TO_STAND: tr("Sit to stand, 5 {times}").format(times=TIMES),
+        TimedProtocol.STAIRS: tr("Stairs"),
+    }[protocol]
+
+
+def planned_words(planned: PlannedTest | None) -> str:
+    """Which test a walk is, with the instants of its keys: "10-metre walk, key at the start: 3.2 s"."""
+    if planned is None:
+        return tr("no test")
+    said = [name_of_test(planned.protocol)]
+    if planned.start_key_s is not None:
+        said.append(tr("key at the start: {at:.1f} s").format(at=planned.start_key_s))
+    if planned.end_key_s is not None:
+        said.append(tr("key at the end: {at:.1f} s").format(at=planned.end_key_s))
+    return ", ".join(said)
+
+
+def start_words(protocol: TimedProtocol) -> str:
+    """What starts the clock where no key does."""
+    if protocol is TimedProtocol.TEN_METRES:
+        return tr("2 m on from standing still for 1 s")
+    if DEFINITIONS[protocol].is_from_chair:
+        return tr("as the thighs leave the seat")
+    return tr("first step after 1 s of standing still")
+
+
+def end_words(protocol: TimedProtocol) -> str:
+    """What ends it where no key does."""
+    return {
+        TimedProtocol.TEN_METRES: tr("10 m later, by the sensors"),
+        TimedProtocol.TWO_MINUTES: tr("after 2:00"),
+        TimedProtocol.SIX_MINUTES: tr("after 6:00"),
+        TimedProtocol.UP_AND_GO: tr("seated again"),
+        TimedProtocol.SIT_TO_STAND: tr("upright for the fifth time"),
+        TimedProtocol.STAIRS: tr("with the last step"),
+    }[protocol]
+
+
+def reason_words(reason: NotMeasured) -> str:
+    """Why something is missing, as a clause."""
+    return {
+        NotMeasured.NO_FEET: tr("no foot sensor was worn"),
+        NotMeasured.NO_THIGHS: tr("no thigh sensor was heard throughout, or nobody stood still before"),
+        NotMeasured.NO_START: tr("nobody stood still for a second before the first step"),
+        NotMeasured.NO_RISE: tr("nobody rose from the chair"),
+        NotMeasured.NOT_FINISHED: tr("the recording ended before the test did"),
+        NotMeasured.SILENT: tr("a foot sensor was silent"),
+    }[reason]
+
+
+def seconds(value: float) -> str:
+    """A time as it is told: "8.9 s", "2:00"."""
+    return f"{int(value) // 60}:{int(value) % 60:02d}" if value >= 100.0 else f"{figure_text(value, '.1f')} s"
+
+
+def result_sentence(test: TimedTest) -> str:
+    """The one sentence of a test: its name and what it is made for."""
+    name = name_of_test(test.protocol)
+    if not math.isfinite(test.time_s):
+        return tr("{test}: no time was taken.").format(test=name)
+    said = []
+    if test.definition.duration_s is not None and math.isfinite(test.distance_m):
+        said = [f"{test.distance_m:.0f} m", f"{figure_text(test.speed_m_s, '.2f')} m/s"]
+    elif test.protocol is TimedProtocol.TEN_METRES and math.isfinite(test.speed_m_s):
+        said = [f"{figure_text(test.speed_m_s, '.2f')} m/s", f"{figure_text(test.time_s, '.1f')} s"]
+    elif test.definition.duration_s is None:
+        said = [f"{figure_text(test.time_s, '.1f')} s"]
+    if not said:
+        return tr("{test}: no distance can be told.").format(test=name)
+    return tr("{test}: {figures}.").format(test=name, figures=", ".join(said))
+
+
+def why_sentence(test: TimedTest) -> str:
+    """What is missing, and why; empty where nothing is."""
+    if not test.missing:
+        return ""
+    reasons = [
+        tr("the sensor at the {site} was silent from {start:.1f} to {end:.1f} s").format(
+            site=name_of(one.site), start=one.start_s, end=one.end_s
+        )
+        for one in test.silences
+    ]
+    reasons += [reason_words(one) for one in test.missing if one is not NotMeasured.SILENT]
+    if not math.isfinite(test.time_s):
+        return tr("The time is not told: {reason}.").format(reason=joined(reasons))
+    if math.isfinite(test.distance_m):
+        return tr("The sensors' distance is not told: {reason}.").format(reason=joined(reasons))
+    return tr("The distance is not told: {reason}.").format(reason=joined(reasons))
+
+
+def tape_sentence(test: TimedTest) -> str:
+    """How the sensors' distance compares with the tape's; empty where no key told where the tape is."""
+    apart_m = test.tape_difference_m
+    if not math.isfinite(apart_m):
+        return ""
+    share = 100.0 * apart_m / test.distance_m
+    told = tr("By the sensors it was {own:.2f} m, {apart:+.2f} m from the tape's {tape:.2f} m").format(
+        own=test.sensor_distance_m, apart=apart_m, tape=test.distance_m
+    )
+    if round(abs(share), 6) <= ALLOWED_PERCENT:
+        return tr("{told}; 3 % is allowed.").format(told=told)
+    return tr("{told}: more than the 3 % that is allowed. Look at where the tape lies.").format(told=told)
+
+
+def pauses_sentence(test: TimedTest) -> str:
+    """How often and how long the patient stood still; empty where nobody did."""
+    if not test.pauses_s:
+        return ""
+    total_s = sum(end - start for start, end in test.pauses_s)
+    told = tr_n("{count} pause, {total:.1f} s.", "{count} pauses, {total:.1f} s together.", len(test.pauses_s))
+    return told.format(count=len(test.pauses_s), total=total_s)
+
+
+def stairs_sentence(test: TimedTest) -> str:
+    """How many strides led up and down, and how long they took; empty where none did."""
+    said = []
+    for is_up, words in (
+        (True, tr("strides up: {count}, {time:.2f} s each")),
+        (False, tr("strides down: {count}, {time:.2f} s each")),
+    ):
+        times_s = [one.end_s - one.start_s for one in test.stairs if one.is_up is is_up]
+        if times_s:
+            said.append(words.format(count=len(times_s), time=sum(times_s) / len(times_s)))
+    return tr("On stairs, in no mean of walking: {strides}.").format(strides="; ".join(said)) if said else ""
+
+
+def course_sentence(test: TimedTest) -> str:
+    """How the speed changed from the first to the last third of a test of a set time; empty where it is not known."""
+    speeds = [one.speed_m_s for one in test.thirds]
+    if test.definition.duration_s is None or len(speeds) < 2 or not all(math.isfinite(one) for one in speeds):
+        return ""
+    return tr("First third {first:.2f} m/s, last third {last:.2f} m/s.").format(first=speeds[0], last=speeds[-1])
+
+
+MEASURED = (later("six minutes by sensors in insoles"), later("six minutes by a rater"))  # in the sources of errors
+
+
+def error_words(error: KnownError) -> str:
+    """What is known of the error of one quantity, with its source; what was not verified has a dagger."""
+    mark = "" if error.is_verified else DAGGER
+    most, least = figure_text(error.high, "g"), figure_text(error.low, "g")
+    span = tr("up to {most}").format(most=most) if error.low == 0.0 else f"{least}\N{EN DASH}{most}"
+    what = {
+        "distance_m": tr("Distance: {span} m{mark}, {source}."),
+        "distance_percent": tr("Distance: {span} %{mark}, {source}."),
+        "time_s": tr("Time: {span} s{mark}, {source}."),
+    }[error.quantity]
+    return what.format(span=span, mark=mark, source=_source_words(error))
+
+
+def _source_words(error: KnownError) -> str:
+    """Who says so: of a paper what was measured, and the paper as it is cited."""
+    if error.courses:
+        return tr("the worst of {count} simulated courses").format(count=error.courses)
+    return ", ".join(filter(None, [tr(error.how) if error.how else "", error.paper]))

@@ -1,0 +1,1 @@
+"""Samples made even, turned and paired: tracks on one clock, their orientation, and what reception did to them."""

@@ -1,0 +1,103 @@
+"""Orientation of each sensor by the offline filter VQF, without magnetometer, on the rates between two samples.
+
+VQF (Laidig & Seel 2023, doi 10.1016/j.inffus.2022.10.014) turns the orientation from one sample to the next by the rate
+it is given. A rate of the instant of its stamp stands for half an interval before and after it, so it is averaged with
+its predecessor; a rate that the device has averaged over the past interval is used as it is.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+from vqf import VQF, offlineVQF
+
+from core.samples import FloatArray, RateKind
+from core.signal.pair import OrientedTrack
+from core.signal.tracks import Track
+
+
+def oriented(track: Track, rate_kind: RateKind, gyro_bias_rad_s: FloatArray) -> OrientedTrack:
+    """Take the gyroscope's bias (3,) off and find the orientation; its heading starts anywhere and may drift.
+
+    The rates of the result stand for the instants of their stamps, whatever the device sent.
+
+    Parameters
+    ----------
+    gyro_bias_rad_s : (3,)
+        In sensor axes.
+
+    Returns
+    -------
+    OrientedTrack
+        Earth from sensor, earth z up, by VQF (Laidig & Seel 2023, doi 10.1016/j.inffus.2022.10.014).
+    """
+    rates = track.gyr_rad_s - gyro_bias_rad_s
+    if rate_kind is RateKind.AVERAGED:
+        intervals: FloatArray = rates
+        instants: FloatArray = rates.copy()
+        instants[:-1] = 0.5 * (rates[:-1] + rates[1:])
+    else:
+        intervals, instants = interval_rates(rates), rates
+    turned = offlineVQF(np.ascontiguousarray(intervals), np.ascontiguousarray(track.acc_m_s2), None, track.step_s)
+    return OrientedTrack(replace(track, gyr_rad_s=instants), turned["quat6D"])
+
+
+def accelerometer_time_constant_s() -> float:
+    """Time constant by which VQF corrects the vertical from what the accelerometer feels: as the filter has it.
+
+    Returns
+    -------
+    float
+        s.
+    """
+    return float(VQF(1.0).params["tauAcc"])
+
+
+def as_of_intervals(one: OrientedTrack) -> OrientedTrack:
+    """What `oriented` would have made, up to the filter's own lag of a sample, of the same rates taken as averages.
+
+    The mean of two rates leads to half an interval before the stamp of the second; averages lead to the stamp itself.
+    """
+    track = one.track
+    x, y, z = 0.25 * track.step_s * track.gyr_rad_s.T  # half of half an interval's angle, small enough for its sine
+    w, i, j, k = one.q_earth_from_sensor.T
+    turned = np.stack(
+        [w - i * x - j * y - k * z, i + w * x + j * z - k * y, j + w * y + k * x - i * z, k + w * z + i * y - j * x],
+        axis=1,
+    )
+    turned /= np.sqrt(np.einsum("ni,ni->n", turned, turned))[:, None]
+    rates = track.gyr_rad_s.copy()
+    rates[:-1] = 0.5 * (rates[:-1] + rates[1:])
+    return OrientedTrack(replace(track, gyr_rad_s=rates), turned)
+
+
+def oriented_to_north(track: Track) -> OrientedTrack | None:
+    """The device's own orientation, else one with a heading from the magnetic field, else None.
+
+    `track` is one that `oriented` returned.
+    """
+    if track.q_device is not None and np.isfinite(track.q_device).all():
+        return OrientedTrack(track, track.q_device)
+    if track.mag is not None and np.isfinite(track.mag).all():
+        rates, acc, mag = interval_rates(track.gyr_rad_s), track.acc_m_s2, track.mag
+        turned = offlineVQF(*(np.ascontiguousarray(v) for v in (rates, acc, mag)), track.step_s)
+        return OrientedTrack(track, turned["quat9D"])
+    return None
+
+
+def interval_rates(rates: FloatArray) -> FloatArray:
+    """Mean of each rate and its predecessor: the rate over the interval before each sample.
+
+    Parameters
+    ----------
+    rates : (n, 3)
+        rad/s, at the instants of their stamps.
+
+    Returns
+    -------
+    (n, 3)
+        rad/s.
+    """
+    mean = rates.copy()
+    mean[1:] += rates[:-1]
+    mean[1:] *= 0.5
+    return mean

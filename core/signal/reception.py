@@ -1,0 +1,205 @@
+"""What one recording holds of each sensor: gaps, pauses, samples at the end of the range, the rate they came at."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from core.body import Site
+from core.samples import FloatArray, ImuBlock, Recording
+from core.signal.clipping import clipped_forces, clipped_rates
+from core.signal.tracks import MAX_REPORTED_GAP_S, MIN_STRETCH_SAMPLES, is_heard, nominal_step_s
+
+STEPS_TOGETHER, STEPS_BESIDE = 30, 5
+SHORT_STEP, MIN_SHORT_STEPS = 0.7, 0.005  # of the usual step; of all steps, where stamps jitter
+LEAST_PAUSE_S = 2.0  # longer than a stride: what is missing are whole ones, and the others are as good as without
+ALL_LOST_PERCENT = 100.0
+KEPT_RATE_PERCENT = 2.0  # clocks of sensors are off by less
+
+Pause = tuple[float, float]
+"""First and last instant of a time in which no sensor of a recording was received, on its clock."""
+
+
+@dataclass(frozen=True, slots=True)
+class Reception:
+    """What one recording holds of one sensor; instants on the recording's clock.
+
+    Attributes
+    ----------
+    lost_percent
+        Samples missing outside of pauses; 100 where next to none was received.
+    gaps_s : (m, 2)
+        First and last instant of what is longer than `MAX_REPORTED_GAP_S`, ascending.
+    span_s
+        First and last sample.
+    clipped_rates_s, clipped_forces_s : (k,)
+        Samples at the end of the sensor's range, ascending.
+    rate_percent
+        The rate that the samples came at, of the one that was set; None where that is not known.
+    """
+
+    lost_percent: float = 0.0
+    gaps_s: FloatArray = field(default_factory=lambda: np.empty((0, 2)))
+    span_s: tuple[float, float] = (0.0, 0.0)
+    clipped_rates_s: FloatArray = field(default_factory=lambda: np.empty(0))
+    clipped_forces_s: FloatArray = field(default_factory=lambda: np.empty(0))
+    rate_percent: float | None = None
+
+
+def receptions(
+    recording: Recording, nominal_hz: Mapping[Site, float | None], offsets_s: Mapping[Site, float]
+) -> dict[Site, Reception]:
+    """What a recording holds of each of some sensors.
+
+    Parameters
+    ----------
+    nominal_hz
+        The rate that each sensor was set to.
+    offsets_s
+        What brings each sensor's clock to the recording's; of which sensors, too.
+
+    Returns
+    -------
+    dict of Site to Reception
+        Times in seconds.
+    """
+    pauses = pauses_of(recording)
+    return {
+        site: _reception(recording.imu[site], nominal_hz.get(site), pauses, offset_s)
+        for site, offset_s in offsets_s.items()
+    }
+
+
+def _reception(block: ImuBlock, nominal_hz: float | None, pauses: Sequence[Pause], offset_s: float) -> Reception:
+    is_there = is_heard(block.time_s, block.gyr_rad_s, block.acc_m_s2)
+    heard_s = block.time_s[is_there]
+    if len(heard_s) < MIN_STRETCH_SAMPLES:
+        return Reception(lost_percent=ALL_LOST_PERCENT)
+    at_s = heard_s + offset_s
+    return Reception(
+        lost_percent=lost_percent(block, nominal_hz, pauses),
+        gaps_s=gaps_of(heard_s) + offset_s,
+        span_s=(float(at_s[0]), float(at_s[-1])),
+        clipped_rates_s=at_s[clipped_rates(block.gyr_rad_s[is_there]).any(axis=1)],
+        clipped_forces_s=at_s[clipped_forces(block.acc_m_s2[is_there]).any(axis=1)],
+        rate_percent=rate_percent(heard_s, nominal_hz),
+    )
+
+
+def gaps_of(heard_s: FloatArray) -> FloatArray:
+    """First and last instant (m, 2) of each gap that is longer than may be bridged in silence.
+
+    Parameters
+    ----------
+    heard_s : (n,)
+        Ascending stamps of the samples received, two at least.
+
+    Returns
+    -------
+    (m, 2)
+        s.
+    """
+    after = np.flatnonzero(np.diff(heard_s) > max(MAX_REPORTED_GAP_S, 1.5 * nominal_step_s(heard_s)))
+    return np.stack([heard_s[after], heard_s[after + 1]], axis=1)
+
+
+def pauses_of(recording: Recording) -> list[Pause]:
+    """When no sensor of a recording was received for longer than a stride takes."""
+    common: list[Pause] | None = None
+    for block in recording.imu.values():
+        heard_s = block.time_s[is_heard(block.time_s, block.gyr_rad_s, block.acc_m_s2)]
+        if len(heard_s) < MIN_STRETCH_SAMPLES:
+            continue
+        gaps = [(float(a), float(b)) for a, b in gaps_of(heard_s) if b - a >= LEAST_PAUSE_S]
+        both = gaps if common is None else [(max(a, c), min(b, d)) for a, b in common for c, d in gaps]
+        common = [(a, b) for a, b in both if b - a >= LEAST_PAUSE_S]
+    return common or []
+
+
+def outside_of(pauses: Sequence[Pause], gaps_s: FloatArray) -> FloatArray:
+    """The part (m,) of each gap (m, 2) in which other sensors were received.
+
+    Parameters
+    ----------
+    gaps_s : (m, 2)
+        First and last instant of each.
+
+    Returns
+    -------
+    (m,)
+        s.
+    """
+    left = gaps_s[:, 1] - gaps_s[:, 0]
+    for first, last in pauses:
+        left = left - np.maximum(np.minimum(gaps_s[:, 1], last) - np.maximum(gaps_s[:, 0], first), 0.0)
+    return np.asarray(left)
+
+
+def lost_percent(block: ImuBlock, nominal_hz: float | None = None, pauses: Sequence[Pause] = ()) -> float:
+    """How many of a sensor's samples are missing outside of pauses; 100 where next to none came.
+
+    Parameters
+    ----------
+    nominal_hz
+        The rate that the sensor was set to; where it is not known, or kept, losses show in the stamps alone.
+
+    Returns
+    -------
+    float
+        Percent.
+    """
+    heard_s = block.time_s[is_heard(block.time_s, block.gyr_rad_s, block.acc_m_s2)]
+    if len(heard_s) < MIN_STRETCH_SAMPLES:
+        return ALL_LOST_PERCENT
+    step_s = nominal_step_s(heard_s)
+    missing = float(np.sum(_missing_rows(heard_s, step_s)))
+    missing -= sum(max(round((last - first) / step_s) - 1, 0) for first, last in pauses)
+    missing += float(np.count_nonzero(block.time_s < heard_s[0]) + np.count_nonzero(block.time_s > heard_s[-1]))
+    received = len(heard_s) / (max(missing, 0.0) + len(heard_s))
+    came_at = rate_percent(heard_s, nominal_hz)
+    if came_at is not None and came_at < 100.0 - KEPT_RATE_PERCENT:
+        received *= came_at / 100.0
+    return 100.0 * (1.0 - received)
+
+
+def rate_percent(heard_s: FloatArray, nominal_hz: float | None) -> float | None:
+    """The rate that samples came at (gaps counted as if they had come), of the one that was set.
+
+    Parameters
+    ----------
+    heard_s : (n,)
+        Ascending stamps of the samples received.
+    nominal_hz
+        What the sensor was set to; None: not known.
+
+    Returns
+    -------
+    float or None
+        Percent.
+    """
+    if not nominal_hz or len(heard_s) < MIN_STRETCH_SAMPLES:
+        return None
+    steps = len(heard_s) - 1 + float(np.sum(_missing_rows(heard_s, nominal_step_s(heard_s))))
+    return 100.0 * steps / (float(heard_s[-1] - heard_s[0]) * nominal_hz)
+
+
+def is_half(percent: float) -> bool:
+    """Whether every second sample is missing throughout, so that the stamps of the others show no gap."""
+    return abs(percent - 50.0) <= KEPT_RATE_PERCENT
+
+
+def _missing_rows(heard_s: FloatArray, step_s: float) -> FloatArray:
+    """How many samples lack after each but the last (n - 1,).
+
+    Where stamps jitter, which shows in short steps, a long step between short ones lacks nothing: as many samples must
+    be missing around it, by a step that many steps tell.
+    """
+    steps = np.diff(heard_s)
+    if len(steps) <= STEPS_TOGETHER or np.mean(steps < SHORT_STEP * step_s) < MIN_SHORT_STEPS:
+        return np.asarray(np.maximum(np.round(steps / step_s) - 1, 0))
+    together_s = (heard_s[STEPS_TOGETHER:] - heard_s[:-STEPS_TOGETHER]) / STEPS_TOGETHER
+    step_s = float(np.quantile(together_s, 0.1))
+    index = np.arange(len(steps))
+    first, last = np.maximum(index - STEPS_BESIDE, 0), np.minimum(index + STEPS_BESIDE + 1, len(steps))
+    around = np.floor((heard_s[last] - heard_s[first]) / step_s - (last - first) + 0.3)
+    return np.asarray(np.clip(np.round(steps / step_s) - 1, 0, np.maximum(around, 0)))

@@ -1,0 +1,78 @@
+"""The demonstration's user of an above-knee prosthesis, who walks as the prosthesis is said to be set."""
+
+import threading
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+
+from core.alignment import NetChange
+from core.body import Side
+from core.samples import RecordingKind
+from devices.clocks.host_clock import host_time_ns
+from devices.simulation.fitted_prosthesis import BUILT, SPEED_M_S, setting_of
+from devices.simulation.replay import DEMONSTRATION_SESSION, ReplaySource, labelled
+from devices.simulation.walker import PEOPLE, Standing, Walk, WalkerSettings, simulate
+
+
+class ProsthesisUser(ReplaySource):
+    """Stands and moves freely as `demonstration`; each walk is made when it is asked for, which takes up to a second.
+
+    Every walk differs a little from the others, as people's do. Of what is said to be changed these parts move the leg,
+    as `walker_prosthesis` says: the foot's front and back screws by angle and shift, these and the pylon by height, the
+    knee by its angle (where it is stopped) and by turns (resistance in swing). Nothing else does.
+
+    Parameters
+    ----------
+    now_ns
+        As of `ReplaySource`.
+    """
+
+    def __init__(
+        self,
+        side: Side,
+        settings: WalkerSettings = DEMONSTRATION_SESSION,
+        *,
+        speed: float = 1.0,
+        now_ns: Callable[[], int] = host_time_ns,
+    ) -> None:
+        self._settings = replace(settings, prosthetic_side=side, variation=PEOPLE)
+        still = [one for one in settings.recordings if not isinstance(one, Walk)]
+        first = labelled(simulate(replace(self._settings, recordings=tuple(still))).session)
+        super().__init__(first, finishes=True, speed=speed, now_ns=now_ns)
+        self._asking = threading.Lock()  # of all below
+        self._walks: list[Walk] = []
+        self._setting = BUILT
+        self._times_asked = 0
+
+    def set_up(self, changes: Iterable[NetChange]) -> None:
+        """Say by what the prosthesis differs from its first alignment; the next walk is walked so."""
+        of_part = {change.part: change for change in changes}
+        with self._asking:
+            self._setting = setting_of(of_part)
+
+    def ask(self, kind: RecordingKind | None) -> float | None:
+        with self._asking:
+            self._times_asked += 1
+            if kind is RecordingKind.WALKING:
+                asked = self._times_asked
+                threading.Thread(target=self._walk, args=(asked,), name="prosthesis user", daemon=True).start()
+                return None
+        return super().ask(kind)
+
+    def _walk(self, asked: int) -> None:
+        with self._asking:
+            self._walks.append(
+                Walk(
+                    f"walk {len(self._walks) + 1}",
+                    speed_m_s=SPEED_M_S,
+                    strides=14,
+                    standing_before_s=1.0,
+                    prosthesis=self._setting,
+                )
+            )
+            walks = tuple(self._walks)  # all of them: sensors ride on the tissue as they did in the first
+        settings = replace(self._settings, recordings=(Standing(duration_s=1.0), *walks))
+        walk = labelled(simulate(settings).session).recordings[-1]
+        with self._asking:
+            if asked == self._times_asked:  # else something else was asked meanwhile
+                self.play_next(walk)
+                super().ask(RecordingKind.WALKING)

@@ -1,0 +1,157 @@
+"""Does columns.csv tell of every column of every table of a real analysis, and of no other?"""
+
+import csv
+import datetime
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from app.exports.columns import COLUMNS, KNOWN, column_of
+from app.exports.result_folder import TAKEN, VISITS, VISITS_CYCLES, describe_tables, write_results
+from app.summary.differences import comparisons_of, rows_of, write_compared_cycles, write_differences
+from core.alignment import AlignmentChange, PartChange, ProsthesisPart
+from core.analysis import analyse
+from core.goals import Goal, GoalOf
+from core.results import Analysis
+from core.samples import Session
+from core.targets import Target, TargetMeasure, TargetTally, with_tallies
+from core.timed.protocols import PlannedTest, TimedProtocol
+from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
+
+Row = dict[str, str]
+
+
+@pytest.fixture(scope="module")
+def visit() -> tuple[Session, Analysis]:
+    wanted = (Standing(), FreeMotion(), Walk(strides=5), Walk("walk 2", strides=5))
+    session = simulate(WalkerSettings(seed=5, recordings=wanted)).session
+    conditions = {"walk 1": "shoes", "walk 2": "barefoot"}
+    note = with_tallies("", [TargetTally(Target(TargetMeasure.CADENCE, None, 110), 2, 4)])
+    turned = AlignmentChange("shoes", (PartChange(ProsthesisPart.PYLON, turns=0.5, height_mm=3.0, text="=1"),))
+    recordings = tuple(
+        replace(
+            one,
+            condition=conditions.get(one.name, ""),
+            note=note,
+            alignment=turned if one.name == "walk 2" else None,
+            test=PlannedTest(TimedProtocol.TEN_METRES) if one.name == "walk 2" else None,
+        )
+        for one in session.recordings
+    )
+    agreed = Goal("speed_m_s", GoalOf.WALK, 1.2, datetime.date(2026, 1, 5))
+    patient = replace(session.patient, goals=(agreed,))
+    session = replace(session, recordings=recordings, patient=patient, started="2026-02-01")
+    return session, analyse(session)
+
+
+@pytest.fixture(scope="module")
+def out(visit: tuple[Session, Analysis], tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("out")
+    write_results(*visit, folder)
+    return folder
+
+
+def rows_of_columns(folder: Path) -> list[Row]:
+    with (folder / COLUMNS).open(newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def columns_in(folder: Path) -> set[tuple[str, str]]:
+    found = set()
+    for path in folder.rglob("*.csv"):
+        if path.name != COLUMNS:
+            with path.open(newline="", encoding="utf-8") as file:
+                found |= {(path.name, name) for name in next(csv.reader(file))}
+    return found
+
+
+def test_every_column_of_every_table_is_told_of_and_no_other(out: Path) -> None:
+    told = [(row["file"], row["column"]) for row in rows_of_columns(out)]
+    assert len(told) == len(set(told))
+    assert set(told) == columns_in(out)
+    files = {file for file, _ in told}
+    assert files == {
+        *("angles.csv", "events.csv", "strides.csv", "cycles.csv"),
+        *("peaks.csv", "alignments.csv", "differences.csv", "compared_cycles.csv", "sides.csv", "targets.csv"),
+        *("fitting.csv", "fitting_means.csv", "goals.csv", "timed_test.csv"),
+    }
+    assert (COLUMNS,) in TAKEN
+
+
+def test_the_tables_of_an_earlier_visit_are_told_of_once_they_are_there(
+    visit: tuple[Session, Analysis], out: Path, tmp_path: Path
+) -> None:
+    write_results(*visit, tmp_path)
+    found = comparisons_of([visit, visit])[-1]
+    write_differences(rows_of(found), tmp_path / VISITS)
+    write_compared_cycles(found.parts, tmp_path / VISITS_CYCLES)
+    assert {row["file"] for row in rows_of_columns(tmp_path)}.isdisjoint({VISITS, VISITS_CYCLES})
+    describe_tables(visit[1], tmp_path)
+    told = {(row["file"], row["column"]) for row in rows_of_columns(tmp_path)}
+    assert told == columns_in(tmp_path)
+    assert {file for file, _ in told} == set(KNOWN)
+
+
+@pytest.mark.parametrize(
+    ("file", "column", "unit", "sign", "needs"),
+    [
+        ("alignments.csv", "turns", "turns", "positive: out", ""),
+        ("alignments.csv", "in_words", "", "", ""),
+        ("timed_test.csv", "turn_deg", "deg", "positive: to the left", ""),
+        ("timed_test.csv", "cadence_steps_min", "steps/min", "", ""),
+        ("timed_test.csv", "missing", "", "", ""),
+        ("angles.csv", "left_knee_deg", "deg", "flexion positive", "zero sign"),
+        ("angles.csv", "right_ankle_published_deg", "deg", "dorsiflexion positive", "zero sign"),
+        ("angles.csv", "left_knee_sd_deg", "deg", "", ""),
+        ("angles.csv", "left_knee_status", "", "", ""),
+        ("cycles.csv", "left_ankle_mean_deg", "deg", "dorsiflexion positive", "zero sign"),
+        ("cycles.csv", "left_ankle_shape_deg", "deg", "dorsiflexion positive", "sign"),
+        ("cycles.csv", "left_ankle_n", "", "", ""),
+        ("strides.csv", "knee_range_deg", "deg", "", ""),
+        ("strides.csv", "knee_swing_peak_deg", "deg", "flexion positive", "zero sign"),
+        ("strides.csv", "ankle_push_off_plantarflexion_deg", "deg", "dorsiflexion positive", "zero sign"),
+        ("strides.csv", "knee_swing_peak_percent", "%", "", "sign"),
+        ("strides.csv", "step_time_s", "s", "", "both_clocks"),
+        ("strides.csv", "stride_time_s", "s", "", ""),
+        ("strides.csv", "speed_m_s", "m/s", "", ""),
+        ("strides.csv", "stride_length_m", "m", "", ""),
+        ("peaks.csv", "ankle_stance_dorsiflexion_percent", "%", "", "sign"),
+        ("differences.csv", "against_mean", "as the parameter", "as the parameter", "parameter"),
+        ("sides.csv", "right_n", "", "", ""),
+        ("sides.csv", "symmetry_index_percent", "%", "", "parameter"),
+    ],
+)
+def test_a_column_has_its_unit_its_sign_and_what_it_needs(
+    out: Path, file: str, column: str, unit: str, sign: str, needs: str
+) -> None:
+    (row,) = [row for row in rows_of_columns(out) if (row["file"], row["column"]) == (file, column)]
+    assert (row["unit"], row["sign"], row["needs"]) == (unit, sign, needs)
+    assert len(row["definition"]) > 5
+
+
+def test_a_column_that_nobody_described_is_an_error() -> None:
+    with pytest.raises(KeyError):
+        column_of("strides.csv", "left_knee_deg")
+    assert column_of("compared_cycles.csv", "1A_left_knee_mean_deg").definition.endswith("of 1A")
+
+
+def test_what_was_turned_is_told_in_a_table_and_beside_its_walk(out: Path) -> None:
+    with (out / "alignments.csv").open(newline="", encoding="utf-8") as file:
+        (row,) = csv.DictReader(file)
+    assert (row["walk"], row["condition"], row["since"], row["part"]) == ("walk 2", "barefoot", "shoes", "pylon")
+    assert (row["angle_deg"], row["turns"], row["shift_mm"], row["height_mm"]) == ("", "0.5", "", "3")
+    assert row["text"] == "'=1"  # which no spreadsheet works out
+    assert row["in_words"] == "Pylon ½ turn out; pylon +3 mm; pylon: =1"
+    walks = json.loads((out / "summary.json").read_text(encoding="utf-8"))["walks"]
+    part = {"part": "pylon", "turns": 0.5, "height_mm": 3.0, "text": "=1"}
+    assert walks["walk 2"]["alignment"] == {"since": "shoes", "parts": [part]}
+    assert "alignment" not in walks["walk 1"]
+
+
+def test_where_nothing_was_changed_there_is_no_table_of_it(visit: tuple[Session, Analysis], tmp_path: Path) -> None:
+    session, analysis = visit
+    unchanged = replace(session, recordings=tuple(replace(one, alignment=None) for one in session.recordings))
+    write_results(unchanged, analysis, tmp_path)
+    assert not (tmp_path / "alignments.csv").exists()

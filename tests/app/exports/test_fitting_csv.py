@@ -1,0 +1,91 @@
+"""Do fitting.csv, fitting_means.csv and the summary hold the measures for fitting, and nothing of what is withheld?"""
+
+import csv
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from app.exports.fitting_csv import fitting_means, fitting_of_side, write_fitting_strides
+from app.summary.measures import Measure
+from core.analysis import analyse
+from core.body import Joint, Side
+from core.results import RecordingAnalysis
+from core.verdicts.model import Assessment, LegVerdicts, Verdict
+from core.verdicts.quantities import FITTING
+from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
+
+BAD = Assessment(Verdict.WITHHELD)
+
+
+@pytest.fixture(scope="module")
+def walk() -> RecordingAnalysis:
+    made = simulate(WalkerSettings(seed=5, recordings=(Standing(), FreeMotion(), Walk(strides=6))))
+    return analyse(made.session).recordings[-1]
+
+
+def strides_in(walk: RecordingAnalysis, folder: Path) -> list[dict[str, str]]:
+    write_fitting_strides(walk, folder)
+    with (folder / "fitting.csv").open(newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def means_of(walk: RecordingAnalysis) -> dict[tuple[str, str], dict[str, str]]:
+    header, rows = fitting_means([walk])
+    told = [dict(zip(header, row, strict=True)) for row in rows]
+    assert len(told) == len({(row["side"], row["measure"]) for row in told})
+    return {(row["side"], row["measure"]): row for row in told}
+
+
+def test_a_mean_is_that_of_the_strides_used_in_every_file(walk: RecordingAnalysis, tmp_path: Path) -> None:
+    rows, means = strides_in(walk, tmp_path), means_of(walk)
+    for side in Side:
+        mine = [row for row in rows if row["side"] == side and row["used"] == "true"]
+        summary = fitting_of_side(walk, side)
+        assert len(mine) >= 3
+        for name in FITTING:
+            expected = np.mean([float(row[name]) for row in mine])
+            assert float(means[side, name]["mean"]) == pytest.approx(expected, abs=1e-4), name
+            assert summary[name]["mean"] == pytest.approx(expected, abs=1e-4), name
+            assert int(means[side, name]["n"]) == summary[name]["n"] == len(mine)
+
+
+def test_what_is_withheld_is_empty_in_every_file_and_the_other_leg_is_not(
+    walk: RecordingAnalysis, tmp_path: Path
+) -> None:
+    knee = replace(walk.verdicts.joint(Joint.LEFT_KNEE), height=BAD)
+    leg = LegVerdicts(walk.verdicts.leg(Side.LEFT).timing, BAD)
+    doubted = replace(
+        walk.verdicts,
+        joints={**walk.verdicts.joints, Joint.LEFT_KNEE: knee},
+        legs={**walk.verdicts.legs, Side.LEFT: leg},
+    )
+    walk = replace(walk, verdicts=doubted)
+    rows, means = strides_in(walk, tmp_path), means_of(walk)
+    withheld = {name for name in FITTING if "_at_" in name} | {"foot_heel_rise_deg", "knee_terminal_extension_deg"}
+    for name in FITTING:
+        for side in Side:
+            is_empty = side is Side.LEFT and name in withheld
+            used = [row for row in rows if row["side"] == side and row["used"] == "true"]
+            assert all((row[name] == "") is is_empty for row in used), (name, side)
+            assert (means[side, name]["mean"] == "") is is_empty
+            assert (means[side, name]["status"] == "withheld") is is_empty
+            assert (fitting_of_side(walk, side)[name]["mean"] is None) is is_empty
+    by_side = {row["side"]: row for row in rows}
+    assert by_side["left"]["segment_inclination_status"] == by_side["left"]["foot_pitch_status"] == "withheld"
+    assert by_side["right"]["segment_inclination_status"] != "withheld"
+    assert by_side["left"]["segment_turn_status"] != "withheld"
+
+
+def test_what_rests_on_a_source_that_was_not_read_says_so(walk: RecordingAnalysis) -> None:
+    means = means_of(walk)
+    assert means["left", "shank_at_mid_stance_deg"]["unverified"] == "true"
+    assert means["left", "stride_length_m"]["unverified"] == "false"  # ours, measured on walks of our own
+    assert "relative to" not in means["left", "shank_at_mid_stance_deg"]["source"]
+    assert all(row["cannot_say"] for row in means.values())
+
+
+def test_an_inclination_is_compared_only_between_zeros_of_one_kind_and_a_turn_whatever_they_are() -> None:
+    assert Measure.of("shank_at_mid_stance_deg").needs_height
+    assert not Measure.of("shank_over_flat_foot_deg").needs_height

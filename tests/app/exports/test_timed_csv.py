@@ -1,0 +1,159 @@
+"""timed_test.csv, the summary and the report's page: what a test gave, nothing of walks that are none."""
+
+import datetime
+import math
+from dataclasses import replace
+from uuid import UUID
+
+import pytest
+
+from app.exports.summary import summarise
+from app.exports.timed_csv import HEADER, timed_rows
+from app.reports.patient.document import facts_of, make_report, report_data
+from app.reports.patient.timed_page import timed_page
+from app.reports.patient.trend_page import charts_of_tests
+from app.summary.course import Course
+from app.summary.course_lanes import CourseVisit
+from app.summary.request import AnalysedVisit, ReportRequest
+from core.analysis import analyse
+from core.body import Side, Site
+from core.results import Analysis
+from core.samples import RecordingKind, Session
+from core.timed.found import NotMeasured, Rise, Silence, StairStride, TimedPart, TimedTest, Turn
+from core.timed.protocols import PlannedTest, TimedProtocol
+from devices.simulation.walker import DEMONSTRATION, Standing, Walk, simulate
+from tests.app.course_material import course as course_of_walks
+from tests.app.course_material import timed
+from tests.app.reports.patient.conftest import MADE_AT
+
+TWO = TimedTest(
+    protocol=TimedProtocol.TWO_MINUTES,
+    start_s=3.0,
+    end_s=123.0,
+    is_start_by_key=True,
+    is_end_by_key=False,
+    distance_m=132.4,
+    sensor_distance_m=132.4,
+    cadence_steps_min=104.0,
+    turns=(Turn(30.0, 33.0, -math.pi),),
+    pauses_s=((40.0, 43.5),),
+    laps=(TimedPart(3.0, 31.5, 30.0, 30.0 / 28.5, 104.0), TimedPart(31.5, 123.0, math.nan, math.nan, 103.0)),
+    thirds=tuple(TimedPart(3.0 + 40.0 * k, 43.0 + 40.0 * k, 44.0 - k, 1.1 - 0.025 * k, 104.0) for k in range(3)),
+    rises=(Rise(1.0, 2.0),),
+    silences=(Silence(Site.LEFT_FOOT, 50.0, 52.0),),
+    missing=(NotMeasured.SILENT,),
+    stairs=(StairStride(Side.LEFT, 13.0, 14.5, 0.34),),
+)
+
+
+@pytest.fixture(scope="module")
+def visit() -> AnalysedVisit:
+    """Two walks of the demonstration, the second a test."""
+    walks = (Walk(strides=12, standing_before_s=2.0), Walk("walk 2", strides=14, standing_before_s=2.0))
+    session = simulate(replace(DEMONSTRATION, recordings=(Standing(), *walks))).session
+    told = tuple(
+        replace(one, condition="=shoes", test=PlannedTest(TimedProtocol.TEN_METRES) if one.name == "walk 2" else None)
+        for one in session.recordings
+    )
+    session = replace(session, recordings=told)
+    return AnalysedVisit(session, analyse(session))
+
+
+def with_test(visit: AnalysedVisit, test: TimedTest | None) -> tuple[Session, Analysis]:
+    found = tuple(replace(one, timed=test if one.name == "walk 2" else None) for one in visit.analysis.recordings)
+    return visit.session, replace(visit.analysis, recordings=found)
+
+
+def rows(visit: AnalysedVisit, test: TimedTest | None) -> list[dict[str, str]]:
+    session, analysis = with_test(visit, test)
+    return [dict(zip(HEADER, row, strict=True)) for row in timed_rows(analysis, session.recordings)]
+
+
+def test_a_walk_that_is_a_test_is_timed_by_the_analysis_and_no_other_is(visit: AnalysedVisit) -> None:
+    first, second = [one for one in visit.analysis.recordings if one.kind is RecordingKind.WALKING]
+    assert first.timed is None
+    assert second.timed is not None
+    assert second.timed.distance_m == 10.0
+    assert second.timed.missing == ()
+    assert not {"halves", "halves_time", "drift"} & {
+        reason.gate for one in second.verdicts.legs.values() for reason in one.timing.reasons
+    }
+
+
+def test_the_table_has_a_row_for_everything_that_was_found(visit: AnalysedVisit) -> None:
+    found = rows(visit, TWO)
+    kinds = ["test", "third", "third", "third", "lap", "lap", "turn", "pause", "rise", "stair", "silence"]
+    assert [one["row"] for one in found] == kinds
+    test, lap, turn, pause = found[0], found[5], found[6], found[7]
+    assert (test["recording"], test["condition"], test["test"]) == ("walk_2", "'=shoes", "2 min")
+    assert (test["start_s"], test["end_s"], test["time_s"]) == ("3.000", "123.000", "120.000")
+    assert (test["distance_m"], test["started_by"], test["ended_by"]) == ("132.400", "key", "motion")
+    assert test["missing"] == "foot_sensor_silent"
+    assert (lap["start_s"], lap["distance_m"], lap["speed_m_s"]) == ("28.500", "", "")
+    assert (turn["start_s"], turn["turn_deg"]) == ("27.000", "-180.0")
+    assert (pause["start_s"], pause["time_s"]) == ("37.000", "3.500")
+    assert (found[9]["side"], found[9]["start_s"], found[9]["climb_m"]) == ("left", "10.000", "0.340")
+    assert found[10]["sensor"] == "left_foot"
+    assert rows(visit, None) == []
+
+
+def test_the_summary_tells_of_the_test_under_its_walk_and_of_no_other(visit: AnalysedVisit) -> None:
+    session, analysis = with_test(visit, replace(TWO, distance_m=math.nan))
+    walks = summarise(analysis, session.recordings)["walks"]
+    assert "timed_test" not in walks["walk 1"]
+    told = walks["walk 2"]["timed_test"]
+    assert (told["test"], told["time_s"], told["distance_m"], told["speed_m_s"]) == ("2 min", 120.0, None, None)
+    assert (told["laps"], told["turns"], told["pauses"], told["paused_s"]) == (2, 1, 1, 3.5)
+    assert told["stairs"]["up"] == {"strides": 1, "stride_time_s_mean": 1.5}
+    assert told["stairs"]["down"] == {"strides": 0, "stride_time_s_mean": None}
+    assert told["errors"][0]["unverified"] is False
+
+
+@pytest.mark.endurance
+def test_the_report_has_a_page_of_tests_where_there_were_some(visit: AnalysedVisit) -> None:
+    unknown = replace(TWO, distance_m=math.nan)
+    whole = ReportRequest(AnalysedVisit(*with_test(visit, TWO)), ("walk 2",), MADE_AT, "1.2.3")
+    request = ReportRequest(AnalysedVisit(*with_test(visit, unknown)), ("walk 2",), MADE_AT, "1.2.3")
+    assert "2-minute walk: 132 m, 1.10 m/s." in str(timed_page(whole, facts_of(whole)))
+    said = str(timed_page(request, facts_of(request)))
+    for words in (
+        "2-minute walk: no distance can be told.",
+        "First third 1.10 m/s, last third 1.05 m/s.",
+        "1 pause, 3.5 s.",
+        "The distance is not told",
+        "Third 3",
+        "Lap 2",
+        "start: first step after 1 s of standing still",
+    ):
+        assert words in said
+    without = ReportRequest(AnalysedVisit(*with_test(visit, None)), ("walk 2",), MADE_AT, "1.2.3")
+    assert timed_page(without, facts_of(without)) == []
+    assert len(report_data(request)["pages"]) == len(report_data(without)["pages"]) + 1
+    assert make_report(request).startswith(b"%PDF")
+
+
+def test_the_page_of_tests_shows_the_course_of_those_that_two_visits_have(visit: AnalysedVisit) -> None:
+    course = tuple(
+        CourseVisit(UUID(int=number), datetime.date(2026, 9 + number, 2), found)
+        for number, found in enumerate(
+            (
+                with_tests((TimedProtocol.TEN_METRES, 14.0), (TimedProtocol.UP_AND_GO, 30.0)),
+                with_tests((TimedProtocol.TEN_METRES, 10.0), (TimedProtocol.SIT_TO_STAND, 20.0)),
+            )
+        )
+    )
+    request = ReportRequest(AnalysedVisit(*with_test(visit, TWO)), ("walk 2",), MADE_AT, "1.2.3", course=course)
+    facts = facts_of(request)
+    assert list(charts_of_tests(course, "=shoes", facts)) == [TimedProtocol.TEN_METRES]
+    said = str(timed_page(request, facts))
+    assert "10-metre walk, m/s" in said
+    assert "half of the error of a change of speed, 0.20 m/s" in said
+    assert "they are not judged" not in said
+    assert charts_of_tests(course, "barefoot", facts) == {}
+    alone = replace(request, course=course[1:])
+    assert "Over the visits" not in str(timed_page(alone, facts))
+
+
+def with_tests(*tests: tuple[TimedProtocol, float]) -> Course:
+    walks = [(timed(one, time_s=time_s, name=f"walk {k}"), "=shoes") for k, (one, time_s) in enumerate(tests)]
+    return course_of_walks(*walks)

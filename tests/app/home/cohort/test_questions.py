@@ -1,0 +1,131 @@
+"""Questions from home: a table is chosen, asked beside the screen, remembered, saved, and gone when somebody leaves."""
+
+import csv
+from pathlib import Path
+
+import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtTest import QTest
+from pytestqt.qtbot import QtBot
+
+from app.cohort.study.groups import Grouping, GroupQuestion, answer
+from app.cohort.study.parameter_table import ParameterTable
+from app.home.cohort.cohort_page import QuestionsPage
+from app.home.home import QUESTIONS, Home
+from app.system.settings import Settings
+from tests.app.cohort.study.study_tables import MEASURE, random_rows, write_rows
+from tests.app.home.home_library import WAIT_MS
+from tests.app.watchdog import Watchdog
+
+
+@pytest.fixture
+def table(tmp_path: Path) -> Path:
+    (tmp_path / "batch").mkdir()
+    path = write_rows(random_rows(7, 30), tmp_path / "batch" / "parameters.parquet")
+    with ParameterTable.opened(path):  # imports what the product imports once, without pandas beside it
+        return path
+
+
+def asked(qtbot: QtBot, home: Home, table: Path) -> QuestionsPage:
+    home.rail.step_pressed.emit(QUESTIONS)
+    home.questions.open(table)
+    page = home.questions.page
+    qtbot.waitUntil(lambda: page.found is not None, timeout=WAIT_MS)
+    return page
+
+
+def test_home_leads_to_the_page_which_says_how_a_table_comes_to_be(home: Home) -> None:
+    row = home.rail.rows[QUESTIONS]
+    assert row.text() == "Questions"
+    row.click()
+    page = home.questions.page
+    assert home.current is page
+    assert page.first_table.hasFocus()
+    assert home.rail.rows[QUESTIONS].is_current
+    assert not home.bar.primary.isVisible()
+    home.escape()
+    assert home.page.isVisible()
+
+
+def test_a_table_is_asked_beside_the_screen_and_each_change_anew(
+    qtbot: QtBot, home: Home, table: Path, watchdog: Watchdog
+) -> None:
+    page = asked(qtbot, home, table)
+    assert page.sentence.text().startswith("Walking speed: means of ")
+    QTest.keyClicks(page.measure, "K")  # as a list of choices takes letters
+    wanted = GroupQuestion(MEASURE, Grouping.CONDITION)
+    qtbot.waitUntil(lambda: page.found is not None and page.found.question == wanted, timeout=WAIT_MS)
+    page.grouping.setCurrentIndex(page.grouping.findData("age"))  # while the first is asked, the last of these waits
+    page.grouping.setCurrentIndex(page.grouping.findData("side"))
+    page.included.choose("care")
+    wanted = GroupQuestion(MEASURE, Grouping.SIDE, has_care=True)
+    qtbot.waitUntil(lambda: page.found is not None and page.found.question == wanted, timeout=WAIT_MS)
+
+
+def test_what_is_shown_is_the_answer(qtbot: QtBot, home: Home, table: Path) -> None:
+    shown = asked(qtbot, home, table).found
+    assert shown is not None
+    with ParameterTable.opened(table) as opened:
+        wanted = answer(opened, shown.question)
+    assert [one.group for one in shown.rows] == [one.group for one in wanted.rows]
+    # two threads add up in any order
+    assert [one.mean for one in shown.rows] == pytest.approx([one.mean for one in wanted.rows], rel=1e-12, nan_ok=True)
+
+
+def test_everything_is_reached_by_tab_in_the_order_of_reading(qtbot: QtBot, home: Home, table: Path) -> None:
+    page = asked(qtbot, home, table)
+    page.choose_table.setFocus()
+    reached = []
+    for _ in range(6):
+        reached.append(home.focusWidget())
+        QTest.keyClick(home.focusWidget(), Qt.Key.Key_Tab)
+    included = next(one for one in page.included.segments if one.isChecked())
+    wanted = [page.choose_table, page.measure, page.grouping, included, page.simulated, page.table]
+    assert reached == wanted
+
+
+def test_what_is_in_sight_is_saved_with_all_its_numbers(qtbot: QtBot, home: Home, table: Path, tmp_path: Path) -> None:
+    page = asked(qtbot, home, table)
+    assert home.bar.primary.text() == "Save as CSV"
+    out = tmp_path / "groups.csv"
+    home.questions.write(out)
+    qtbot.waitUntil(lambda: "The groups are saved." in home.banner.text, timeout=WAIT_MS)
+    with out.open(newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert page.found is not None
+    assert [row["group"] for row in rows] == [one.group for one in page.found.rows]
+    assert [float(row["mean"]) for row in rows] == [one.mean for one in page.found.rows]
+    home.questions.write(tmp_path)  # a folder
+    qtbot.waitUntil(lambda: "cannot be saved" in home.banner.text, timeout=WAIT_MS)
+
+
+def test_the_last_table_is_asked_again_the_next_time(qtbot: QtBot, home: Home, settings: Settings, table: Path) -> None:
+    asked(qtbot, home, table)
+    assert settings.latest_table == str(table)
+    home.clear()
+    page = home.questions.page
+    assert (page.found, page.question) == (None, None)
+    home.rail.step_pressed.emit(QUESTIONS)
+    qtbot.waitUntil(lambda: page.found is not None, timeout=WAIT_MS)
+
+
+def test_a_table_that_is_gone_is_not_asked_for(home: Home, settings: Settings, tmp_path: Path) -> None:
+    settings.latest_table = str(tmp_path / "gone.parquet")
+    home.rail.step_pressed.emit(QUESTIONS)
+    assert not home.questions.page.refusal.isVisible()
+    assert home.questions.page.first_table.isVisible()
+
+
+def test_a_file_that_is_no_table_is_refused_in_words(
+    qtbot: QtBot, home: Home, settings: Settings, table: Path, tmp_path: Path
+) -> None:
+    page = asked(qtbot, home, table)
+    broken = tmp_path / "broken.parquet"
+    broken.write_bytes(b"PAR1")
+    home.questions.open(broken)
+    qtbot.waitUntil(page.refusal.isVisible, timeout=WAIT_MS)
+    assert "broken.parquet: this cannot be read as Parquet" in page.refusal.text
+    assert "gaitwright batch writes" in page.refusal.text
+    assert page.question is None
+    assert settings.latest_table == str(table)
+    assert not home.bar.primary.isVisible()

@@ -1,0 +1,43 @@
+"""The way into a library: what is offered where a clinic's server does not answer, and where it does."""
+
+from pytestqt.qtbot import QtBot
+
+from app.home.login.log_in_page import LogInPage
+from app.theme.notifier import ThemeNotifier
+
+
+def page_of(qtbot: QtBot, look: ThemeNotifier) -> LogInPage:
+    page = LogInPage(look, 10)
+    qtbot.addWidget(page)
+    page.show_operators(("hk", "ab"), latest="ab")
+    page.show()
+    return page
+
+
+def test_work_without_the_server_is_offered_only_where_it_does_not_answer(qtbot: QtBot, look: ThemeNotifier) -> None:
+    page = page_of(qtbot, look)
+    assert not page.work_away.isVisible()
+    page.passphrase.set_text("four short words here")
+    page.refuse("The clinic's server does not answer. Try again when it is back.")
+    page.offer_away()
+    assert page.work_away.isVisible()
+    with qtbot.waitSignal(page.away_wished) as wished:
+        page.work_away.click()
+    assert wished.args == ["ab", "four short words here"]
+    page.forget_typed()
+    assert not page.work_away.isVisible()
+
+
+def test_while_it_is_tried_it_is_not_tried_twice(qtbot: QtBot, look: ThemeNotifier) -> None:
+    page = page_of(qtbot, look)
+    page.offer_away()
+    page.show_busy(True)
+    with qtbot.assertNotEmitted(page.away_wished):
+        page.work_away.click()
+
+
+def test_the_cover_offers_no_other_library(qtbot: QtBot, look: ThemeNotifier) -> None:
+    page = page_of(qtbot, look)
+    page.offer_away()
+    page.show_cover("hk", is_recording=False)
+    assert not page.work_away.isVisible()

@@ -1,0 +1,62 @@
+"""What is said of recordings that nobody stopped is what their journals hold."""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import cast
+from uuid import uuid4
+
+import pytest
+
+from app.home.patients.recovering import _heard_messages
+from app.storage.journal.payloads import Footer
+from app.storage.journal.reader import ReadReport
+from app.storage.recovery import Recovered
+from app.storage.stored import StoredRecording
+from app.wizard.walk_messages import recovery_costs
+from core.samples import Recording, RecordingKind
+
+CUT = ReadReport(records=90)
+WHOLE = replace(CUT, footer=Footer("stopped", 0, 0))
+
+
+class Row:
+    """A recording's row, as far as it is said."""
+
+    id = uuid4()
+    details = Recording("walk 3", RecordingKind.WALKING, str(Path("walk_3")), {})
+
+
+def said(*reports: ReadReport) -> str:
+    heard = [Recovered(cast(StoredRecording, Row()), 74.2, (report,)) for report in reports]
+    ((what, then, _),) = _heard_messages(heard)
+    return f"{what} {then}"
+
+
+def test_a_recording_that_was_cut_short_tells_its_length_and_what_its_end_may_have_cost() -> None:
+    assert said(CUT) == (
+        "The program was closed while recording. 01:14 of walk 3 was recovered. It is kept up to the last record on "
+        f"the disk. Look at it, then keep or discard. {recovery_costs()}"
+    )
+    assert "0.1 s at most in 99 of 100 cases, a power cut up to 0.5 s and what the disk" in recovery_costs()
+
+
+def test_it_is_called_as_in_its_session_and_by_its_own_name_where_that_cannot_be_read() -> None:
+    heard = [Recovered(cast(StoredRecording, Row()), 74.2, (CUT,))]
+    for names, name in (({Row.id: "A2 Barefoot"}, "A2 Barefoot"), ({uuid4(): "A2 Barefoot"}, "walk 3")):
+        ((what, _, _),) = _heard_messages(heard, names)
+        assert what == f"The program was closed while recording. 01:14 of {name} was recovered."
+
+
+def test_one_of_which_only_the_row_was_left_open_is_whole() -> None:
+    assert "It is whole. Look at it" in said(WHOLE)
+    assert recovery_costs() not in said(WHOLE)
+    assert "whole" not in said(WHOLE, CUT)
+    assert "They are whole" in said(WHOLE, WHOLE)
+
+
+@pytest.mark.parametrize(("missing", "is_said"), [(0, False), (1, True), (4, True)])
+def test_records_that_are_missing_before_the_end_are_counted(missing: int, is_said: bool) -> None:
+    words = said(CUT, replace(CUT, missing_records=missing))
+    assert ("missing" in words) is is_said
+    assert ("4 records before it are missing and stay gaps." in words) is (missing == 4)
+    assert "2 recordings, 02:28 in all, were recovered." in words

@@ -1,0 +1,61 @@
+"""Two simulated visits that the report's tests share: a short one, and a prosthesis user's three alignments."""
+
+from dataclasses import replace
+from datetime import datetime, timedelta, timezone
+
+import pytest
+
+from app.summary.request import AnalysedVisit, ReportRequest
+from core.analysis import analyse
+from core.body import Side
+from core.samples import RecordingKind
+from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
+
+MADE_AT = datetime(2026, 11, 21, 22, 15, 30, tzinfo=timezone(timedelta(hours=1)))
+
+
+@pytest.fixture(scope="session")
+def demonstration() -> AnalysedVisit:
+    session = simulate(DEMONSTRATION).session
+    return AnalysedVisit(session, analyse(session))
+
+
+@pytest.fixture(scope="session")
+def one_leg() -> AnalysedVisit:
+    """The demonstration's left leg; the right one wears no sensor."""
+    told = simulate(DEMONSTRATION).session
+    recordings = tuple(
+        replace(r, imu={site: block for site, block in r.imu.items() if site.side is Side.LEFT})
+        for r in told.recordings
+    )
+    session = replace(told, recordings=recordings)
+    return AnalysedVisit(session, analyse(session))
+
+
+@pytest.fixture(scope="session")
+def alignments() -> AnalysedVisit:
+    walks = tuple(Walk(name=f"walk {k}", strides=13, speed_m_s=speed) for k, speed in ((1, 1.05), (2, 1.15), (3, 1.2)))
+    settings = replace(DEMONSTRATION, seed=7, prosthetic_side=Side.RIGHT)
+    told = simulate(replace(settings, recordings=(Standing(), FreeMotion(), *walks))).session
+    letters = iter("ABC")
+    recorded = tuple(
+        replace(r, condition=f"alignment {next(letters)}") if r.kind is RecordingKind.WALKING else r
+        for r in told.recordings
+    )
+    session = replace(told, recordings=recorded, started="2026-11-20T09:42:00+01:00")
+    return AnalysedVisit(session, analyse(session))
+
+
+@pytest.fixture
+def request_of_demonstration(demonstration: AnalysedVisit) -> ReportRequest:
+    return ReportRequest(demonstration, ("walk 1",), MADE_AT, "1.2.3")
+
+
+@pytest.fixture
+def request_of_one_leg(one_leg: AnalysedVisit) -> ReportRequest:
+    return ReportRequest(one_leg, ("walk 1",), MADE_AT, "1.2.3")
+
+
+@pytest.fixture
+def request_of_alignments(alignments: AnalysedVisit) -> ReportRequest:
+    return ReportRequest(alignments, ("walk 1", "walk 2", "walk 3"), MADE_AT, "1.2.3")

@@ -1,0 +1,111 @@
+"""The answer to a walk: each kind has a walk in which it must come, and one in which it must not."""
+
+import datetime
+from dataclasses import replace
+
+import pytest
+
+from app.summary.answer import Answer, Outcome, answer_of
+from app.summary.facts import Facts
+from app.summary.request import AnalysedVisit, ReportRequest
+from core.body import LEG_JOINTS, Joint, Side
+from core.goals import Goal, GoalOf
+from core.results import Analysis
+from tests.app.changed_analysis import recalibrated, rewalked, walk_of, with_few_strides
+from tests.app.reports.patient.test_what_stands_out import said, with_more
+
+
+@pytest.fixture
+def analysis(request_of_demonstration: ReportRequest) -> Analysis:
+    return request_of_demonstration.visit.analysis
+
+
+def answer(request: ReportRequest, analysis: Analysis) -> Answer:
+    return answer_of(Facts(AnalysedVisit(request.visit.session, analysis), walk_of(analysis)))
+
+
+def test_what_differs_most_is_the_answer_and_its_error_stands_beside_it(
+    request_of_demonstration: ReportRequest, analysis: Analysis
+) -> None:
+    found = answer(request_of_demonstration, with_more(analysis, Side.LEFT, "knee_range_rad", -20.0))
+    assert found.outcome is Outcome.DIFFERS
+    assert found.first == "The left knee moves 21.3° less over the stride than the right: 41.7° against 63.0°."
+    assert found.then.startswith("Measurement error between the legs: 9.")
+
+
+def test_where_nothing_exceeds_its_error_the_answer_is_that(
+    request_of_demonstration: ReportRequest, analysis: Analysis
+) -> None:
+    found = answer(request_of_demonstration, analysis)
+    assert (found.outcome, found.first) == (Outcome.NOTHING, "No difference is larger than its error.")
+    assert "within 2\u00a0SD of the band" in found.then
+
+
+def test_a_difference_that_is_told_in_the_table_alone_is_not_called_none(
+    request_of_demonstration: ReportRequest, analysis: Analysis
+) -> None:
+    ankle = with_more(analysis, Side.LEFT, "ankle_range_rad", -20.0)  # of which no error has been published
+    assert answer(request_of_demonstration, ankle).outcome is Outcome.OPEN
+
+
+@pytest.mark.parametrize(
+    ("left", "right", "outcome"), [(2, 2, Outcome.UNREADABLE), (2, 9, Outcome.OPEN), (12, 12, Outcome.NOTHING)]
+)
+def test_too_few_strides_are_counted(
+    request_of_demonstration: ReportRequest, analysis: Analysis, left: int, right: int, outcome: Outcome
+) -> None:
+    found = answer(request_of_demonstration, with_few_strides(analysis, left=left, right=right))
+    assert found.outcome is outcome
+    assert (found.first == "Too few strides for a mean: L\u00a02 and R\u00a02.") is (outcome is Outcome.UNREADABLE)
+
+
+def test_of_a_walk_without_strides_nothing_is_read(request_of_demonstration: ReportRequest, analysis: Analysis) -> None:
+    found = answer(request_of_demonstration, rewalked(analysis, gait={}))
+    assert found.outcome is Outcome.UNREADABLE
+    assert found.first.startswith("Nothing can be read of this walk")
+
+
+def test_what_is_withheld_is_no_answer_but_the_caveat_beside_it(
+    request_of_demonstration: ReportRequest, analysis: Analysis
+) -> None:
+    shortened = with_more(analysis, Side.LEFT, "knee_range_rad", -20.0)
+    found = answer(
+        request_of_demonstration, recalibrated(shortened, [Joint.LEFT_KNEE], is_same_joint=False, sign_margin=1.05)
+    )
+    assert "knee moves" not in found.first
+    assert found.then.endswith("Withheld: left knee.")
+
+
+def test_the_screen_and_the_report_say_the_same(request_of_demonstration: ReportRequest, analysis: Analysis) -> None:
+    for name, side, more in (("knee_range_rad", Side.RIGHT, -20.0), ("step_time_s", Side.LEFT, 0.2)):
+        changed = with_more(analysis, side, name, more)
+        first = answer(request_of_demonstration, changed).first.replace("\u00a0", " ")
+        assert any(sentence.startswith(first) for sentence in said(request_of_demonstration, changed))
+
+
+@pytest.mark.parametrize("joints", [LEG_JOINTS, (Joint.LEFT_KNEE, Joint.LEFT_ANKLE), (Joint.LEFT_KNEE,)])
+def test_where_no_angle_can_be_compared_it_is_said_before_what_times_tell(
+    request_of_demonstration: ReportRequest, analysis: Analysis, joints: tuple[Joint, ...]
+) -> None:
+    found = answer(request_of_demonstration, recalibrated(analysis, joints, is_same_joint=False, sign_margin=1.05))
+    assert found.outcome is Outcome.NOTHING
+    has_pair = joints == (Joint.LEFT_KNEE,)  # the ankles
+    assert found.first.startswith("No angle can be compared.") is not has_pair
+    assert found.first.startswith("No difference is larger than its error.") is has_pair
+
+
+def test_a_goal_agreed_before_is_answered_and_one_agreed_on_the_day_is_not(
+    request_of_demonstration: ReportRequest, analysis: Analysis
+) -> None:
+    session = request_of_demonstration.visit.session
+
+    def then(agreed: str) -> str:
+        goal = Goal("speed_m_s", GoalOf.WALK, 3.0, datetime.date.fromisoformat(agreed))
+        told = replace(session, started="2026-11-20", patient=replace(session.patient, goals=(goal,)))
+        return answer_of(Facts(AnalysedVisit(told, analysis), walk_of(analysis))).then
+
+    assert "Goal: Walking speed: at least 3.00\u00a0m/s; measured 1.18\u00a0m/s, short of it by more" in then(
+        "2026-11-19"
+    )
+    assert "Goal" not in then("2026-11-20")
+    assert "Goal" not in then("2026-11-21")

@@ -1,0 +1,198 @@
+"""The hips and the pelvis in the report: what is printed of them, what never is, and in how many pages."""
+
+import io
+import math
+from dataclasses import asdict, replace
+
+import pypdf
+import pytest
+
+from app.reports.blocks import Block
+from app.reports.patient.curves_page import curves_page
+from app.reports.patient.document import make_report
+from app.reports.patient.evidence import clocks_in_words, hips_table
+from app.reports.patient.first_page import first_page
+from app.reports.patient.peaks_table import peaks_table
+from app.reports.patient.pelvis_table import pelvis_table
+from app.summary.answer import answer_of
+from app.summary.data_quality import data_quality, one_time_in_words
+from app.summary.facts import Facts
+from app.summary.quality import caveats
+from app.summary.request import ReportRequest
+from app.wording.translation import use_language
+from core.body import Joint, JointKind, Side
+from core.gait.clocks import ClockTie
+from core.hip.results import ClockStatus, LegClock
+from core.results import Analysis, RecordingAnalysis
+from core.verdicts.model import Verdict
+from tests.app.changed_analysis import walk_of
+from tests.app.hip_visits import hip_analysis, hip_facts, hip_request
+from tests.core.hip.hip_sessions import rewalked, with_hip
+
+BOTH = (Joint.LEFT_HIP, Joint.RIGHT_HIP)
+
+
+def said(blocks: object) -> str:
+    """Every word of some blocks."""
+    if isinstance(blocks, str):
+        return blocks
+    if isinstance(blocks, dict):
+        return " ".join(said(one) for one in blocks.values())
+    return " ".join(said(one) for one in blocks) if isinstance(blocks, list | tuple) else ""
+
+
+def rows(blocks: list[Block]) -> dict[str, list[str]]:
+    """The rows of their tables by their first cell."""
+    found = {}
+    for block in blocks:
+        table = block.get("rows") if block["kind"] == "table" else None
+        for row in table if isinstance(table, list) else []:
+            if "cells" in row:
+                name, *cells = (cell["said"] for cell in row["cells"])
+                found[name] = cells
+    return found
+
+
+def with_clock(offset_s: float, sd_s: float, status: ClockStatus, tie: ClockTie = ClockTie.PELVIS) -> Analysis:
+    def changed(walk: RecordingAnalysis) -> RecordingAnalysis:
+        assert walk.clocks is not None
+        return replace(walk, clocks=replace(walk.clocks, tie=tie), leg_clock=LegClock(offset_s, sd_s, status))
+
+    return rewalked(hip_analysis(), changed)
+
+
+@pytest.mark.endurance
+def test_six_joints_are_counted_and_the_late_clock_is_told() -> None:
+    found = data_quality(hip_facts())
+    assert found.first == "All six joints can be read."
+    assert "found through the hips: the right leg's clock was 40 ms late, ± 5 ms" in found.in_order
+    assert found.lines == ()
+
+
+def test_a_withheld_hip_is_told_once_with_what_to_do() -> None:
+    found = data_quality(hip_facts(with_hip(hip_analysis(), Joint.LEFT_HIP, margin=1.2, is_3d=False)))
+    assert found.first == "5 of 6 joints can be read. Withheld: left hip."
+    (line,) = found.lines  # its abduction goes with it
+    assert line.where == "Left hip"
+    assert line.verdict is Verdict.WITHHELD
+
+
+def test_withheld_abduction_leaves_the_joints_to_be_read() -> None:
+    facts = hip_facts(with_hip(hip_analysis(), *BOTH, heading_sd_rad=math.radians(7.0), is_3d=False))
+    found = data_quality(facts)
+    assert found.first == "All six joints can be read."
+    (line,) = caveats(facts)
+    assert line.startswith("Abduction of ")
+    assert "known to 7.0° only (6.0° wanted)" in line
+
+
+@pytest.mark.parametrize(
+    ("offset_s", "sd_s", "status", "tie", "wanted"),
+    [
+        (0.04, 0.005, ClockStatus.FOUND, ClockTie.PELVIS, "the right leg's clock was 40 ms late, ± 5 ms"),
+        (-0.04, 0.002, ClockStatus.FOUND, ClockTie.PELVIS, "the left leg's clock was 40 ms late, ± 2 ms"),
+        (0.004, 0.005, ClockStatus.FOUND, ClockTie.PELVIS, "found through the hips to ± 5 ms"),
+        (0.001, 0.005, ClockStatus.PROVEN, ClockTie.ONE_CLOCK, "one time for both legs"),
+    ],
+)
+def test_how_the_legs_have_one_time_is_said(
+    offset_s: float, sd_s: float, status: ClockStatus, tie: ClockTie, wanted: str
+) -> None:
+    found = one_time_in_words(hip_facts(with_clock(offset_s, sd_s, status, tie)).walk)
+    assert found.endswith(wanted)
+
+
+@pytest.mark.parametrize(
+    ("offset_s", "sd_s", "status", "wanted"),
+    [
+        (0.04, 0.005, ClockStatus.FOUND, "found through the hips, the right leg's 40 ms late, 1 SD 5 ms, taken out."),
+        (-0.004, 0.005, ClockStatus.FOUND, "found through the hips, the left leg's 4 ms late, 1 SD 5 ms."),
+        (0.001, 0.005, ClockStatus.PROVEN, "proven to be one."),
+        (math.nan, math.nan, ClockStatus.WITHHELD, "not told by the hips."),
+    ],
+)
+def test_page_four_says_how_both_clocks_are_tied(
+    offset_s: float, sd_s: float, status: ClockStatus, wanted: str
+) -> None:
+    assert clocks_in_words(hip_facts(with_clock(offset_s, sd_s, status))) == f"Clocks of both legs: {wanted}"
+
+
+def test_the_gates_of_a_hip_stand_with_their_limits_and_what_failed_is_withheld() -> None:
+    table = rows(hips_table(hip_facts(with_hip(hip_analysis(), Joint.LEFT_HIP, margin=1.21))))
+    assert table["Sensors are neighbours, margin"][0] == "1.21"
+    assert table["Sensors are neighbours, margin"][2] == "at least 1.5"
+    assert table["Shape, range"][:2] == ["withheld", "can be read"]
+    assert table["Abduction"][:2] == ["withheld", "can be read"]
+    assert table["Heading of pelvis and thigh, 1 SD"][2] == "at most 6°, of abduction alone"
+
+
+def test_no_difference_of_hips_is_judged_and_rotation_is_named_as_unreadable() -> None:
+    facts = hip_facts()
+    table = rows(peaks_table(facts))
+    left, right, difference, error, judged, *_ = table["Abduction, range over the stride"]
+    assert left.endswith(tuple("0123456789"))
+    assert right != left
+    assert (difference != "–", error, judged) == (True, "–", "not judged")
+    assert "Rotation of the hip is not readable and not given." in said(peaks_table(facts))
+
+
+def test_no_sentence_tells_how_hips_or_pelvis_differ_however_much() -> None:
+    def stiffened(walk: RecordingAnalysis) -> RecordingAnalysis:
+        left = walk.gait[Side.LEFT]
+        halved = {
+            name: 0.4 * values if name.startswith(("hip", "pelvis")) else values
+            for name, values in left.parameters.items()
+        }
+        return replace(walk, gait={**walk.gait, Side.LEFT: replace(left, parameters=halved)})
+
+    facts = hip_facts(rewalked(hip_analysis(), stiffened))
+    assert rows(peaks_table(facts))["Abduction, range over the stride"][4] == "not judged"
+    words = said(list(asdict(answer_of(facts)).values())).casefold()
+    assert words
+    assert not [word for word in ("hip", "pelvis") if word in words]
+
+
+def test_the_pelvis_has_its_table_and_the_tilt_its_reason() -> None:
+    blocks = pelvis_table(hip_facts())
+    table = rows(blocks)
+    assert set(table) == {"Obliquity, range", "Drop in swing", "Rotation, range", "Lean, forward +", "Tilt, range"}
+    assert table["Tilt, range"] == ["withheld", "withheld"]
+    assert "up to 5.0° that is not told from measurement error" in said(blocks)
+    assert "1 turn." in said(blocks)
+
+
+def test_without_a_pelvis_nothing_of_it_is_printed(request_of_demonstration: ReportRequest) -> None:
+    visit = request_of_demonstration.visit
+    facts = Facts(visit, walk_of(visit.analysis))
+    assert hips_table(facts) == pelvis_table(facts) == []
+    assert "hip" not in said(peaks_table(facts)).casefold()
+    assert "hip" not in said(first_page(request_of_demonstration, facts, None)).casefold()
+
+
+def test_the_first_page_has_six_panels_and_a_withheld_hip_says_why() -> None:
+    request = hip_request(with_hip(hip_analysis(), Joint.LEFT_HIP, margin=1.2))
+    page = first_page(request, hip_facts(request.visit.analysis), None)
+    assert "Hip, knee and ankle over the stride" in said(page)
+    pictures = [panel["picture"] for panel in page["curves"]["panels"]]  # type: ignore[index]  # a block is plain JSON
+    assert len(pictures) == 6
+    assert "Withheld" in pictures[0]["alt"]
+    assert "Withheld" not in pictures[1]["alt"]
+
+
+def test_page_two_has_no_band_at_the_hip() -> None:
+    blocks = curves_page(hip_facts())
+    assert "At the hip it has another zero and is on page 1 alone." in said(blocks)
+    assert hip_facts().has_joint(JointKind.HIP)
+
+
+@pytest.mark.endurance
+@pytest.mark.parametrize("language", ["en", "de"])
+def test_a_report_with_hips_has_four_pages(language: str) -> None:
+    gated = with_hip(hip_analysis(), Joint.LEFT_HIP, margin=1.2, is_3d=False)
+    use_language(language)
+    try:
+        for analysis in (hip_analysis(), gated, with_hip(hip_analysis(), *BOTH, margin=1.2)):
+            pages = pypdf.PdfReader(io.BytesIO(make_report(hip_request(analysis)))).pages
+            assert len(pages) == 4
+    finally:
+        use_language("en")

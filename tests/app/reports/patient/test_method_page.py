@@ -1,0 +1,159 @@
+"""Does the last page of a walk say how it was measured, of this walk and nothing that nobody knows?"""
+
+import re
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from app.reports.patient.document import facts_of
+from app.reports.patient.how_measured import how_measured
+from app.summary.request import AnalysedVisit, ReportRequest
+from core.body import Side, Site
+from core.findings import Finding, Severity
+from core.results import AxisSource, Calibration, Method
+from core.samples import RateKind, SensorInfo
+
+ROOT = Path(__file__).parents[4]
+MTI = SensorInfo("0123", "MTi", "4.2", 100.0, RateKind.INSTANTANEOUS)
+
+
+def said(request: ReportRequest) -> dict[str, str]:
+    """The words under each title, without marks of direction."""
+    done, rest = how_measured(facts_of(request), "9.8.7")
+    return {title: re.sub("[\u2066-\u2069]", "", words) for title, words in (*done, *rest)}
+
+
+def with_sensors(request: ReportRequest, sensors: Mapping[Site, SensorInfo]) -> ReportRequest:
+    visit = request.visit
+    return replace(request, visit=AnalysedVisit(replace(visit.session, sensors=sensors), visit.analysis))
+
+
+def with_finding(request: ReportRequest, finding: Finding) -> ReportRequest:
+    visit = request.visit
+    findings = (*visit.analysis.findings, finding)
+    return replace(request, visit=AnalysedVisit(visit.session, replace(visit.analysis, findings=findings)))
+
+
+def test_the_page_of_the_method_says_how_it_was_measured(request_of_demonstration: ReportRequest) -> None:
+    told = said(with_sensors(request_of_demonstration, dict.fromkeys(Site, MTI)))
+    for title, words in {
+        "Sensors": "6 × MTi, firmware 4.2, set to 100 Hz, 100.0 Hz by their stamps, on thigh, shank and foot of both",
+        "Calibration": "from the patient's own free movement, the ankle's axis from the walks too: no posture",
+        "Angles": "VQF (Laidig, Seel 2023) forward and back, without magnetometer, time constant 3 s, from rates of "
+        "instants. An angle is the turn of the lower segment against the upper one about the joint's own axis: one of "
+        "its three",
+        "Events and strides": "Contact and toe\u2011off: from the pitch of the feet, of feet that hardly roll",
+        "How accurate, and on whom": "It has not been tested on patients",
+        "Software": "Gaitwright 9.8.7, the robust method",
+    }.items():
+        assert words in told[title], title
+    assert "Zero: the standing posture" in told["Calibration"]
+    assert "gaps up to 0.05 s are bridged" in told["Angles"]
+
+
+def test_what_no_sensor_told_is_said_to_be_unknown(request_of_demonstration: ReportRequest) -> None:
+    told = said(with_sensors(request_of_demonstration, {}))
+    assert told["Sensors"].startswith("6 × sensor whose model is not told, 100.0 Hz by their stamps, on ")
+    assert "Their measuring range is not in the recording" in told["Sensors"]
+    assert "from rates of a kind that is not told" in told["Angles"]
+    differing = {site: replace(MTI, model=f"model {k}") for k, site in enumerate(Site)}
+    assert said(with_sensors(request_of_demonstration, differing))["Sensors"].startswith("6 sensors of 6 models, ")
+    unlike = {site: replace(MTI, rate_hz=60.0 if site.side is Side.LEFT else 120.0) for site in Site}
+    assert "set to 60–120 Hz" in said(with_sensors(request_of_demonstration, unlike))["Sensors"]
+
+
+def test_what_a_sensor_says_of_itself_is_one_short_line(request_of_demonstration: ReportRequest) -> None:
+    told = said(
+        with_sensors(request_of_demonstration, dict.fromkeys(Site, replace(MTI, model="W\n" * 300, firmware="")))
+    )
+    words = told["Sensors"].replace("\u200b", "")
+    assert words.startswith("6 × W W W")
+    assert 20 < words.index("…") < 45
+
+
+def test_what_was_noticed_changes_what_is_said(request_of_demonstration: ReportRequest) -> None:
+    """The end of a range, averaged rates, feet without a sensor: each said where it was noticed of this walk only."""
+    request = with_sensors(request_of_demonstration, {})
+    walk = request.shown
+    plain = said(request)
+    assert "no samples lie at its end" in plain["Sensors"]
+    cases = [
+        (
+            Finding("clipped", Severity.WARNING, f"left_foot, {walk}", {"percent": 1.0}),
+            "Sensors",
+            "samples lie at its end, see",
+        ),
+        (
+            Finding("rate_kind_found", Severity.INFO, "session", {"kind": "averaged"}),
+            "Angles",
+            "rates averaged by the sensors",
+        ),
+        (
+            Finding("events_from_shank", Severity.INFO, f"left_foot, {walk}", {}),
+            "Events and strides",
+            "where a foot has no sensor",
+        ),
+    ]
+    for finding, title, words in cases:
+        assert words in said(with_finding(request, finding))[title]
+        assert words not in plain[title]
+    elsewhere = Finding("clipped", Severity.WARNING, "left_foot, another walk", {"percent": 1.0})
+    assert said(with_finding(request, elsewhere)) == plain
+
+
+def test_the_calibration_is_that_of_the_walk(request_of_demonstration: ReportRequest) -> None:
+    visit = request_of_demonstration.visit
+
+    def changed(**changes: Any) -> dict[str, str]:
+        calibrations = tuple(
+            Calibration(one.walks, {joint: replace(found, **changes) for joint, found in one.joints.items()})
+            for one in visit.analysis.calibrations
+        )
+        analysis = replace(visit.analysis, calibrations=calibrations)
+        return said(replace(request_of_demonstration, visit=AnalysedVisit(visit.session, analysis)))
+
+    assert "Rates at rest: from standing or other still moments." in said(request_of_demonstration)["Calibration"]
+    assert "from the walks themselves" in changed(axis_source=AxisSource.WALKING)["Calibration"]
+    assert "Rates at rest: unknown" in changed(gyro_bias_distal_rad_s=None)["Calibration"]
+    published = replace(visit.analysis, method=Method.PUBLISHED)
+    told = said(replace(request_of_demonstration, visit=AnalysedVisit(visit.session, published)))
+    assert "equation 15 of the published method" in told["Angles"]
+    assert "the published method (after Seel" in told["Software"]
+
+
+def test_only_what_was_worn_is_named(request_of_demonstration: ReportRequest) -> None:
+    visit = request_of_demonstration.visit
+
+    def worn(*sites: Site) -> str:
+        recordings = tuple(
+            replace(one, imu={site: block for site, block in one.imu.items() if site in sites})
+            for one in visit.session.recordings
+        )
+        session = replace(visit.session, recordings=recordings)
+        return said(replace(request_of_demonstration, visit=AnalysedVisit(session, visit.analysis)))["Sensors"]
+
+    assert "2 × simulated, " in worn(Site.LEFT_THIGH, Site.LEFT_SHANK)
+    assert ", on thigh and shank of the left leg, strapped" in worn(Site.LEFT_THIGH, Site.LEFT_SHANK)
+    assert ", on foot of the right leg, strapped" in worn(Site.RIGHT_FOOT)
+    assert ", on shank and foot of both legs, strapped" in worn(Site.RIGHT_FOOT, Site.LEFT_SHANK)
+
+
+def test_the_accuracy_is_what_was_measured(request_of_demonstration: ReportRequest) -> None:
+    """Each figure stands in the tables that the validation fills, or in the README beside its command."""
+    words = said(request_of_demonstration)["How accurate, and on whom"]
+    table = (ROOT / "resources" / "help" / "accuracy.md").read_text(encoding="utf-8")
+    hinges = re.findall(r"\| hinge 1D_0\d \| angle [^|]*\| ([\d.]+)° ", table)
+    assert "two mechanical hinges {}° and {}°".format(*hinges) in words
+    late_ms, *sd_ms = (
+        *re.findall(r"\| feet \| initial contact: [^|]*\| (?:[^|,]*, ){2}([\d.]+) ms", table),
+        *re.findall(r"\| feet \| (?:initial contact|toe-off): [^|]*\| (?:[^|,]*, ){3}([\d.]+) ms", table),
+    )
+    assert f"SD {sd_ms[0]} and {sd_ms[1]} ms, contacts {float(late_ms):.0f} ms after the optics'" in words
+    ((bias, spread),) = re.findall(r"\| feet \| stride length [^|]*\| -([\d.]+) %, ([\d.]+) cm", table)
+    assert f"stride length {bias} % short, SD {spread} cm" in words
+    readme = " ".join((ROOT / "README.md").read_text(encoding="utf-8").split())
+    knees = re.findall(
+        r"our knees came out at ([\d.]+)° and ([\d.]+)° and the ankles at ([\d.]+)° after removing", readme
+    )
+    assert "{}° and {}° at the knees, {}° at the ankles".format(*knees[0]) in words

@@ -1,0 +1,284 @@
+"""What does the report say where something is missing? Every case is said in words, and no number is invented."""
+
+import io
+import re
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+import pypdf
+import pytest
+
+from app.reports.patient.document import make_report, report_data
+from app.summary.request import AnalysedVisit, ReportRequest
+from core.body import LEG_JOINTS, Joint, Side, Site
+from core.findings import Finding, Severity
+from core.gait.strides import Reason
+from core.results import Analysis, SideGait, ZeroKind
+from tests.app.changed_analysis import recalibrated, rewalked, with_few_strides
+from tests.core.verdicts.built_walk import with_gaps
+
+pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
+
+
+def shown(request: ReportRequest) -> list[str]:
+    """Give the text of every page, in lines of one space."""
+    pages = pypdf.PdfReader(io.BytesIO(make_report(request))).pages
+    return [" ".join(page.extract_text().split()) for page in pages]
+
+
+def with_analysis(request: ReportRequest, analysis: Analysis) -> ReportRequest:
+    return replace(request, visit=AnalysedVisit(request.visit.session, analysis))
+
+
+def with_walk(request: ReportRequest, gait: Mapping[Side, SideGait]) -> ReportRequest:
+    return with_analysis(request, rewalked(request.visit.analysis, gait=gait))
+
+
+def gait_of(request: ReportRequest) -> Mapping[Side, SideGait]:
+    return request.visit.walk(request.shown).gait
+
+
+def with_joints(request: ReportRequest, *joints: Joint, **change: object) -> ReportRequest:
+    """Change some joints' calibrations alike; none named: all."""
+    return with_analysis(request, recalibrated(request.visit.analysis, joints or LEG_JOINTS, **change))
+
+
+def with_strides(request: ReportRequest, count: int) -> ReportRequest:
+    """Leave all but the first `count` strides of either side out, as turning."""
+    return with_analysis(request, with_few_strides(request.visit.analysis, left=count, right=count))
+
+
+def without_zero(request: ReportRequest) -> ReportRequest:
+    return with_joints(request, zero=ZeroKind.NONE)
+
+
+def readable(request: ReportRequest) -> dict[str, list[str]]:
+    """What page one's table says: shape, height and timing of each joint, then of both legs and of distance."""
+    told = report_data(request)["first_page"]["readable"]
+    rows = {row[0]["said"]: [cell["said"] for cell in row[1:]] for row in told["rows"]}
+    return rows | {label: [said] for label, _, said in told["wide"]}
+
+
+READ, CARE, WITHHELD = "can be read", "read with care", "withheld"
+
+
+def beside(request: ReportRequest, joint: str) -> list[str]:
+    """The words in the column beside a joint's panel of page one."""
+    panels = report_data(request)["first_page"]["curves"]["panels"]
+    panel = next(panel for panel in panels if "picture" in panel and f">{joint}, °" in panel["picture"]["svg"])
+    return [line["said"] for line in panel["lines"]]
+
+
+def test_without_a_zero_no_height_is_told(request_of_demonstration: ReportRequest) -> None:
+    request = without_zero(request_of_demonstration)
+    pages = shown(request)
+    assert readable(request)["Left knee"] == [READ, WITHHELD, READ]
+    assert "Height of all joints: No zero was set, so heights say nothing." in pages[0]
+    assert "none: heights are not shown" in pages[0]
+    assert "Knee range over the stride" in pages[0]
+    assert "from band" not in pages[0]
+    assert "Left knee, ° from its mean" in pages[0]
+    assert "laid at the height of each curve" in pages[0]  # a shape needs no zero
+    assert "degrees from the mean of the stride" in pages[1]
+    assert "without a zero there is no height to compare" in pages[1]
+    assert "At initial contact" not in pages[1]
+
+
+def test_one_leg_alone_is_not_compared(request_of_demonstration: ReportRequest) -> None:
+    gait = {Side.LEFT: gait_of(request_of_demonstration)[Side.LEFT]}
+    request = with_walk(request_of_demonstration, gait)
+    pages = shown(request)
+    assert list(readable(request)) == ["Left knee", "Left ankle", "Distance"]
+    assert "Right knee" not in pages[0]
+    assert "Stride time, s 1.08 ± 0.01 not measured – – – –" in pages[2]
+    assert "Range over the stride 61.7 ± 0.8 not measured – – – " in pages[1]
+    assert "against" not in pages[0].split("In short")[1].split("What may be read")[0]
+
+
+def test_without_a_foot_sensor_a_line_stands_in_place_of_the_ankle(request_of_demonstration: ReportRequest) -> None:
+    def knees_only(gait: SideGait) -> SideGait:
+        return replace(gait, cycles={joint: cycles for joint, cycles in gait.cycles.items() if joint.is_knee})
+
+    gait = {side: knees_only(g) for side, g in gait_of(request_of_demonstration).items()}
+    request = with_walk(request_of_demonstration, gait)
+    session = request.visit.session
+    recordings = tuple(
+        replace(r, imu={site: block for site, block in r.imu.items() if "foot" not in site}) for r in session.recordings
+    )
+    pages = shown(
+        replace(request, visit=AnalysedVisit(replace(session, recordings=recordings), request.visit.analysis))
+    )
+    assert "Ankle not measured: no sensor on the left and right foot." in pages[1]
+    assert "Ankle: how far it moves" not in pages[1]
+    assert "Left ankle: not measured, no sensor on L foot." in pages[0]
+
+
+def test_two_strides_make_no_mean_and_no_number(request_of_demonstration: ReportRequest) -> None:
+    request = with_strides(request_of_demonstration, 2)
+    pages = shown(request)
+    assert readable(request)["Right knee"] == [WITHHELD] * 3
+    assert "Both legs: Few strides (2 used, 3 wanted). Let the patient walk longer." in pages[0]
+    assert "±" not in pages[1].split("Range over the stride")[1].split("Windows in brackets")[0]
+    assert "Range over the stride withheld withheld – – – " in pages[1]
+    assert "exceeds" not in pages[1].split("Windows in brackets")[0]
+    assert beside(request, "Left knee") == ["Let the patient walk longer."]
+
+
+def test_single_strides_that_make_no_mean_are_drawn_each_with_its_letter(
+    request_of_demonstration: ReportRequest,
+) -> None:
+    panels = report_data(with_strides(request_of_demonstration, 2))["first_page"]["curves"]["panels"]
+    assert [panel["picture"]["svg"].count(">L<") for panel in panels] == [2, 0, 2, 0]
+    assert [panel["picture"]["svg"].count(">R<") for panel in panels] == [0, 2, 0, 2]
+    assert not any("Withheld" in panel["picture"]["svg"] for panel in panels)
+
+
+def test_five_strides_make_a_mean_without_a_spread(request_of_demonstration: ReportRequest) -> None:
+    request = with_strides(request_of_demonstration, 5)
+    page = report_data(request)["pages"][0]
+    (table,) = (block for block in page if block["kind"] == "table")
+    swing = next(row["cells"] for row in table["rows"] if "cells" in row and "swing (55" in row["cells"][0]["said"])
+    assert swing[1]["grey"] is swing[2]["grey"] is True
+    assert "±" not in swing[1]["said"]
+    assert swing[1]["said"].endswith("*")
+    assert "Both legs: Few strides (5 used, 10 wanted)." in shown(request)[0]
+
+
+def test_one_short_leg_does_not_hide_the_other(request_of_demonstration: ReportRequest) -> None:
+    request = with_analysis(request_of_demonstration, with_few_strides(request_of_demonstration.visit.analysis, left=2))
+    pages = shown(request)
+    assert readable(request)["Left knee"] == [WITHHELD] * 3
+    assert readable(request)["Right knee"] == [READ] * 3
+    assert "Left leg: Few strides (2 used, 3 wanted)." in pages[0]
+    assert re.search(r"Range over the stride withheld \d+\.\d ± \d\.\d – – –", pages[1])
+
+
+def test_no_stride_at_all_still_makes_a_report_of_one_page(request_of_demonstration: ReportRequest) -> None:
+    pages = shown(with_walk(request_of_demonstration, {}))
+    assert len(pages) == 1
+    assert "No foot or shank sensor told a stride of this walk." in pages[0]
+    assert "Nothing could be judged." in pages[0]
+    assert "Signature" in pages[0]
+
+
+def test_an_axis_beyond_its_limit_is_marked_and_a_worse_one_withheld(request_of_demonstration: ReportRequest) -> None:
+    request = with_joints(request_of_demonstration, axis_sd_rad=np.deg2rad(8.0))
+    pages = shown(request)
+    assert readable(request)["Left knee"] == readable(request)["Right ankle"] == [CARE, CARE, READ]
+    assert "All joints: The joint's axis is known to 8.0° only (6.5° wanted). Record free motion" in pages[0]
+    assert "0.9 *" in pages[1]
+    assert "*: read with care; page 1 says why." in pages[1]
+    request = with_joints(request_of_demonstration, Joint.LEFT_ANKLE, axis_sd_rad=np.deg2rad(9.5))
+    pages = shown(request)
+    assert readable(request)["Left ankle"] == [WITHHELD, WITHHELD, READ]
+    assert readable(request)["Left knee"] == [READ] * 3
+    assert "Left ankle: The joint's axis is known to 9.5° only (9.0° wanted)." in pages[0]
+    assert beside(request, "Left ankle")[0].startswith("Record free motion")
+    assert "*" not in pages[1]
+
+
+def test_an_uncertain_sign_leaves_the_range_alone(request_of_demonstration: ReportRequest) -> None:
+    pages = shown(with_joints(request_of_demonstration, Joint.LEFT_KNEE, is_sign_certain=False))
+    assert "All of left knee but the range: The motion does not tell flexion from extension" in pages[0]
+    assert "Not drawn: left knee, withheld." in pages[1]
+    assert "loading (5–30 %) withheld 14.0" in pages[1]
+    assert re.search(r"Range over the stride 61\.7 ± 0\.8 63\.0", pages[1])
+
+
+def test_sensors_that_are_no_neighbours_leave_no_number_of_their_joint(
+    request_of_demonstration: ReportRequest,
+) -> None:
+    usual = shown(request_of_demonstration)
+    request = with_joints(request_of_demonstration, Joint.RIGHT_ANKLE, is_same_joint=False, sign_margin=1.05)
+    pages = shown(request)
+    assert len(pages) == len(usual)
+    told = readable(request)
+    assert told["Right knee"] == [READ, READ, CARE]  # its foot's sensor may not be on this foot
+    assert told["Right ankle"] == [WITHHELD, WITHHELD, CARE]
+    assert told["Left knee"] == told["Left ankle"] == [READ] * 3
+    assert (told["Between the legs"], told["Distance"]) == ([READ], [CARE])
+    said = "Right ankle: The two sensors do not move as neighbours (margin 1.05, 1.50 wanted)."
+    assert said in pages[0].split("Key numbers")[0]
+    assert said in pages[0].split("In short")[1].split("What may be read")[0]  # the caveat
+    assert said in pages[1]
+    assert re.search(r"Ankle push\u2011off, ° \d+\.\d ± \d\.\d withheld – – no band", pages[0])
+    ankle = pages[1].split("Ankle: how far it moves")[1].split("Windows in brackets")[0]
+    assert ankle.count("withheld") == 10  # four movements, the range, five angles
+    assert "Not drawn: right ankle, withheld." in pages[1]
+    assert "Double support, % of stride withheld" in pages[2]
+    assert "withheld" not in "".join(usual[:3])
+
+
+def test_a_child_and_a_crawl_stand_beside_no_band(request_of_demonstration: ReportRequest) -> None:
+    session = request_of_demonstration.visit.session
+    child = replace(session, started="2026-11-20T09:42:00+01:00", patient=replace(session.patient, birth_year=2016))
+    visit = AnalysedVisit(child, request_of_demonstration.visit.analysis)
+    pages = shown(replace(request_of_demonstration, visit=visit))
+    assert "no band" in pages[0]
+    for page in pages:
+        assert "No band: the groups at hand are adults." in page
+
+
+def test_visits_with_different_zeros_are_compared_in_shape_and_range_only(
+    request_of_demonstration: ReportRequest,
+) -> None:
+    visit = request_of_demonstration.visit
+    unset = without_zero(request_of_demonstration).visit
+    pages = shown(replace(request_of_demonstration, earlier=unset))
+    page = pages[4]
+    assert "Zero is missing or differs in kind: only range and timing are compared." in page
+    assert "Left: knee, degrees from the mean (flexion +)" in page
+    assert "Band mean" not in page
+    assert "Knee: most flexed, swing withheld 58.8 ± 0.9 – – withheld" in page
+    assert re.search(r"Knee: range over the stride 61\.7 ± 0\.8 61\.7 ± 0\.8 0\.0 \d+\.\d inside error", page)
+    assert "degrees (flexion +" in shown(replace(request_of_demonstration, earlier=visit))[4]
+
+
+def test_gaps_and_slips_are_said(request_of_demonstration: ReportRequest) -> None:
+    analysis = request_of_demonstration.visit.analysis
+    slip = Finding("strap_slipped", Severity.WARNING, "walk 1, right_shank", {"from_s": 2.0, "turn_deg": 9})
+    changed = rewalked(
+        replace(analysis, findings=(*analysis.findings, slip)),
+        received={Site.LEFT_FOOT: with_gaps(4.2, gait_of(request_of_demonstration)[Side.LEFT])},
+        slipped_from_s={Side.RIGHT: 2.0},
+    )
+    request = with_analysis(request_of_demonstration, changed)
+    pages = shown(request)
+    assert "4.2 % (L foot)" in pages[0]
+    assert "slipped: R shank" in pages[0]
+    assert readable(request)["Left ankle"][:2] == [CARE, CARE]
+    remarks = pages[3].split("Remarks on this recording")[1]
+    assert "Gaps over 50 ms take 4.2 % of the strides used (1.0 % at most)." in remarks
+    assert "Right leg: A strap slipped from 2.0 s on" in remarks
+    assert "more remark on page 4." in pages[0] or "more remarks on page 4." in pages[0]
+
+
+def test_clocks_that_cannot_be_compared_are_said(request_of_demonstration: ReportRequest) -> None:
+    request = with_joints(request_of_demonstration, lag_sd_s=None, is_clock_shared=False)
+    pages, usual = shown(request), shown(request_of_demonstration)
+    assert len(pages) == len(usual)
+    assert readable(request)["Left knee"][:2] == [WITHHELD, WITHHELD]
+    assert "All joints: The motion does not show how far the two sensors' clocks are apart." in pages[0]
+    assert "not resolvable" in pages[0]
+    assert "not resolvable" not in usual[0]
+
+
+def test_strides_left_out_are_counted_by_their_reasons(request_of_demonstration: ReportRequest) -> None:
+    gait = gait_of(request_of_demonstration)
+    strides = gait[Side.LEFT].strides
+    reason = (Reason.TURN,) * 2 + (Reason.STOP,) + (Reason.USED,) * (len(strides) - 3)
+    left = replace(gait[Side.LEFT], strides=replace(strides, reason=reason))
+    page = shown(with_walk(request_of_demonstration, {**gait, Side.LEFT: left}))[0]
+    assert "L 2 turning, 1 stopping" in page
+    assert "mostly" not in page
+
+
+@pytest.mark.parametrize("simulated", [True, False])
+def test_simulated_data_say_so_everywhere_and_real_data_nowhere(
+    request_of_demonstration: ReportRequest, simulated: bool
+) -> None:
+    analysis = replace(request_of_demonstration.visit.analysis, is_simulated=simulated, findings=())
+    session = replace(request_of_demonstration.visit.session, sensors={})
+    request = replace(request_of_demonstration, visit=AnalysedVisit(session, analysis))
+    assert all(("SIMULATED" in page) is simulated for page in shown(request))

@@ -1,0 +1,80 @@
+"""Does the table of peaks tell each movement beside the heights, and nothing of one that has no extremes?"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from app.reports.patient.peaks_table import peaks_table
+from app.summary.facts import Facts
+from app.summary.request import AnalysedVisit, ReportRequest
+from core.body import Joint, Side
+from core.results import Analysis
+from core.verdicts.gates import judged
+from tests.app.changed_analysis import recalibrated, walk_of
+
+MOVEMENTS = ["Stance to swing", "Bend while loading", "Straightening in stance", "Range over the stride"]
+TIME = "Time of most flexion in swing, %"
+MOVEMENTS_OF_ANKLE = ["Push\u2011off", "Ankle rocker", "Heel rocker", "Toes lifted", "Range over the stride"]
+
+
+def groups(request: ReportRequest, analysis: Analysis) -> dict[str, dict[str, list[str]]]:
+    """The table's rows by their names, under the heads of their groups."""
+    blocks = peaks_table(Facts(AnalysedVisit(request.visit.session, analysis), walk_of(analysis)))
+    (table,) = (block for block in blocks if block["kind"] == "table")
+    rows, head = table["rows"], ""
+    found: dict[str, dict[str, list[str]]] = {}
+    assert isinstance(rows, list)
+    for row in rows:
+        if "group" in row:
+            head = row["group"]
+            found[head] = {}
+        else:
+            name, *cells = (cell["said"] for cell in row["cells"])
+            found[head][name] = cells
+    return found
+
+
+def test_movements_stand_before_the_angles_of_each_joint(request_of_demonstration: ReportRequest) -> None:
+    analysis = request_of_demonstration.visit.analysis
+    found = groups(request_of_demonstration, analysis)
+    heads = list(found)
+    assert heads[1].startswith("Knee: angles (flexion +); whole curve against the band: L")
+    assert heads[::2] == ["Knee: how far it moves", "Ankle: how far it moves"]
+    assert list(found["Knee: how far it moves"]) == [*MOVEMENTS, TIME]
+    assert list(found["Ankle: how far it moves"]) == MOVEMENTS_OF_ANKLE
+    left, right, difference, error, judged_as, *_ = found["Ankle: how far it moves"]["Push\u2011off"]
+    gait = walk_of(analysis).gait
+    means = [np.rad2deg(gait[s].parameters["ankle_push_off_rad"][gait[s].strides.is_used]).mean() for s in Side]
+    assert [left.split(" ± ")[0], right.split(" ± ")[0]] == [f"{mean:.1f}" for mean in means]
+    assert difference.replace("\u2212", "-") == f"{means[0] - means[1]:+.1f}"
+    assert judged_as == "inside"
+    assert error.endswith("\u2020")
+
+
+def test_a_movement_without_extremes_is_a_dash_and_its_peak_is_named(request_of_demonstration: ReportRequest) -> None:
+    analysis = request_of_demonstration.visit.analysis
+    recordings = []
+    for one in analysis.recordings:
+        gait = dict(one.gait)
+        if Side.LEFT in gait:
+            gone = {"knee_while_loading_rad", "knee_straightening_rad", "knee_loading_peak_rad"}
+            parameters = gait[Side.LEFT].parameters
+            flat = {
+                name: np.full_like(values, np.nan) if name in gone else values for name, values in parameters.items()
+            }
+            gait[Side.LEFT] = replace(gait[Side.LEFT], parameters=flat)
+        recordings.append(replace(one, gait=gait))
+    found = groups(request_of_demonstration, judged(replace(analysis, recordings=tuple(recordings))))
+    knee = found["Knee: how far it moves"]
+    assert knee["Bend while loading"][0] == knee["Bend while loading"][2] == "–"
+    assert knee["Stance to swing"][0] != "–"
+    heights = next(rows for head, rows in found.items() if head.startswith("Knee: angles (flexion +)"))
+    assert heights["Most flexed, loading (5–30\u00a0%)"][0] == "no peak"
+
+
+def test_without_a_sign_the_range_alone_is_told(request_of_demonstration: ReportRequest) -> None:
+    analysis = request_of_demonstration.visit.analysis
+    unsure = recalibrated(analysis, [Joint.LEFT_KNEE], is_sign_certain=False, clinical_sign_margin=0.1)
+    knee = groups(request_of_demonstration, unsure)["Knee: how far it moves"]
+    assert [knee[name][0] for name in MOVEMENTS[:3]] == ["withheld"] * 3
+    assert "±" in knee["Range over the stride"][0]

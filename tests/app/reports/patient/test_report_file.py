@@ -1,0 +1,83 @@
+"""Where a report may stand, what it is made from, and the subcommand that makes one."""
+
+import shutil
+from dataclasses import replace
+from pathlib import Path
+
+import pypdf
+import pytest
+
+from app.cli.main import main
+from app.reports.patient.report_file import check_report_place, chosen_walks, replace_report, session_of
+from app.summary.request import AnalysedVisit, default_walks
+from devices.files.refusal import FileRefusedError
+from devices.files.session_folder import write_session
+
+
+@pytest.fixture(scope="module")
+def session(demonstration: AnalysedVisit, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("visit") / "session"
+    write_session(demonstration.session, folder)
+    return folder
+
+
+def test_the_subcommand_makes_a_report_with_the_clinicians_words(session: Path, tmp_path: Path) -> None:
+    (tmp_path / "words.txt").write_text("Walks well with one crutch.", encoding="utf-8")
+    out = tmp_path / "new" / "report.pdf"
+    comment = ["--comment", str(tmp_path / "words.txt")]
+    assert main(["report", str(session), "--out", str(out), "--paper", "letter", *comment]) == 0
+    reader = pypdf.PdfReader(out)
+    assert [float(side) for side in reader.pages[0].mediabox[2:]] == [612, 792]
+    assert "Walks well with one crutch." in reader.pages[-1].extract_text()
+    assert list(out.parent.iterdir()) == [out]
+
+
+@pytest.mark.endurance
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--walk", "walk 9"], "there is no kept walk named walk 9. Choose of: walk 1."),
+        (["--walk", "walk 1"] * 4, "4 walks are too many for one report"),
+        (["--comment", "nowhere.txt"], "nowhere.txt: this cannot be read"),
+    ],
+)
+def test_what_cannot_be_reported_is_refused_in_one_line(
+    session: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], arguments: list[str], said: str
+) -> None:
+    assert main(["report", str(session), "--out", str(tmp_path / "report.pdf"), *arguments]) == 2
+    assert said in capsys.readouterr().err.splitlines()[-1]
+    assert not (tmp_path / "report.pdf").exists()
+
+
+def test_only_a_report_is_replaced(tmp_path: Path) -> None:
+    letter, report = tmp_path / "letter.txt", tmp_path / "report.pdf"
+    letter.write_text("Dear colleague")
+    replace_report(b"%PDF-1.7 old", report)
+    check_report_place(report)
+    check_report_place(tmp_path / "none.pdf")
+    for place in (letter, tmp_path):
+        with pytest.raises(FileRefusedError):
+            check_report_place(place)
+    replace_report(b"%PDF-1.7 new", report)
+    assert report.read_bytes() == b"%PDF-1.7 new"
+
+
+def test_results_lead_to_the_session_inside_them(session: Path, tmp_path: Path) -> None:
+    (tmp_path / "summary.json").write_text("{}")
+    with pytest.raises(FileRefusedError, match="without the recordings"):
+        session_of(tmp_path)
+    shutil.copytree(session, tmp_path / "session")
+    assert session_of(tmp_path) == tmp_path / "session"
+    assert session_of(session) == session
+
+
+def test_the_last_walk_of_each_condition_is_shown(alignments: AnalysedVisit) -> None:
+    assert default_walks(alignments) == ("walk 1", "walk 2", "walk 3")
+    recordings = tuple(replace(r, condition="") for r in alignments.session.recordings)
+    alike = AnalysedVisit(replace(alignments.session, recordings=recordings), alignments.analysis)
+    assert default_walks(alike) == ("walk 3",)
+    assert chosen_walks(alike, ["walk 2", "walk 1"], "session") == ("walk 2", "walk 1")
+    nothing = AnalysedVisit(alignments.session, replace(alignments.analysis, recordings=()))
+    assert default_walks(nothing) == ()
+    with pytest.raises(FileRefusedError, match="no kept walk"):
+        chosen_walks(nothing, [], "session")

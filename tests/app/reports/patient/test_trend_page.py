@@ -1,0 +1,205 @@
+"""The page of the course: values and errors are those of the visits, and a sentence comes beyond the error only."""
+
+import datetime
+import math
+import re
+from collections.abc import Sequence
+from dataclasses import replace
+from uuid import UUID
+
+import pytest
+
+from app.reports.blocks import Block
+from app.reports.patient.document import facts_of, report_data
+from app.reports.patient.trend_chart import TrendValue, trend_chart
+from app.reports.patient.trend_page import trend_page
+from app.summary.course import KNEE, Course
+from app.summary.course_lanes import CourseVisit
+from app.summary.request import AnalysedVisit, ReportRequest
+from core.body import Joint, Side
+from core.goals import Goal, GoalOf
+from core.timed.protocols import TimedProtocol
+from tests.app.course_material import course, timed, unsure, walked
+
+LEGS = (GoalOf.LEFT, GoalOf.RIGHT)
+DAYS = ("2026-09-02", "2026-09-16", "2026-09-30", "2026-10-28", "2026-11-25")
+
+
+def visits(*courses: Course | None) -> list[CourseVisit]:
+    return [
+        CourseVisit(UUID(int=number), datetime.date.fromisoformat(day), found)
+        for number, (day, found) in enumerate(zip(DAYS, courses, strict=False))
+    ]
+
+
+def walk(knee_deg: float = 50.0, speed_m_s: float = 1.0, condition: str = "", *, is_withheld: bool = False) -> Course:
+    told = unsure(Joint.LEFT_KNEE) if is_withheld else None
+    return course((walked(knee_deg=knee_deg, speed_m_s=speed_m_s, told=told), condition), told=told)
+
+
+def page(request: ReportRequest, seen: Sequence[CourseVisit], condition: str = "") -> list[Block]:
+    return trend_page(seen, condition, facts_of(request))
+
+
+def sentences(blocks: list[Block]) -> list[str]:
+    (found,) = (block["said"] for block in blocks if block["kind"] == "bullets")
+    assert isinstance(found, list)
+    return [str(one).replace("\u2212", "-").replace("\u00a0", " ") for one in found]
+
+
+def rows(blocks: list[Block]) -> dict[tuple[str, str], list[str]]:
+    (table,) = (block for block in blocks if block["kind"] == "table")
+    found = table["rows"]
+    assert isinstance(found, list)
+    cells = [[cell["said"].replace("\u2212", "-") for cell in row["cells"]] for row in found]
+    return {(name, side): rest for name, side, *rest in cells}
+
+
+def test_one_visit_or_two_without_a_common_condition_make_no_page(request_of_demonstration: ReportRequest) -> None:
+    assert page(request_of_demonstration, visits(walk())) == []
+    assert page(request_of_demonstration, visits(walk(condition="stick"), walk(condition="shoes")), "shoes") == []
+    assert page(request_of_demonstration, visits(None, walk())) == []
+
+
+def test_a_change_beyond_the_error_is_a_sentence_with_both_values(request_of_demonstration: ReportRequest) -> None:
+    found = sentences(page(request_of_demonstration, visits(walk(31), walk(36), walk(52))))
+    assert len(found) == 1
+    pattern = r"Left, knee bend from stance to swing: 31\.0° at visit 1, 52\.0° at visit 3; \+21\.0°, error"
+    assert re.search(pattern, found[0])
+    assert "Since visit 2 +16.0°: larger than the error." in found[0]
+
+
+def test_a_change_inside_the_error_is_none(request_of_demonstration: ReportRequest) -> None:
+    found = sentences(page(request_of_demonstration, visits(walk(50), walk(54))))
+    assert found == ["No change is larger than its error."]
+
+
+def test_a_withheld_visit_is_a_gap_and_the_change_counts_from_the_first_that_can_be_read(
+    request_of_demonstration: ReportRequest,
+) -> None:
+    seen = visits(walk(20, is_withheld=True), walk(31), walk(33), walk(35, is_withheld=True), walk(52))
+    blocks = page(request_of_demonstration, seen)
+    knee = rows(blocks)["Knee, stance to swing, °", "L"]
+    assert knee[:5] == ["withheld", "31.0", "33.0", "withheld", "52.0"]
+    assert knee[5:7] == ["+19.0", "+21.0"]
+    assert "31.0° at visit 2" in sentences(blocks)[0]
+
+
+def test_where_the_last_visit_is_withheld_nothing_is_said_of_a_change(request_of_demonstration: ReportRequest) -> None:
+    blocks = page(request_of_demonstration, visits(walk(31), walk(52), walk(52, is_withheld=True)))
+    assert rows(blocks)["Knee, stance to swing, °", "L"][3:] == ["–", "–", "–", "–"]
+    assert not any("knee" in one for one in sentences(blocks))
+
+
+def test_of_many_visits_the_table_has_the_first_and_the_latest(request_of_demonstration: ReportRequest) -> None:
+    days = [datetime.date(2026, 1, 1) + datetime.timedelta(weeks=k) for k in range(9)]
+    seen = [CourseVisit(UUID(int=k), day, walk(30 + k)) for k, day in enumerate(days)]
+    (table,) = (block for block in page(request_of_demonstration, seen) if block["kind"] == "table")
+    columns = table["columns"]
+    assert isinstance(columns, list)
+    assert [column["title"] for column in columns[2:8]] == ["1", "5", "6", "7", "8", "9"]
+
+
+def test_the_page_is_in_the_report_where_visits_were_given(request_of_demonstration: ReportRequest) -> None:
+    seen = visits(walk(31), walk(52))
+    without, with_it = (report_data(replace(request_of_demonstration, course=tuple(course))) for course in ((), seen))
+    assert len(with_it["pages"]) == len(without["pages"]) + 1
+    assert with_it["pages"][-1][0]["said"].startswith("Course over 2 visits, 2 Sep 2026 to 16 Sep 2026")
+
+
+@pytest.mark.parametrize("value", [0.7, 31.0, 60.0])
+def test_a_chart_says_its_values_and_joins_none_over_a_gap(value: float) -> None:
+    days = [datetime.date(2026, 9, 1), datetime.date(2026, 9, 8), datetime.date(2026, 9, 15)]
+    whole = [TrendValue(k, value * (1 + 0.1 * k), 0.05 * value) for k in range(3)]
+    gap = [whole[0], TrendValue(1, math.nan, math.nan), whole[2]]
+    drawn, broken = (trend_chart("Knee", 1, days, {Side.LEFT: values}, is_simulated=False) for values in (whole, gap))
+    assert f"1: {value:.1f}" in drawn.alt
+    assert "withheld" in broken.svg
+    assert "withheld" not in drawn.svg
+    joins = [svg.count('stroke-width="1.2"') for svg in (drawn.svg, broken.svg)]
+    assert joins == [2, 0]
+
+
+def with_goals(request: ReportRequest, *goals: Goal) -> ReportRequest:
+    """Of a visit on the last of the days."""
+    session = replace(request.visit.session, started=DAYS[-1])
+    told = replace(session, patient=replace(session.patient, goals=goals))
+    return replace(request, visit=AnalysedVisit(told, request.visit.analysis))
+
+
+def knee_goal(value: float, agreed: str = DAYS[1]) -> Goal:
+    return Goal(KNEE, GoalOf.LEFT, value, datetime.date.fromisoformat(agreed), "H. Keller")
+
+
+def test_a_goal_is_dotted_with_who_and_when_and_a_sentence_says_how_the_last_visit_stands(
+    request_of_demonstration: ReportRequest,
+) -> None:
+    seen = visits(*(walk(knee_deg=knee_deg) for knee_deg in (31.0, 36.0, 39.0, 45.0, 52.0)))
+    blocks = page(with_goals(request_of_demonstration, knee_goal(41.0)), seen)
+    assert sentences(blocks)[-1] == (
+        "Goal: Knee, stance to swing, left: at least 41°; measured 52.0°, reached by more than the error (9.3°). "
+        "First reached at visit 4."
+    )
+    (drawn,) = (block["pictures"] for block in blocks if block["kind"] == "figures")
+    assert "goal L 41°, agreed 16 Sep" in str(drawn)
+    assert "Keller" in str(drawn)
+    inside = sentences(page(with_goals(request_of_demonstration, knee_goal(55.0)), seen))[-1]
+    assert inside.endswith("short of it inside the error (9.3°), so not told from the goal.")
+
+
+def test_a_goal_agreed_on_the_day_of_the_visit_is_drawn_and_said_to_be_nothing(
+    request_of_demonstration: ReportRequest,
+) -> None:
+    seen = visits(*(walk(knee_deg=knee_deg) for knee_deg in (31.0, 36.0, 39.0, 45.0, 52.0)))
+    blocks = page(with_goals(request_of_demonstration, knee_goal(41.0, DAYS[-1])), seen)
+    assert not any(one.startswith("Goal") for one in sentences(blocks))
+    assert "goal L 41°" in str(blocks)
+    withheld = visits(*(walk(knee_deg=52.0, is_withheld=number == 4) for number in range(5)))
+    blocks = page(with_goals(request_of_demonstration, knee_goal(41.0)), withheld)
+    assert not any(one.startswith("Goal") for one in sentences(blocks))
+
+
+def test_a_measure_with_a_goal_has_a_chart_of_its_own_and_no_more_than_four_are_drawn(
+    request_of_demonstration: ReportRequest,
+) -> None:
+    seen = visits(walk(), walk())
+    stride = Goal("stride_length_m", GoalOf.RIGHT, 1.3, datetime.date.fromisoformat(DAYS[0]))
+    (drawn,) = (
+        block["pictures"]
+        for block in page(with_goals(request_of_demonstration, stride), seen)
+        if block["kind"] == "figures"
+    )
+    assert isinstance(drawn, list)
+    assert len(drawn) <= 4
+    assert "Stride length, m" in str(drawn)
+    assert "Stride length" not in str(page(request_of_demonstration, seen))
+
+
+def test_two_goals_of_one_chart_have_a_line_each_and_of_many_five_are_said(
+    request_of_demonstration: ReportRequest,
+) -> None:
+    seen = visits(walk(), walk(), walk())
+    agreed = datetime.date.fromisoformat(DAYS[0])
+    every = [Goal(column, of, 20.0, agreed) for column in (KNEE, "knee_range_deg", "ankle_range_deg") for of in LEGS]
+    blocks = page(with_goals(request_of_demonstration, *every), seen)
+    assert sum(one.startswith("Goal") for one in sentences(blocks)) == 5
+    (drawn,) = (block["pictures"] for block in blocks if block["kind"] == "figures")
+    lines = re.findall(r'y="([\d.]+)"[^>]*>· · · goal ([LR]) 20', str(drawn))
+    assert lines[:2] == [("17.00", "L"), ("27.00", "R")]
+
+
+def with_test(time_s: float, speed_m_s: float = 1.0, protocol: TimedProtocol = TimedProtocol.TEN_METRES) -> Course:
+    return course((walked(speed_m_s=speed_m_s), ""), (timed(protocol, time_s=time_s), ""))
+
+
+def test_timed_tests_stand_in_the_table_and_speed_is_told_once(request_of_demonstration: ReportRequest) -> None:
+    blocks = page(request_of_demonstration, visits(with_test(20.0, 0.6), with_test(8.0, 1.0)))
+    assert rows(blocks)["10-metre walk, m/s", ""] == ["0.50", "1.25", "–", "+0.75", "0.20†", "exceeds"]
+    told = [one for one in sentences(blocks) if "m/s" in one]
+    assert len(told) == 1
+    assert told[0].startswith("10-metre walk: 0.50 m/s at visit 1, 1.25 m/s at visit 2; +0.75 m/s, error between")
+    chair = visits(*(with_test(time_s, protocol=TimedProtocol.SIT_TO_STAND) for time_s in (30.0, 12.0)))
+    blocks = page(request_of_demonstration, chair)
+    assert rows(blocks)["Sit to stand, 5 ×, s", ""] == ["30.0", "12.0", "–", "-18.0", "–", "not judged"]
+    assert sentences(blocks) == ["No change is larger than its error."]
+    assert not any("10-metre" in name for name, _ in rows(page(request_of_demonstration, visits(walk(), walk()))))

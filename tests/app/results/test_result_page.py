@@ -1,0 +1,441 @@
+"""A walk as its mean cycle or as a whole: which views there are, their keys, and the words and figures beside them."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtGui import QAccessible
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QApplication, QLineEdit
+from pytestqt.qtbot import QtBot
+
+from app.results.beside_choice import Beside
+from app.results.cycle_page import NO_SIDE, NO_SPEED
+from app.results.result_page import ANSWER, COMPARE, STRIDES, WHOLE, ResultPage
+from app.summary.reference_bands import NOBODY, OTHER_AGES, WHY_NO_BAND
+from app.theme.notifier import ThemeNotifier, load_fonts
+from app.widgets.table import CellTable
+from app.widgets.table_cells import TextCell
+from core.analysis import analyse
+from core.body import LEG_JOINTS, Joint, Side
+from core.results import Analysis, SideGait, ZeroKind
+from core.samples import Session
+from core.verdicts.model import Verdict
+from core.verdicts.norms import AgeAndHeight, NoBand
+from core.verdicts.quantities import raw_values
+from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
+from tests.app.accessibility.accessible_tree import elements, wrong_hearing
+from tests.app.changed_analysis import recalibrated, rewalked, visit_of, walk_of, with_few_strides
+from tests.app.reports.patient.test_what_stands_out import with_more
+
+GROWN = AgeAndHeight(30, 1.70)
+WIDE, COMPACT = (1280.0, 672.0), (960.0, 472.0)  # of a window of 1280 x 800 and of 960 x 600 without a rail
+
+
+@cache
+def session() -> Session:
+    recordings = (Standing(), FreeMotion(), Walk(strides=13, speed_m_s=0.95))
+    return simulate(replace(DEMONSTRATION, recordings=recordings)).session
+
+
+@pytest.fixture(scope="module")
+def analysis() -> Analysis:
+    return analyse(session())
+
+
+def show(page: ResultPage, analysis: Analysis, who: AgeAndHeight = NOBODY) -> None:
+    page.show_visit(visit_of(analysis, session(), who))
+
+
+@pytest.fixture
+def page(qtbot: QtBot, qapp: QApplication, analysis: Analysis) -> ResultPage:
+    load_fonts()
+    look = ThemeNotifier()
+    look.set_dark(False)
+    page = ResultPage(look)
+    qtbot.addWidget(page)
+    page.resize(1280, 700)
+    page.set_room(*WIDE)
+    show(page, analysis)
+    with qtbot.waitActive(page):
+        page.show()
+        page.activateWindow()
+    return page
+
+
+def changed(analysis: Analysis, gait: Mapping[Side, SideGait]) -> Analysis:
+    """Give the analysis with another gait in its walk."""
+    return rewalked(analysis, gait=gait)
+
+
+def at_speed(analysis: Analysis, speed_m_s: float) -> Analysis:
+    """Give the analysis of a walk whose strides were as long as that speed makes them."""
+    gait = {}
+    for side, found in walk_of(analysis).gait.items():
+        length_m = speed_m_s * found.strides.time_s
+        parameters = {**found.parameters, "stride_length_m": length_m, "speed_m_s": length_m / found.strides.time_s}
+        gait[side] = replace(found, strides=replace(found.strides, length_m=length_m), parameters=parameters)
+    return changed(analysis, gait=gait)
+
+
+def with_prostheses(analysis: Analysis, *sides: Side) -> Analysis:
+    gait = {side: replace(found, is_toe_off_biased=side in sides) for side, found in walk_of(analysis).gait.items()}
+    return changed(analysis, gait=gait)
+
+
+def rows_of(page: ResultPage) -> dict[str, list[str]]:
+    rows = [line.split("\t") for line in page.cycles.peaks.table.as_text().split("\n")]
+    rows += [line.split("\t") for line in page.cycles.time_distance.table.as_text().split("\n")]
+    return {row[0]: row[1:] for row in rows}
+
+
+def row_named(table: CellTable, name: str) -> int:
+    return next(k for k, row in enumerate(table.cells.rows) if row.cells[0].words == name)
+
+
+def test_a_walk_opens_with_its_answer_its_mean_cycle_and_what_differs(page: ResultPage) -> None:
+    assert page.view.choice == ANSWER
+    for part in (page.answer, page.cycles, page.differs, page.key_figures, page.door):
+        assert part.isVisible()
+    assert page.differs.table.cells.rowCount() > 2
+    assert not page.cycles.peaks.isVisible()
+    assert not page.whole.charts.isVisible()
+    assert set(page.cycles.charts.knee.chart.cycles) == set(Side)
+
+
+def test_the_whole_walk_has_its_lanes_and_its_methods(page: ResultPage) -> None:
+    page.view.choose(WHOLE)
+    assert page.whole.charts.phases.isVisible()
+    assert page.whole.methods.isVisible()
+    for part in (page.answer, page.cycles, page.differs):
+        assert not part.isVisible()
+
+
+def test_free_motion_is_shown_whole_and_the_walk_comes_back_as_it_was_left(page: ResultPage) -> None:
+    page.recordings.setCurrentIndex(page.recordings.findText("free motion"))
+    assert page.view.choice == WHOLE
+    assert not page.view.isVisible()
+    assert not page.whole.charts.phases.isVisible()
+    page.recordings.setCurrentIndex(page.recordings.findText("walk 1"))
+    assert page.view.choice == ANSWER
+    assert page.view.isVisible()
+
+
+def test_a_walk_without_strides_says_so_and_shows_the_whole(page: ResultPage, analysis: Analysis) -> None:
+    show(page, changed(analysis, gait={}))
+    assert page.view.choice == WHOLE
+    assert page.view._segments[ANSWER].accessibleName() == "Answer, no strides"
+    show(page, analysis)
+    assert page.view.choice == ANSWER
+
+
+def test_where_room_is_short_the_key_figures_join_the_sentence(page: ResultPage) -> None:
+    page.set_room(*COMPACT)
+    assert not page.key_figures.isVisible()
+    assert not page.differs.isVisible()
+    assert "Walking speed" in page.answer.text
+    assert page.cycles.isVisible()
+    assert page.door.isVisible()
+    page.set_room(*WIDE)
+    assert "Walking speed" not in page.answer.text
+    assert page.key_figures.isVisible()
+
+
+def test_all_figures_take_the_curves_place_and_give_it_back(page: ResultPage) -> None:
+    page.focus()
+    QTest.keyClick(page, Qt.Key.Key_F)
+    assert page.all_figures.isChecked()
+    assert page.cycles.peaks.isVisible()
+    assert page.cycles.time_distance.isVisible()
+    assert not page.cycles.isVisible()
+    page.view.choose(WHOLE)
+    assert not page.cycles.peaks.isVisible()
+    page.view.choose(ANSWER)
+    QTest.keyClick(page, Qt.Key.Key_F)
+    assert page.cycles.isVisible()
+    assert not page.cycles.peaks.isVisible()
+
+
+def test_the_door_leads_to_what_can_be_read_and_back(page: ResultPage, analysis: Analysis) -> None:
+    assert page.door.words.startswith("Everything that was measured can be read.")
+    page.focus()
+    QTest.keyClick(page, Qt.Key.Key_Q)
+    assert page.quality.isVisible()
+    assert not page.cycles.isVisible()
+    assert page.quality.first.text() == "All four joints can be read."
+    assert page.leave_behind()
+    assert page.cycles.isVisible()
+    assert not page.leave_behind()
+    show(page, recalibrated(analysis, [Joint.LEFT_ANKLE], axis_sd_rad=np.deg2rad(11.0)))
+    assert page.door.words == "Left ankle: withheld. Record free motion, or move longer and in more directions."
+    page.door.click()
+    assert page.quality.first.text() == "3 of 4 joints can be read. Withheld: left ankle."
+
+
+def test_beside_leads_to_another_comparison_only_where_there_is_one(page: ResultPage) -> None:
+    offered = [page.beside.itemData(row) for row in range(page.beside.count())]
+    assert offered == [Beside.BAND, Beside.LEGS]  # one walk, and nobody reads earlier visits
+    page.beside.setCurrentIndex(1)
+    assert not page.cycles.charts.knee.chart.has_band
+    page.beside.setCurrentIndex(0)
+    assert page.cycles.charts.knee.chart.has_band
+
+
+def test_a_letter_typed_into_a_field_stays_there(qtbot: QtBot, page: ResultPage) -> None:
+    field = QLineEdit(page)
+    field.show()
+    field.setFocus()
+    QTest.keyClick(field, Qt.Key.Key_F)
+    assert field.text() == "f"
+    assert not page.all_figures.isChecked()
+
+
+def test_the_tables_hold_the_figures_of_the_strides_used(page: ResultPage, analysis: Analysis) -> None:
+    gait = walk_of(analysis).gait[Side.RIGHT]
+    used = gait.strides.is_used
+    peaks = raw_values(gait, "knee_swing_peak_deg")[used]
+    stance = gait.strides.stance_percent[used]
+    rows = rows_of(page)
+    assert rows["Swing peak"][1] == f"{np.mean(peaks):.1f} ± {np.std(peaks, ddof=1):.1f}"
+    assert rows["Stance %"][1] == f"{np.mean(stance):.1f} ± {np.std(stance, ddof=1):.1f}"
+    assert rows["Swing peak"][2] == ""  # at 0.95 m/s the curves of 1.25 m/s are no comparison
+    assert rows[""][1] == f"R, {np.count_nonzero(used)} strides"
+
+
+def test_under_ten_strides_no_spread_is_shown_and_under_three_no_mean(page: ResultPage, analysis: Analysis) -> None:
+    table = page.cycles.peaks.table
+    for count, has_spread, words in ((10, True, ""), (9, False, "*"), (2, False, "withheld")):
+        show(page, with_few_strides(analysis, left=count, right=count))
+        cell = table.cells.rows[row_named(table, "Swing peak")].cells[1]
+        assert isinstance(cell, TextCell)
+        assert ("±" in cell.small) is has_spread, count
+        assert cell.small.endswith(words), count
+        assert bool(cell.text) is (count > 2), count
+    assert "L and R: under 3 strides, so without a mean." in page.cycles.peaks.note.text()
+
+
+def test_a_cell_is_heard_with_its_joint_side_and_unit(page: ResultPage) -> None:
+    model = page.cycles.peaks.table.cells
+    said = [
+        str(model.data(model.index(row, column), Qt.ItemDataRole.AccessibleTextRole))
+        for row in range(model.rowCount())
+        for column in range(1, 4)
+    ]
+    assert any(text.startswith("Knee swing peak, left: ") and text.endswith("°") for text in said)
+    assert "Knee swing peak, reference band: no value" in said
+    times = page.cycles.time_distance.table.cells
+    cadence = str(times.data(times.index(1, 1), Qt.ItemDataRole.AccessibleTextRole))
+    assert cadence.startswith("Cadence, both sides: ")
+    assert cadence.endswith(" steps/min")
+
+
+def test_a_cell_to_be_read_with_care_says_so_to_who_hears_it(page: ResultPage, analysis: Analysis) -> None:
+    show(page, recalibrated(analysis, [Joint.LEFT_KNEE], axis_sd_rad=np.deg2rad(8.0)))
+    model = page.cycles.peaks.table.cells
+    swing = row_named(page.cycles.peaks.table, "Swing peak")
+    heard = [str(model.data(model.index(swing, k), Qt.ItemDataRole.AccessibleTextRole)) for k in (1, 2)]
+    assert heard[0].endswith("°, read with care")
+    assert heard[1].endswith("°")
+    assert rows_of(page)["Swing peak"][0].endswith(" *")
+    assert "* read with care." in page.cycles.peaks.note.text()
+    chips = page.cycles.charts.knee.chips
+    assert {side: chip.verdict for side, chip in chips.items()} == {Side.LEFT: Verdict.CARE, Side.RIGHT: Verdict.READ}
+    assert page.door.words.startswith("Left knee: read with care. The joint's axis is known to 8.0° only")
+    show(page, analysis)
+    assert "care" not in page.cycles.peaks.note.text() + page.door.words
+
+
+def test_the_source_of_the_band_and_both_speeds_are_printed(page: ResultPage, analysis: Analysis) -> None:
+    show(page, at_speed(analysis, 1.2), who=GROWN)
+    told = page.cycles.band_words
+    for part in ("24 young adults", "treadmill", "1.25 m/s", "Fukuchi", "2018", "This walk: 1.20"):
+        assert part in told
+    assert "32 of 42 adults, 24 young and 18 older" in page.cycles.time_distance.note.text()
+    assert rows_of(page)["Swing peak"][2] == "59 to 66"
+    assert rows_of(page)["Range"][2] == ""
+
+
+@pytest.mark.parametrize(
+    ("speed_m_s", "who", "why"),
+    [
+        (1.2, AgeAndHeight(30, 1.70), None),
+        (1.2, AgeAndHeight(9, 1.30), NoBand.CHILD),
+        (1.09, AgeAndHeight(30, None), NoBand.HEIGHT_MISSING),
+        (0.9, AgeAndHeight(30, 1.70), NoBand.OTHER_SPEED),
+        (1.6, AgeAndHeight(30, 1.70), NoBand.OTHER_SPEED),
+        (np.nan, AgeAndHeight(30, 1.70), NoBand.SPEED_UNKNOWN),
+    ],
+)
+def test_a_band_is_drawn_only_where_it_may_stand_and_else_said_why_not(
+    page: ResultPage, analysis: Analysis, speed_m_s: float, who: AgeAndHeight, why: NoBand | None
+) -> None:
+    show(page, at_speed(analysis, speed_m_s), who=who)
+    told = page.cycles.band_words
+    assert (page.cycles.charts.knee.chart.band is not None) is (why is None)
+    assert [one for one, words in WHY_NO_BAND.items() if words in told] == ([] if why is None else [why])
+    assert (NO_SPEED in told) is bool(np.isnan(speed_m_s))
+
+
+def test_a_band_of_other_ages_says_so(page: ResultPage, analysis: Analysis) -> None:
+    for age, is_other in ((30, False), (62, True)):
+        show(page, at_speed(analysis, 1.2), who=AgeAndHeight(age, 1.7))
+        assert (OTHER_AGES in page.cycles.band_words) is is_other
+
+
+def test_a_prosthetic_leg_has_no_band(page: ResultPage, analysis: Analysis) -> None:
+    walk = at_speed(analysis, 1.2)
+    show(page, with_prostheses(walk, Side.RIGHT), who=GROWN)
+    assert "The band is for the left leg alone." in page.cycles.band_words
+    show(page, with_prostheses(walk, *Side), who=GROWN)
+    assert NO_SIDE in page.cycles.band_words
+    assert page.cycles.charts.knee.chart.band is None
+    show(page, walk, who=GROWN)
+    assert "alone" not in page.cycles.band_words
+
+
+def test_the_same_doubt_stands_in_chart_and_table(page: ResultPage, analysis: Analysis) -> None:
+    show(page, recalibrated(analysis, [Joint.LEFT_KNEE], is_sign_certain=False))
+    assert page.cycles.charts.knee.note.startswith("L: sign unsure.")
+    assert rows_of(page)["Swing peak"][0] == "sign unsure"
+    assert "sign unsure" not in rows_of(page)["Swing peak"][1]
+
+
+def test_a_withheld_ankle_has_no_number_and_no_curve_and_says_what_to_do(page: ResultPage, analysis: Analysis) -> None:
+    show(page, recalibrated(analysis, [Joint.RIGHT_ANKLE], is_same_joint=False, sign_margin=1.05))
+    rows = rows_of(page)
+    for name in ("Stance dorsiflexion", "Push-off plantarflexion", "Swing dorsiflexion"):
+        assert rows[name][1] == "withheld"
+        assert rows[name][0] != "withheld"
+    assert rows["Double support %"][0] == "withheld"
+    panel = page.cycles.charts.ankle.withheld
+    assert (panel[Side.RIGHT].isVisible(), panel[Side.LEFT].isVisible()) == (True, False)
+    assert panel[Side.RIGHT].text.startswith("Withheld. The two sensors do not move as neighbours")
+    assert "record free motion" in page.door.words
+    assert "Right ankle: The two sensors do not move as neighbours" in page.cycles.peaks.note.text()
+    show(page, analysis)
+    assert not panel[Side.RIGHT].isVisible()
+    assert "neighbours" not in page.cycles.peaks.note.text()
+
+
+def test_one_side_alone_has_its_column_alone(page: ResultPage, analysis: Analysis) -> None:
+    show(page, changed(analysis, gait={Side.RIGHT: walk_of(analysis).gait[Side.RIGHT]}))
+    table = page.cycles.peaks.table
+    assert table.isColumnHidden(1)
+    assert not table.isColumnHidden(2)
+    assert set(page.cycles.charts.knee.chart.cycles) == {Side.RIGHT}
+    assert page.whole.charts.phases.lanes.lanes.keys() == {Side.RIGHT}
+
+
+def test_the_answer_stands_over_the_mean_cycle_and_nothing_scrolls_for_it(page: ResultPage, analysis: Analysis) -> None:
+    in_wizard = (1064.0, 672.0)  # of a window of 1280 x 800 with its rail
+    page.set_room(*in_wizard)
+    show(page, analysis)
+    assert page.answer.text.startswith("No difference is larger than its error.")
+    show(page, with_more(analysis, Side.LEFT, "knee_range_rad", -20.0))
+    assert page.answer.text.startswith("The left knee moves ")
+    assert page.minimumSizeHint().height() <= in_wizard[1]
+    for view in (WHOLE, STRIDES):
+        page.view.choose(view)
+        assert not page.answer.isVisible(), view
+    show(page, changed(analysis, gait={}))
+    page.view.choose(WHOLE)
+    assert page.answer.isVisible()
+    assert page.answer.text.startswith("Nothing can be read of this walk")
+
+
+@pytest.mark.parametrize("room", [(1064.0, 672.0), (1150.0, 640.0)])  # of windows of 1280 x 800 and 1366 x 768
+def test_no_view_scrolls_in_the_windows_of_laptops(
+    page: ResultPage, analysis: Analysis, room: tuple[float, float]
+) -> None:
+    page.set_room(*room)
+    show(page, analysis)
+
+    def height() -> float:
+        layout = page.layout()
+        assert layout is not None
+        return layout.minimumHeightForWidth(round(room[0]))
+
+    for view in (ANSWER, WHOLE, STRIDES, COMPARE):
+        page.view.choose(view)
+        page.view.chosen.emit(view)
+        assert height() <= room[1], view
+    page.view.choose(ANSWER)
+    page.view.chosen.emit(ANSWER)
+    page.show_legs.click()
+    assert page.legs.isVisible()
+    assert height() <= room[1]
+
+
+@pytest.mark.parametrize("joints", [LEG_JOINTS, (Joint.RIGHT_KNEE,)])
+def test_without_a_zero_marks_stand_on_the_curves_as_they_are_drawn(
+    page: ResultPage, analysis: Analysis, joints: tuple[Joint, ...]
+) -> None:
+    """Their height was taken away twice."""
+    found = with_more(analysis, Side.LEFT, "knee_stance_to_swing_rad", -20.0)
+    show(page, recalibrated(found, joints, zero=ZeroKind.NONE))
+    chart = page.cycles.charts.knee.chart
+    (marked,) = chart.deviations
+    for point in marked.points:
+        drawn = chart.cycles[point.joint.side].mean.mean
+        assert point.angle_deg == pytest.approx(drawn[round(point.percent)], abs=1e-6)
+
+
+def test_where_heights_alone_are_withheld_no_joint_is_called_so(page: ResultPage, analysis: Analysis) -> None:
+    show(page, recalibrated(analysis, LEG_JOINTS, zero=ZeroKind.NONE))
+    assert page.door.words.startswith("Height of all joints: withheld.")
+    show(page, recalibrated(analysis, LEG_JOINTS, is_same_joint=False, sign_margin=1.05))
+    assert page.door.words.startswith("All joints: withheld.")
+
+
+def test_that_a_living_joint_is_no_hinge_is_no_finding(page: ResultPage, analysis: Analysis) -> None:
+    assert "not_a_hinge" in {finding.key for finding in analysis.findings}
+    said = page.quality.findings.accessibleDescription()
+    assert "simulated" in said
+    assert "more than one axis" not in said
+
+
+def test_legs_stand_beside_the_curves_in_step_with_their_cursor(page: ResultPage) -> None:
+    page.focus()
+    QTest.keyClick(page, Qt.Key.Key_G)
+    assert page.legs.isVisible()
+    assert not page.differs.isVisible()
+    page.legs.show_percent(72.0)
+    knee = page.cycles.charts.knee.chart
+    assert knee.readings[Side.LEFT] == pytest.approx(72.0)
+    assert knee.readings[Side.RIGHT] == pytest.approx(22.0, abs=3.0)
+    at = knee.at(30.0, 20.0).toPoint()
+    QTest.mouseClick(knee, Qt.MouseButton.LeftButton, pos=at)
+    assert page.legs.percent == pytest.approx(30.0, abs=1.0)
+    page.show_legs.click()
+    assert not page.legs.isVisible()
+    assert knee.readings == {}
+    assert page.differs.isVisible()
+
+
+def test_the_views_are_heard_before_what_they_show_in_every_room(page: ResultPage) -> None:
+    for room in (COMPACT, WIDE, (700.0, 600.0)):
+        page.set_room(*room)
+        for view in (ANSWER, COMPARE, WHOLE, STRIDES):
+            page.view.choose(view)
+            assert wrong_hearing(page) == []
+            heard = [one.name for one in elements(page)]
+            assert heard.index("View") == min(k for k, name in enumerate(heard) if name)
+
+
+def test_a_folded_part_is_told_as_not_checked_and_is_heard_only_unfolded(page: ResultPage) -> None:
+    folds = {page.show_legs: page.legs, page.all_figures: page.cycles.peaks.table}
+    folds[page.quality.engineering] = page.quality.facts
+    for fold, part in folds.items():
+        if fold is page.quality.engineering:
+            page.door.click()
+        for is_unfolded in (False, True, False):
+            told = elements(page)
+            (toggle,) = (one for one in told if (one.kind, one.name) == ("Toggle", fold.text()))
+            assert (toggle.role, toggle.is_checked) == (QAccessible.Role.CheckBox, is_unfolded)
+            named = (type(part).__name__, part.accessibleName())
+            assert any((one.kind, one.name) == named for one in told) is is_unfolded
+            fold.click()
+        fold.click()

@@ -1,0 +1,211 @@
+"""What a visit gives its patient's course: each condition by itself, judged by what is kept alone, and as kept."""
+
+import json
+import math
+from dataclasses import replace
+
+import pytest
+
+from app.summary.comparison import Comparison, Contrast
+from app.summary.conditions import conditions_of
+from app.summary.course import (
+    KNEE,
+    OF_A_LEG,
+    SPEED,
+    STANCE,
+    Course,
+    CourseCondition,
+    change,
+    course_from_json,
+    course_in_json,
+    course_of,
+)
+from app.summary.measures import CADENCE
+from core.body import Joint, Side
+from core.samples import Recording
+from core.timed.measures import COLUMNS
+from core.timed.protocols import TimedProtocol
+from core.verdicts.measurement_error import Judgement
+from core.verdicts.model import Verdict
+from core.verdicts.quantities import OF_HIPS
+from tests.app.course_material import analysis, course, recordings, timed, unsure, walked
+from tests.core.verdicts.built_walk import calibrations, judged_walk
+
+
+def only(found: Course) -> CourseCondition:
+    (one,) = found.conditions
+    return one
+
+
+def test_each_condition_is_told_by_itself_and_its_walks_together() -> None:
+    found = course(
+        (walked("walk 1", speed_m_s=1.0), "shoes"),
+        (walked("walk 2", speed_m_s=0.6), "stick"),
+        (walked("walk 3", speed_m_s=1.2), "shoes"),
+    )
+    assert [one.condition for one in found.conditions] == ["shoes", "stick"]
+    shoes, stick = (one.figure(SPEED) for one in found.conditions)
+    assert shoes is not None
+    assert stick is not None
+    assert shoes.found.mean == pytest.approx(1.1)
+    assert stick.found.mean == pytest.approx(0.6)
+    assert [one.strides for one in found.conditions] == [48, 24]
+
+
+def test_of_two_strappings_the_last_counts() -> None:
+    walks = [(walked("walk 1", knee_deg=40.0), "shoes"), (walked("walk 2", knee_deg=50.0), "shoes")]
+    told = recordings(*walks)
+    told[1] = replace(told[1], is_restrapped_before=True)
+    found = only(course_of(analysis(*(one for one, _ in walks)), told))
+    knee = found.figure(KNEE, Side.LEFT)
+    assert knee is not None
+    assert knee.found.mean == pytest.approx(50.0)
+    assert found.strides == 24
+
+
+def test_a_figure_has_half_of_the_error_between_visits_for_its_whisker() -> None:
+    """Two visits alike in all but the mean: the error of their difference is twice the whisker."""
+    one, other = only(course((walked(knee_deg=50.0), ""))), only(course((walked(knee_deg=70.0), "")))
+    for column, side in ((KNEE, Side.LEFT), (SPEED, None)):
+        figure, found = one.figure(column, side), change(other, one, column, side)
+        assert figure is not None
+        assert found is not None
+        assert found.error == pytest.approx(2 * figure.whisker)
+    knee = change(other, one, KNEE, Side.LEFT)
+    assert knee is not None
+    assert knee.exceeds
+    assert knee.difference == pytest.approx(20.0)
+    assert knee.is_unverified
+
+
+def test_a_change_is_judged_as_the_comparison_of_visits_judges_it() -> None:
+    """Home and Compare say the same: also where the walks' speeds differ, and a lag is unsure."""
+    told = calibrations(Joint.LEFT_KNEE, lag_sd_s=0.004)
+    first, last = walked(knee_deg=40.0, speed_m_s=0.7, told=told), walked(knee_deg=52.0, speed_m_s=1.1, told=told)
+    parts = [conditions_of(analysis(one, told=told), recordings((one, "shoes")))[0] for one in (first, last)]
+    compared = {
+        (row.measure.column, row.side): row.difference for row in Comparison(Contrast.VISITS, tuple(parts)).rows
+    }
+    courses = [only(course((one, "shoes"), told=told)) for one in (first, last)]
+    assert change(courses[1], courses[0], KNEE, Side.LEFT) == compared[KNEE, Side.LEFT]
+    assert change(courses[1], courses[0], KNEE, Side.RIGHT) == compared[KNEE, Side.RIGHT]
+    assert change(courses[1], courses[0], SPEED) == compared[SPEED, Side.LEFT]
+
+
+def test_what_is_withheld_leaves_a_gap_and_is_named() -> None:
+    told = unsure(Joint.LEFT_KNEE)
+    found = only(course((walked(told=told), "shoes"), told=told))
+    knee, sound = (found.figure(KNEE, side) for side in Side)
+    assert knee is not None
+    assert sound is not None
+    assert (knee.verdict, knee.is_told) == (Verdict.WITHHELD, False)
+    assert math.isnan(knee.found.mean)
+    assert math.isnan(knee.whisker)
+    assert sound.is_told
+    assert found.withheld == (Joint.LEFT_KNEE,)
+    readable = only(course((walked(), "shoes")))
+    judged = change(readable, found, KNEE, Side.LEFT)
+    assert judged is not None
+    assert judged.judgement is Judgement.WITHHELD
+    assert readable.withheld == ()
+
+
+def test_two_strides_are_no_mean() -> None:
+    found = only(course((walked(strides=2), "shoes")))
+    for one in found.figures:
+        assert not one.is_told
+    assert found.strides == 4
+
+
+def test_stance_between_the_legs_is_told_where_both_are() -> None:
+    found = only(course((walked(stance_percent=64.0), "shoes"))).between_legs(STANCE)
+    assert found is not None
+    assert found.difference == pytest.approx(4.0)
+    assert found.exceeds
+    one_leg = walked()
+    one_leg = replace(one_leg, gait={Side.LEFT: one_leg.gait[Side.LEFT]})
+    assert only(course((one_leg, "shoes"))).between_legs(STANCE) is None
+
+
+def test_the_toe_off_of_a_prosthesis_is_remembered_so_that_stance_is_not_judged() -> None:
+    walk = walked(stance_percent=64.0)
+    left = replace(walk.gait[Side.LEFT], is_toe_off_biased=True)
+    biased = judged_walk(replace(walk, gait={**walk.gait, Side.LEFT: left}))
+    kept = course_from_json(course_in_json(course((biased, "shoes"))))
+    found = only(kept).between_legs(STANCE)
+    assert found is not None
+    assert found.judgement is Judgement.NO_PUBLISHED_FIGURE
+
+
+def test_what_is_kept_is_what_was_found() -> None:
+    told = unsure(Joint.LEFT_KNEE)
+    found = course((walked(told=told), "shoes"), (walked("walk 2", strides=1, told=told), ""), told=told)
+    written = json.dumps(course_in_json(found), allow_nan=False)
+    read = course_from_json(json.loads(written))
+    assert repr(read) == repr(found)
+    of_leg = [column for column in OF_A_LEG if column not in OF_HIPS]  # no sensor is on the pelvis
+    assert [one.column for one in read.conditions[0].figures] == [SPEED, CADENCE, *of_leg, *of_leg]
+    assert read.conditions[0].figure(STANCE, Side.RIGHT) is not None
+
+
+@pytest.mark.parametrize("content", [None, {}, [], {"format": "gaitwright-course/0"}])
+def test_what_is_no_course_of_this_version_is_refused(content: object) -> None:
+    with pytest.raises(ValueError, match="course"):
+        course_from_json(content)
+
+
+def test_a_visit_without_a_walk_has_no_conditions() -> None:
+    found = course_of(analysis(), list[Recording]())
+    assert found.conditions == ()
+    assert course_from_json(course_in_json(found)) == found
+
+
+def test_a_timed_test_stands_with_its_condition_as_the_mean_of_its_attempts() -> None:
+    found = course(
+        (walked("walk 1"), "shoes"),
+        (timed(TimedProtocol.TEN_METRES, time_s=10.0, name="walk 2"), "shoes"),
+        (timed(TimedProtocol.TEN_METRES, time_s=8.0, name="walk 3"), "shoes"),
+        (timed(TimedProtocol.TEN_METRES, time_s=20.0, name="walk 4"), "stick"),
+        (timed(TimedProtocol.STAIRS, name="walk 5"), "shoes"),
+    )
+    shoes, stick = found.conditions
+    (test,) = shoes.tests
+    assert test.column == COLUMNS[TimedProtocol.TEN_METRES]
+    assert test.found.mean == pytest.approx(1.125)
+    assert test.found.attempts == 2
+    assert test.whisker == pytest.approx(0.10)
+    assert stick.tests[0].found.mean == pytest.approx(0.5)
+
+
+def test_a_condition_of_tests_from_a_chair_alone_has_no_figure_of_walking() -> None:
+    found = course((walked(), "shoes"), (timed(TimedProtocol.SIT_TO_STAND, time_s=14.0), "barefoot"))
+    barefoot = found.condition("barefoot")
+    assert barefoot is not None
+    assert (barefoot.strides, barefoot.figures) == (0, ())
+    test = barefoot.test(COLUMNS[TimedProtocol.SIT_TO_STAND])
+    assert test is not None
+    assert test.found.mean == pytest.approx(14.0)
+    assert not math.isfinite(test.whisker)
+    assert change(barefoot, barefoot, SPEED) is None
+
+
+def test_what_rests_on_the_feet_is_withheld_with_them_and_what_ends_at_the_tape_is_not() -> None:
+    def told(*, is_end_by_key: bool) -> Verdict:
+        slow = walked("walk 9", speed_m_s=0.05)  # no speed that anybody walks at
+        test = timed(TimedProtocol.TEN_METRES, is_end_by_key=is_end_by_key)
+        found = only(course((replace(slow, timed=test.timed), "shoes"))).test(COLUMNS[TimedProtocol.TEN_METRES])
+        assert found is not None
+        assert found.is_told is (found.verdict is not Verdict.WITHHELD)
+        return found.verdict
+
+    assert told(is_end_by_key=False) is Verdict.WITHHELD
+    assert told(is_end_by_key=True) is Verdict.READ
+
+
+def test_a_test_that_was_broken_off_has_no_value_and_is_kept_as_it_is() -> None:
+    found = course((timed(TimedProtocol.UP_AND_GO, time_s=math.nan), "shoes"))
+    test = only(found).test(COLUMNS[TimedProtocol.UP_AND_GO])
+    assert test is not None
+    assert not test.is_told
+    again = course_from_json(json.loads(json.dumps(course_in_json(found))))
+    assert str(again) == str(found)

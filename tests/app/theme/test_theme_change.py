@@ -1,0 +1,65 @@
+"""Parts that are spaced by the theme look the same whether they were made at a size or came to it later."""
+
+from collections.abc import Callable
+
+import pytest
+from PySide6.QtWidgets import QWidget
+from pytestqt.qtbot import QtBot
+
+from app.help.help_reader import HelpReader
+from app.theme.icons import Icon
+from app.theme.notifier import ThemeNotifier
+from app.wizard.free_motion.page import FreeMotionPage
+from app.wizard.patient.cards import LastVisitCard
+from app.wizard.sensors.columns_form import ColumnsForm
+from app.wizard.sensors.session_chooser import SessionChooser
+from app.wizard.sensors.source_pages import NoSource
+from app.wizard.standing.page import StandStillPage
+from app.wizard.walking.label_chooser import LabelChooser
+from app.wizard.walking.live_lanes import LiveLanes
+from app.wizard.walking.live_strip import LiveStrip
+from app.wizard.walking.walk_list import ActionRow
+
+
+def a_topic(look: ThemeNotifier) -> HelpReader:
+    reader = HelpReader(look)
+    reader.show_markdown("# Walking\n\nPress the space bar.\n\n- once\n- twice", "Walking")
+    return reader
+
+
+Make = Callable[[ThemeNotifier], QWidget]
+PARTS: tuple[Make, ...] = (
+    lambda look: ActionRow(look, Icon.REPEAT, "Sensors strapped anew", "Stand still and move freely again"),
+    lambda look: LiveStrip(look, (-20.0, 80.0), 20),
+    ColumnsForm,
+    FreeMotionPage,
+    a_topic,
+    LabelChooser,
+    LastVisitCard,
+    LiveLanes,
+    NoSource,
+    SessionChooser,
+    StandStillPage,
+)
+
+
+@pytest.mark.parametrize("make", PARTS)
+def test_a_part_that_another_size_reaches_later_looks_as_one_made_at_it(qtbot: QtBot, make: Make) -> None:
+    look = ThemeNotifier()
+    told = make(look)
+    qtbot.addWidget(told)
+    told.resize(900, 700)
+    told.show()
+    before = told.grab().toImage()
+    look.set_scale(1.5)
+    made = make(look)
+    qtbot.addWidget(made)
+    for part in (told, made):
+        part.resize(900, 700)
+        part.show()
+    qtbot.wait(20)
+    for part in (told, made):  # only one of two windows is in front, and has a ring
+        if (focused := part.focusWidget()) is not None:
+            focused.clearFocus()
+    qtbot.waitUntil(lambda: told.grab().toImage() == made.grab().toImage(), timeout=2_000)  # layouts come later
+    assert told.grab().toImage() != before

@@ -1,0 +1,76 @@
+"""A change of a prosthesis is said with its direction in words, and what undoes it as it is to be done."""
+
+import pytest
+
+from app.editing.words import field_word, value_words
+from app.storage.edited_fields import recording_fields
+from app.wording.alignment import (
+    change_in_words,
+    change_lines,
+    since_in_words,
+    to_do_in_words,
+    turns_words,
+)
+from core.alignment import AlignmentChange, PartChange, ProsthesisPart, changed_between
+from core.samples import Recording, RecordingKind
+
+FRONT = ProsthesisPart.FOOT_FRONT_SCREW
+B = AlignmentChange(
+    "Alignment A",
+    (
+        PartChange(FRONT, angle_deg=2.0, turns=0.5, shift_mm=4.0),
+        PartChange(ProsthesisPart.PYLON, height_mm=3.0, text="new clamp"),
+    ),
+)
+
+
+def test_a_list_says_each_thing_that_was_done() -> None:
+    assert change_lines(B) == [
+        ("Foot, front screw", "½ out, +2° plantar"),
+        ("Foot, shift", "4 mm back"),
+        ("Pylon, height", "+3 mm"),
+        ("Pylon", "new clamp"),
+    ]
+    assert change_lines(None) == []
+
+
+def test_a_line_says_it_in_a_row_and_since_when() -> None:
+    line = "Foot, front screw ½ turn out, +2° plantar; foot 4 mm back; pylon +3 mm; pylon: new clamp"
+    assert change_in_words(B) == line
+    assert since_in_words(B) == f"Changed from Alignment A: {line}"
+    assert (change_in_words(None), since_in_words(None)) == ("", "")
+
+
+def test_what_is_to_be_done_to_return_turns_every_direction_round() -> None:
+    back = changed_between({"Alignment A": None, "Alignment B": B}, "Alignment B", "Alignment A")
+    assert back is not None
+    said = "Foot, front screw ½ turn in; foot 4 mm forward; pylon \N{MINUS SIGN}3 mm; pylon: take back: new clamp"
+    assert to_do_in_words(back) == said
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (PartChange(FRONT, angle_deg=-1.5), "+1.5° dorsal"),
+        (PartChange(ProsthesisPart.FOOT_ROTATION, angle_deg=-3.0), "+3° toes in"),
+        (PartChange(ProsthesisPart.SOCKET_OUTER_SCREW, angle_deg=1.0), "+1° abduction"),
+        (PartChange(ProsthesisPart.SOCKET_INNER_SCREW, shift_mm=-2.0), "2 mm inwards"),
+        (PartChange(ProsthesisPart.KNEE_UNIT, angle_deg=-1.0), "\N{MINUS SIGN}1°"),
+    ],
+)
+def test_each_part_has_directions_of_its_own(change: PartChange, words: str) -> None:
+    ((_, said),) = change_lines(AlignmentChange("", (change,)))
+    assert said == words
+
+
+def test_turns_are_eighths() -> None:
+    assert [turns_words(turns) for turns in (0.125, -0.375, 1.25, -2.0)] == ["⅛ out", "⅜ in", "1¼ out", "2 in"]
+
+
+def test_two_versions_of_a_change_are_said_as_the_pages_say_it() -> None:
+    """When two stations changed it, both stand side by side."""
+    field = "alignment"
+    value = recording_fields(Recording("walk 1", RecordingKind.WALKING, "", {}, alignment=B))[field]
+    assert field_word(field) == "Changed at the prosthesis"
+    assert value_words(field, value) == since_in_words(B)
+    assert value_words(field, "") == "nothing said"

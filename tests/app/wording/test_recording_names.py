@@ -1,0 +1,77 @@
+"""A walk is called the same everywhere: by its condition and the letter that stands for this in every comparison."""
+
+from dataclasses import replace
+
+import pytest
+
+from app.wording.recordings import (
+    LETTERS,
+    ShownName,
+    condition_letters,
+    name_in_words,
+    shown_names,
+    where_shown,
+    with_shown_names,
+)
+from core.findings import Finding, Severity
+from core.samples import Recording, RecordingKind
+
+
+def walk(number: int, condition: str = "", *, is_kept: bool = True, is_restrapped_before: bool = False) -> Recording:
+    recording = Recording(f"walk {number}", RecordingKind.WALKING, "", {}, condition)
+    return replace(recording, is_kept=is_kept, is_restrapped_before=is_restrapped_before)
+
+
+def called(*recordings: Recording) -> list[str]:
+    return [str(name) for name in shown_names(recordings).values()]
+
+
+def test_a_walk_is_called_by_letter_and_condition() -> None:
+    assert called(walk(1, "Barefoot"), walk(2, "Shoes")) == ["A Barefoot", "B Shoes"]
+
+
+def test_from_the_second_on_walks_of_one_condition_are_numbered_behind_its_letter() -> None:
+    walks = walk(1, "Barefoot"), walk(2, "Shoes"), walk(3, "Barefoot"), walk(4, "Barefoot")
+    assert called(*walks) == ["A Barefoot", "B Shoes", "A2 Barefoot", "A3 Barefoot"]
+    assert list(condition_letters(walks).values()) == ["A", "B", "A", "A"]
+
+
+def test_sensors_that_were_strapped_anew_begin_a_letter() -> None:
+    walks = walk(1, "Barefoot"), walk(2, "Barefoot", is_restrapped_before=True), walk(3, "Barefoot")
+    assert called(*walks) == ["A Barefoot", "B Barefoot", "B2 Barefoot"]
+
+
+def test_what_is_discarded_has_no_letter_and_no_number() -> None:
+    walks = walk(1, "Barefoot", is_kept=False), walk(2, "Shoes"), walk(3, "Shoes", is_kept=False), walk(4, "Shoes")
+    assert called(*walks) == ["Barefoot", "A Shoes", "Shoes", "A2 Shoes"]
+
+
+def test_a_walk_without_a_condition_is_called_by_its_own_name_and_takes_a_letter() -> None:
+    names = shown_names([walk(1), walk(2, "Shoes")])
+    assert (str(names["walk 1"]), names["walk 1"].letter) == ("walk 1", "A")
+    assert str(names["walk 2"]) == "B Shoes"
+
+
+def test_other_recordings_have_no_letter() -> None:
+    standing = Recording("standing", RecordingKind.STANDING, "", {})
+    motion = Recording("free motion 2", RecordingKind.FREE_MOTION, "", {})
+    assert called(standing, motion, walk(1, "Shoes")) == ["standing", "free motion 2", "A Shoes"]
+
+
+def test_no_two_kept_walks_are_called_the_same_when_letters_have_run_out() -> None:
+    many = [walk(number, f"foot {number // 2}") for number in range(2 * len(LETTERS) + 6)]
+    names = called(*many)
+    assert len(set(names)) == len(names)
+    assert names[-2:] == ["foot 28", "foot 28 2"]
+
+
+@pytest.mark.parametrize("name", ["walk", "walk 12", "standing", "free motion", "treadmill 2", "walking", ""])
+def test_names_in_english_read_as_they_are(name: str) -> None:
+    assert name_in_words(name) == name
+
+
+def test_a_finding_says_where_it_was_found_as_the_reader_knows_it() -> None:
+    names = {"walk 2": ShownName("A2", "Barefoot")}
+    finding = Finding("gaps", Severity.WARNING, "left_foot, walk 2")
+    assert with_shown_names(finding, names).where == "left_foot, A2 Barefoot"
+    assert where_shown("walk 1, left_foot", names) == "walk 1, left_foot"
