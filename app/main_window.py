@@ -25,10 +25,10 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QApplication, QStackedWidget, QVBoxLayout, QWidget
 
-from app.cli.library import default_folder
 from app.home.login.controller import Entry
 from app.home.session_screen import SessionScreen
 from app.storage.idle_lock import IdleLock
+from app.storage.layout import default_folder
 from app.system.logs import log_qt_messages
 from app.system.settings import Scheme, Settings
 from app.theme.notifier import ThemeNotifier, load_fonts

@@ -143,7 +143,7 @@ def test_a_colour_is_found_however_it_is_named() -> None:
 
 
 def test_only_one_file_names_a_colour() -> None:
-    files = [file for file in python_files(*PACKAGES) if file != ROOT / "app" / "colours.py"]
+    files = [file for file in python_files(*PACKAGES) if file != ROOT / "app" / "theme" / "colours.py"]
     assert [place(file, line) for file in files for line in colours_among(nodes(file))] == []
 
 

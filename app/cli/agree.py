@@ -6,7 +6,8 @@ from collections.abc import Callable
 from datetime import datetime
 from pathlib import Path
 
-from app.cli.library import add_key_arguments, default_folder, read_place, session_place
+from app.cli.library import add_key_arguments, read_place, session_place
+from app.storage.layout import default_folder
 from app.system.logs import version_of
 from devices.files.refusal import FileRefusedError, one_line
 

@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 from urllib.parse import urlsplit
 
-from app.cli.library import add_key_arguments, default_folder, opened_library
+from app.cli.library import add_key_arguments, opened_library
 from app.cli.progress import one_of, positive
+from app.storage.layout import default_folder
 from devices.files.refusal import FileRefusedError, one_line
 
 if TYPE_CHECKING:

@@ -11,8 +11,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
-from app.cli.library import Report, add_key_arguments, default_folder, opened_library, own_folder
-from app.storage.layout import DATABASE_VARIABLE
+from app.cli.library import Report, add_key_arguments, opened_library
+from app.storage.layout import DATABASE_VARIABLE, default_folder, own_folder
 
 if TYPE_CHECKING:
     from app.storage.clinic.moving import Moved

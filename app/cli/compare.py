@@ -7,7 +7,8 @@ from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cli.library import add_key_arguments, default_folder, read_place, session_place
+from app.cli.library import add_key_arguments, read_place, session_place
+from app.storage.layout import default_folder
 from devices.files.refusal import FileRefusedError, one_line
 
 if TYPE_CHECKING:

@@ -5,13 +5,8 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cli.library import (
-    LibrarySession,
-    add_key_arguments,
-    default_folder,
-    opened_library,
-    session_place,
-)
+from app.cli.library import LibrarySession, add_key_arguments, opened_library, session_place
+from app.storage.layout import default_folder
 from devices.decoders import DECODERS
 from devices.files.refusal import FileRefusedError, one_line
 

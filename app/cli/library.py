@@ -7,7 +7,6 @@ refusals leave here as the one line that the command line prints.
 import argparse
 import getpass
 import math
-import os
 import sys
 import time
 from collections.abc import Callable, Iterator
@@ -17,9 +16,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 from uuid import UUID
 
-import platformdirs
-
-from app.storage.layout import DATABASE_VARIABLE, STATION
 from devices.decoders import DECODERS
 from devices.files.refusal import FileRefusedError, one_line
 
@@ -62,21 +58,6 @@ class LibrarySession:
 def session_place(text: str) -> Path | LibrarySession:
     """An argument that names a session: its folder, or library:ID."""
     return LibrarySession.parsed(text) if text.startswith(PREFIX) else Path(text)
-
-
-def own_folder() -> Path:
-    """Where a user's own library is."""
-    return platformdirs.user_data_path("gaitwright", appauthor=False) / "library"
-
-
-def default_folder() -> Path:
-    """Where the library is that opens by itself: the user's own, or beside it that of a station of the clinic.
-
-    It is a station's where the environment names the clinic's server; the own folder may have become one before.
-    """
-    own = own_folder()
-    is_clinic = os.environ.get(DATABASE_VARIABLE) and not (own / STATION).exists()
-    return own.with_name("clinic") if is_clinic else own
 
 
 def add_key_arguments(parser: argparse.ArgumentParser) -> None:

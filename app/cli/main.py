@@ -21,10 +21,11 @@ from app.cli.compare import add_compare_arguments, compare
 from app.cli.devices import EMULATED
 from app.cli.export import add_export_arguments, export
 from app.cli.import_files import add_import_arguments, import_files
-from app.cli.library import LibrarySession, add_key_arguments, default_folder, session_place
+from app.cli.library import LibrarySession, add_key_arguments, session_place
 from app.cli.progress import Progress, finding_lines, one_of, positive
 from app.cli.query import add_query_arguments, query
 from app.cli.report import add_report_arguments, make
+from app.storage.layout import default_folder
 from app.system.logs import log_folder, start_logging, version_of
 from app.wording.translation import languages, use_language
 
@@ -309,8 +310,8 @@ def _devices(wanted: argparse.Namespace) -> None:
 
 def _demo(wanted: argparse.Namespace) -> None:
     from app.cohort.batch.analysed_folder import AnalysisChoices, write_analysed
-    from app.exports.csv_report import write_table
     from app.exports.result_folder import OWN_SESSION, check_demonstration_place, written_beside
+    from app.system.tables import write_table
     from core.results import Method
     from devices.files.session_folder import read_session, write_session
     from devices.simulation.walker import DEMONSTRATION, simulate, truth_table

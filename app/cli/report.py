@@ -5,8 +5,9 @@ from collections.abc import Callable
 from datetime import datetime
 from pathlib import Path
 
-from app.cli.library import add_key_arguments, default_folder, read_place, session_place
+from app.cli.library import add_key_arguments, read_place, session_place
 from app.cli.progress import one_of
+from app.storage.layout import default_folder
 from app.system.logs import version_of
 
 PAPERS = ("a4", "letter")  # as app.reports.patient.request has them, whose import takes long

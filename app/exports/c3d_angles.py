@@ -18,8 +18,8 @@ import ezc3d
 import numpy as np
 
 from app.exports.figures import SIMULATED, status_in_ascii, told_abduction_deg, told_deg
-from app.exports.gait_csv import events_of
 from app.exports.parts import part_paths
+from app.summary.events import events_of
 from app.summary.status import NO_ZERO, WITH_HEIGHT, joint_status, why_status
 from app.wording.translation import PURPOSE, tr
 from core.body import Joint, JointKind, Side

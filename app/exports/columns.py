@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
-from app.exports.csv_report import write_table
+from app.system.tables import write_table
 from core.body import LEG_JOINTS, Joint, Side, hip_of
 from core.gait.cycles import PeakWindow
 from core.verdicts.fitting import BY_COLUMN

@@ -1,8 +1,6 @@
 """Which numbers stand behind the plotted curves? One table per recording, in degrees."""
 
-import csv
-import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +15,6 @@ from core.samples import FloatArray
 
 ROWS_PER_BLOCK = 100_000  # some 20 MB of table: ten hours pass through without ever being in memory as text
 DECIMALS = 5
-FORMULA = ("=", "+", "-", "@")
 DIGITS = 18  # what fits into the 64 bits below; an angle of a million turns needs 14
 
 
@@ -41,28 +38,6 @@ def write_angles(recording: RecordingAnalysis, path: Path) -> None:
             writer.write_batch(first)
             for block in blocks:
                 writer.write_batch(block)
-
-
-def write_table(header: Sequence[str], rows: Iterable[Sequence[str]], path: Path) -> None:
-    """Write a small table of cells that are texts already.
-
-    Raises
-    ------
-    OSError
-        The file cannot be written.
-    """
-    with path.open("w", encoding="utf-8", errors="backslashreplace", newline="") as file:
-        csv.writer(file, lineterminator="\n").writerows([header, *rows])
-
-
-def figure_cell(value: float) -> str:
-    """A figure as a table of CSV has it; empty where there is none."""
-    return f"{value:.5f}" if math.isfinite(value) else ""
-
-
-def typed_cell(text: str) -> str:
-    """What somebody typed, as a cell that no spreadsheet works out: where it begins as a formula, ' goes before it."""
-    return f"'{text}" if text.lstrip().startswith(FORMULA) or text.startswith(("\t", "\r", "\n")) else text
 
 
 def _angle_blocks(recording: RecordingAnalysis) -> Iterator[pa.RecordBatch]:

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from app.exports.csv_report import write_table
+from app.system.tables import write_table
 from core.body import Side
 from core.results import RecordingAnalysis
 from core.samples import FloatArray

@@ -10,8 +10,9 @@ from pathlib import Path
 
 import numpy as np
 
-from app.exports.csv_report import write_table
+from app.summary.events import events_of
 from app.summary.status import joint_status
+from app.system.tables import write_table
 from core.body import Joint, Side, ankle_of, hip_of, knee_of
 from core.gait.cycles import POINTS
 from core.results import RecordingAnalysis
@@ -29,7 +30,6 @@ from core.verdicts.quantities import (
     values_of,
 )
 
-EVENTS = ("initial_contact", "full_contact", "heel_rise", "toe_off")
 TIMES = ("start_s", "full_contact_s", "heel_rise_s", "toe_off_s", "end_s")
 PEAK_TIMES = tuple(f"{window.name}_percent" for window in WINDOWS.values())
 STRIDE_STATUS = (  # of the columns that each stands for
@@ -100,19 +100,6 @@ def gait_tables(recording: RecordingAnalysis) -> dict[str, tuple[list[str], Iter
         ),
         "cycles": (of_cycles, _cycles(recording, joints)),
     }
-
-
-def events_of(recording: RecordingAnalysis) -> list[tuple[float, Side, str]]:
-    """Time, side and kind of every event that is known, ascending."""
-    found = [
-        (float(time_s), side, event)
-        for side, gait in recording.gait.items()
-        for events in gait.events
-        for event in EVENTS
-        for time_s in getattr(events, f"{event}_s")
-        if math.isfinite(time_s)
-    ]
-    return sorted(found, key=lambda event: (event[0], event[1], EVENTS.index(event[2])))
 
 
 def _strides(recording: RecordingAnalysis) -> Iterator[list[str]]:

@@ -6,9 +6,9 @@ Who agreed on a goal and what was typed of it stands in the library and in an id
 import math
 from collections.abc import Iterator, Sequence
 
-from app.exports.csv_report import typed_cell
 from app.summary.conditions import Part
 from app.summary.goals import GoalFigure, of_part
+from app.system.tables import typed_cell
 from core.goals import AgreedGoals
 from core.results import Analysis, RecordingAnalysis
 from core.samples import Recording, RecordingKind

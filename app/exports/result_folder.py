@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path, PurePosixPath
 
 from app.exports.columns import COLUMNS, write_columns
-from app.exports.csv_report import write_angles, write_table
+from app.exports.csv_report import write_angles
 from app.exports.csvw import METADATA, write_metadata
 from app.exports.fitting_csv import MEANS as FITTING_MEANS
 from app.exports.fitting_csv import fitting_means, write_fitting_strides
@@ -37,6 +37,7 @@ from app.summary.differences import (
 )
 from app.summary.targets import HEADER as TARGET_COLUMNS
 from app.summary.targets import TARGETS, target_rows
+from app.system.tables import write_table
 from core.results import Analysis
 from core.samples import Session
 from devices.files.refusal import FileRefusedError

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from app.exports.csv_report import typed_cell
+from app.system.tables import typed_cell
 from core.results import Analysis, RecordingAnalysis
 from core.samples import Recording
 from core.timed.found import TimedPart, TimedTest

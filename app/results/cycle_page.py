@@ -7,11 +7,10 @@ import numpy as np
 from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
 from app.plots.cycle_chart import CycleCharts
-from app.summary.conditions import Part
+from app.summary.conditions import Part, by_hand_in_words
 from app.summary.reference_bands import OTHER_AGES, WHY_NO_BAND, bands_of, reference_curves, sides_with_band
 from app.summary.walk_figures import (
     Figure,
-    by_hand_in_words,
     few_strides_in_words,
     peak_figures,
     pelvis_figures,

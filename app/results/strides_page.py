@@ -6,7 +6,7 @@ import numpy as np
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QHBoxLayout, QWidget
 
-from app.summary.walk_figures import by_hand_in_words
+from app.summary.conditions import by_hand_in_words
 from app.theme.icons import Icon
 from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button, ButtonKind

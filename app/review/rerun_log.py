@@ -24,7 +24,6 @@ from rerun import ComponentColumnList
 from rerun.chunk import Chunk, RrdReader
 from rerun_bindings import PyMemorySinkStorage, new_blueprint, save
 
-from app.exports.gait_csv import events_of
 from app.review.answer_panel import panel
 from app.review.data_quality_panel import Place, document, is_pose, name_of_view, pieces_of, places
 from app.review.phase_lane import lanes_of
@@ -40,6 +39,7 @@ from app.summary.drawn_legs import (
     height_of,
     how_drawn,
 )
+from app.summary.events import events_of
 from app.theme.colours import DARK
 from core.body import Joint, JointKind, Side, Site, ankle_of, knee_of
 from core.gait.phases import PHASES, Phase

@@ -16,7 +16,11 @@ All of this is in the library's own folder, which `create_library` alone makes. 
 recordings then go into a shelter on this computer (`app.storage.root`) until it is back (`app.storage.bringing_home`).
 """
 
+import os
+from pathlib import Path
 from uuid import UUID
+
+import platformdirs
 
 KEYS, NEW_KEYS = "keys.json", "keys-next.json"
 DATABASE, NEW_DATABASE = "library.db", "library-next.db"
@@ -31,3 +35,18 @@ SUFFIX = ".journal"
 def segment_name(recording_id: UUID, segment: int) -> str:
     """Name of a segment's file. Never read from a database, whose rows may name any file."""
     return f"{recording_id}.{segment}{SUFFIX}"
+
+
+def own_folder() -> Path:
+    """Where a user's own library is."""
+    return platformdirs.user_data_path("gaitwright", appauthor=False) / "library"
+
+
+def default_folder() -> Path:
+    """Where the library is that opens by itself: the user's own, or beside it that of a station of the clinic.
+
+    It is a station's where the environment names the clinic's server; the own folder may have become one before.
+    """
+    own = own_folder()
+    is_clinic = os.environ.get(DATABASE_VARIABLE) and not (own / STATION).exists()
+    return own.with_name("clinic") if is_clinic else own

@@ -6,7 +6,7 @@ One line for each part of each change. Nothing of it is measured: it is what som
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from app.exports.csv_report import typed_cell, write_table
+from app.system.tables import typed_cell, write_table
 from app.wording.alignment import change_in_words
 from core.alignment import AlignmentChange, PartChange
 from core.samples import Recording, RecordingKind

@@ -18,8 +18,8 @@ from app.charts.stride_chart import StrideCurve
 from app.summary.alignments import alignments_of
 from app.summary.measures import CADENCE, Measure
 from app.summary.pooled_walks import Pool, pool_letters, pools_of
-from app.summary.walk_figures import by_hand_in_words
 from app.wording.recordings import LETTERS
+from app.wording.translation import side_name, tr
 from core.alignment import AlignmentChange
 from core.body import Joint, Side
 from core.gait.chosen_strides import left_out_by_hand
@@ -296,3 +296,14 @@ def left_out_of_parts(parts: Sequence[Part]) -> str:
     """Which strides of what is compared were left out by hand; empty where none was."""
     told = [(part.letter, by_hand_in_words(walk)) for part in parts for walk in part.walks]
     return " ".join(f"{letter}: {words}" for letter, words in told if words)
+
+
+def by_hand_in_words(*walks: RecordingAnalysis) -> str:
+    """How many strides of which side a person has left out; empty where none was."""
+    said = []
+    for side in Side:
+        gaits = [walk.gait[side] for walk in walks if side in walk.gait]
+        if count := sum(map(left_out_by_hand, gaits)):
+            told = tr("{count} of {of} {side} strides left out by hand.")
+            said.append(told.format(count=count, of=sum(len(g.strides) for g in gaits), side=side_name(side)))
+    return " ".join(said)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from app.exports.csv_report import figure_cell, write_table
+from app.system.tables import figure_cell, write_table
 from app.wording.body import segment_name
 from app.wording.translation import figure_text, tr
 from core.body import Joint

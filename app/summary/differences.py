@@ -9,13 +9,13 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from app.exports.csv_report import figure_cell, typed_cell, write_table
 from app.summary.agreed import agreed_with
 from app.summary.comparison import Comparison, Contrast, Reservation, compare_legs
 from app.summary.conditions import Part, conditions_of
 from app.summary.measures import MEASURES, Measure
 from app.summary.status import status_of
 from app.summary.visits import by_condition
+from app.system.tables import figure_cell, typed_cell, write_table
 from core.body import Joint, Side
 from core.gait.cycles import POINTS
 from core.gait.spatiotemporal import MeanAndSd

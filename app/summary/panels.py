@@ -22,6 +22,27 @@ from core.body import Joint, JointKind, Side
 from core.verdicts.model import Verdict
 from core.verdicts.norms import NoBand
 
+HEIGHTS = {
+    "knee": (
+        "knee_at_initial_contact_deg",
+        "knee_loading_peak_deg",
+        "knee_stance_minimum_deg",
+        "knee_swing_peak_deg",
+    ),
+    "hip": (
+        "hip_flexion_peak_deg",
+        "hip_extension_peak_deg",
+        "hip_abduction_peak_deg",
+        "hip_adduction_peak_deg",
+    ),
+    "ankle": (
+        "ankle_at_initial_contact_deg",
+        "ankle_loading_plantarflexion_deg",
+        "ankle_stance_dorsiflexion_deg",
+        "ankle_push_off_plantarflexion_deg",
+        "ankle_swing_dorsiflexion_deg",
+    ),
+}
 SWATCH_WIDTH, SWATCH_HEIGHT = 30.0, 9.0
 DOT = 6.4
 PEAK_COLUMNS = {

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 
-from app.exports.csv_report import typed_cell
+from app.system.tables import typed_cell
 from core.samples import Recording
 from core.targets import tallies_of
 

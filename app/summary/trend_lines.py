@@ -4,7 +4,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from app.reports.patient.trend_chart import TrendValue
 from app.summary.course import KNEE, PUSH_OFF, SPEED, STANCE, CourseCondition, change
 from app.summary.course_lanes import CourseVisit
 from core.body import Side
@@ -15,6 +14,15 @@ from core.verdicts.model import Verdict
 
 MEASURES = (KNEE, PUSH_OFF, STANCE, SPEED)
 MOST_CHARTS = 4  # those with goals come first
+
+
+@dataclass(frozen=True, slots=True)
+class TrendValue:
+    """What a visit has of one measure. NaN: it cannot be read there, or no error is known."""
+
+    visit: int
+    value: float
+    whisker: float
 
 
 @dataclass(frozen=True, slots=True)

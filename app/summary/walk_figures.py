@@ -6,24 +6,19 @@ The window and the report show the same rows, so that no number stands in one th
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from app.charts.cycles import SideCycle, is_mean_enough, is_spread_enough
+from app.summary.conditions import Part
 from app.wording.translation import NAMES, capitalised, joined, later, side_name, tr, tr_n
 from app.wording.verdicts import GateWords, gate_words
 from core.body import Joint, JointKind, Side
-from core.gait.chosen_strides import left_out_by_hand
 from core.gait.cycles import ANKLE_WINDOWS, KNEE_WINDOWS, find_peak, mean_cycle
 from core.gait.spatiotemporal import MeanAndSd
 from core.gait.strides import Reason
-from core.results import RecordingAnalysis
 from core.verdicts.model import JointVerdicts, Verdict, worst
 from core.verdicts.norms import MIN_STRIDES_FOR_MEAN, MIN_STRIDES_FOR_SD, ReferenceCurves, ReferenceValues
-
-if TYPE_CHECKING:  # it tells what was left out by hand, as this does
-    from app.summary.conditions import Part
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +81,7 @@ WITHHELD, MAY_BE_MIRRORED = later("withheld"), later("sign unsure")
 NO_ZERO, NO_HEIGHT = later("no zero"), later("height withheld")
 
 
-def strides_in_words(part: "Part", side: Side) -> str:
+def strides_in_words(part: Part, side: Side) -> str:
     """How many strides stand behind the averages, and why the others do not."""
     used = part.strides(side)
     left_out: Counter[str] = Counter()
@@ -105,18 +100,7 @@ def strides_in_words(part: "Part", side: Side) -> str:
     return said.format(side=letter, used=used, out=left_out.total(), reasons=", ".join(reasons))
 
 
-def by_hand_in_words(*walks: RecordingAnalysis) -> str:
-    """How many strides of which side a person has left out; empty where none was."""
-    said = []
-    for side in Side:
-        gaits = [walk.gait[side] for walk in walks if side in walk.gait]
-        if count := sum(map(left_out_by_hand, gaits)):
-            told = tr("{count} of {of} {side} strides left out by hand.")
-            said.append(told.format(count=count, of=sum(len(g.strides) for g in gaits), side=side_name(side)))
-    return " ".join(said)
-
-
-def few_strides_in_words(part: "Part") -> str:
+def few_strides_in_words(part: Part) -> str:
     """What is missing for want of strides; empty where there are enough."""
     counts = {side[0].upper(): part.strides(side) for side in part.sides}
     without_mean = [side for side, n in counts.items() if n and not is_mean_enough(n)]
@@ -131,14 +115,14 @@ def few_strides_in_words(part: "Part") -> str:
     return " ".join(said)
 
 
-def side_cycle(part: "Part", joint: Joint) -> SideCycle:
+def side_cycle(part: Part, joint: Joint) -> SideCycle:
     """The joint's strides that are used and known over all of the stride."""
     strides_deg = part.strides_deg(joint)
     strides_deg = strides_deg[np.isfinite(strides_deg).all(axis=1)]
     return SideCycle(mean_cycle(strides_deg), strides_deg, part.stance_percent(joint.side))
 
 
-def peak_figures(part: "Part", reference: ReferenceCurves | None) -> dict[str, tuple[Figure, ...]]:
+def peak_figures(part: Part, reference: ReferenceCurves | None) -> dict[str, tuple[Figure, ...]]:
     """Rows of each kind of joint, degrees and percent of the stride; the band by the same windows on its mean curve.
 
     The band stands where its source has it; None: none may stand beside this walk.
@@ -165,7 +149,7 @@ def peak_figures(part: "Part", reference: ReferenceCurves | None) -> dict[str, t
     return found
 
 
-def pelvis_figures(part: "Part") -> dict[str, tuple[Figure, ...]]:
+def pelvis_figures(part: Part) -> dict[str, tuple[Figure, ...]]:
     """Rows of the pelvis over each leg's strides, degrees; none without a sensor on it."""
     if not part.has_pelvis:
         return {}
@@ -179,7 +163,7 @@ def pelvis_figures(part: "Part") -> dict[str, tuple[Figure, ...]]:
     return {"pelvis": tuple(figures)}
 
 
-def pelvis_in_words(part: "Part") -> list[str]:
+def pelvis_in_words(part: Part) -> list[str]:
     """Why figures of pelvis and abduction are withheld, what holds alike of both once; how often the body turned."""
     if not part.has_pelvis:
         return []
@@ -199,7 +183,7 @@ def pelvis_in_words(part: "Part") -> list[str]:
 
 
 def time_distance_figures(
-    part: "Part", group: ReferenceValues | None, sides_with_band: frozenset[Side]
+    part: Part, group: ReferenceValues | None, sides_with_band: frozenset[Side]
 ) -> tuple[Figure, ...]:
     """Rows of time and distance beside the group of this speed, None without one.
 

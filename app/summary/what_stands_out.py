@@ -5,13 +5,12 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from enum import IntEnum
 
-from app.reports.patient.peaks_table import HEIGHTS
 from app.summary import quality
 from app.summary.comparison import Compared, Comparison, Contrast, compare_legs
 from app.summary.facts import KINDS, Facts, joint_of, role
 from app.summary.measure_sentences import leg_beside_leg, measure_in_words, unit_and_decimals
 from app.summary.numbers_in_words import band_in_figures, fixed, signed
-from app.summary.panels import peak_name
+from app.summary.panels import HEIGHTS, peak_name
 from app.summary.plain_text import CONDITION_LENGTH, typed
 from app.summary.trend_lines import TrendLine, trend_columns, trend_lines, walked_visits
 from app.wording.dates import date

@@ -1,7 +1,7 @@
 """The theme in force, and how it reaches the application: style, palette and fonts."""
 
 from dataclasses import replace
-from pathlib import Path
+from importlib.resources import files
 
 from PySide6.QtCore import QByteArray, QEvent, QObject, Qt, Signal
 from PySide6.QtGui import QColor, QFont, QFontDatabase, QGuiApplication, QPalette
@@ -98,7 +98,7 @@ def load_fonts() -> None:
     FileNotFoundError
         The installation is incomplete.
     """
-    folder = Path(__file__).parents[2] / "resources" / "fonts"
+    folder = files("resources") / "fonts"
     for name in FONT_FILES:
         QFontDatabase.addApplicationFontFromData(QByteArray((folder / name).read_bytes()))
 

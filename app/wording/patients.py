@@ -1,59 +1,13 @@
-"""How are patients and sessions said in one line?"""
+"""Patients and the times of their sessions in words."""
 
 import datetime
-from collections.abc import Collection
 from typing import TYPE_CHECKING
-from uuid import UUID
 
-from app.home.patients.home_lists import PatientLine, SessionLine
-from app.summary.course import Course
-from app.theme.icons import Icon
 from app.wording.dates import date
-from app.wording.translation import tr, tr_n
+from app.wording.translation import tr
 
 if TYPE_CHECKING:
-    from app.storage import stored
     from core.samples import Patient
-
-
-def patient_line(patient: "stored.StoredPatient", now: datetime.datetime, is_undecided: bool) -> PatientLine:
-    told = patient.details
-    who = person(told)
-    looked_into = " ".join([told.code, str(told.birth_year or ""), told.device, told.aids, who])
-    return PatientLine(
-        patient.id,
-        told.code,
-        who,
-        when(patient.last_session, now) if patient.last_session or patient.sessions else tr("no session yet"),
-        tr_n("{count} session", "{count} sessions", patient.sessions).format(count=patient.sessions),
-        looked_into.casefold(),
-        is_undecided,
-    )
-
-
-def session_line(
-    line: "stored.SessionSummary",
-    now: datetime.datetime,
-    undecided: Collection[UUID],
-    course: Course | None = None,
-    *,
-    is_reported: bool = False,
-) -> SessionLine:
-    """One session in a list; `course` where it is known, which tells how many strides there are."""
-    is_undecided, has_walk = line.id in undecided, course is not None and bool(course.conditions)
-    amount = tr_n("{count} recording", "{count} recordings", line.recordings).format(count=line.recordings)
-    if course is not None and has_walk:
-        strides = sum(condition.strides for condition in course.conditions)
-        amount = tr_n("{count} stride", "{count} strides", strides).format(count=strides)
-    state, mark = (tr("simulated"), None) if line.is_simulated else ("", None)
-    if is_undecided:
-        state = tr("keep or discard?")
-    elif is_reported:
-        state, mark = tr("report written"), Icon.CHECK
-    elif has_walk:
-        state, mark = tr("report not written"), Icon.INFO
-    conditions = "; ".join(line.conditions)  # which may hold commas
-    return SessionLine(line.id, when(line.started, now), conditions, amount, state, is_undecided, mark)
 
 
 def day_of_session(started: str, now: datetime.datetime) -> datetime.date | None:

@@ -10,6 +10,7 @@ To add a finding's message, add its key to `SENTENCES`: the figures in braces ar
 import gettext
 import math
 from collections.abc import Callable, Mapping, Sequence
+from importlib.resources import files
 from pathlib import Path
 from string import Formatter
 from typing import Any
@@ -18,7 +19,7 @@ from core.body import Joint, Side, Site
 from core.findings import Finding
 
 DOMAIN = "gaitwright"
-LOCALE = Path(__file__).parents[2] / "resources" / "locale"
+LOCALE = Path(str(files("resources") / "locale"))
 _catalogue = gettext.NullTranslations()
 _language = "en"
 # each in its own words, for who does not understand those in sight

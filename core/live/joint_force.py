@@ -1,4 +1,4 @@
-"""What a sensor feels of a joint below 4 Hz, as its samples come in: the causal form of `core.calibration.joint_force`.
+"""What a sensor feels of a joint below 4 Hz, as its samples come in: the causal form of `core.signal.joint_force`.
 
 The filter is the offline one's twice over forwards, so that it damps as much; what it delays, it delays alike for both
 sensors of a joint.
@@ -11,10 +11,10 @@ from itertools import pairwise
 import numpy as np
 from scipy.signal import butter, sosfilt, sosfilt_zi
 
-from core.calibration.joint_force import CUTOFF_HZ
 from core.live.orientation import NOTHING, OrientedSamples, joined
 from core.live.sample_sets import matrices_of
 from core.samples import BoolArray, FloatArray, IntArray
+from core.signal.joint_force import CUTOFF_HZ
 from core.signal.pair import angular_acceleration
 
 SPACING_S = 0.05  # between the instants that are told: motion below 4 Hz needs no more
@@ -27,7 +27,7 @@ ROUNDING = 1e-6  # of the spacing
 
 @dataclass(frozen=True, slots=True)
 class FeltForces:
-    """The terms of one sensor at whole multiples of SPACING_S, low-passed; see `calibration.joint_force.JointForce`.
+    """The terms of one sensor at whole multiples of SPACING_S, low-passed; see `signal.joint_force.JointForce`.
 
     Attributes
     ----------

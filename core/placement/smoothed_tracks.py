@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.calibration.joint_force import JointForce
 from core.samples import FloatArray, IntArray
+from core.signal.joint_force import JointForce
 from core.signal.pair import FAST_RAD_S, OrientedTrack
 from core.signal.tracks import at_positions
 

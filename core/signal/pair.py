@@ -5,8 +5,8 @@ from functools import cached_property
 
 import numpy as np
 
-from core.calibration.joint_force import JointForce, joint_force
 from core.samples import BoolArray, FloatArray
+from core.signal.joint_force import JointForce, joint_force
 from core.signal.rotations import cross_matrix, matrix_from_quaternion
 from core.signal.tracks import Track, at_positions, continuous
 

@@ -16,7 +16,6 @@ from PySide6.QtWidgets import QAbstractButton, QApplication, QComboBox, QLabel, 
 from pytestqt.qtbot import QtBot
 
 from app import main_window
-from app.cli.library import default_folder
 from app.home import session_screen
 from app.home.login.controller import SHORTEST
 from app.home.settings.settings_page import SettingsPage
@@ -27,7 +26,7 @@ from app.storage.journal.disk import Room
 from app.storage.journal.payloads import Belonging
 from app.storage.journal.writer import JournalWriter
 from app.storage.keys import KeyRefusedError, KeySlots
-from app.storage.layout import DATABASE_VARIABLE, KEYS, STATION
+from app.storage.layout import DATABASE_VARIABLE, KEYS, STATION, default_folder
 from app.storage.library import Library
 from app.storage.login_delay import LoginDelay
 from app.storage.slots import Cost

@@ -16,7 +16,10 @@ from core.body import Joint
 from core.findings import Finding, Severity
 
 ROOT = Path(__file__).parents[2]
-ROOMS = ("main_window.py", "home", "widgets", "pages", "plots", "wizard", "workers", "reports/walk_figures.py")
+ROOMS = (
+    *("main_window.py", "home", "widgets", "results", "editing", "help", "plots", "wizard", "workers"),
+    "summary/walk_figures.py",
+)
 
 SPOKEN = {"tr", "tr_n", "later"}
 # what takes strings that nobody sees: logs, keys, signals, names of attributes and threads

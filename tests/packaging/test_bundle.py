@@ -72,7 +72,7 @@ def test_a_file_is_a_distributions_or_pythons_or_ours_or_the_systems(parts: Modu
     stdlib = Path(sysconfig.get_path("stdlib"))
     numpy = PACKAGES / "numpy" / "__init__.py"
     owned = {str(numpy.resolve()): "numpy"}
-    files = [numpy, stdlib / "json" / "__init__.py", ROOT / "app" / "cli.py", Path("/usr/lib/libssl.so.3")]
+    files = [numpy, stdlib / "json" / "__init__.py", ROOT / "app" / "cli" / "main.py", Path("/usr/lib/libssl.so.3")]
     assert parts.sorted_out(files, owned, stdlib) == ({"numpy"}, {Path("/usr/lib/libssl.so.3")})
 
 

@@ -83,8 +83,8 @@ def contradictions(window: "MainWindow", held: HeldLibrary) -> list[str]:
 
 
 def _of_home(home: "Home", held: HeldLibrary) -> Iterator[str]:
-    from app.home.patients.home_lists import PatientLine, SessionLine
     from app.home.settings.settings_page import SettingsPage
+    from app.widgets.line_list import PatientLine, SessionLine
 
     page = home.page
     if isinstance(home.current, SettingsPage):

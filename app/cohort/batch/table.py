@@ -15,7 +15,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from app.cohort.batch.rows import COLUMNS, CellKind, Row
-from app.exports.csv_report import typed_cell
+from app.system.tables import typed_cell
 
 CSV, PARQUET = "parameters.csv", "parameters.parquet"
 BLOCK_ROWS = 1024

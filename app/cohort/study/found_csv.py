@@ -10,7 +10,7 @@ from decimal import Decimal
 from itertools import chain, islice
 from pathlib import Path
 
-from app.exports.csv_report import typed_cell
+from app.system.tables import typed_cell
 from devices.files.refusal import FileRefusedError, one_line
 
 MOST_ON_TERMINAL = 1000  # rows: who wants more wants a file

@@ -9,9 +9,10 @@ from PySide6.QtCore import QObject, Signal
 
 from app.editing.deleted_elsewhere import deleted_by, deletion_message
 from app.home.patients.home_page import HomePage
+from app.home.patients.lines import patient_line
 from app.home.patients.reading import PatientReading, read_patient
 from app.summary.course_lanes import CourseVisit
-from app.wording.patients import patient_line, person
+from app.wording.patients import person
 from app.workers.library_controller import LibraryController
 
 if TYPE_CHECKING:

@@ -8,13 +8,13 @@ from PySide6.QtGui import QFontMetrics, QKeyEvent, QKeySequence, QPainter, QPain
 from PySide6.QtWidgets import QApplication, QHBoxLayout, QLineEdit, QSizePolicy, QVBoxLayout, QWidget
 
 from app.home.patients.home_empty import EmptyLibrary
-from app.home.patients.home_lists import Line, LineList, PatientLine, SessionLine
 from app.home.patients.patient_panel import PatientPanel
 from app.summary.course_lanes import CourseVisit
 from app.summary.course_words import NextStep
 from app.theme.icons import Icon, paint_icon
 from app.theme.notifier import ThemeNotifier
 from app.widgets.card import Card
+from app.widgets.line_list import Line, LineList, PatientLine, SessionLine
 from app.widgets.segmented import Segmented
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.themed import Themed

@@ -6,7 +6,6 @@ from PySide6.QtCore import QPoint, Qt, Signal
 from PySide6.QtGui import QAction
 from PySide6.QtWidgets import QHBoxLayout, QMenu, QSizePolicy, QVBoxLayout, QWidget
 
-from app.home.patients.home_lists import LineList, SessionLine
 from app.plots.course import CourseCard
 from app.summary.course_lanes import (
     MOST_TOGETHER,
@@ -24,6 +23,7 @@ from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.choice import Choice
 from app.widgets.icons import IconMark
+from app.widgets.line_list import LineList, SessionLine
 from app.widgets.segmented import Segmented
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed

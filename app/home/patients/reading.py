@@ -7,15 +7,16 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 from uuid import UUID
 
-from app.home.patients.home_lists import SessionLine
+from app.home.patients.lines import session_line
 from app.storage.journal.header import JournalRefusedError
 from app.storage.stored import LibraryError, SessionSummary
 from app.summary.course import Course
 from app.summary.course_lanes import CourseVisit
 from app.summary.course_words import LatestVisit, NextStep, next_step, undecided_step
 from app.summary.goals import reached_at
+from app.widgets.line_list import SessionLine
 from app.wizard.resuming import current_courses, read_analysed
-from app.wording.patients import day_of_session, session_line, time_of_session
+from app.wording.patients import day_of_session, time_of_session
 from app.workers.background import Report
 from core.goals import Goal, held
 

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from app.exports.csv_report import typed_cell, write_table
 from app.reports.agreement.study import AgreementStudy, AngleKind, ComparedWalk, UsedSamples
+from app.system.tables import typed_cell, write_table
 from core.agreement.events import EventAgreement, joined
 from core.agreement.figures import NAMED_PHASES, STANCE, Agreement
 from core.body import Joint

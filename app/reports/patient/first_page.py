@@ -9,6 +9,7 @@ from app.reports.patient.key_numbers import key_numbers
 from app.reports.patient.key_strips import height_scale
 from app.summary import panels, quality
 from app.summary.comparison import Comparison
+from app.summary.conditions import by_hand_in_words
 from app.summary.course import KNEE
 from app.summary.facts import Facts, joint_of
 from app.summary.goals import goal_sentence
@@ -18,7 +19,6 @@ from app.summary.panels import band_in_words, dot
 from app.summary.plain_text import CONDITION_LENGTH, typed
 from app.summary.report_dates import moment
 from app.summary.request import ReportRequest
-from app.summary.walk_figures import by_hand_in_words
 from app.summary.what_stands_out import MAX_AWAY_SD, caveat, nothing_found, printed_findings
 from app.wording.translation import capitalised, figure_text, joined, name_of, side_name, tr, tr_n
 from app.wording.verdicts import verdict_word

@@ -7,6 +7,7 @@ from app.charts.cycles import is_spread_enough
 from app.reports.blocks import Block, Cell, Column, Row, note, table
 from app.summary import quality
 from app.summary.comparison import compare_legs
+from app.summary.conditions import by_hand_in_words
 from app.summary.facts import Facts
 from app.summary.numbers_in_words import (
     DAGGER,
@@ -23,8 +24,7 @@ from app.summary.numbers_in_words import (
     signed_error,
     spread,
 )
-from app.summary.panels import excursion_name, peak_name
-from app.summary.walk_figures import by_hand_in_words
+from app.summary.panels import HEIGHTS, excursion_name, peak_name
 from app.wording.translation import capitalised, later, tr
 from app.wording.verdicts import verdict_word
 from core.body import JointKind, Side
@@ -47,27 +47,6 @@ SHAPES = {  # what needs no zero
         "ankle_heel_rocker_deg",
         "ankle_toes_lifted_deg",
         "ankle_range_deg",
-    ),
-}
-HEIGHTS = {
-    "knee": (
-        "knee_at_initial_contact_deg",
-        "knee_loading_peak_deg",
-        "knee_stance_minimum_deg",
-        "knee_swing_peak_deg",
-    ),
-    "hip": (
-        "hip_flexion_peak_deg",
-        "hip_extension_peak_deg",
-        "hip_abduction_peak_deg",
-        "hip_adduction_peak_deg",
-    ),
-    "ankle": (
-        "ankle_at_initial_contact_deg",
-        "ankle_loading_plantarflexion_deg",
-        "ankle_stance_dorsiflexion_deg",
-        "ankle_push_off_plantarflexion_deg",
-        "ankle_swing_dorsiflexion_deg",
     ),
 }
 TIMES = {"hip": (), "knee": ("knee_swing_peak_percent",), "ankle": ()}

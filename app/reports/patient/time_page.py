@@ -14,6 +14,7 @@ from app.reports.patient.phase_bars import phase_bars, phases_of
 from app.reports.patient.stride_rails import reasons_in_words, stride_rail
 from app.summary import panels
 from app.summary.comparison import compare_legs
+from app.summary.conditions import by_hand_in_words
 from app.summary.facts import Facts, joint_of
 from app.summary.numbers_in_words import (
     CARE,
@@ -29,7 +30,6 @@ from app.summary.numbers_in_words import (
     spread,
 )
 from app.summary.plain_text import CONDITION_LENGTH, typed
-from app.summary.walk_figures import by_hand_in_words
 from app.wording.translation import tr
 from app.wording.verdicts import verdict_word
 from core.body import JointKind, Side

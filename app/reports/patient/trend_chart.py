@@ -3,13 +3,13 @@
 import datetime
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
 from app.charts.drawing import COLOURS, DASHES, MM, Picture, badge, line, picture, text
 from app.summary.numbers_in_words import fixed
+from app.summary.trend_lines import TrendValue
 from app.theme.colours import PAPER
 from app.wording.dates import short_date
 from app.wording.translation import capitalised, side_name, tr
@@ -21,15 +21,6 @@ OF_GOALS = 10.0  # points for a line of words
 APART = 22.0  # points between two dates that are written
 NEAR = 3.0  # points that the legs stand aside of a date, so that neither covers the other
 TICKS = 4
-
-
-@dataclass(frozen=True, slots=True)
-class TrendValue:
-    """What a visit has of one measure. NaN: it cannot be read there, or no error is known."""
-
-    visit: int
-    value: float
-    whisker: float
 
 
 def trend_chart(

@@ -6,11 +6,11 @@ from uuid import UUID
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QStackedWidget, QVBoxLayout, QWidget
 
-from app.home.patients.home_lists import LineList, PatientLine
 from app.theme.icons import Icon
 from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
+from app.widgets.line_list import LineList, PatientLine
 from app.widgets.notice import Notice
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed

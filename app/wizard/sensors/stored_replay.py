@@ -8,10 +8,10 @@ from uuid import UUID
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QFileDialog
 
-from app.home.patients.home_lists import PatientLine
 from app.theme.icons import Icon
 from app.widgets.action_bar import BarAction, BarState
 from app.widgets.folder_dialog import ask_for_folder
+from app.widgets.line_list import PatientLine
 from app.wizard.sensors.replays import Replays
 from app.wording.patients import when
 from app.wording.translation import tr, tr_n

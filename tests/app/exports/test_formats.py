@@ -17,9 +17,9 @@ from fhir.resources.R4B.bundle import Bundle
 
 from app.exports.c3d_angles import POINTS, write_c3d
 from app.exports.fhir_bundle import bundle, write_bundle
-from app.exports.gait_csv import events_of
 from app.exports.opensim_motion import COORDINATES, write_motion
 from app.exports.spreadsheet import write_spreadsheet
+from app.summary.events import events_of
 from core.results import Analysis, RecordingAnalysis
 from core.samples import FloatArray, RecordingKind, Session
 

@@ -7,8 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.exports.gait_csv import STRIDE_STATUS, events_of, write_gait
+from app.exports.gait_csv import STRIDE_STATUS, write_gait
 from app.exports.summary import summarise
+from app.summary.events import events_of
 from app.summary.reference_bands import reference_curves
 from core.analysis import analyse
 from core.body import Joint, Side, Site

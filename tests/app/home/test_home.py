@@ -17,7 +17,6 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.home.home import Home
-from app.home.patients.home_lists import PatientLine, SessionLine
 from app.importing.untrusted_files import read_foreign_session, the_reader
 from app.storage.database.ids import uuid7
 from app.storage.exchange import import_session
@@ -34,6 +33,7 @@ from app.storage.stored import LibraryError, PlacedSensor, RecordingState, Role,
 from app.system.settings import Scheme, Settings
 from app.theme.notifier import ThemeNotifier, load_fonts
 from app.widgets.button import Button
+from app.widgets.line_list import PatientLine, SessionLine
 from app.workers.library_controller import LibraryController
 from app.workers.refusals import Refusal
 from core.body import Site

@@ -13,7 +13,6 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.home.home import Home
-from app.home.patients.home_lists import SessionLine
 from app.home.patients.reading import PatientReading, compute_courses, read_patient
 from app.storage.audit import REPORT_FORMAT, about
 from app.storage.database.ids import uuid7
@@ -24,6 +23,7 @@ from app.storage.stored import Action, StoredPatient
 from app.summary.course_lanes import SPEED_LANE
 from app.system.settings import Settings
 from app.theme.notifier import ThemeNotifier, load_fonts
+from app.widgets.line_list import SessionLine
 from app.workers.library_controller import LibraryController
 from core.body import Site
 from core.goals import GOAL_COLUMNS, Goal, GoalOf

@@ -16,7 +16,6 @@ from app.home.importing.import_page import ImportPage
 from app.home.login.first_start_page import FirstStartPage
 from app.home.login.join_page import JoinPage
 from app.home.login.log_in_page import LogInPage
-from app.home.patients.home_lists import PatientLine, SessionLine
 from app.home.patients.home_page import PATIENT, HomePage
 from app.home.settings.clinic_cards import StationView
 from app.home.settings.operators_card import OperatorLine
@@ -27,6 +26,7 @@ from app.summary.course_words import NextStep
 from app.theme.notifier import ThemeNotifier
 from app.widgets.gauge import GaugeFace, GaugeMeasure, GaugeState
 from app.widgets.hint import Hint
+from app.widgets.line_list import PatientLine, SessionLine
 from app.wizard.free_motion.page import FreeMotionFace, FreeMotionPage
 from app.wizard.patient.cards import LastVisit
 from app.wizard.patient.page import PatientDraft, PatientPage

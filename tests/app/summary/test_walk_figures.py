@@ -9,7 +9,7 @@ import pytest
 
 from app.exports.gait_csv import gait_tables
 from app.exports.summary import summarise
-from app.summary.conditions import Part, left_out_of_parts
+from app.summary.conditions import Part, by_hand_in_words, left_out_of_parts
 from app.summary.differences import SIDES, write_sides
 from app.summary.reference_bands import (
     WHY_NO_BAND,
@@ -23,7 +23,6 @@ from app.summary.walk_figures import (
     NO_ZERO,
     WITHHELD,
     Figure,
-    by_hand_in_words,
     few_strides_in_words,
     peak_figures,
     reason_in_words,

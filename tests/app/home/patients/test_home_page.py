@@ -10,9 +10,9 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.home.patients.home_lists import TEXT_ROW, LineCell, PatientLine, SessionCell, SessionColumns, SessionLine
 from app.home.patients.home_page import HomePage
 from app.theme.notifier import ThemeNotifier
+from app.widgets.line_list import TEXT_ROW, LineCell, PatientLine, SessionCell, SessionColumns, SessionLine
 
 MANY = 5000
 MOST_S = 0.1  # what the screen's thread may take for anything

@@ -4,7 +4,7 @@ from PySide6.QtCore import QObject
 from pytestqt.qtbot import QtBot
 
 from app.home.home import Home
-from app.home.patients.home_lists import PatientLine
+from app.widgets.line_list import PatientLine
 from app.workers.library_controller import LibraryController
 from tests.app.home.home_library import WAIT_MS
 
