@@ -12,6 +12,7 @@ from enum import StrEnum
 from typing import Any
 
 from core.body import Side
+from core.parameters import BY_COLUMN, COMPARED, OF_WALK, STRIDE_LENGTH
 
 
 class GoalOf(StrEnum):
@@ -27,21 +28,10 @@ class GoalOf(StrEnum):
         return Side(self.value) if self in (GoalOf.LEFT, GoalOf.RIGHT) else None
 
 
-# Figures that a goal can be of, by their columns, with what a value may be at most: wider than any walk, to catch what
-# was typed into the wrong field. No height is among them: each visit has a zero of its own.
-OF_LEGS = {
-    "knee_stance_to_swing_deg": 120.0,
-    "knee_while_loading_deg": 60.0,
-    "knee_range_deg": 140.0,
-    "ankle_push_off_deg": 90.0,
-    "ankle_rocker_deg": 90.0,
-    "ankle_range_deg": 120.0,
-    "hip_range_deg": 140.0,
-    "pelvis_obliquity_range_deg": 60.0,
-    "stance_percent": 95.0,
-    "stride_length_m": 3.0,
-}
-OF_WALKS = {"speed_m_s": 3.0, "cadence_steps_min": 240.0}
+# what a goal can be of, with what its value may be at most
+_WITH_GOAL = {column: most for column in COMPARED if (most := BY_COLUMN[column].most) is not None}
+OF_WALKS = {column: most for column, most in _WITH_GOAL.items() if column in OF_WALK}
+OF_LEGS = {column: most for column, most in _WITH_GOAL.items() if column not in OF_WALK}
 OF_TESTS = {  # of timed tests, as `core.timed.measures` calls them
     "ten_metres_speed_m_s": 3.0,
     "two_minutes_distance_m": 400.0,
@@ -49,7 +39,7 @@ OF_TESTS = {  # of timed tests, as `core.timed.measures` calls them
     "up_and_go_time_s": 300.0,
     "sit_to_stand_time_s": 300.0,
 }
-NOT_BETWEEN = ("stride_length_m",)  # in walking straight on both feet travel equally far
+NOT_BETWEEN = (STRIDE_LENGTH,)
 MOST = {**OF_LEGS, **OF_WALKS, **OF_TESTS}
 GOAL_COLUMNS = tuple(MOST)
 LEAST = 0.01  # but legs may be wanted not to differ at all

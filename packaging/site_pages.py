@@ -105,14 +105,15 @@ def columns_page() -> str:
 
 
 def _table(file: str) -> str:
-    from app.exports.columns import KNOWN, UNITS
+    from app.exports.columns import KNOWN
+    from core.parameters import unit_of
 
     def rows() -> Iterator[str]:
         for name, meaning in KNOWN[file].items():
             if name.startswith("right_") and name.replace("right_", "left_", 1) in KNOWN[file]:
                 continue
-            unit = next((unit for end, unit in UNITS.items() if name.endswith(end)), "")
-            unit = unit if meaning.unit is None else meaning.unit
+            ends_in = unit_of(name)
+            unit = (ends_in.in_files if ends_in is not None else "") if meaning.unit is None else meaning.unit
             cells = (f"`{name}`", unit, meaning.definition, meaning.sign, meaning.needs)
             yield f"| {' | '.join(cell.replace('|', '/') for cell in cells)} |"
 

@@ -10,15 +10,14 @@ from pathlib import Path
 from typing import NamedTuple
 
 from app.system.tables import write_table
+from core import parameters
 from core.body import LEG_JOINTS, Joint, Side, hip_of
-from core.gait.cycles import PeakWindow
-from core.verdicts.fitting import BY_COLUMN
-from core.verdicts.quantities import EXCURSIONS_BY_COLUMN, FITTING, PARAMETERS, QUANTITIES, WINDOWS, QuantityClass
+from core.parameters import BY_COLUMN, PeakWindow, QuantityClass
+from core.verdicts.fitting import BY_COLUMN as OF_FITTING
+from core.verdicts.quantities import EXCURSIONS_BY_COLUMN, FITTING, OF_HIPS, PARAMETERS, WINDOWS
 
 COLUMNS = "columns.csv"
 HEADER = ("file", "column", "unit", "sign", "definition", "needs")
-# by the end of a name, longer ends first
-UNITS = {"_m_s": "m/s", "percent": "%", "_deg": "deg", "_s": "s", "_mm": "mm", "_m": "m"}
 FLEXION = {"knee": "flexion positive", "ankle": "dorsiflexion positive", "hip": "flexion positive"}
 HEIGHT = "zero sign"
 NEEDS = {
@@ -46,8 +45,8 @@ def _word(definition: str) -> ColumnMeaning:
 
 def _of_stride(name: str) -> ColumnMeaning:
     """A column that strides.csv has and the parameters of other tables are."""
-    needs, kind = NEEDS.get(QUANTITIES[name], ""), name.split("_")[0]
-    sign = FLEXION[kind] if QUANTITIES[name] is QuantityClass.HEIGHT else ""
+    needs, kind = NEEDS.get(BY_COLUMN[name].rests_on, ""), name.split("_")[0]
+    sign = FLEXION[kind] if BY_COLUMN[name].rests_on is QuantityClass.HEIGHT else ""
     if name in WINDOWS:
         window = WINDOWS[name]
         what = "largest" if window.is_maximum else "smallest"
@@ -55,33 +54,26 @@ def _of_stride(name: str) -> ColumnMeaning:
     if name in EXCURSIONS_BY_COLUMN:
         excursion = EXCURSIONS_BY_COLUMN[name]
         return ColumnMeaning(f"{_extreme(excursion.high, 'largest')} less {_extreme(excursion.low, 'smallest')}", needs)
-    return ColumnMeaning(OF_STRIDE[name], needs, sign)
+    return ColumnMeaning(BY_COLUMN[name].definition, needs, sign)
 
 
 def _of_fitting(name: str) -> ColumnMeaning:
     """A column of fitting.csv."""
     sign = FLEXION["knee"] if name == "knee_terminal_extension_deg" else ""
-    return ColumnMeaning(BY_COLUMN[name].definition, NEEDS.get(FITTING[name], ""), sign)
+    return ColumnMeaning(OF_FITTING[name].definition, NEEDS.get(BY_COLUMN[name].rests_on, ""), sign)
+
+
+def _of_pelvis(name: str) -> ColumnMeaning:
+    """A column that strides.csv has more where a sensor is worn on the pelvis."""
+    quantity = BY_COLUMN[name]
+    needs = ("zero" if name.startswith("pelvis") else HEIGHT) if quantity.rests_on is QuantityClass.HEIGHT else ""
+    return ColumnMeaning(quantity.definition, needs, quantity.sign)
 
 
 def _extreme(window: PeakWindow | None, which: str) -> str:
     return f"{which} angle from {window.first} to {window.last} %" if window else "angle at initial contact"
 
 
-OF_STRIDE = {
-    "stride_time_s": "from an initial contact to the next of the same foot",
-    "step_time_s": "from the other foot's initial contact to this foot's, which ends the stride",
-    "stance_percent": "share of the stride from initial contact to toe-off",
-    "swing_percent": "share of the stride from toe-off to initial contact",
-    "stride_length_m": "how far the foot travels in the swing that ends the stride",
-    "speed_m_s": "stride length by stride time",
-    "clearance_m": "how high the foot's sensor rises in swing, not the toe",
-    "knee_at_initial_contact_deg": "angle at initial contact",
-    "knee_swing_peak_percent": "when in the stride the largest angle from 55 to 90 % comes",
-    "knee_range_deg": "largest less smallest angle of the stride",
-    "ankle_at_initial_contact_deg": "angle at initial contact",
-    "ankle_range_deg": "largest less smallest angle of the stride",
-}
 TIMES = {
     "start_s": ColumnMeaning("initial contact that begins the stride"),
     "full_contact_s": ColumnMeaning("the whole foot comes to the floor"),
@@ -154,31 +146,6 @@ OF_PELVIS = {
         "heading against its mean over two strides; empty in turns", sign="to the left positive"
     ),
 }
-HIP_STRIDES = {
-    "hip_range_deg": ColumnMeaning("largest less smallest hip flexion of the stride"),
-    "hip_flexion_peak_deg": ColumnMeaning(
-        "largest hip flexion of the stride, from standing", HEIGHT, "flexion positive"
-    ),
-    "hip_extension_peak_deg": ColumnMeaning(
-        "largest hip extension of the stride, from standing", HEIGHT, "extension positive"
-    ),
-    "pelvis_obliquity_range_deg": ColumnMeaning("largest less smallest obliquity of the stride"),
-    "pelvis_drop_deg": ColumnMeaning(
-        "how far the side of this leg drops below the other in its swing, from standing", "zero", "dropping positive"
-    ),
-    "pelvis_rotation_range_deg": ColumnMeaning("largest less smallest rotation of the stride; empty in turns"),
-    "hip_abduction_range_deg": ColumnMeaning("largest less smallest hip abduction of the stride"),
-    "hip_abduction_peak_deg": ColumnMeaning(
-        "largest hip abduction of the stride, from standing", HEIGHT, "abduction positive"
-    ),
-    "hip_adduction_peak_deg": ColumnMeaning(
-        "largest hip adduction of the stride, from standing", HEIGHT, "adduction positive"
-    ),
-    "pelvis_tilt_range_deg": ColumnMeaning(
-        "largest less smallest tilt of the stride; empty where its mean is 5 deg or less"
-    ),
-    "pelvis_lean_deg": ColumnMeaning("mean tilt over the stride, from standing", "zero", "forward positive"),
-}
 
 
 def _of_cycles(joint: Joint) -> dict[str, ColumnMeaning]:
@@ -249,7 +216,7 @@ KNOWN: Mapping[str, Mapping[str, ColumnMeaning]] = {
         "distance_status": _word(f"{STATUS}stride length, speed and clearance"),
         **{f"{kind}_shape_status": _word(f"{STATUS}the {kind}'s range") for kind in FLEXION},
         **{f"{kind}_height_status": _word(f"{STATUS}the {kind}'s angles") for kind in FLEXION},
-        **HIP_STRIDES,
+        **{name: _of_pelvis(name) for name in OF_HIPS},
         "hip_abduction_status": _word(f"{STATUS}how far the hip moves outwards and inwards"),
         "pelvis_status": _word(f"{STATUS}the pelvis"),
         "pelvis_tilt_status": _word(f"{STATUS}the range of the pelvis's tilt"),
@@ -432,4 +399,7 @@ def names_in(path: Path) -> list[str]:
 def unit_of(file: str, name: str) -> str:
     """A column's unit; empty where it holds words or counts. Errors as of `column_of`."""
     unit = column_of(file, name).unit
-    return next((unit for end, unit in UNITS.items() if name.endswith(end)), "") if unit is None else unit
+    if unit is None:
+        found = parameters.unit_of(name)
+        return found.in_files if found is not None else ""
+    return unit

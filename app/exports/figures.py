@@ -11,6 +11,7 @@ import numpy as np
 from app.exports.csv_report import DECIMALS
 from app.exports.summary import summarise
 from app.summary.status import is_slipped, joint_status, why, why_status
+from core import parameters
 from core.body import Joint, Side
 from core.results import Analysis, RecordingAnalysis
 from core.samples import FloatArray
@@ -18,14 +19,6 @@ from core.verdicts.model import Assessment, Verdict
 from core.verdicts.quantities import OF_BOTH, OF_HIPS, PARAMETERS, assessment_of, assessment_of_both
 
 SIMULATED = "SIMULATED: nobody was measured."
-UNITS = {  # by the end of a name, longer ends first
-    "_steps_min": "steps/min",
-    "_m_s": "m/s",
-    "percent": "%",
-    "_deg": "°",
-    "_s": "s",
-    "_m": "m",
-}
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +55,8 @@ def software() -> str:
 
 def unit_of(name: str) -> str:
     """The unit that a column's name ends with; empty for counts, words and ratios."""
-    return next((unit for end, unit in UNITS.items() if name.endswith(end)), "")
+    unit = parameters.unit_of(name)
+    return unit.symbol if unit is not None else ""
 
 
 def walk_figures(analysis: Analysis) -> Iterator[WalkFigure]:

@@ -10,12 +10,12 @@ from app.summary.conditions import Part
 from app.summary.goals import GoalFigure, of_part
 from app.system.tables import typed_cell
 from core.goals import AgreedGoals
+from core.parameters import unit_of
 from core.results import Analysis, RecordingAnalysis
 from core.samples import Recording, RecordingKind
 from core.verdicts.goals import GoalStanding
 
 GOALS = "goals.csv"
-UNITS = {"deg": "deg", "percent": "%", "m": "m", "s": "m/s", "min": "steps/min"}  # by the end of a column
 HEADER = (
     *("recording", "condition", "measure", "side", "limit", "goal", "unit", "agreed", "until"),
     *("agreed_before", "value", "error", "status", "standing"),
@@ -49,7 +49,7 @@ def goal_figures(found: GoalFigure, agreed: AgreedGoals) -> dict[str, str | floa
         "side": str(goal.of),
         "limit": "at_most" if goal.is_at_most else "at_least",
         "goal": goal.value,
-        "unit": "s" if goal.column.endswith("_time_s") else UNITS[goal.column.rsplit("_", 1)[1]],
+        "unit": unit.in_files if (unit := unit_of(goal.column)) is not None else "",
         "agreed": goal.agreed.isoformat(),
         "until": goal.until.isoformat() if goal.until is not None else None,
         "agreed_before": is_before,

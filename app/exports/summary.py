@@ -24,6 +24,7 @@ from core.findings import Finding
 from core.gait.chosen_strides import left_out_by_hand
 from core.gait.symmetry import curve_difference, gait_variable_score, symmetry_index_percent
 from core.goals import NO_GOALS, AgreedGoals
+from core.parameters import REGISTRY
 from core.results import Analysis, JointCalibration, RecordingAnalysis
 from core.samples import FloatArray, Recording, RecordingKind
 from core.verdicts.measurement_error import ComparisonKind, whisker
@@ -43,16 +44,7 @@ FORMAT = "gaitwright-analysis/1"
 MOST_BYTES = 50_000_000  # of a file that may be one: ours take a few hundred kilobytes
 BOTH = (*OF_BOTH, "symmetry_index_percent", "curve_difference_deg", "side_difference")
 KINDS = ("knee", "ankle")
-# positive figures only: the index means nothing for signed angles
-SYMMETRIC = (
-    "stride_time_s",
-    "step_time_s",
-    "stance_percent",
-    "swing_percent",
-    "stride_length_m",
-    "knee_range_deg",
-    "ankle_range_deg",
-)
+SYMMETRIC = tuple(quantity.column for quantity in REGISTRY if quantity.has_index)
 
 
 def write_summary(

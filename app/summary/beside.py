@@ -13,9 +13,9 @@ from app.wording.recordings import shown_names
 from app.wording.translation import tr
 from core.body import JointKind
 from core.goals import NO_GOALS, AgreedGoals
+from core.parameters import BY_COLUMN, QuantityClass
 from core.results import Analysis
 from core.samples import Recording
-from core.verdicts.quantities import CLASSES, QuantityClass
 
 MARKED = (QuantityClass.SHAPE, QuantityClass.EXCURSION)
 
@@ -57,7 +57,7 @@ def changes_on_curves(found: Comparison) -> list[Deviation]:
     rows = sorted((row for row in found.rows if row.exceeds), key=lambda row: -row.difference.ratio)
     marked = []
     for kind in JointKind:
-        of_kind = (row for row in rows if row.measure.kind == kind and CLASSES[row.measure.column] in MARKED)
+        of_kind = (row for row in rows if row.measure.kind == kind and BY_COLUMN[row.measure.column].rests_on in MARKED)
         if (row := next(of_kind, None)) is None:
             continue
         measure, joint = row.measure, kind.of(row.side)

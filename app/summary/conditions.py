@@ -16,7 +16,7 @@ import numpy as np
 from app.charts.cycles import is_mean_enough
 from app.charts.stride_chart import StrideCurve
 from app.summary.alignments import alignments_of
-from app.summary.measures import CADENCE, Measure
+from app.summary.measures import Measure
 from app.summary.pooled_walks import Pool, pool_letters, pools_of
 from app.wording.recordings import LETTERS
 from app.wording.translation import side_name, tr
@@ -27,6 +27,7 @@ from core.gait.cycles import POINTS, MeanCycle, mean_cycle
 from core.gait.spatiotemporal import BothFeet, MeanAndSd, mean_and_sd
 from core.gait.strides import Reason
 from core.goals import NO_GOALS, AgreedGoals
+from core.parameters import CADENCE
 from core.results import Analysis, JointCalibration, RecordingAnalysis, ZeroKind
 from core.samples import FloatArray, Recording, RecordingKind
 from core.verdicts.measurement_error import ANGLE_PER_LAG_DEG_S, ComparisonKind

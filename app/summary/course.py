@@ -9,10 +9,10 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from app.summary.conditions import Part
-from app.summary.measures import CADENCE
 from app.summary.visits import by_condition
 from core.body import Joint, Side
 from core.goals import OF_LEGS
+from core.parameters import CADENCE, SPEED
 from core.results import Analysis, RecordingAnalysis
 from core.samples import Recording
 from core.timed.measures import COLUMNS, PROTOCOLS, MeanOfAttempts, figure_of, mean_of_attempts, rests_on_feet
@@ -24,10 +24,6 @@ from core.verdicts.quantities import OF_HIPS
 from core.verdicts.stride_means import MeanOfStrides
 
 FORMAT = "gaitwright-course/4"
-SPEED = "speed_m_s"
-KNEE = "knee_stance_to_swing_deg"  # what stands for the knee: an excursion, which needs no zero
-STANCE = "stance_percent"
-PUSH_OFF = "ankle_push_off_deg"
 OF_A_LEG = tuple(OF_LEGS)  # all that a goal can be of, so that its course can be shown
 
 

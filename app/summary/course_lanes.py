@@ -12,9 +12,10 @@ from dataclasses import dataclass
 from typing import NamedTuple
 from uuid import UUID
 
-from app.summary.course import KNEE, SPEED, STANCE, Course, CourseCondition, change
+from app.summary.course import Course, CourseCondition, change
 from core.body import Side
 from core.goals import Goal, GoalOf, held, is_of_walk
+from core.parameters import KNEE, SPEED, STANCE
 from core.timed.measures import COLUMNS, PROTOCOLS
 from core.verdicts.measurement_error import Difference, Judgement
 from core.verdicts.model import Verdict

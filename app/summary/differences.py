@@ -20,12 +20,13 @@ from core.body import Joint, Side
 from core.gait.cycles import POINTS
 from core.gait.spatiotemporal import MeanAndSd
 from core.gait.symmetry import curve_difference, symmetry_index_percent
+from core.parameters import BY_COLUMN, QuantityClass, Table, columns_of
 from core.results import Analysis
 from core.samples import Session
 from core.verdicts.measurement_error import Difference, Judgement
 from core.verdicts.model import Verdict, together
 from core.verdicts.norms import MIN_STRIDES_FOR_MEAN
-from core.verdicts.quantities import CLASSES, FITTING, OF_BOTH, OF_HIPS, QUANTITIES, QuantityClass, assessment_of_both
+from core.verdicts.quantities import OF_BOTH, assessment_of_both
 
 DIFFERENCES = "differences.csv"
 COMPARED_CYCLES = "compared_cycles.csv"
@@ -43,7 +44,8 @@ HEADER = (
 
 OF_WALKS = {measure.column: measure for measure in MEASURES if measure.is_of_walk}
 
-COMPARED = (*QUANTITIES, *FITTING, *OF_HIPS)  # of hips and pelvis no error of a difference is known: none is judged
+# of hips and pelvis no error of a difference is known: none is judged
+COMPARED = columns_of(Table.STRIDES, Table.PEAKS, Table.FITTING, Table.PELVIS)
 SIGNED = ("foot_pitch_at_contact_deg",)  # whose nought is no less of it: a share of it says nothing
 
 WITHHELD = Difference(math.nan, math.nan, Judgement.WITHHELD)
@@ -114,7 +116,7 @@ def rows_of(comparison: Comparison) -> Iterator[Row]:
     for part in comparison.others:
         for side in Side:
             for column in COMPARED:
-                found = comparison.compare(Measure.of(column), side, part)
+                found = comparison.compare(Measure(column), side, part)
                 if found.reservation is Reservation.NOT_MEASURED:
                     continue
                 status = together(one.assessment(side, column) for one in (part, against)).verdict
@@ -193,7 +195,7 @@ def write_sides(parts: Sequence[Part], sides: tuple[Side, Side], path: Path) -> 
             if not all(part.is_measured(side, column) for side in sides):
                 continue
             status = together(part.assessment(side, column) for side in sides).verdict
-            is_size = CLASSES[column] is not QuantityClass.HEIGHT and column not in SIGNED
+            is_size = BY_COLUMN[column].rests_on is not QuantityClass.HEIGHT and column not in SIGNED
             difference = compare_legs(part, column, sides)
             has_index = is_size and difference.is_told and min(one.n, other.n) >= MIN_STRIDES_FOR_MEAN
             symmetry = symmetry_index_percent(one.mean, other.mean) if has_index else math.nan

@@ -12,10 +12,11 @@ from app.wording.measures import decimals, goal_in_words, limit, short_unit
 from app.wording.translation import tr
 from core.body import Side
 from core.goals import Goal, GoalOf
+from core.parameters import QuantityKind
 from core.timed.measures import PROTOCOLS
 from core.verdicts.attempts import error_between_visits
 from core.verdicts.goals import GoalStanding, beyond, error_of_visit, standing
-from core.verdicts.measurement_error import KINDS, ComparisonKind, Difference, QuantityKind
+from core.verdicts.measurement_error import KINDS, ComparisonKind, Difference
 from core.verdicts.model import Assessment, Verdict
 from core.verdicts.norms import MIN_STRIDES_FOR_MEAN
 from core.verdicts.stride_means import MeanOfStrides

@@ -20,9 +20,10 @@ from app.summary.what_stands_out import (
 )
 from app.wording.translation import tr
 from core.body import Joint, Side
+from core.parameters import BY_COLUMN, QuantityClass
 from core.samples import FloatArray
 from core.verdicts.norms import KNEE_OVERREAD
-from core.verdicts.quantities import CLASSES, EXCURSIONS_BY_COLUMN, QuantityClass
+from core.verdicts.quantities import EXCURSIONS_BY_COLUMN
 
 CONTACT, ALL = (0.0, 0.0), (0.0, 100.0)  # percent of the stride
 
@@ -78,7 +79,10 @@ def _is_between(one: Candidate, rows: Mapping[str, LegsRow]) -> bool:
 
 
 def _has_extremes(row: LegsRow, kind: str) -> bool:
-    return row.column.startswith(kind) and CLASSES[row.column] in (QuantityClass.SHAPE, QuantityClass.EXCURSION)
+    return row.column.startswith(kind) and BY_COLUMN[row.column].rests_on in (
+        QuantityClass.SHAPE,
+        QuantityClass.EXCURSION,
+    )
 
 
 def _on_leg(facts: Facts, row: LegsRow, kind: str) -> Deviation:

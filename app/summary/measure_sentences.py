@@ -3,9 +3,11 @@
 from app.summary.facts import Facts, role
 from app.summary.numbers_in_words import fixed
 from app.summary.panels import peak_name
-from app.wording.measures import decimals, short_unit
+from app.wording.measures import IN_SENTENCE, decimals, short_unit, unit_symbol
 from app.wording.timed_tests import name_of_test
 from app.wording.translation import capitalised, tr
+from core import parameters
+from core.parameters import Unit, unit_of
 from core.timed.measures import PROTOCOLS
 from core.verdicts.measurement_error import Difference
 from core.verdicts.quantities import joint_of as joint_of_column
@@ -15,41 +17,18 @@ def unit_and_decimals(column: str) -> tuple[str, int]:
     """A column's unit as it follows a number, and its decimals."""
     if column in PROTOCOLS:
         return short_unit(column), decimals(column)
-    if column.endswith("_deg"):
-        return "°", 1
-    if column.endswith("_m_s"):
-        return "\u00a0m/s", 2
-    if column.endswith("_steps_min"):
-        return f"\u00a0{tr('steps/min')}", 0
-    return ("\u00a0%", 1) if column.endswith("_percent") else (f"\u00a0{column.rsplit('_', 1)[1]}", 2)
+    unit = unit_of(column)
+    assert unit is not None, column
+    space = "" if unit is Unit.DEGREES else "\N{NO-BREAK SPACE}"
+    return f"{space}{unit_symbol(unit)}", unit.decimals
 
 
 def measure_in_words(column: str) -> str:
     """A column's name inside a sentence."""
     if column in PROTOCOLS:
         return name_of_test(PROTOCOLS[column])
-    names = {
-        "stance_percent": tr("stance, share of the stride"),
-        "step_time_s": tr("step time"),
-        "stride_length_m": tr("stride length"),
-        "speed_m_s": tr("walking speed"),
-        "cadence_steps_min": tr("cadence"),
-        "knee_stance_to_swing_deg": tr("knee bend from stance to swing"),
-        "knee_while_loading_deg": tr("knee bend while loading"),
-        "knee_straightening_deg": tr("knee straightening in stance"),
-        "ankle_push_off_deg": tr("ankle push\u2011off"),
-        "ankle_rocker_deg": tr("ankle rocker"),
-        "ankle_heel_rocker_deg": tr("ankle, heel rocker"),
-        "ankle_toes_lifted_deg": tr("ankle, toes lifted in swing"),
-        "knee_range_deg": tr("knee range over the stride"),
-        "ankle_range_deg": tr("ankle range over the stride"),
-        "hip_range_deg": tr("hip range over the stride"),
-        "hip_extension_peak_deg": tr("hip, most extended"),
-        "pelvis_obliquity_range_deg": tr("pelvis, obliquity over the stride"),
-        "pelvis_drop_deg": tr("pelvis drop in swing"),
-    }
-    if column in names:
-        return names[column]
+    if column in IN_SENTENCE:
+        return tr(IN_SENTENCE[column])
     kind = tr("knee") if column.startswith("knee") else tr("ankle")
     return f"{kind} {peak_name(column)}"
 
@@ -60,7 +39,7 @@ def leg_beside_leg(facts: Facts, column: str, found: Difference) -> str:
     unit, decimals = unit_and_decimals(column)
     is_less = found.difference < 0
     match column:
-        case "knee_range_deg" | "ankle_range_deg":
+        case parameters.KNEE_RANGE | parameters.ANKLE_RANGE:
             pattern = (
                 tr("The {joint} moves {size} less over the stride than the {second}: {value} against {other}.")
                 if is_less

@@ -1,66 +1,53 @@
-"""Which measures of strides are compared between walks, visits and legs: their names, units and whose they are."""
+"""Measures of strides that are compared between walks, visits and legs."""
 
 from dataclasses import dataclass
 
-from app.wording.translation import later
+from app.wording.measures import NAMES, WITH_UNIT
 from core.body import Joint, Side
-from core.verdicts.quantities import CLASSES, QuantityClass, joint_of
+from core.parameters import ALIGNED, BY_COLUMN, COMPARED, OF_WALK, QuantityClass, Unit, unit_of
+from core.verdicts.quantities import joint_of
 
-CADENCE = "cadence_steps_min"  # of both legs; of one, two steps in each of its strides
+KINDS = ("knee", "ankle", "hip", "pelvis")
 
 
 @dataclass(frozen=True, slots=True)
 class Measure:
-    """One figure that is compared; `column` is a quantity of strides, `kind` knee, ankle, hip, pelvis or empty.
-
-    `is_of_walk`: both legs have the same, so it is told once, of both.
-    """
+    """One figure that is compared: a quantity's column, and its name as it heads a row (to be translated)."""
 
     column: str
-    name: str
-    kind: str
-    unit: str = "°"
-    decimals: int = 1
-    is_of_walk: bool = False
-
-    @classmethod
-    def of(cls, column: str) -> "Measure":
-        """Any column of strides.csv, for tables that write the column itself: without a name or a unit."""
-        return cls(column, "", "", unit="")
+    name: str = ""
 
     def joint(self, side: Side) -> Joint | None:
         """Whose figure it is; None where it is no joint's."""
         return joint_of(self.column, side)
 
     @property
+    def kind(self) -> str:
+        """Knee, ankle, hip or pelvis, whose angle it is; empty of all else."""
+        kind = self.column.split("_")[0]
+        return kind if kind in KINDS and unit_of(self.column) is Unit.DEGREES else ""
+
+    @property
+    def unit(self) -> str:
+        unit = unit_of(self.column)
+        return unit.symbol if unit is not None else ""
+
+    @property
+    def decimals(self) -> int:
+        unit = unit_of(self.column)
+        return unit.decimals if unit is not None else 1
+
+    @property
+    def is_of_walk(self) -> bool:
+        """Whether both legs have the same, so that it is shown once, of both."""
+        return self.column in OF_WALK
+
+    @property
     def needs_height(self) -> bool:
         """Whether it says something only with a zero of the same kind."""
-        return CLASSES.get(self.column) is QuantityClass.HEIGHT
+        known = BY_COLUMN.get(self.column)
+        return known is not None and known.rests_on is QuantityClass.HEIGHT
 
 
-MEASURES = (
-    Measure("knee_stance_to_swing_deg", later("Knee, stance to swing"), "knee"),
-    Measure("knee_while_loading_deg", later("Knee while loading"), "knee"),
-    Measure("knee_swing_peak_deg", later("Knee swing peak"), "knee"),
-    Measure("knee_range_deg", later("Knee range"), "knee"),
-    Measure("ankle_push_off_deg", later("Ankle push-off"), "ankle"),
-    Measure("ankle_rocker_deg", later("Ankle rocker"), "ankle"),
-    Measure("ankle_range_deg", later("Ankle range"), "ankle"),
-    Measure("hip_range_deg", later("Hip range"), "hip"),
-    Measure("hip_extension_peak_deg", later("Hip, most extended"), "hip"),
-    Measure("pelvis_obliquity_range_deg", later("Pelvis, obliquity range"), "pelvis"),
-    Measure("pelvis_drop_deg", later("Pelvis drop in swing"), "pelvis"),
-    Measure("stance_percent", later("Stance time, % of stride"), "", "%"),
-    Measure("stride_length_m", later("Stride length, m"), "", "m", 2),
-    Measure("speed_m_s", later("Walking speed, m/s"), "", "m/s", 2, is_of_walk=True),
-    Measure(CADENCE, later("Cadence, steps/min"), "", "steps/min", 0, is_of_walk=True),
-)
-
-FITTED = (  # those of `core.verdicts.fitting` that the bench names where they are larger than their error
-    Measure("knee_terminal_extension_deg", later("Knee, straightest in swing"), "knee"),
-    Measure("knee_extended_before_contact_percent", later("Knee straight before contact"), "", "%"),
-    Measure("foot_heel_rise_deg", later("Heel rise"), ""),
-    Measure("foot_pitch_at_contact_deg", later("Foot pitch at contact"), ""),
-    Measure("foot_flat_percent", later("Foot flat, % of stride"), "", "%"),
-    Measure("shank_over_flat_foot_deg", later("Shank over the flat foot"), ""),
-)
+MEASURES = tuple(Measure(column, WITH_UNIT.get(column) or NAMES[column]) for column in COMPARED)
+FITTED = tuple(Measure(column, NAMES[column]) for column in ALIGNED)

@@ -4,10 +4,11 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from app.summary.course import KNEE, PUSH_OFF, SPEED, STANCE, CourseCondition, change
+from app.summary.course import CourseCondition, change
 from app.summary.course_lanes import CourseVisit
 from core.body import Side
 from core.goals import AgreedGoals, GoalOf, is_of_walk
+from core.parameters import KNEE, PUSH_OFF, SPEED, STANCE
 from core.timed.measures import PROTOCOLS
 from core.verdicts.measurement_error import Difference
 from core.verdicts.model import Verdict

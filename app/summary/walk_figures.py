@@ -14,9 +14,10 @@ from app.summary.conditions import Part
 from app.wording.translation import NAMES, capitalised, joined, later, side_name, tr, tr_n
 from app.wording.verdicts import GateWords, gate_words
 from core.body import Joint, JointKind, Side
-from core.gait.cycles import ANKLE_WINDOWS, KNEE_WINDOWS, find_peak, mean_cycle
+from core.gait.cycles import find_peak, mean_cycle
 from core.gait.spatiotemporal import MeanAndSd
 from core.gait.strides import Reason
+from core.parameters import ANKLE_WINDOWS, KNEE_WINDOWS
 from core.verdicts.model import JointVerdicts, Verdict, worst
 from core.verdicts.norms import MIN_STRIDES_FOR_MEAN, MIN_STRIDES_FOR_SD, ReferenceCurves, ReferenceValues
 

@@ -8,12 +8,12 @@ from app.summary.facts import Facts
 from app.summary.measure_sentences import measure_in_words, unit_and_decimals
 from app.summary.numbers_in_words import Band
 from app.summary.walk_figures import NO_HEIGHT, NO_ZERO, doubt_in
-from app.summary.what_stands_out import BETWEEN_LEGS
 from app.wording.translation import capitalised, tr
 from app.wording.verdicts import verdict_word
 from core.body import Side
 from core.gait.spatiotemporal import MeanAndSd
 from core.goals import Goal
+from core.parameters import BETWEEN_LEGS
 from core.verdicts.measurement_error import Difference
 from core.verdicts.model import Verdict
 from core.verdicts.quantities import joint_of

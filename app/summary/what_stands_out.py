@@ -16,11 +16,21 @@ from app.summary.trend_lines import TrendLine, trend_columns, trend_lines, walke
 from app.wording.dates import date
 from app.wording.translation import capitalised, later, name_of, tr
 from core.body import Joint, Side
+from core.parameters import (
+    ANKLE_RANGE,
+    BETWEEN_LEGS,
+    BY_COLUMN,
+    KNEE,
+    KNEE_RANGE,
+    PUSH_OFF,
+    SPEED,
+    STANCE,
+    QuantityClass,
+)
 from core.results import ZeroKind
 from core.timed.measures import COLUMNS, PROTOCOLS
 from core.verdicts.measurement_error import Z95, ComparisonKind, Difference, sigma_of
 from core.verdicts.model import Verdict
-from core.verdicts.quantities import CLASSES, QuantityClass
 from core.verdicts.quantities import joint_of as joint_of_column
 
 MAX_FINDINGS = 3
@@ -28,20 +38,6 @@ BANDS_ON_PAPER = later("band [1]"), later("band [2]")  # with the numbers of the
 BANDS_ON_SCREEN = later("the band"), later("the band")
 MAX_AWAY_SD = 2.0  # of a band: what lies nearer is inside of it
 MAX_OFFSET_DEG = 10.0  # laboratories differ by 7 deg in the height of their curves, a standing zero by 3 deg
-BETWEEN_LEGS = (
-    "knee_stance_to_swing_deg",
-    "knee_while_loading_deg",
-    "knee_straightening_deg",
-    "knee_range_deg",
-    "ankle_push_off_deg",
-    "ankle_rocker_deg",
-    "ankle_heel_rocker_deg",
-    "ankle_toes_lifted_deg",
-    "ankle_range_deg",
-    "stance_percent",
-    "step_time_s",
-    "hip_range_deg",  # no error of a difference is known: it stands in tables and never in a sentence
-)  # not the stride's length: in walking straight on both feet travel equally far
 
 
 class Since(IntEnum):
@@ -73,8 +69,8 @@ _RANKS = {
     QuantityClass.DISTANCE: Rank.DISTANCE,
     QuantityClass.HEIGHT: Rank.HEIGHT,
 }
-FAMILIES = {"knee_range_deg": "knee_stance_to_swing_deg", "ankle_range_deg": "ankle_push_off_deg"}
-FIRST_OF_ALIKE = ("knee_stance_to_swing_deg", "knee_while_loading_deg", "stance_percent", "speed_m_s")
+FAMILIES = {KNEE_RANGE: KNEE, ANKLE_RANGE: PUSH_OFF}
+FIRST_OF_ALIKE = (KNEE, "knee_while_loading_deg", STANCE, SPEED)
 Topic = tuple[Joint | Side | None, Rank | None, bool]
 """A joint, or a leg and a kind of figure, with the direction: of each, one finding is told."""
 
@@ -225,7 +221,7 @@ def _between_legs(facts: Facts) -> Iterator[Candidate]:
     first, second = facts.first_and_second
     for column in BETWEEN_LEGS:
         found = compare_legs(facts.part, column, (first, second))
-        if not (found.is_told and found.is_worth_a_sentence) or CLASSES[column] is QuantityClass.HEIGHT:
+        if not (found.is_told and found.is_worth_a_sentence) or BY_COLUMN[column].rests_on is QuantityClass.HEIGHT:
             continue
         is_more = found.difference > 0
         topics = (_topic(first, column, is_more), _topic(second, column, not is_more))
@@ -368,4 +364,4 @@ def _topic(side: Side | None, column: str, is_more: bool) -> Topic:
 def _rank(column: str) -> Rank:
     if column in PROTOCOLS:
         return Rank.TIMING if column.endswith("_s") and not column.endswith("_m_s") else Rank.DISTANCE
-    return _RANKS[CLASSES[column]]
+    return _RANKS[BY_COLUMN[column].rests_on]

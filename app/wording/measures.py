@@ -1,25 +1,84 @@
 """What is a measure called that goals and a patient's course are of? Its name, its unit, and how it is written."""
 
-from enum import Enum, auto
-
 from app.wording.timed_tests import name_of_test
 from app.wording.translation import figure_text, later, side_name, tr
 from core.goals import Goal, GoalOf
+from core.parameters import Unit, unit_of
 from core.timed.measures import PROTOCOLS
 
+# in the order of lists
 NAMES = {
+    "speed_m_s": later("Walking speed"),
+    "stride_length_m": later("Stride length"),
+    "stride_time_s": later("Stride time"),
+    "step_time_s": later("Step time"),
+    "cadence_steps_min": later("Cadence"),
+    "stance_percent": later("Stance"),
+    "swing_percent": later("Swing"),
+    "double_support_percent": later("Double support"),
+    "clearance_m": later("Foot clearance"),
+    "knee_range_deg": later("Knee range"),
     "knee_stance_to_swing_deg": later("Knee, stance to swing"),
     "knee_while_loading_deg": later("Knee while loading"),
-    "knee_range_deg": later("Knee range"),
+    "knee_straightening_deg": later("Knee straightening in stance"),
+    "knee_at_initial_contact_deg": later("Knee at initial contact"),
+    "knee_loading_peak_deg": later("Knee loading peak"),
+    "knee_stance_minimum_deg": later("Knee stance minimum"),
+    "knee_swing_peak_deg": later("Knee swing peak"),
+    "knee_swing_peak_percent": later("Knee swing peak, when"),
+    "ankle_range_deg": later("Ankle range"),
     "ankle_push_off_deg": later("Ankle push-off"),
     "ankle_rocker_deg": later("Ankle rocker"),
-    "ankle_range_deg": later("Ankle range"),
+    "ankle_heel_rocker_deg": later("Ankle heel rocker"),
+    "ankle_toes_lifted_deg": later("Ankle, toes lifted in swing"),
+    "ankle_at_initial_contact_deg": later("Ankle at initial contact"),
+    "ankle_loading_plantarflexion_deg": later("Ankle loading plantarflexion"),
+    "ankle_stance_dorsiflexion_deg": later("Ankle stance dorsiflexion"),
+    "ankle_push_off_plantarflexion_deg": later("Ankle push-off plantarflexion"),
+    "ankle_swing_dorsiflexion_deg": later("Ankle swing dorsiflexion"),
     "hip_range_deg": later("Hip range"),
+    "hip_flexion_peak_deg": later("Hip, most flexed"),
+    "hip_extension_peak_deg": later("Hip, most extended"),
+    "hip_abduction_range_deg": later("Hip abduction range"),
+    "hip_abduction_peak_deg": later("Hip, most abducted"),
+    "hip_adduction_peak_deg": later("Hip, most adducted"),
     "pelvis_obliquity_range_deg": later("Pelvis, obliquity range"),
-    "stance_percent": later("Stance"),
-    "stride_length_m": later("Stride length"),
-    "speed_m_s": later("Walking speed"),
-    "cadence_steps_min": later("Cadence"),
+    "pelvis_drop_deg": later("Pelvis drop in swing"),
+    "pelvis_rotation_range_deg": later("Pelvis, rotation range"),
+    "pelvis_tilt_range_deg": later("Pelvis, tilt range"),
+    "pelvis_lean_deg": later("Pelvis, lean"),
+    "knee_terminal_extension_deg": later("Knee, straightest in swing"),
+    "knee_extended_before_contact_percent": later("Knee straight before contact"),
+    "foot_heel_rise_deg": later("Heel rise"),
+    "foot_pitch_at_contact_deg": later("Foot pitch at contact"),
+    "foot_flat_percent": later("Foot flat, % of stride"),
+    "shank_over_flat_foot_deg": later("Shank over the flat foot"),
+}
+WITH_UNIT = {  # as they head rows of figures that have no unit of their own
+    "stance_percent": later("Stance time, % of stride"),
+    "stride_length_m": later("Stride length, m"),
+    "speed_m_s": later("Walking speed, m/s"),
+    "cadence_steps_min": later("Cadence, steps/min"),
+}
+IN_SENTENCE = {
+    "stance_percent": later("stance, share of the stride"),
+    "step_time_s": later("step time"),
+    "stride_length_m": later("stride length"),
+    "speed_m_s": later("walking speed"),
+    "cadence_steps_min": later("cadence"),
+    "knee_stance_to_swing_deg": later("knee bend from stance to swing"),
+    "knee_while_loading_deg": later("knee bend while loading"),
+    "knee_straightening_deg": later("knee straightening in stance"),
+    "ankle_push_off_deg": later("ankle push\u2011off"),
+    "ankle_rocker_deg": later("ankle rocker"),
+    "ankle_heel_rocker_deg": later("ankle, heel rocker"),
+    "ankle_toes_lifted_deg": later("ankle, toes lifted in swing"),
+    "knee_range_deg": later("knee range over the stride"),
+    "ankle_range_deg": later("ankle range over the stride"),
+    "hip_range_deg": later("hip range over the stride"),
+    "hip_extension_peak_deg": later("hip, most extended"),
+    "pelvis_obliquity_range_deg": later("pelvis, obliquity over the stride"),
+    "pelvis_drop_deg": later("pelvis drop in swing"),
 }
 LESS = "L \N{MINUS SIGN} R"
 NO_BREAK = "\N{NO-BREAK SPACE}"
@@ -40,26 +99,24 @@ def spoken_name(column: str, *, is_between: bool = False) -> str:
 def unit_name(column: str) -> str:
     """The unit by itself."""
     return {
-        _Unit.DEGREES: tr("degrees"),
-        _Unit.PERCENT: tr("% of stride"),
-        _Unit.METRES: "m",
-        _Unit.DISTANCE: "m",
-        _Unit.SPEED: "m/s",
-        _Unit.CADENCE: tr("steps/min"),
-        _Unit.SECONDS: tr("seconds"),
+        Unit.DEGREES: tr("degrees"),
+        Unit.PERCENT: tr("% of stride"),
+        Unit.METRES: "m",
+        Unit.SPEED: "m/s",
+        Unit.CADENCE: tr("steps/min"),
+        Unit.SECONDS: tr("seconds"),
     }[_unit(column)]
 
 
 def spoken_value(column: str, value: str) -> str:
     """A number with its unit, as it is read out."""
     said = {
-        _Unit.DEGREES: tr("{value} degrees"),
-        _Unit.PERCENT: tr("{value} percent of the stride"),
-        _Unit.METRES: tr("{value} metres"),
-        _Unit.DISTANCE: tr("{value} metres"),
-        _Unit.SPEED: tr("{value} metres per second"),
-        _Unit.CADENCE: tr("{value} steps per minute"),
-        _Unit.SECONDS: tr("{value} seconds"),
+        Unit.DEGREES: tr("{value} degrees"),
+        Unit.PERCENT: tr("{value} percent of the stride"),
+        Unit.METRES: tr("{value} metres"),
+        Unit.SPEED: tr("{value} metres per second"),
+        Unit.CADENCE: tr("{value} steps per minute"),
+        Unit.SECONDS: tr("{value} seconds"),
     }
     return said[_unit(column)].format(value=value)
 
@@ -67,34 +124,37 @@ def spoken_value(column: str, value: str) -> str:
 def short_unit(column: str) -> str:
     """The unit as it follows a number, with the space before it."""
     unit = _unit(column)
-    if unit is _Unit.DEGREES:
+    if unit is Unit.DEGREES:
         return "°"
-    signs = {_Unit.PERCENT: "%", _Unit.SECONDS: "s"}
+    signs = {Unit.PERCENT: "%", Unit.SECONDS: "s"}
     return NO_BREAK + (signs.get(unit) or unit_name(column))
 
 
 def decimals(column: str) -> int:
     """Of its values where there is room for few: those that the error leaves a meaning."""
-    few = {_Unit.PERCENT: 1, _Unit.METRES: 2, _Unit.SPEED: 2, _Unit.SECONDS: 1}
+    if column.endswith("_distance_m"):
+        return 0
+    few = {Unit.PERCENT: 1, Unit.METRES: 2, Unit.SPEED: 2, Unit.SECONDS: 1}
     return few.get(_unit(column), 0)
 
 
 def least_span(column: str) -> float:
     """Smaller changes are not blown up to a whole plot."""
+    if column.endswith("_distance_m"):  # of a whole test
+        return 40.0
     return {
-        _Unit.DEGREES: 20.0,
-        _Unit.PERCENT: 6.0,
-        _Unit.METRES: 0.3,
-        _Unit.DISTANCE: 40.0,
-        _Unit.SPEED: 0.4,
-        _Unit.CADENCE: 20.0,
-        _Unit.SECONDS: 6.0,
+        Unit.DEGREES: 20.0,
+        Unit.PERCENT: 6.0,
+        Unit.METRES: 0.3,
+        Unit.SPEED: 0.4,
+        Unit.CADENCE: 20.0,
+        Unit.SECONDS: 6.0,
     }[_unit(column)]
 
 
 def limit(goal: Goal) -> str:
     """The value of a goal with its unit: "60°"; decimals that say nothing are left out but of metres and speed."""
-    whole = (_Unit.DEGREES, _Unit.PERCENT, _Unit.SECONDS)
+    whole = (Unit.DEGREES, Unit.PERCENT, Unit.SECONDS)
     count = max(1, decimals(goal.column)) if _unit(goal.column) in whole else decimals(goal.column)
     number = figure_text(goal.value, f".{count}f")
     return (number.removesuffix(".0") if count == 1 else number) + short_unit(goal.column)
@@ -120,29 +180,14 @@ def goal_in_words(goal: Goal) -> str:
     return tr("{who}: {wanted}").format(who=who, wanted=wanted(goal))
 
 
-class _Unit(Enum):
-    DEGREES = auto()
-    PERCENT = auto()
-    METRES = auto()
-    DISTANCE = auto()  # metres of a whole test
-    SPEED = auto()
-    CADENCE = auto()
-    SECONDS = auto()
+def unit_symbol(unit: Unit) -> str:
+    return tr("steps/min") if unit is Unit.CADENCE else unit.symbol
 
 
-_ENDS = {  # of columns; the longer before those that they end with
-    "_deg": _Unit.DEGREES,
-    "_percent": _Unit.PERCENT,
-    "_m_s": _Unit.SPEED,
-    "_distance_m": _Unit.DISTANCE,
-    "_m": _Unit.METRES,
-    "_steps_min": _Unit.CADENCE,
-    "_s": _Unit.SECONDS,
-}
-
-
-def _unit(column: str) -> _Unit:
-    return next(unit for end, unit in _ENDS.items() if column.endswith(end))
+def _unit(column: str) -> Unit:
+    found = unit_of(column)
+    assert found is not None, column
+    return found
 
 
 def _name(column: str) -> str:

@@ -1,11 +1,10 @@
 """Joint angles over 0-100 % of each stride, their mean, and the peaks a clinician reads."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from core.body import JointKind
+from core.parameters import Excursion, PeakWindow
 from core.samples import BoolArray, FloatArray
 from core.signal.tracks import MAX_REPORTED_GAP_S, nominal_step_s
 
@@ -19,59 +18,6 @@ class MeanCycle:
     mean: FloatArray
     sd: FloatArray
     n: int
-
-
-@dataclass(frozen=True, slots=True)
-class PeakWindow:
-    """Where in a stride a peak is looked for, percent, and whether it is a maximum."""
-
-    name: str
-    first: int
-    last: int
-    is_maximum: bool
-
-
-KNEE_WINDOWS = (
-    PeakWindow("knee_loading_peak", 5, 30, True),
-    PeakWindow("knee_stance_minimum", 25, 60, False),
-    PeakWindow("knee_swing_peak", 55, 90, True),
-)
-ANKLE_WINDOWS = (
-    PeakWindow("ankle_loading_plantarflexion", 0, 20, False),
-    PeakWindow("ankle_stance_dorsiflexion", 20, 60, True),
-    PeakWindow("ankle_push_off_plantarflexion", 50, 80, False),
-    PeakWindow("ankle_swing_dorsiflexion", 70, 95, True),
-)
-PEAK_WINDOWS: Mapping[JointKind, tuple[PeakWindow, ...]] = {
-    JointKind.HIP: (),  # its peaks are those of the whole stride
-    JointKind.KNEE: KNEE_WINDOWS,
-    JointKind.ANKLE: ANKLE_WINDOWS,
-}
-
-
-@dataclass(frozen=True, slots=True)
-class Excursion:
-    """How far a joint moves between two extremes of a stride; None: from, or to, initial contact.
-
-    Excursions need no zero and repeat better than peaks (Ferber et al. 2002, J Orthop Res 20:1139, runners).
-    """
-
-    name: str
-    high: PeakWindow | None
-    low: PeakWindow | None
-
-
-_LOADING, _STANCE, _SWING = KNEE_WINDOWS
-_HEEL, _OVER_FOOT, _OFF, _CLEARING = ANKLE_WINDOWS
-EXCURSIONS = (
-    Excursion("knee_while_loading", _LOADING, None),
-    Excursion("knee_straightening", _LOADING, _STANCE),
-    Excursion("knee_stance_to_swing", _SWING, _STANCE),
-    Excursion("ankle_heel_rocker", None, _HEEL),
-    Excursion("ankle_rocker", _OVER_FOOT, _HEEL),
-    Excursion("ankle_push_off", _OVER_FOOT, _OFF),
-    Excursion("ankle_toes_lifted", _CLEARING, _OFF),
-)
 
 
 @dataclass(frozen=True, slots=True)

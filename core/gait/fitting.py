@@ -9,8 +9,9 @@ from collections.abc import Mapping
 import numpy as np
 
 from core.body import Segment
-from core.gait.cycles import KNEE_WINDOWS, POINTS, cycles_of, find_peak
+from core.gait.cycles import POINTS, cycles_of, find_peak
 from core.gait.strides import Strides
+from core.parameters import KNEE_WINDOWS
 from core.samples import FloatArray
 
 EXTENDED_RAD = np.deg2rad(3.0)  # a knee that has come so near to its straightest has arrived; its last degrees are slow

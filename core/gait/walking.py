@@ -8,14 +8,7 @@ import numpy as np
 
 from core.body import Joint, Segment, Side, Site, ankle_of, knee_of
 from core.gait.clocks import LegClocks, LegSteps, leg_clocks
-from core.gait.cycles import (
-    EXCURSIONS,
-    PEAK_WINDOWS,
-    cycles_of,
-    excursion_of_cycles,
-    find_peak,
-    range_of_cycles,
-)
+from core.gait.cycles import cycles_of, excursion_of_cycles, find_peak, range_of_cycles
 from core.gait.events import FootEvents, detect_events
 from core.gait.fitting import foot_measures, inclination_measures, late_swing_of_knee
 from core.gait.foot import FootMotion
@@ -23,6 +16,7 @@ from core.gait.phases import phases_at
 from core.gait.shank import gait_of_shank
 from core.gait.spatiotemporal import parameters_of
 from core.gait.strides import Strides, strides_of_feet
+from core.parameters import EXCURSIONS, PEAK_WINDOWS
 from core.results import JointAngle, SideGait
 from core.samples import BoolArray, FloatArray, Patient, Recording
 from core.signal.sensors import SensorTracks

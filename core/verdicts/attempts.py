@@ -7,6 +7,7 @@ Only walking speed has a figure between visits; distances in a set time and time
 import math
 from collections.abc import Mapping
 
+from core.parameters import QuantityKind
 from core.timed.measures import COLUMNS, MeanOfAttempts
 from core.timed.protocols import TimedProtocol
 from core.verdicts.measurement_error import (
@@ -17,7 +18,6 @@ from core.verdicts.measurement_error import (
     Difference,
     ErrorSource,
     Judgement,
-    QuantityKind,
     Sigma,
 )
 from core.verdicts.model import Assessment

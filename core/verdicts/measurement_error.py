@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import NamedTuple
 
-from core.gait.cycles import EXCURSIONS
+from core.parameters import REGISTRY, QuantityKind
 from core.verdicts.model import Assessment
 from core.verdicts.norms import MIN_STRIDES_FOR_MEAN, MIN_STRIDES_FOR_SD
 from core.verdicts.stride_means import MeanOfStrides
@@ -45,64 +45,8 @@ class ErrorSource(StrEnum):
     ZERO = "zero"
 
 
-class QuantityKind(StrEnum):
-    """Quantities that share an error."""
-
-    KNEE_SHAPE = "knee_shape"
-    ANKLE_SHAPE = "ankle_shape"
-    KNEE_HEIGHT = "knee_height"
-    ANKLE_HEIGHT = "ankle_height"
-    STANCE = "stance"
-    TIME = "time"
-    SPEED = "speed"
-    LENGTH = "length"
-    SEGMENT_SHAPE = "segment_shape"
-    SEGMENT_HEIGHT = "segment_height"
-    FOOT_PITCH = "foot_pitch"
-    FOOT_FLAT = "foot_flat"
-    KNEE_TIMING = "knee_timing"
-
-
-KINDS: Mapping[str, QuantityKind] = {  # by the columns of strides.csv and of `both`; what is missing is not judged
-    "stride_time_s": QuantityKind.TIME,
-    "step_time_s": QuantityKind.TIME,
-    "cadence_steps_min": QuantityKind.TIME,
-    "stance_percent": QuantityKind.STANCE,
-    "swing_percent": QuantityKind.STANCE,
-    "stride_length_m": QuantityKind.LENGTH,
-    "speed_m_s": QuantityKind.SPEED,
-    "knee_at_initial_contact_deg": QuantityKind.KNEE_HEIGHT,
-    "knee_loading_peak_deg": QuantityKind.KNEE_HEIGHT,
-    "knee_stance_minimum_deg": QuantityKind.KNEE_HEIGHT,
-    "knee_swing_peak_deg": QuantityKind.KNEE_HEIGHT,
-    "knee_range_deg": QuantityKind.KNEE_SHAPE,
-    "ankle_at_initial_contact_deg": QuantityKind.ANKLE_HEIGHT,
-    "ankle_loading_plantarflexion_deg": QuantityKind.ANKLE_HEIGHT,
-    "ankle_stance_dorsiflexion_deg": QuantityKind.ANKLE_HEIGHT,
-    "ankle_push_off_plantarflexion_deg": QuantityKind.ANKLE_HEIGHT,
-    "ankle_swing_dorsiflexion_deg": QuantityKind.ANKLE_HEIGHT,
-    "ankle_range_deg": QuantityKind.ANKLE_SHAPE,
-    **{
-        f"{excursion.name}_deg": QuantityKind.KNEE_SHAPE
-        if excursion.name.startswith("knee")
-        else QuantityKind.ANKLE_SHAPE
-        for excursion in EXCURSIONS
-    },
-    "knee_terminal_extension_deg": QuantityKind.KNEE_HEIGHT,
-    "knee_extended_before_contact_percent": QuantityKind.KNEE_TIMING,
-    "foot_flat_percent": QuantityKind.FOOT_FLAT,
-    "foot_pitch_at_contact_deg": QuantityKind.FOOT_PITCH,
-    "foot_heel_rise_deg": QuantityKind.FOOT_PITCH,
-    **dict.fromkeys(
-        ("shank_heel_rocker_deg", "shank_over_flat_foot_deg", "shank_forefoot_rocker_deg"), QuantityKind.SEGMENT_SHAPE
-    ),
-    **{
-        f"{segment}_at_{instant}_deg": QuantityKind.SEGMENT_HEIGHT
-        for segment in ("shank", "thigh")
-        for instant in ("initial_contact", "mid_stance", "toe_off")
-    },
-}
-
+# by the columns of strides.csv and of `both`; what is missing is not judged
+KINDS = {quantity.column: quantity.error for quantity in REGISTRY if quantity.error is not None}
 
 # What a quantity changes by with walking speed, per m/s: peak knee flexion in swing and stance of 42 adults from slow
 # to fast (Fukuchi, Fukuchi & Duarte 2018, doi 10.7717/peerj.4640); those of ankle, segments and foot are the knee's,

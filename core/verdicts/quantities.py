@@ -1,105 +1,26 @@
 """The figures of a walk and the verdict that each rests on; values per stride, empty where withheld."""
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from enum import StrEnum
 
 import numpy as np
 
 from core.body import Joint, Side, ankle_of, hip_of, knee_of
-from core.gait.cycles import (
-    ANKLE_WINDOWS,
-    EXCURSIONS,
-    KNEE_WINDOWS,
-    POINTS,
-    MeanCycle,
-    cycles_of,
-    find_peak,
-    mean_cycle,
-)
+from core.gait.cycles import POINTS, MeanCycle, cycles_of, find_peak, mean_cycle
 from core.gait.spatiotemporal import BothFeet, MeanAndSd, both_feet, mean_and_sd
 from core.gait.strides import strides_of
+from core.parameters import ANKLE_WINDOWS, BY_COLUMN, EXCURSIONS, KNEE_WINDOWS, SPEED, QuantityClass, Table, columns_of
 from core.results import RecordingAnalysis, SideGait
 from core.samples import FloatArray
 from core.verdicts.model import NOT_MEASURED, Assessment, Verdict, Verdicts, together
 
-
-class QuantityClass(StrEnum):
-    """What a figure needs to be known. A mirrored curve would not have the same `PEAK_TIME` or `EXCURSION`."""
-
-    SHAPE = "shape"
-    PEAK_TIME = "peak_time"
-    EXCURSION = "excursion"
-    HEIGHT = "height"
-    TIMING = "timing"
-    DISTANCE = "distance"
-    BETWEEN = "between"
-
-
-_OF_STRIDES: Mapping[str, QuantityClass] = {  # the columns of strides.csv, angles in degrees there
-    "stride_time_s": QuantityClass.TIMING,
-    "step_time_s": QuantityClass.BETWEEN,
-    "stance_percent": QuantityClass.TIMING,
-    "swing_percent": QuantityClass.TIMING,
-    "stride_length_m": QuantityClass.DISTANCE,
-    "speed_m_s": QuantityClass.DISTANCE,
-    "clearance_m": QuantityClass.DISTANCE,
-    "knee_at_initial_contact_deg": QuantityClass.HEIGHT,
-    "knee_loading_peak_deg": QuantityClass.HEIGHT,
-    "knee_stance_minimum_deg": QuantityClass.HEIGHT,
-    "knee_swing_peak_deg": QuantityClass.HEIGHT,
-    "knee_swing_peak_percent": QuantityClass.PEAK_TIME,
-    "knee_range_deg": QuantityClass.SHAPE,
-    "ankle_at_initial_contact_deg": QuantityClass.HEIGHT,
-    "ankle_loading_plantarflexion_deg": QuantityClass.HEIGHT,
-    "ankle_stance_dorsiflexion_deg": QuantityClass.HEIGHT,
-    "ankle_push_off_plantarflexion_deg": QuantityClass.HEIGHT,
-    "ankle_swing_dorsiflexion_deg": QuantityClass.HEIGHT,
-    "ankle_range_deg": QuantityClass.SHAPE,
-}
+PARAMETERS = columns_of(Table.STRIDES)
+FITTING = columns_of(Table.FITTING)  # what they mean: core.verdicts.fitting
+OF_HIPS = columns_of(Table.PELVIS)
 EXCURSIONS_BY_COLUMN = {f"{excursion.name}_deg": excursion for excursion in EXCURSIONS}  # those of peaks.csv
-QUANTITIES: Mapping[str, QuantityClass] = {
-    **_OF_STRIDES,
-    **dict.fromkeys(EXCURSIONS_BY_COLUMN, QuantityClass.EXCURSION),
-}
-PARAMETERS = tuple(_OF_STRIDES)
-FITTING: Mapping[str, QuantityClass] = {  # the columns of fitting.csv; what they mean: core.verdicts.fitting
-    "knee_terminal_extension_deg": QuantityClass.HEIGHT,
-    "knee_extended_before_contact_percent": QuantityClass.PEAK_TIME,
-    "foot_flat_percent": QuantityClass.TIMING,
-    "foot_pitch_at_contact_deg": QuantityClass.DISTANCE,  # told by the same motion of the foot as its length is
-    "foot_heel_rise_deg": QuantityClass.DISTANCE,
-    "shank_heel_rocker_deg": QuantityClass.EXCURSION,
-    "shank_over_flat_foot_deg": QuantityClass.EXCURSION,
-    "shank_forefoot_rocker_deg": QuantityClass.EXCURSION,
-    **{
-        f"{segment}_at_{instant}_deg": QuantityClass.HEIGHT
-        for segment in ("shank", "thigh")
-        for instant in ("initial_contact", "mid_stance", "toe_off")
-    },
-}
-OF_HIPS: Mapping[str, QuantityClass] = {  # what strides.csv has more where a sensor is worn on the pelvis
-    "hip_range_deg": QuantityClass.SHAPE,
-    "hip_flexion_peak_deg": QuantityClass.HEIGHT,
-    "hip_extension_peak_deg": QuantityClass.HEIGHT,
-    "pelvis_obliquity_range_deg": QuantityClass.SHAPE,
-    "pelvis_drop_deg": QuantityClass.HEIGHT,
-    "pelvis_rotation_range_deg": QuantityClass.SHAPE,
-    "hip_abduction_range_deg": QuantityClass.SHAPE,
-    "hip_abduction_peak_deg": QuantityClass.HEIGHT,
-    "hip_adduction_peak_deg": QuantityClass.HEIGHT,
-    "pelvis_tilt_range_deg": QuantityClass.SHAPE,
-    "pelvis_lean_deg": QuantityClass.HEIGHT,
-}
-OF_WALK: Mapping[str, QuantityClass] = {  # what both legs make together, beside speed
-    "cadence_steps_min": QuantityClass.TIMING,
-    "double_support_percent": QuantityClass.TIMING,
-}
-CLASSES: Mapping[str, QuantityClass] = {**QUANTITIES, **FITTING, **OF_HIPS, **OF_WALK}  # of all that is compared
 SEGMENTS = ("shank", "thigh")
 ABDUCTION = ("hip_abduction", "hip_adduction")
-OF_BOTH = ("cadence_steps_min", "double_support_percent", "speed_m_s")
+OF_BOTH = (*columns_of(Table.WALK), SPEED)
 WINDOWS = {f"{window.name}_deg": window for window in (*KNEE_WINDOWS, *ANKLE_WINDOWS)}
 
 
@@ -123,7 +44,7 @@ def joint_of(name: str, side: Side) -> Joint | None:
 
 def assessment_of(verdicts: Verdicts, side: Side, name: str) -> Assessment:
     """What may be said of one column of strides.csv, peaks.csv or fitting.csv."""
-    joint, wanted = joint_of(name, side), CLASSES[name]
+    joint, wanted = joint_of(name, side), BY_COLUMN[name].rests_on
     if name.startswith("pelvis"):  # over strides, which the foot's events bound
         of_pelvis = verdicts.pelvis_tilt if name == "pelvis_tilt_range_deg" else verdicts.pelvis
         return together((of_pelvis, verdicts.leg(side).timing))

@@ -7,9 +7,9 @@ import numpy as np
 
 from core.body import Segment, Side, Site
 from core.findings import Finding, Severity
-from core.gait.cycles import PEAK_WINDOWS
 from core.gait.strides import Reason
 from core.hip.results import PelvisTurn
+from core.parameters import PEAK_WINDOWS
 from core.results import RecordingAnalysis, SideGait
 from core.timed.found import Turn
 from core.verdicts.norms import MIN_STRIDES_FOR_MEAN, MIN_STRIDES_FOR_SD

@@ -10,9 +10,9 @@ from app.results.result_page import ResultPage
 from app.summary.request import AnalysedVisit, ReportRequest
 from core.analysis import analyse
 from core.body import Joint, Side
+from core.parameters import BY_COLUMN, QuantityClass, Table, columns_of
 from core.results import Analysis, ZeroKind
 from core.samples import Session
-from core.verdicts.quantities import QUANTITIES, QuantityClass
 from devices.simulation.walker import DEMONSTRATION, simulate
 from tests.app.changed_analysis import recalibrated, with_few_strides
 from tests.app.doubt_readers import Doubts, Said, said_in_report, said_on_screen
@@ -52,8 +52,8 @@ def columns(kind: str, *classes: QuantityClass) -> list[str]:
     unread = ("at_initial_contact_deg", "peak_percent")
     return [
         name
-        for name, wanted in QUANTITIES.items()
-        if name.startswith(kind) and wanted in classes and not name.endswith(unread)
+        for name in columns_of(Table.STRIDES, Table.PEAKS)
+        if name.startswith(kind) and BY_COLUMN[name].rests_on in classes and not name.endswith(unread)
     ]
 
 

@@ -30,9 +30,10 @@ from core.goals import (
     whose,
     with_goal,
 )
+from core.parameters import BY_COLUMN, QuantityClass
 from core.verdicts.goals import GoalStanding, error_of_visit, standing
 from core.verdicts.measurement_error import ComparisonKind, sigma_of
-from core.verdicts.quantities import CLASSES, OF_HIPS, QuantityClass
+from core.verdicts.quantities import OF_HIPS
 from core.verdicts.stride_means import MeanOfStrides
 
 KNEE, SPEED, STANCE = "knee_stance_to_swing_deg", "speed_m_s", "stance_percent"
@@ -92,7 +93,7 @@ def test_what_is_no_goal_is_not_taken_for_one(change: dict[str, object]) -> None
 def test_every_measure_of_a_goal_is_judged_between_visits_and_none_is_a_height() -> None:
     for column in GOAL_COLUMNS:
         assert (sigma_of(column, ComparisonKind.VISITS) is None) is (column in OF_TESTS or column in OF_HIPS)
-        assert CLASSES.get(column) is not QuantityClass.HEIGHT
+        assert column not in BY_COLUMN or BY_COLUMN[column].rests_on is not QuantityClass.HEIGHT
         if GoalOf.BETWEEN in whose(column):
             assert (sigma_of(column, ComparisonKind.LEGS) is None) is (column in OF_HIPS)
 

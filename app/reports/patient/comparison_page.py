@@ -35,6 +35,7 @@ from app.wording.alignment import NO_PROOF, change_in_words
 from app.wording.translation import capitalised, joined, tr
 from app.wording.verdicts import verdict_word
 from core.body import JointKind, Side
+from core.parameters import KNEE_RANGE, STANCE
 from core.verdicts.measurement_error import ComparisonKind, sigma_of
 from core.verdicts.model import Verdict, worst
 from core.verdicts.quantities import EXCURSIONS_BY_COLUMN, OF_HIPS
@@ -324,7 +325,7 @@ def _how_judged(comparison: Comparison) -> str:
     """What the error contains, with what was added for what lies between the walks."""
     kinds = {comparison.error_kind(part, comparison.base_of(part)) for part in comparison.others}
     kind = max(kinds, key=list(ComparisonKind).index)
-    knee, stance = (signed_error(sigma_of(name, kind)) for name in ("knee_range_deg", "stance_percent"))
+    knee, stance = (signed_error(sigma_of(name, kind)) for name in (KNEE_RANGE, STANCE))
     rows = [_compared(comparison, row.measure, row.side, row.part) for row in comparison.rows]
     told = [row.difference for row in rows if row.is_told and row.difference.error > 0]
     said = tr(

@@ -10,6 +10,7 @@ from app.summary.panels import excursion_name
 from app.summary.reference_bands import reference_curves
 from app.theme.colours import PAPER
 from app.wording.translation import tr
+from core.parameters import ANKLE_RANGE, KNEE_RANGE
 from core.samples import FloatArray
 from core.verdicts.quantities import EXCURSIONS_BY_COLUMN
 
@@ -31,12 +32,12 @@ PLACES = {
     "knee_while_loading_deg": _Place(3, "start", 17),
     "knee_straightening_deg": _Place(28, "middle", -19),
     "knee_stance_to_swing_deg": _Place(52, "end"),
-    "knee_range_deg": _Place(104, "start"),
+    KNEE_RANGE: _Place(104, "start"),
     "ankle_heel_rocker_deg": _Place(3, "start", -21),
     "ankle_rocker_deg": _Place(28, "start", 2),
     "ankle_push_off_deg": _Place(54, "end", -22),
     "ankle_toes_lifted_deg": _Place(76, "start", -4),
-    "ankle_range_deg": _Place(104, "start"),
+    ANKLE_RANGE: _Place(104, "start"),
 }
 
 

@@ -15,6 +15,7 @@ from core.body import Joint, JointKind, Side, hip_of
 from core.calibration.clinical_sign import MIN_MARGIN
 from core.calibration.same_joint import DOUBTFUL_DISAGREEMENT, MAX_DISAGREEMENT
 from core.hip.results import ClockStatus, HipIdentification
+from core.parameters import ANKLE_RANGE, KNEE_RANGE, STANCE
 from core.results import JointCalibration, ZeroKind
 from core.samples import FloatArray
 from core.verdicts.gates import LIMITS, MIN_STRIDES_TO_SPLIT
@@ -239,7 +240,7 @@ def error_table() -> list[Block]:
     rows: list[Row] = []
     for kind, name, contains in told:
         cells = []
-        for column in ("knee_range_deg", "ankle_range_deg", "stance_percent"):
+        for column in (KNEE_RANGE, ANKLE_RANGE, STANCE):
             sigma = sigma_of(column, kind)
             cells.append(signed_error(sigma) + (DAGGER if sigma is not None and not sigma.is_verified else ""))
         rows.append([name, contains, *cells])

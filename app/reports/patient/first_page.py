@@ -10,7 +10,6 @@ from app.reports.patient.key_strips import height_scale
 from app.summary import panels, quality
 from app.summary.comparison import Comparison
 from app.summary.conditions import by_hand_in_words
-from app.summary.course import KNEE
 from app.summary.facts import Facts, joint_of
 from app.summary.goals import goal_sentence
 from app.summary.marks_on_curves import brackets_of
@@ -23,6 +22,7 @@ from app.summary.what_stands_out import MAX_AWAY_SD, caveat, nothing_found, prin
 from app.wording.translation import capitalised, figure_text, joined, name_of, side_name, tr, tr_n
 from app.wording.verdicts import verdict_word
 from core.body import Joint, JointKind, Side
+from core.parameters import KNEE
 from core.verdicts.model import Assessment, Verdict, worst
 from core.verdicts.quantities import EXCURSIONS_BY_COLUMN, WINDOWS
 

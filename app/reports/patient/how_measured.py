@@ -15,6 +15,7 @@ from app.wording.translation import WHOLE_SESSION, joined, tr
 from core.body import JointKind, Segment, Side, Site
 from core.calibration.certainty import AXIS_FLOOR_HUMAN_RAD, AXIS_FLOOR_WALKING_RAD
 from core.findings import Finding
+from core.parameters import KNEE_RANGE
 from core.results import AxisSource, Method
 from core.samples import ImuBlock, RateKind, SensorInfo
 from core.signal.orientation import accelerometer_time_constant_s
@@ -210,7 +211,7 @@ def _words() -> str:
         "Knees are read 9 ± 4 % too flexed, so they are judged as measured and divided by {overread}. "
         "Withheld: measured, but not fit to be read; the cause is named."
     ).format(
-        knee_error=signed_error(sigma_of("knee_range_deg", ComparisonKind.VISITS)),
+        knee_error=signed_error(sigma_of(KNEE_RANGE, ComparisonKind.VISITS)),
         floor=fixed(math.degrees(AXIS_FLOOR_HUMAN_RAD), 0),
         walking=fixed(math.degrees(AXIS_FLOOR_WALKING_RAD), 0),
         overread=fixed(KNEE_OVERREAD, 2),

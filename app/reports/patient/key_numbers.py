@@ -20,10 +20,11 @@ from app.summary.what_differs import LegsRow, what_differs
 from app.summary.what_stands_out import BANDS_ON_PAPER, ranked_findings
 from app.wording.translation import tr
 from core.body import Side
+from core.parameters import KNEE, KNEE_RANGE, PUSH_OFF, STANCE, STEP_TIME
 from core.verdicts.model import Verdict
 
 MOST_ROWS = 5
-ALWAYS = ("knee_stance_to_swing_deg", "ankle_push_off_deg", "stance_percent", "step_time_s", "knee_range_deg")
+ALWAYS = (KNEE, PUSH_OFF, STANCE, STEP_TIME, KNEE_RANGE)
 
 
 def key_numbers(facts: Facts, comparison: Comparison | None) -> list[Block]:

@@ -11,7 +11,7 @@ from app.charts.cycles import is_spread_enough
 from app.charts.drawing import COLOURS, MM, Picture, line, picture
 from app.reports.blocks import Block
 from app.summary.comparison import compare_legs
-from app.summary.course import KNEE, SPEED, CourseCondition, change
+from app.summary.course import CourseCondition, change
 from app.summary.course_lanes import CourseVisit
 from app.summary.facts import Facts
 from app.summary.plain_text import isolated, shortened, typed
@@ -22,6 +22,7 @@ from app.wording.dates import day_and_month, long_date
 from app.wording.translation import figure_text, later, spoken_in
 from core.body import Side
 from core.goals import GoalOf
+from core.parameters import KNEE, SPEED
 from core.verdicts.goals import GoalStanding
 from core.verdicts.measurement_error import Difference
 from core.verdicts.model import Verdict

@@ -28,29 +28,14 @@ from app.summary.panels import HEIGHTS, excursion_name, peak_name
 from app.wording.translation import capitalised, later, tr
 from app.wording.verdicts import verdict_word
 from core.body import JointKind, Side
+from core.parameters import KNEE_RANGE, MOVEMENTS
 from core.verdicts.measurement_error import ComparisonKind, sigma_of
 from core.verdicts.model import Verdict
 from core.verdicts.norms import KNEE_OVERREAD
 from core.verdicts.quantities import ABDUCTION, EXCURSIONS_BY_COLUMN, WINDOWS
 
-SHAPES = {  # what needs no zero
-    "knee": (
-        "knee_stance_to_swing_deg",
-        "knee_while_loading_deg",
-        "knee_straightening_deg",
-        "knee_range_deg",
-    ),
-    "hip": ("hip_range_deg", "hip_abduction_range_deg"),
-    "ankle": (
-        "ankle_push_off_deg",
-        "ankle_rocker_deg",
-        "ankle_heel_rocker_deg",
-        "ankle_toes_lifted_deg",
-        "ankle_range_deg",
-    ),
-}
 TIMES = {"hip": (), "knee": ("knee_swing_peak_percent",), "ankle": ()}
-MOVEMENTS = {
+HOW_FAR = {
     JointKind.HIP: later("Hip: how far it moves"),
     JointKind.KNEE: later("Knee: how far it moves"),
     JointKind.ANKLE: later("Ankle: how far it moves"),
@@ -79,8 +64,10 @@ def peaks_table(facts: Facts) -> list[Block]:
     ]
     rows: list[Row] = []
     for kind in kinds:
-        rows.append(tr(MOVEMENTS[kind]))
-        rows += [_row(facts, column) for column in (*SHAPES[kind], *TIMES[kind]) if _is_any_told(facts, kind, column)]
+        rows.append(tr(HOW_FAR[kind]))
+        rows += [
+            _row(facts, column) for column in (*MOVEMENTS[kind], *TIMES[kind]) if _is_any_told(facts, kind, column)
+        ]
         rows.append(_head_of_heights(facts, kind))
         rows += [_row(facts, column) for column in HEIGHTS[kind] if _is_any_told(facts, kind, column)]
     return [table(columns, rows, is_dense=True), note(" ".join(_notes(facts, kinds)))]
@@ -116,12 +103,12 @@ def _notes(facts: Facts, kinds: Sequence[JointKind]) -> list[str]:
     ]
     if len(facts.gait) == len(Side):
         judged = tr("Exceeds, inside: the measurement error between legs, at least {error}°.")
-        said.append(judged.format(error=signed_error(sigma_of("knee_range_deg", ComparisonKind.LEGS))))
+        said.append(judged.format(error=signed_error(sigma_of(KNEE_RANGE, ComparisonKind.LEGS))))
         said.append(tr("For the ankle the knee's figure is borrowed.") + " " + dagger_note())
     if JointKind.HIP in kinds:
         said.append(hips_note())
     shown = [
-        (side, column) for side in facts.gait for kind in facts.kinds for column in (*SHAPES[kind], *HEIGHTS[kind])
+        (side, column) for side in facts.gait for kind in facts.kinds for column in (*MOVEMENTS[kind], *HEIGHTS[kind])
     ]
     if any(math.isfinite(facts.away_sd(side, column)) for side, column in shown):
         judged = tr("Against the band: after laying it at each curve's height; knees as measured and divided by {by}.")
@@ -158,7 +145,7 @@ def measure(column: str) -> str:
 def _movements(kinds: Sequence[JointKind]) -> str:
     """Between which parts of the stride each movement is measured."""
     each = []
-    for column in (column for kind in kinds for column in SHAPES[kind] if column in EXCURSIONS_BY_COLUMN):
+    for column in (column for kind in kinds for column in MOVEMENTS[kind] if column in EXCURSIONS_BY_COLUMN):
         excursion = EXCURSIONS_BY_COLUMN[column]
         ends = [f"{end.first}–{end.last}" if end is not None else "0" for end in (excursion.high, excursion.low)]
         each.append(

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from app.charts.drawing import Picture
 from app.reports.blocks import Block, Cell, Column, Row, bullets, figures, heading, note, table
 from app.reports.patient.trend_chart import trend_chart
-from app.summary.course import KNEE, PUSH_OFF, SPEED, STANCE
 from app.summary.course_lanes import CourseVisit
 from app.summary.facts import Facts, role
 from app.summary.goals import goal_mark, goal_sentence, in_course
@@ -21,6 +20,7 @@ from app.wording.measures import least_span, measure_name, short_unit, unit_name
 from app.wording.translation import capitalised, tr
 from core.body import Side
 from core.goals import Goal, GoalOf
+from core.parameters import KNEE, PUSH_OFF, SPEED, STANCE
 from core.timed.measures import COLUMNS, PROTOCOLS
 from core.timed.protocols import TimedProtocol
 

@@ -14,10 +14,11 @@ from app.home.patients.reading import PatientReading, read_patient
 from app.storage.library import DEMONSTRATOR, Library
 from app.storage.opened import OpenedLibrary, create_library
 from app.storage.stored import LibraryError, Limits, Operator, Role
-from app.summary.course import KNEE, SPEED, CourseCondition, change
+from app.summary.course import CourseCondition, change
 from app.wizard.resuming import read_analysed, read_recordings
 from core.alignment import AlignmentChange, PartChange, ProsthesisPart
 from core.body import LEG_SITES, Joint, Side
+from core.parameters import KNEE, SPEED
 from core.results import Analysis
 from core.samples import RecordingKind, Session
 from core.timed.measures import COLUMNS

@@ -87,5 +87,5 @@ def test_what_rests_on_a_source_that_was_not_read_says_so(walk: RecordingAnalysi
 
 
 def test_an_inclination_is_compared_only_between_zeros_of_one_kind_and_a_turn_whatever_they_are() -> None:
-    assert Measure.of("shank_at_mid_stance_deg").needs_height
-    assert not Measure.of("shank_over_flat_foot_deg").needs_height
+    assert Measure("shank_at_mid_stance_deg").needs_height
+    assert not Measure("shank_over_flat_foot_deg").needs_height

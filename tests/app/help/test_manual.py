@@ -12,9 +12,10 @@ from babel.messages.pofile import read_po
 from app.films.film import Film
 from app.help.help_topics import Topic, help_file, topic_title
 from app.wording.translation import use_language
+from core.parameters import QuantityKind
 from core.signal.tracks import MAX_REPORTED_GAP_S
 from core.verdicts.gates import LIMITS
-from core.verdicts.measurement_error import SIGMAS, Z95, ComparisonKind, QuantityKind
+from core.verdicts.measurement_error import SIGMAS, Z95, ComparisonKind
 from devices.catalogue import DRIVERS
 
 ROOT = Path(__file__).parents[3]

@@ -8,20 +8,9 @@ import pytest
 
 from app.summary.comparison import Comparison, Contrast
 from app.summary.conditions import conditions_of
-from app.summary.course import (
-    KNEE,
-    OF_A_LEG,
-    SPEED,
-    STANCE,
-    Course,
-    CourseCondition,
-    change,
-    course_from_json,
-    course_in_json,
-    course_of,
-)
-from app.summary.measures import CADENCE
+from app.summary.course import OF_A_LEG, Course, CourseCondition, change, course_from_json, course_in_json, course_of
 from core.body import Joint, Side
+from core.parameters import CADENCE, KNEE, SPEED, STANCE
 from core.samples import Recording
 from core.timed.measures import COLUMNS
 from core.timed.protocols import TimedProtocol

@@ -14,8 +14,8 @@ import pytest
 from app.wording.translation import NAMES, SENTENCES, name_of, place, sentence
 from core.body import LEG_JOINTS, LEG_SITES, Side
 from core.findings import Finding, Severity
-from core.gait.cycles import ANKLE_WINDOWS, KNEE_WINDOWS
 from core.gait.strides import Reason
+from core.parameters import ANKLE_WINDOWS, KNEE_WINDOWS
 
 ROOT = Path(__file__).parents[3]
 FORBIDDEN = re.compile(r"\b(errors?|fail(s|ed|ure)?|invalid|please|disconnected|wrong sensor|you)\b|!", re.IGNORECASE)

@@ -3,17 +3,9 @@
 import numpy as np
 import pytest
 
-from core.gait.cycles import (
-    EXCURSIONS,
-    POINTS,
-    PeakWindow,
-    cycles_of,
-    excursion_of_cycles,
-    find_peak,
-    mean_cycle,
-    range_of_cycles,
-)
+from core.gait.cycles import POINTS, cycles_of, excursion_of_cycles, find_peak, mean_cycle, range_of_cycles
 from core.gait.symmetry import curve_difference, gait_variable_score, symmetry_index_percent
+from core.parameters import EXCURSIONS, PeakWindow
 
 TIME_S = np.arange(0.0, 5.0, 0.01)
 START_S = np.array([0.5, 1.6, 2.7])

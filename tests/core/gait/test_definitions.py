@@ -7,12 +7,13 @@ import pytest
 
 from core.body import Side, Site
 from core.calibration.rest import rest_of
-from core.gait.cycles import ANKLE_WINDOWS, EXCURSIONS, KNEE_WINDOWS, Excursion, excursion_of_cycles, find_peak
+from core.gait.cycles import excursion_of_cycles, find_peak
 from core.gait.events import FootEvents
 from core.gait.phases import PHASES, phases_at
 from core.gait.shank import gait_of_shank
 from core.gait.strides import Reason, strides_of
 from core.gait.symmetry import curve_difference, gait_variable_score
+from core.parameters import ANKLE_WINDOWS, EXCURSIONS, KNEE_WINDOWS, Excursion
 from core.samples import FloatArray, RateKind
 from core.signal.orientation import oriented
 from core.signal.robust import robust_sd

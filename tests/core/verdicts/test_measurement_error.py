@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
+from core.parameters import BY_COLUMN
 from core.verdicts.measurement_error import ComparisonKind, Difference, Judgement, compare, sigma_of, whisker
 from core.verdicts.model import NOT_MEASURED, READ, Assessment, GateReason, Verdict, assess
-from core.verdicts.quantities import CLASSES
 from core.verdicts.stride_means import MeanOfStrides, mean_of_strides
 
 ATTACHED, LEGS = ComparisonKind.ATTACHED, ComparisonKind.LEGS
@@ -165,7 +165,7 @@ def test_every_absolute_angle_is_judged_as_a_height_and_every_movement_as_a_shap
     """Told by what the columns are called, not by the table: a height needs 12.4 degrees, a shape 9.2."""
     heights = ["at_initial_contact", "peak_deg", "minimum", "terminal_extension", "plantarflexion", "dorsiflexion"]
     heights += ["at_mid_stance", "at_toe_off"]
-    angles = [name for name in CLASSES if name.endswith("_deg") and not name.startswith(("hip", "pelvis", "foot"))]
+    angles = [name for name in BY_COLUMN if name.endswith("_deg") and not name.startswith(("hip", "pelvis", "foot"))]
     assert len(angles) > 20
     for name in angles:
         is_height = any(word in name for word in heights)

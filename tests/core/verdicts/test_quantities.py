@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 from core.body import LEG_JOINTS, Joint, Side
+from core.parameters import Table, columns_of
 from core.results import RecordingAnalysis, ZeroKind
 from core.verdicts.model import NOT_MEASURED, READ, Assessment, JointVerdicts, LegVerdicts, Verdict, Verdicts
 from core.verdicts.quantities import (
     OF_BOTH,
     PARAMETERS,
-    QUANTITIES,
     assessment_of,
     assessment_of_both,
     both_sides,
@@ -61,7 +61,11 @@ def with_verdicts(found: Verdicts) -> RecordingAnalysis:
 
 
 def withheld_on(side: Side, found: Verdicts) -> set[str]:
-    return {name for name in QUANTITIES if assessment_of(found, side, name).verdict is Verdict.WITHHELD}
+    return {
+        name
+        for name in columns_of(Table.STRIDES, Table.PEAKS)
+        if assessment_of(found, side, name).verdict is Verdict.WITHHELD
+    }
 
 
 CASES = [
@@ -80,8 +84,11 @@ CASES = [
 
 
 def test_every_column_is_in_one_class_of_these() -> None:
-    assert {*KNEE, *ANKLE, *TIMING, *DISTANCE} == set(QUANTITIES)
-    assert set(QUANTITIES) - set(PARAMETERS) == {*KNEE_EXCURSIONS, *ANKLE_EXCURSIONS}  # strides.csv keeps its columns
+    assert {*KNEE, *ANKLE, *TIMING, *DISTANCE} == set(columns_of(Table.STRIDES, Table.PEAKS))
+    assert set(columns_of(Table.STRIDES, Table.PEAKS)) - set(PARAMETERS) == {
+        *KNEE_EXCURSIONS,
+        *ANKLE_EXCURSIONS,
+    }  # strides.csv keeps its columns
 
 
 @pytest.mark.parametrize(("found", "expected"), CASES)

@@ -18,7 +18,7 @@ from app.reports.patient.first_page import answer
 from app.reports.patient.key_numbers import key_rows
 from app.reports.patient.patient_page import patient_page
 from app.results.result_page import ResultPage
-from app.summary.course import KNEE, course_of
+from app.summary.course import course_of
 from app.summary.course_lanes import CourseVisit
 from app.summary.facts import Facts
 from app.summary.request import AnalysedVisit, ReportRequest, default_walks
@@ -26,6 +26,7 @@ from app.summary.trend_lines import trend_lines
 from app.theme.notifier import ThemeNotifier
 from core.body import Side
 from core.goals import NO_GOALS
+from core.parameters import KNEE
 from core.samples import Patient, Session
 from tests.app.course_material import analysis, recordings, walked
 

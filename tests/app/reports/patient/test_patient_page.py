@@ -11,12 +11,13 @@ import pytest
 from app.reports.patient import patient_page as module
 from app.reports.patient.document import facts_of, report_data
 from app.reports.patient.patient_page import patient_page
-from app.summary.course import KNEE, course_of
+from app.summary.course import course_of
 from app.summary.course_lanes import CourseVisit
 from app.summary.request import AnalysedVisit, ReportRequest
 from app.wording.translation import spoken_in
 from core.body import Joint, Side
 from core.goals import Goal, GoalOf
+from core.parameters import KNEE
 from core.results import Analysis
 from tests.app.changed_analysis import recalibrated
 from tests.app.course_material import course, unsure, walked

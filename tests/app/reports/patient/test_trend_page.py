@@ -13,12 +13,13 @@ from app.reports.blocks import Block
 from app.reports.patient.document import facts_of, report_data
 from app.reports.patient.trend_chart import trend_chart
 from app.reports.patient.trend_page import trend_page
-from app.summary.course import KNEE, Course
+from app.summary.course import Course
 from app.summary.course_lanes import CourseVisit
 from app.summary.request import AnalysedVisit, ReportRequest
 from app.summary.trend_lines import TrendValue
 from core.body import Joint, Side
 from core.goals import Goal, GoalOf
+from core.parameters import KNEE
 from core.timed.protocols import TimedProtocol
 from tests.app.course_material import course, timed, unsure, walked
 

@@ -20,13 +20,13 @@ from app.summary.measure_sentences import measure_in_words, unit_and_decimals
 from app.summary.measures import MEASURES, Measure
 from app.summary.numbers_in_words import NOTHING
 from app.summary.request import AnalysedVisit, ReportRequest
-from app.summary.what_stands_out import BETWEEN_LEGS, MAX_FINDINGS, printed_findings
+from app.summary.what_stands_out import MAX_FINDINGS, printed_findings
 from core.body import Joint, Side
 from core.goals import Goal, GoalOf
+from core.parameters import BETWEEN_LEGS, BY_COLUMN, QuantityClass, Table, columns_of
 from core.results import Analysis, ZeroKind
 from core.verdicts.gates import judged
 from core.verdicts.measurement_error import Difference, Judgement
-from core.verdicts.quantities import CLASSES, QUANTITIES, QuantityClass
 from tests.app.changed_analysis import recalibrated, rewalked, walk_of, with_few_strides
 from tests.app.hip_visits import hip_facts
 
@@ -75,7 +75,11 @@ def raised(analysis: Analysis, joint: Joint, by_deg: float) -> Analysis:
     """One joint's curve lying higher as a whole, as a zero taken in another posture makes it."""
     walk = walk_of(analysis)
     found, kind = walk.gait[joint.side], "knee" if joint.is_knee else "ankle"
-    heights = {name for name, of in QUANTITIES.items() if of is QuantityClass.HEIGHT and name.startswith(kind)}
+    heights = {
+        name
+        for name in columns_of(Table.STRIDES, Table.PEAKS)
+        if BY_COLUMN[name].rests_on is QuantityClass.HEIGHT and name.startswith(kind)
+    }
     is_height = {name: name.replace("_rad", "_deg") in heights for name in found.parameters}
     parameters = {
         name: values + np.deg2rad(by_deg) if is_height[name] else values for name, values in found.parameters.items()
@@ -306,7 +310,7 @@ def test_no_sentence_judges(request_of_demonstration: ReportRequest) -> None:
 
 
 def test_every_quantity_has_its_unit_and_what_is_compared_has_a_name() -> None:
-    units = {column: unit_and_decimals(column)[0].strip() for column in QUANTITIES}
+    units = {column: unit_and_decimals(column)[0].strip() for column in columns_of(Table.STRIDES, Table.PEAKS)}
     assert units["speed_m_s"] == "m/s"
     assert units["stride_length_m"] == "m"
     assert units["knee_stance_to_swing_deg"] == "°"
@@ -414,4 +418,4 @@ def test_every_column_that_is_compared_between_the_legs_has_a_sentence(
 
 
 def test_between_the_legs_no_height_is_compared() -> None:
-    assert not any(CLASSES[column] is QuantityClass.HEIGHT for column in BETWEEN_LEGS)
+    assert not any(BY_COLUMN[column].rests_on is QuantityClass.HEIGHT for column in BETWEEN_LEGS)
