@@ -69,7 +69,7 @@ class QuantityKind(StrEnum):
     KNEE_TIMING = "knee_timing"
 
 
-class Table(StrEnum):
+class ParameterFile(StrEnum):
     """The file that holds a quantity of each stride; `WALK`: both legs make it together."""
 
     STRIDES = "strides"
@@ -132,7 +132,7 @@ EXCURSIONS = (
 
 
 @dataclass(frozen=True, slots=True)
-class Quantity:
+class Parameter:
     """One quantity of a stride or walk; its column ends in its unit.
 
     Attributes
@@ -153,7 +153,7 @@ class Quantity:
     """
 
     column: str
-    table: Table
+    file: ParameterFile
     rests_on: QuantityClass
     error: QuantityKind | None = None
     definition: str = ""
@@ -174,23 +174,23 @@ def _stride(
     *,
     most: float | None = None,
     has_index: bool = False,
-) -> Quantity:
-    return Quantity(column, Table.STRIDES, rests_on, error, definition, most=most, has_index=has_index)
+) -> Parameter:
+    return Parameter(column, ParameterFile.STRIDES, rests_on, error, definition, most=most, has_index=has_index)
 
 
-def _peak(excursion: Excursion, most: float | None = None) -> Quantity:
+def _peak(excursion: Excursion, most: float | None = None) -> Parameter:
     error = _E.KNEE_SHAPE if excursion.name.startswith("knee") else _E.ANKLE_SHAPE
-    return Quantity(f"{excursion.name}{Unit.DEGREES}", Table.PEAKS, _C.EXCURSION, error, most=most)
+    return Parameter(f"{excursion.name}{Unit.DEGREES}", ParameterFile.PEAKS, _C.EXCURSION, error, most=most)
 
 
 def _pelvis(
     column: str, rests_on: QuantityClass, definition: str, sign: str = "", most: float | None = None
-) -> Quantity:
-    return Quantity(column, Table.PELVIS, rests_on, None, definition, sign, most)
+) -> Parameter:
+    return Parameter(column, ParameterFile.PELVIS, rests_on, None, definition, sign, most)
 
 
-def _fitting(column: str, rests_on: QuantityClass, error: QuantityKind) -> Quantity:
-    return Quantity(column, Table.FITTING, rests_on, error)
+def _fitting(column: str, rests_on: QuantityClass, error: QuantityKind) -> Parameter:
+    return Parameter(column, ParameterFile.FITTING, rests_on, error)
 
 
 _MOST = {"knee_while_loading": 60.0, "knee_stance_to_swing": 120.0, "ankle_rocker": 90.0, "ankle_push_off": 90.0}
@@ -282,10 +282,10 @@ REGISTRY = (
         "largest less smallest tilt of the stride; empty where its mean is 5 deg or less",
     ),
     _pelvis("pelvis_lean_deg", _C.HEIGHT, "mean tilt over the stride, from standing", "forward positive"),
-    Quantity("cadence_steps_min", Table.WALK, _C.TIMING, _E.TIME, most=240.0),
-    Quantity("double_support_percent", Table.WALK, _C.TIMING),
+    Parameter("cadence_steps_min", ParameterFile.WALK, _C.TIMING, _E.TIME, most=240.0),
+    Parameter("double_support_percent", ParameterFile.WALK, _C.TIMING),
 )
-BY_COLUMN = {quantity.column: quantity for quantity in REGISTRY}
+BY_COLUMN = {parameter.column: parameter for parameter in REGISTRY}
 
 KNEE, PUSH_OFF, STANCE, SPEED = "knee_stance_to_swing_deg", "ankle_push_off_deg", "stance_percent", "speed_m_s"
 """What stands for knee and ankle are excursions, which need no zero."""
@@ -315,9 +315,9 @@ ALIGNED = (  # by an alignment: the bench names those larger than their error
 )
 
 
-def columns_of(*tables: Table) -> tuple[str, ...]:
+def columns_of(*files: ParameterFile) -> tuple[str, ...]:
     """Columns of the quantities that these files hold, in their order there."""
-    return tuple(quantity.column for table in tables for quantity in REGISTRY if quantity.table is table)
+    return tuple(one.column for file in files for one in REGISTRY if one.file is file)
 
 
 def unit_of(column: str) -> Unit | None:

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 from uuid import NAMESPACE_URL, uuid5
 
-from app.exports.figures import SIMULATED, WalkFigure, reason_of, software, unit_of, walk_figures
+from app.exports.figures import SIMULATED, WalkFigure, finite, reason_of, software, unit_of, walk_figures
 from app.storage.pseudonyms import AGE
 from app.summary.agreed import agreed_with
 from app.wording.measures import goal_in_words
@@ -153,12 +153,12 @@ def _observation(one: WalkFigure, patient_url: str, when: str, notes: list[str])
     components: list[dict[str, Any]] = []
     if one.side is not None:
         components.append({"code": _code("side"), "valueCodeableConcept": {"coding": [SIDES[one.side]]}})
-    if one.sd is not None:
-        sd = _quantity(one.sd, unit_of(one.name))
-        components.append({"code": _code("stride_sd", "standard deviation between strides"), "valueQuantity": sd})
-    if one.error is not None:
-        error = _quantity(one.error, unit_of(one.name))
-        components.append({"code": _code("error", ERROR), "valueQuantity": error})
+    if (sd := finite(one.average.sd)) is not None:
+        quantity = _quantity(sd, unit_of(one.name))
+        components.append({"code": _code("stride_sd", "standard deviation between strides"), "valueQuantity": quantity})
+    if (error := finite(one.average.error)) is not None:
+        quantity = _quantity(error, unit_of(one.name))
+        components.append({"code": _code("error", ERROR), "valueQuantity": quantity})
     if one.strides is not None:
         components.append({"code": _code("strides_used"), "valueInteger": one.strides})
     if components:

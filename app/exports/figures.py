@@ -1,48 +1,44 @@
 """Which numbers leave, and in what unit? Those of summary.json and of the CSV files, to their last digit."""
 
+import math
 import unicodedata
 from collections.abc import Iterator
 from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
-from typing import Any
 
 import numpy as np
 
 from app.exports.csv_report import DECIMALS
-from app.exports.summary import summarise
+from app.summary.averages import Average, averages_of
 from app.summary.status import is_slipped, joint_status, why, why_status
 from core import parameters
 from core.body import Joint, Side
 from core.results import Analysis, RecordingAnalysis
-from core.samples import FloatArray
+from core.samples import FloatArray, RecordingKind
 from core.verdicts.model import Assessment, Verdict
-from core.verdicts.quantities import OF_BOTH, OF_HIPS, PARAMETERS, assessment_of, assessment_of_both
+from core.verdicts.quantities import OF_HIPS, PARAMETERS, assessment_of
 
 SIMULATED = "SIMULATED: nobody was measured."
 
 
 @dataclass(frozen=True, slots=True)
 class WalkFigure:
-    """One average of one walk, as summary.json has it; `side` None: of both sides together.
-
-    Attributes
-    ----------
-    mean
-        None where it is withheld or was not measured.
-    sd, strides, error
-        None where there is none; `error` is half of what a difference of two walks has to exceed.
-    assessment
-        What may be said of it.
-    """
+    """One average of one walk; `side` None: of both sides together, `strides` None: not over strides of a side."""
 
     walk: str
     side: Side | None
     name: str
-    mean: float | None
-    sd: float | None
-    strides: int | None
-    error: float | None
-    assessment: Assessment
+    average: Average
+    strides: int | None = None
+
+    @property
+    def assessment(self) -> Assessment:
+        return self.average.assessment
+
+    @property
+    def mean(self) -> float | None:
+        """None where it is withheld or was not measured."""
+        return finite(self.average.mean)
 
 
 def software() -> str:
@@ -64,20 +60,28 @@ def walk_figures(analysis: Analysis) -> Iterator[WalkFigure]:
 
     What can be read and has no figure all the same, as a peak that no stride has, is no figure.
     """
-    walks: dict[str, dict[str, Any]] = summarise(analysis)["walks"]
-    said = {recording.name: recording.verdicts for recording in analysis.recordings}
-    for walk, figures in walks.items():
-        for side in Side:
-            of_side = figures[side]
-            for name in (*PARAMETERS, *(OF_HIPS if any(joint.is_hip for joint in said[walk].joints) else ())):
-                mean, sd, error = (of_side.get(f"{name}_{what}") for what in ("mean", "sd", "error"))
-                found = assessment_of(said[walk], side, name)
-                if mean is not None or not found.is_told:
-                    yield WalkFigure(walk, side, name, mean, sd, of_side.get("strides_used"), error, found)
-        for name in OF_BOTH:
-            mean, found = figures["both"][name], assessment_of_both(said[walk], name)
-            if mean is not None or not found.is_told:
-                yield WalkFigure(walk, None, name, mean, None, None, None, found)
+    for recording in analysis.recordings:
+        if recording.kind is RecordingKind.WALKING:
+            yield from (one for one in _of_walk(recording) if one.mean is not None or not one.assessment.is_told)
+
+
+def finite(value: float) -> float | None:
+    """None for what is not known."""
+    return float(value) if math.isfinite(value) else None
+
+
+def _of_walk(recording: RecordingAnalysis) -> Iterator[WalkFigure]:
+    found, has_hips = averages_of(recording), any(joint.is_hip for joint in recording.verdicts.joints)
+    for side in Side:
+        leg = found.legs.get(side)
+        for name in (*PARAMETERS, *(OF_HIPS if has_hips else ())):
+            if leg is not None and name in leg.of:
+                yield WalkFigure(recording.name, side, name, leg.of[name], leg.used)
+            else:
+                nothing = Average(math.nan, math.nan, math.nan, assessment_of(recording.verdicts, side, name))
+                yield WalkFigure(recording.name, side, name, nothing, leg.used if leg is not None else None)
+    for name, average in found.both.items():
+        yield WalkFigure(recording.name, None, name, average)
 
 
 def reason_of(found: Assessment) -> str:

@@ -5,22 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from core.body import Side
 from core.hip.results import HipIdentification
 from core.results import RecordingAnalysis
-from core.verdicts.quantities import OF_HIPS, side_mean
-
-
-def hip_figures(recording: RecordingAnalysis, side: Side) -> dict[str, Any]:
-    """Give the means of one leg's hip and of the pelvis over its strides; nothing without a pelvis."""
-    if recording.pelvis is None:
-        return {}
-    figures: dict[str, Any] = {}
-    for name in OF_HIPS:
-        found = side_mean(recording, side, name)
-        figures[f"{name}_mean"], figures[f"{name}_sd"] = _number(found.found.mean), _number(found.found.sd)
-        figures[f"{name}_status"] = str(found.assessment.verdict)
-    return figures
 
 
 def summarise_pelvis(recording: RecordingAnalysis) -> dict[str, Any]:

@@ -19,7 +19,7 @@ from openpyxl.cell.cell import ILLEGAL_CHARACTERS_RE
 from openpyxl.styles import Font
 from openpyxl.worksheet._write_only import WriteOnlyWorksheet
 
-from app.exports.figures import SIMULATED, reason_of, software, unit_of, walk_figures
+from app.exports.figures import SIMULATED, finite, reason_of, software, unit_of, walk_figures
 from app.exports.gait_csv import gait_tables
 from app.exports.pseudonymised import what_is_said
 from app.summary.condition_figures import condition_figures
@@ -98,7 +98,7 @@ def _summary(session: Session, analysis: Analysis) -> Iterable[list[Value]]:
         condition = conditions.get(one.walk, "")
         mean = WITHHELD if one.assessment.verdict is Verdict.WITHHELD else one.mean
         status, reasons = str(one.assessment.verdict), reason_of(one.assessment) or None
-        figures = [mean, one.sd, unit_of(one.name), one.strides, one.error]
+        figures = [mean, finite(one.average.sd), unit_of(one.name), one.strides, finite(one.average.error)]
         yield [one.walk, condition, side, one.name, *figures, status, reasons]
 
 

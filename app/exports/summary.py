@@ -10,8 +10,9 @@ import numpy as np
 
 from app.exports.fitting_csv import fitting_of_side
 from app.exports.goals_csv import goal_figures, goals_of_walk
-from app.exports.pelvis_summary import hip_figures, summarise_pelvis
+from app.exports.pelvis_summary import summarise_pelvis
 from app.exports.timed_csv import timed_summary
+from app.summary.averages import LegAverages, averages_of
 from app.summary.comparison import compare_legs, first_and_second
 from app.summary.condition_figures import summarise_conditions
 from app.summary.conditions import Part
@@ -21,24 +22,18 @@ from app.wording.verdicts import gate_sentence
 from core.alignment import alignment_table
 from core.body import Joint, Side, hip_of
 from core.findings import Finding
-from core.gait.chosen_strides import left_out_by_hand
 from core.gait.symmetry import curve_difference, gait_variable_score, symmetry_index_percent
 from core.goals import NO_GOALS, AgreedGoals
 from core.parameters import REGISTRY
 from core.results import Analysis, JointCalibration, RecordingAnalysis
 from core.samples import FloatArray, Recording, RecordingKind
-from core.verdicts.measurement_error import ComparisonKind, whisker
 from core.verdicts.model import Assessment, JointVerdicts, LegVerdicts, Verdict, Verdicts
 from core.verdicts.quantities import (
     OF_BOTH,
+    OF_HIPS,
     PARAMETERS,
-    assessment_of_both,
-    both_sides,
     mean_curve,
-    side_mean,
-    values_of,
 )
-from core.verdicts.stride_means import mean_of_strides
 
 FORMAT = "gaitwright-analysis/1"
 MOST_BYTES = 50_000_000  # of a file that may be one: ours take a few hundred kilobytes
@@ -117,12 +112,11 @@ def _reference_group() -> dict[str, Any]:
 
 def _walk(analysis: Analysis, recording: RecordingAnalysis) -> dict[str, Any]:
     """Give each side's averages over the strides used, what compares both sides, and what may be said of each."""
-    sides = {str(side): _side(side, recording) if side in recording.gait else {} for side in Side}
-    feet = both_sides(recording)
+    found = averages_of(recording)
+    sides = {str(side): _side(side, recording, found.legs[side]) if side in found.legs else {} for side in Side}
     both: dict[str, Any] = dict.fromkeys(BOTH)
-    for name in OF_BOTH:
-        both[name] = _number(getattr(feet, name))
-        both[f"{name}_status"] = str(assessment_of_both(recording.verdicts, name).verdict)
+    for name, average in found.both.items():
+        both[name], both[f"{name}_status"] = _number(average.mean), str(average.assessment.verdict)
     walk = {**sides, "both": both, "verdicts": _verdicts(recording.verdicts), **summarise_pelvis(recording)}
     if recording.timed is not None:
         walk["timed_test"] = timed_summary(recording.timed)
@@ -132,9 +126,7 @@ def _walk(analysis: Analysis, recording: RecordingAnalysis) -> dict[str, Any]:
     part = Part("", recording.name, (recording,), analysis.calibrated_for(recording))
     both |= {
         "symmetry_index_percent": {
-            name: _number(
-                symmetry_index_percent(*(side_mean(recording, side, name).found.mean for side in (one, other)))
-            )
+            name: _number(symmetry_index_percent(*(found.legs[side].of[name].mean for side in (one, other))))
             for name in SYMMETRIC
         },
         "curve_difference_deg": {kind: _number(_difference_deg(recording, kind)) for kind in KINDS},
@@ -143,24 +135,23 @@ def _walk(analysis: Analysis, recording: RecordingAnalysis) -> dict[str, Any]:
     return walk
 
 
-def _side(side: Side, recording: RecordingAnalysis) -> dict[str, Any]:
-    gait = recording.gait[side]
-    used = int(np.count_nonzero(gait.strides.is_used))
+def _side(side: Side, recording: RecordingAnalysis, found: LegAverages) -> dict[str, Any]:
     figures: dict[str, Any] = {
-        "strides_used": used,
-        "strides_left_out": len(gait.strides) - used,
-        "strides_left_out_by_hand": left_out_by_hand(gait),
+        "strides_used": found.used,
+        "strides_left_out": found.left_out,
+        "strides_left_out_by_hand": found.left_out_by_hand,
     }
-    for name in PARAMETERS:
-        found = side_mean(recording, side, name)
-        strides = mean_of_strides(values_of(recording, side, name)[gait.strides.is_used])
-        error = whisker(name, ComparisonKind.ATTACHED, strides)
-        figures[f"{name}_mean"], figures[f"{name}_sd"] = _number(found.found.mean), _number(found.found.sd)
-        figures[f"{name}_error"], figures[f"{name}_status"] = _number(error), str(found.assessment.verdict)
+    of_hips: dict[str, Any] = {}
+    for name, average in found.of.items():
+        into = of_hips if name in OF_HIPS else figures
+        into[f"{name}_mean"], into[f"{name}_sd"] = _number(average.mean), _number(average.sd)
+        if name not in OF_HIPS:
+            into[f"{name}_error"] = _number(average.error)
+        into[f"{name}_status"] = str(average.assessment.verdict)
     joints = {kind: Joint(f"{side}_{kind}") for kind in KINDS}
     scores = {kind: _number(_score_deg(recording, joint)) for kind, joint in joints.items()}
     fitting = fitting_of_side(recording, side)
-    return {**figures, "gait_variable_score_deg": scores, "fitting": fitting, **hip_figures(recording, side)}
+    return {**figures, "gait_variable_score_deg": scores, "fitting": fitting, **of_hips}
 
 
 def _score_deg(recording: RecordingAnalysis, joint: Joint) -> float:

@@ -20,7 +20,7 @@ from core.body import Joint, Side
 from core.gait.cycles import POINTS
 from core.gait.spatiotemporal import MeanAndSd
 from core.gait.symmetry import curve_difference, symmetry_index_percent
-from core.parameters import BY_COLUMN, QuantityClass, Table, columns_of
+from core.parameters import BY_COLUMN, ParameterFile, QuantityClass, columns_of
 from core.results import Analysis
 from core.samples import Session
 from core.verdicts.measurement_error import Difference, Judgement
@@ -45,7 +45,7 @@ HEADER = (
 OF_WALKS = {measure.column: measure for measure in MEASURES if measure.is_of_walk}
 
 # of hips and pelvis no error of a difference is known: none is judged
-COMPARED = columns_of(Table.STRIDES, Table.PEAKS, Table.FITTING, Table.PELVIS)
+COMPARED = columns_of(ParameterFile.STRIDES, ParameterFile.PEAKS, ParameterFile.FITTING, ParameterFile.PELVIS)
 SIGNED = ("foot_pitch_at_contact_deg",)  # whose nought is no less of it: a share of it says nothing
 
 WITHHELD = Difference(math.nan, math.nan, Judgement.WITHHELD)

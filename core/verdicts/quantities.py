@@ -9,18 +9,27 @@ from core.body import Joint, Side, ankle_of, hip_of, knee_of
 from core.gait.cycles import POINTS, MeanCycle, cycles_of, find_peak, mean_cycle
 from core.gait.spatiotemporal import BothFeet, MeanAndSd, both_feet, mean_and_sd
 from core.gait.strides import strides_of
-from core.parameters import ANKLE_WINDOWS, BY_COLUMN, EXCURSIONS, KNEE_WINDOWS, SPEED, QuantityClass, Table, columns_of
+from core.parameters import (
+    ANKLE_WINDOWS,
+    BY_COLUMN,
+    EXCURSIONS,
+    KNEE_WINDOWS,
+    SPEED,
+    ParameterFile,
+    QuantityClass,
+    columns_of,
+)
 from core.results import RecordingAnalysis, SideGait
 from core.samples import FloatArray
 from core.verdicts.model import NOT_MEASURED, Assessment, Verdict, Verdicts, together
 
-PARAMETERS = columns_of(Table.STRIDES)
-FITTING = columns_of(Table.FITTING)  # what they mean: core.verdicts.fitting
-OF_HIPS = columns_of(Table.PELVIS)
+PARAMETERS = columns_of(ParameterFile.STRIDES)
+FITTING = columns_of(ParameterFile.FITTING)  # what they mean: core.verdicts.fitting
+OF_HIPS = columns_of(ParameterFile.PELVIS)
 EXCURSIONS_BY_COLUMN = {f"{excursion.name}_deg": excursion for excursion in EXCURSIONS}  # those of peaks.csv
 SEGMENTS = ("shank", "thigh")
 ABDUCTION = ("hip_abduction", "hip_adduction")
-OF_BOTH = (*columns_of(Table.WALK), SPEED)
+OF_BOTH = (*columns_of(ParameterFile.WALK), SPEED)
 WINDOWS = {f"{window.name}_deg": window for window in (*KNEE_WINDOWS, *ANKLE_WINDOWS)}
 
 

@@ -10,7 +10,7 @@ from app.results.result_page import ResultPage
 from app.summary.request import AnalysedVisit, ReportRequest
 from core.analysis import analyse
 from core.body import Joint, Side
-from core.parameters import BY_COLUMN, QuantityClass, Table, columns_of
+from core.parameters import BY_COLUMN, ParameterFile, QuantityClass, columns_of
 from core.results import Analysis, ZeroKind
 from core.samples import Session
 from devices.simulation.walker import DEMONSTRATION, simulate
@@ -52,7 +52,7 @@ def columns(kind: str, *classes: QuantityClass) -> list[str]:
     unread = ("at_initial_contact_deg", "peak_percent")
     return [
         name
-        for name in columns_of(Table.STRIDES, Table.PEAKS)
+        for name in columns_of(ParameterFile.STRIDES, ParameterFile.PEAKS)
         if name.startswith(kind) and BY_COLUMN[name].rests_on in classes and not name.endswith(unread)
     ]
 

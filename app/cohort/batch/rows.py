@@ -8,19 +8,21 @@ import hmac
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Any
 
+from app.exports.figures import finite
 from app.storage.pseudonyms import SEXES, age_in_words
+from app.summary.averages import LegAverages, WalkAverages, averages_of
 from app.system.logs import version_of
 from core.body import Side
-from core.samples import Recording, Session
+from core.parameters import SPEED
+from core.results import Analysis
+from core.samples import Recording, RecordingKind, Session
 from core.verdicts.quantities import OF_BOTH, OF_HIPS, PARAMETERS
 
 Row = dict[str, str | float | int | bool | None]
 
 BOTH = "both"
 UNNUMBERED = "#"  # before what tells a batch's patients apart until the table numbers them
-SPEED = "speed_m_s"
 WALK_SPEED = "walk_speed_m_s"
 
 
@@ -104,15 +106,18 @@ def told_of_folder(session: Session, mark: str) -> ToldOf:
     return ToldOf(f"{UNNUMBERED}{digest}", session.started[:10])
 
 
-def rows_of(name: str, session: Session, summary: Mapping[str, Any], told: ToldOf) -> tuple[Row, ...]:
-    """The rows of a session whose `summary.json` holds `summary`: its walks in their order, left, right and both."""
+def rows_of(name: str, session: Session, analysis: Analysis, told: ToldOf) -> tuple[Row, ...]:
+    """The rows of a session: its walks in their order, left, right and both."""
     recordings = {recording.name: recording for recording in session.recordings}
     rows = []
-    for walk, found in summary["walks"].items():
-        for part in (*(str(side) for side in Side), BOTH):
-            groups = _groups(name, session, recordings[walk], part, told)
-            speed = {WALK_SPEED: found[BOTH][SPEED], f"{WALK_SPEED}_status": found[BOTH][f"{SPEED}_status"]}
-            rows.append({**groups, **speed, **dict(_figures(found[part], is_leg=part != BOTH))})
+    for walk in (one for one in analysis.recordings if one.kind is RecordingKind.WALKING):
+        found = averages_of(walk)
+        speed = found.both[SPEED]
+        of_walk = {WALK_SPEED: finite(speed.mean), f"{WALK_SPEED}_status": str(speed.assessment.verdict)}
+        for side in Side:
+            figures = _of_leg(found.legs[side]) if side in found.legs else ()
+            rows.append(_groups(name, session, recordings[walk.name], side, told) | of_walk | dict(figures))
+        rows.append(_groups(name, session, recordings[walk.name], BOTH, told) | of_walk | dict(_of_both(found)))
     return tuple(rows)
 
 
@@ -139,23 +144,21 @@ def _groups(name: str, session: Session, recording: Recording, part: str, told: 
     }
 
 
-def _figures(found: Mapping[str, Any], *, is_leg: bool) -> Iterator[tuple[str, str | float | int | None]]:
-    """The columns of a side, or of what both sides have; of a side that was not measured there is none."""
-    if not is_leg:
-        for name in OF_BOTH:
-            yield name, found[name]
-            yield f"{name}_status", found[f"{name}_status"]
-    elif found:
-        yield "strides_used", found["strides_used"]
-        yield "strides_left_out", found["strides_left_out"]
-        for name in PARAMETERS:
-            yield name, found[f"{name}_mean"]
-            for end in ("_sd", "_error", "_status"):
-                yield f"{name}{end}", found[f"{name}{end}"]
-        for name in (one for one in OF_HIPS if f"{one}_mean" in found):
-            yield name, found[f"{name}_mean"]
-            for end in ("_sd", "_status"):
-                yield f"{name}{end}", found[f"{name}{end}"]
+def _of_both(found: WalkAverages) -> Iterator[tuple[str, str | float | int | None]]:
+    for name, average in found.both.items():
+        yield name, finite(average.mean)
+        yield f"{name}_status", str(average.assessment.verdict)
+
+
+def _of_leg(found: LegAverages) -> Iterator[tuple[str, str | float | int | None]]:
+    yield "strides_used", found.used
+    yield "strides_left_out", found.left_out
+    for name, average in found.of.items():
+        yield name, finite(average.mean)
+        yield f"{name}_sd", finite(average.sd)
+        if name not in OF_HIPS:
+            yield f"{name}_error", finite(average.error)
+        yield f"{name}_status", str(average.assessment.verdict)
 
 
 def _is_among(side: str, told: str) -> bool | None:

@@ -110,9 +110,9 @@ def _analysed(task: BatchTask) -> SessionOutcome:
         session = read_foreign_session(source, _nobody_waits)
         told = told_of_folder(session, task.batch.mark)
     with written_beside(results, within=task.batch.work) as folder:
-        write_analysed(session, folder, task.choices, _nobody_asks)
-        digest, summary = summary_digest(folder), json.loads((folder / SUMMARY).read_text(encoding="utf-8"))
-    rows = rows_of(task.name, session, summary, told)
+        analysis = write_analysed(session, folder, task.choices, _nobody_asks)
+        digest = summary_digest(folder)
+    rows = rows_of(task.name, session, analysis, told)
     return SessionOutcome(task.name, DoneRecord(key, making, digest, rows))
 
 

@@ -3,7 +3,7 @@
 import pytest
 
 from core.body import LEG_JOINTS, Joint, Side
-from core.parameters import Table, columns_of
+from core.parameters import ParameterFile, columns_of
 from core.verdicts.fitting import BY_COLUMN, MEASURES
 from core.verdicts.measurement_error import KINDS, ComparisonKind, sigma_of
 from core.verdicts.model import READ, Assessment, JointVerdicts, LegVerdicts, Verdict, Verdicts
@@ -50,10 +50,12 @@ def test_a_measure_is_withheld_where_what_it_rests_on_is(found: Verdicts, expect
 
 def test_every_measure_is_defined_once_and_says_what_it_cannot() -> None:
     assert {*LEANING, *TURNING, *FOOT, *KNEE_SIGNED, "foot_flat_percent"} == set(FITTING)
-    assert set(FITTING) <= set(BY_COLUMN) <= {*FITTING, *columns_of(Table.STRIDES, Table.PEAKS)}
+    assert set(FITTING) <= set(BY_COLUMN) <= {*FITTING, *columns_of(ParameterFile.STRIDES, ParameterFile.PEAKS)}
     assert len(BY_COLUMN) == len(MEASURES)
     assert all(measure.definition and measure.cannot_say and measure.source for measure in MEASURES)
-    assert not set(FITTING) & set(columns_of(Table.STRIDES, Table.PEAKS))  # the older tables keep their rows
+    assert not set(FITTING) & set(
+        columns_of(ParameterFile.STRIDES, ParameterFile.PEAKS)
+    )  # the older tables keep their rows
     assert not any("step_length" in column for column in BY_COLUMN)  # the feet's distance is unknown
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from core.body import LEG_JOINTS, Joint, Side
-from core.parameters import Table, columns_of
+from core.parameters import ParameterFile, columns_of
 from core.results import RecordingAnalysis, ZeroKind
 from core.verdicts.model import NOT_MEASURED, READ, Assessment, JointVerdicts, LegVerdicts, Verdict, Verdicts
 from core.verdicts.quantities import (
@@ -63,7 +63,7 @@ def with_verdicts(found: Verdicts) -> RecordingAnalysis:
 def withheld_on(side: Side, found: Verdicts) -> set[str]:
     return {
         name
-        for name in columns_of(Table.STRIDES, Table.PEAKS)
+        for name in columns_of(ParameterFile.STRIDES, ParameterFile.PEAKS)
         if assessment_of(found, side, name).verdict is Verdict.WITHHELD
     }
 
@@ -84,8 +84,8 @@ CASES = [
 
 
 def test_every_column_is_in_one_class_of_these() -> None:
-    assert {*KNEE, *ANKLE, *TIMING, *DISTANCE} == set(columns_of(Table.STRIDES, Table.PEAKS))
-    assert set(columns_of(Table.STRIDES, Table.PEAKS)) - set(PARAMETERS) == {
+    assert {*KNEE, *ANKLE, *TIMING, *DISTANCE} == set(columns_of(ParameterFile.STRIDES, ParameterFile.PEAKS))
+    assert set(columns_of(ParameterFile.STRIDES, ParameterFile.PEAKS)) - set(PARAMETERS) == {
         *KNEE_EXCURSIONS,
         *ANKLE_EXCURSIONS,
     }  # strides.csv keeps its columns

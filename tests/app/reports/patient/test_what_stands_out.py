@@ -23,7 +23,7 @@ from app.summary.request import AnalysedVisit, ReportRequest
 from app.summary.what_stands_out import MAX_FINDINGS, printed_findings
 from core.body import Joint, Side
 from core.goals import Goal, GoalOf
-from core.parameters import BETWEEN_LEGS, BY_COLUMN, QuantityClass, Table, columns_of
+from core.parameters import BETWEEN_LEGS, BY_COLUMN, ParameterFile, QuantityClass, columns_of
 from core.results import Analysis, ZeroKind
 from core.verdicts.gates import judged
 from core.verdicts.measurement_error import Difference, Judgement
@@ -77,7 +77,7 @@ def raised(analysis: Analysis, joint: Joint, by_deg: float) -> Analysis:
     found, kind = walk.gait[joint.side], "knee" if joint.is_knee else "ankle"
     heights = {
         name
-        for name in columns_of(Table.STRIDES, Table.PEAKS)
+        for name in columns_of(ParameterFile.STRIDES, ParameterFile.PEAKS)
         if BY_COLUMN[name].rests_on is QuantityClass.HEIGHT and name.startswith(kind)
     }
     is_height = {name: name.replace("_rad", "_deg") in heights for name in found.parameters}
@@ -310,7 +310,10 @@ def test_no_sentence_judges(request_of_demonstration: ReportRequest) -> None:
 
 
 def test_every_quantity_has_its_unit_and_what_is_compared_has_a_name() -> None:
-    units = {column: unit_and_decimals(column)[0].strip() for column in columns_of(Table.STRIDES, Table.PEAKS)}
+    units = {
+        column: unit_and_decimals(column)[0].strip()
+        for column in columns_of(ParameterFile.STRIDES, ParameterFile.PEAKS)
+    }
     assert units["speed_m_s"] == "m/s"
     assert units["stride_length_m"] == "m"
     assert units["knee_stance_to_swing_deg"] == "°"
