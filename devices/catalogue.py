@@ -79,7 +79,7 @@ DRIVERS = (
     ),
     Driver(
         CSV,
-        "lines of numbers over a serial port",
+        "text lines (CSV) over a serial port",
         "By damaged streams; six emulated ones on pseudo-terminals led to right results. What the columns mean has to "
         "be told.",
         lambda: Decoder(CsvSerial()),

@@ -172,7 +172,9 @@ def _at_port(port: PortInfo, columns: Mapping[str, Columns]) -> FoundSensor | Pa
 
 def _silence(place: str) -> SourceRefusedError:
     return SourceRefusedError(
-        "No sensor was heard at {place}", "Switch it on, and let it send rates and accelerations", place=place
+        "No signal from a sensor at {place}",
+        "Switch it on, and set it to send angular rates and accelerations",
+        place=place,
     )
 
 

@@ -71,7 +71,7 @@ class Acquisition:
                 reader.open(self._begin_ns)
             names = self.sensors
             if twice := next((name for name in names if names.count(name) > 1), None):
-                raise SourceRefusedError("Two sensors are called {name}", "Connect one of them only", name=twice)
+                raise SourceRefusedError("Two sensors have the name {name}", "Connect only one of them", name=twice)
         except SourceRefusedError:
             self.close()
             raise

@@ -146,8 +146,8 @@ class MemoryFetching:
             file = named[-1] if named else None  # one that was given up in the same second comes before
         if file is None or sensor.info is None:
             raise DotRefusedError(
-                "{sensor} holds nothing of this recording",
-                "Look whether it was switched off meanwhile",
+                "{sensor} has no data of this recording",
+                "Check whether it was switched off",
                 sensor=sensor.name,
             )
         orders = None if wanted.orders is None else wanted.orders.since(writer.header.opened_ns)
@@ -212,10 +212,12 @@ class MemoryFetching:
         """
         one = self._begun.get(sensor)
         if one is None or one.result is None or not one.is_kept or not is_confirmed:
-            raise DotRefusedError("What {sensor} recorded is not known to be kept", "Fetch it first", sensor=sensor)
+            raise DotRefusedError(
+                "The recording of {sensor} is not confirmed as saved", "Fetch it first", sensor=sensor
+            )
         if not one.result.is_complete and not may_lack:
             raise DotRefusedError(
-                "{sensor} holds samples that were not fetched", "Fetch it again, or let them go", sensor=sensor
+                "{sensor} has data that were not fetched", "Fetch again, or discard these data", sensor=sensor
             )
         kept = {one.result.file.started_utc_s, *others}
         self._radio.run(_erased(self._wanted[sensor].sensor, kept, utc_s))

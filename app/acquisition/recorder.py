@@ -297,7 +297,7 @@ class _Entry:
             stored = self._recordings.find(self.id)
             if stored is not None and stored.state is not RecordingState.OPEN:
                 return stored  # an earlier try came as far
-            raise LibraryError("This recording is not in the library any more", "Reload the session")
+            raise LibraryError("This recording is no longer in the library", "Reload the session")
         if interrupted.is_orphan:
             return adopt(opened, interrupted, self._session_id, self._told, _nobody).stored
         return recover(opened, interrupted, _nobody).stored

@@ -63,7 +63,7 @@ class Deviation:
 
     def in_words(self) -> str:
         """The same for who cannot see it, as sentences."""
-        said = tr("{difference}, larger than the measurement error") if self.is_larger_than_error else "{difference}"
+        said = tr("{difference}, beyond measurement error") if self.is_larger_than_error else "{difference}"
         return "; ".join(filter(None, [said.format(difference=self.words), self.more])) + "."
 
 

@@ -224,7 +224,10 @@ def _axes(frame: Frame, axis: Axis, *, is_narrow: bool) -> list[str]:
         if is_labelled:
             parts.append(text(frame.left - 6, y + 2.5, angle_in_words(float(degrees)), 7, anchor="end"))
     if not is_narrow:
-        middle, said = (frame.left + frame.right) / 2, tr("Stride, % (0 and 100 = initial contact of the same foot)")
+        middle, said = (
+            (frame.left + frame.right) / 2,
+            tr("Gait cycle, % (0 and 100 = initial contact of the same foot)"),
+        )
         parts.append(text(middle, frame.bottom + 22, said, 7, anchor="middle"))
     parts.append(box(frame.left, frame.top, frame.width, frame.height, "none", PAPER.ink, 0.7))
     return parts

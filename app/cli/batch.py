@@ -101,7 +101,7 @@ def _done(wanted: argparse.Namespace, workers: "Workers", report: Report) -> "tu
             work.run(workers, report)
         except ClusterLostError as lost:
             what = "the cluster is out of reach; what was done until then stays in OUT"
-            raise FileRefusedError(wanted.dask, what, "Start it, then give the same command again") from lost
+            raise FileRefusedError(wanted.dask, what, "Start it, then run the same command again") from lost
         return work.result, list(sessions.notes())
 
 
@@ -115,7 +115,7 @@ def _check_apart(wanted: argparse.Namespace) -> None:
     """
     out, library = wanted.out.resolve(), wanted.library.resolve()
     if out == library or library in out.parents:
-        raise FileRefusedError(str(out), "this lies inside the library", "Choose a folder outside of it for --out")
+        raise FileRefusedError(str(out), "this folder is in the library", "Choose a folder outside it for --out")
     address = urlsplit(wanted.dask or "")
     if wanted.dask and address.scheme != "tls" and address.hostname not in HERE:
         what = "sessions of a library would be sent to this cluster as they are, for anybody to read on the way"

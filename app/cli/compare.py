@@ -76,9 +76,9 @@ def compare(wanted: argparse.Namespace, report: Report) -> list[str]:
     if not rows:
         names = ", ".join(one_line(str(place)) for place in wanted.sessions)
         if alone:
-            raise FileRefusedError(names, " ".join(alone), "Name sessions that were walked under the same condition")
+            raise FileRefusedError(names, " ".join(alone), "Give sessions that share a walking condition")
         what = "there are no two conditions, nor two sessions, with strides in both"
-        raise FileRefusedError(names, what, "Name two sessions, or one with two conditions")
+        raise FileRefusedError(names, what, "Give two sessions, or one with two conditions")
     with written_beside(wanted.out) as folder:
         write_differences(rows, folder / DIFFERENCES)
         report(1.0, "writing")
@@ -105,7 +105,7 @@ def _not_compared(place: object, visits: "Sequence[tuple[Session, Analysis]]") -
 def _check_place(out: Path) -> None:
     """See whether a comparison may stand at `out`: nothing is there, or only a comparison."""
     if out.exists() and not (out.is_dir() and {path.name for path in out.iterdir()} <= {DIFFERENCES}):
-        raise FileRefusedError(str(out), "this is there already and is not a comparison", "Choose another --out")
+        raise FileRefusedError(str(out), "this already exists and is not a comparison", "Choose another --out")
 
 
 def _table(comparison: "Comparison") -> Iterator[str]:

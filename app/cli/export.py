@@ -66,12 +66,12 @@ def export(wanted: argparse.Namespace, report: Report) -> list[str]:
     formats = [Format(name) for name in _chosen("--as", wanted.formats, FORMATS, "is no format")]
     kept = [Typed(name) for name in _chosen("--keep", wanted.keep, TYPED, "is not among what is typed")]
     if wanted.identified and (kept or wanted.preview):
-        raise FileRefusedError("--identified", "with identity all leaves as it is", "Leave out --keep and --preview")
+        raise FileRefusedError("--identified", "identified data are exported unchanged", "Omit --keep and --preview")
     if wanted.preview:
         return _preview(wanted, kept)
     if wanted.out.exists() and not (wanted.out.is_dir() and not any(wanted.out.iterdir())):
         raise FileRefusedError(
-            str(wanted.out), "there is something here already", "Choose an empty folder or a new one"
+            str(wanted.out), "this already exists and is not an empty folder", "Choose an empty folder or a new one"
         )
     with written_beside(wanted.out) as folder:
         if isinstance(wanted.session, LibrarySession):

@@ -95,7 +95,7 @@ def opened_library(wanted: argparse.Namespace, *, is_to_be_moved: bool = False) 
         raise FileRefusedError(refusal.where, refusal.what, refusal.remedy) from refusal
     except OSError as problem:
         what = f"this cannot be read or written ({problem.strerror})"
-        raise FileRefusedError(str(folder), what, "Check the disk, and the rights of this folder") from problem
+        raise FileRefusedError(str(folder), what, "Check the disk and the permissions of this folder") from problem
 
 
 def read_library_session(wanted: argparse.Namespace, session: LibrarySession, report: Report) -> "Session":
@@ -246,7 +246,9 @@ def _passphrase(file: Path | None, library: Path) -> str:
             return file.read_text(encoding="utf-8").partition("\n")[0].rstrip("\r")
         except (OSError, UnicodeDecodeError) as problem:
             what = "the passphrase cannot be read from this file"
-            raise FileRefusedError(str(file), what, "Give a text file whose first line it is") from problem
+            raise FileRefusedError(
+                str(file), what, "Give a text file with the passphrase as its first line"
+            ) from problem
     if not sys.stdin.isatty():
         what = "there is no terminal to type the passphrase on"
         raise FileRefusedError(str(library), what, f"Name a file that holds it with {PASSPHRASE_FILE}")

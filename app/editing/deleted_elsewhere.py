@@ -21,12 +21,12 @@ def deleted_by(opened: "OpenedLibrary", patient_id: UUID, session_id: UUID | Non
     else:
         return ""
     entry = library.audit.deletions([subject]).get(subject)
-    return entry.operator if entry is not None else tr("somebody else")
+    return entry.operator if entry is not None else tr("another user")
 
 
 def deletion_message(what: str, by: str) -> tuple[str, str]:
     """Say at this station that what is in sight was deleted at another: what happened, and what to do."""
     return (
         tr("{user} deleted {what} at another workstation.").format(user=by, what=what),
-        tr("Restore it in Settings within 30 days to go on with it."),
+        tr("To continue, restore it in Settings within 30 days."),
     )

@@ -43,23 +43,25 @@ class EditDialog(QDialog):
     ) -> None:
         super().__init__(parent)
         self._look, self._question, self._parent = look, question, parent
-        self.setWindowTitle(tr("Somebody else changed this meanwhile"))
+        self.setWindowTitle(tr("Someone else has changed this in the meantime"))
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        self._title = Text(look, tr("Somebody else changed this meanwhile"), size=20, weight=SEMIBOLD, wraps=True)
+        self._title = Text(
+            look, tr("Someone else has changed this in the meantime"), size=20, weight=SEMIBOLD, wraps=True
+        )
         self._lead = Text(
             look,
             tr(
-                "{subject}: this was changed here and at another station. Choose what is to hold; what is not chosen "
-                "stays in the history."
+                "{subject}: this was changed here and on another workstation. Choose the values to keep. The "
+                "others stay in the history."
             ).format(subject=question.subject),
             tone="ink2",
             wraps=True,
         )
         self._table = QWidget()
         self._scroll = QScrollArea()
-        self._note = Text(look, tr("Choose in each line with the arrows."), tone="ink2", wraps=True)
-        self.save = Button(look, tr("Save these"), ButtonKind.PRIMARY, key=tr("Enter"))
-        self.leave = Button(look, tr("Leave theirs"), ButtonKind.SECONDARY, key=tr("Esc"))
+        self._note = Text(look, tr("Choose in each line with the arrow keys."), tone="ink2", wraps=True)
+        self.save = Button(look, tr("Save choice"), ButtonKind.PRIMARY, key=tr("Enter"))
+        self.leave = Button(look, tr("Keep theirs"), ButtonKind.SECONDARY, key=tr("Esc"))
         self._pairs: list[QBoxLayout] = []
         self.cells = [self._row(contest, now().astimezone()) for contest in question.contests]
         self._build()
@@ -113,7 +115,7 @@ class EditDialog(QDialog):
         self._scroll.setFrameShape(QFrame.Shape.NoFrame)
         self._scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         self._scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        self._scroll.setAccessibleName(tr("What was changed on both sides"))
+        self._scroll.setAccessibleName(tr("Conflicting changes"))
         self._scroll.setWidget(self._table)
         buttons = QHBoxLayout()
         buttons.addWidget(self._note, 1)
@@ -154,7 +156,7 @@ class EditDialog(QDialog):
     def _follow(self) -> None:
         is_whole = self.chosen is not None
         self.save.setEnabled(is_whole)
-        self._note.setText("" if is_whole else tr("Choose in each line with the arrows."))
+        self._note.setText("" if is_whole else tr("Choose in each line with the arrow keys."))
 
     def _on_moved(self, row: int, column: int, right: int, down: int) -> None:
         """Left and right choose, up and down go to another line."""

@@ -32,33 +32,33 @@ def field_word(field: str) -> str:
         of_joint = {"zero_rad": tr("Goniometer, {joint}"), "turned_sign": tr("Sign, {joint}")}
         return of_joint[name].format(joint=name_of(Joint(part)))
     if part in list(Side):
-        of_side = {"without_ankle": tr("Ankle joint, {side}"), "left_out_s": tr("Strides left out, {side}")}
+        of_side = {"without_ankle": tr("Ankle joint, {side}"), "left_out_s": tr("Strides excluded, {side}")}
         return of_side[name].format(side=side_name(Side(part)))
     return {
         "code": tr("Patient code"),
         "birth_year": tr("Birth year"),
         "sex": tr("Sex"),
-        "height_m": tr("Body height"),
-        "mass_kg": tr("Mass"),
+        "height_m": tr("Height"),
+        "mass_kg": tr("Weight"),
         "device": tr("Device"),
         "aids": tr("Aids and footwear"),
         "sides": tr("Side"),
-        "started": tr("Begun"),
-        "operator": tr("Operator"),
+        "started": tr("Started"),
+        "operator": tr("User"),
         "surface": tr("Surface"),
         "notes": tr("Notes"),
         "software": tr("Software"),
-        "comment": tr("Words on the report"),
+        "comment": tr("Clinical comment"),
         "cannot_stand": tr("Standing"),
         "name": tr("Name"),
-        "kind": tr("Kind"),
+        "kind": tr("Type"),
         "condition": tr("Condition"),
-        KEPT: tr("Does it count?"),
+        KEPT: tr("Analysis"),
         "note": tr("Note"),
         "is_restrapped_before": tr("Sensors"),
-        ALIGNMENT: tr("Changed at the prosthesis"),
+        ALIGNMENT: tr("Alignment change"),
         TEST: tr("Timed test"),
-        PLACEMENT: tr("Which sensor was worn where"),
+        PLACEMENT: tr("Sensor positions"),
     }[name]
 
 
@@ -67,20 +67,20 @@ def value_words(field: str, value: Value) -> str:
     name = field.partition(".")[0]
     if isinstance(value, bool):
         yes, no = {
-            "without_ankle": (tr("none"), tr("there is one")),
+            "without_ankle": (tr("none"), tr("present")),
             "cannot_stand": (tr("cannot stand"), tr("can stand")),
-            KEPT: (tr("it counts"), tr("left out")),
-            "is_restrapped_before": (tr("put on anew before"), tr("not put on anew before")),
+            KEPT: (tr("included"), tr("excluded")),
+            "is_restrapped_before": (tr("reattached before"), tr("not reattached before")),
         }[name]
         return yes if value else no
     if name == "turned_sign":
-        return tr("turned by hand") if value == -1 else tr("confirmed by hand") if value == 1 else tr("as found")
+        return tr("reversed by hand") if value == -1 else tr("confirmed by hand") if value == 1 else tr("as detected")
     if isinstance(value, tuple):
         amount = tr_n("{count} stride", "{count} strides", len(value)).format(count=len(value))
         at = ", ".join(tr("{time} s").format(time=figure_text(time_s, ".1f")) for time_s in value)
         return f"{amount}: {at}" if value else tr("none")
     if value is None or value == "":
-        return tr("nothing said")
+        return tr("not recorded")
     if isinstance(value, str):
         return _text(name, value)
     number = {
@@ -93,12 +93,12 @@ def value_words(field: str, value: Value) -> str:
 
 def by_words(by: str, at: datetime.datetime | None, now: datetime.datetime) -> str:
     """Say who changed it, and when, as far as that is known: "B. Berger, today 10:32"."""
-    return ", ".join(filter(None, [by or tr("somebody else"), when(at.isoformat(), now) if at is not None else ""]))
+    return ", ".join(filter(None, [by or tr("another user"), when(at.isoformat(), now) if at is not None else ""]))
 
 
 def others_message(subject: str, others: Sequence[OtherChange], now: datetime.datetime) -> tuple[str, str]:
     """Tell what another station changed of `subject` while it was edited here: what happened, and the values."""
-    what = tr("Saved. {subject} was also changed at another station meanwhile.").format(subject=subject)
+    what = tr("Saved. {subject} was also changed at another workstation.").format(subject=subject)
     said = [
         tr("{field}: {value} ({who}).").format(
             field=field_word(one.field), value=value_words(one.field, one.value), who=by_words(one.by, one.at, now)
@@ -118,14 +118,14 @@ def _text(name: str, value: str) -> str:
             return capitalised(tr("{side} prosthetic").format(side=sides[prosthetic]))
         if affected in sides:
             return capitalised(tr("{side} affected").format(side=sides[affected]))
-        return tr("Neither") if "none" in (affected, prosthetic) else tr("nothing said")
+        return tr("Neither") if "none" in (affected, prosthetic) else tr("not recorded")
     if name == GOALS:
-        return "; ".join(map(goal_in_words, held(goals_of_text(value)))) or tr("taken back")
+        return "; ".join(map(goal_in_words, held(goals_of_text(value)))) or tr("withdrawn")
     if name == ALIGNMENT:
         return since_in_words(alignment_of_text(value))
     if name == TEST:
         return planned_words(planned_of_text(value))
     if name == PLACEMENT:
         worn = json.loads(value).items()
-        return ", ".join(f"{name_of(Site(site))} {sensor}" for site, sensor in worn) or tr("nothing said")
+        return ", ".join(f"{name_of(Site(site))} {sensor}" for site, sensor in worn) or tr("not recorded")
     return value

@@ -68,7 +68,7 @@ def write_c3d(recording: RecordingAnalysis, is_simulated: bool, path: Path) -> s
     joints = [joint for joint, said in status.items() if said in TOLD]
     if not joints and not events_of(recording):
         reasons = [why_status(recording, joint) for joint in status]
-        return " ".join([tr("Neither angles nor events of it can be given."), *dict.fromkeys(filter(None, reasons))])
+        return " ".join([tr("It has neither angles nor events to export."), *dict.fromkeys(filter(None, reasons))])
     found = {joint: told_abduction_deg(recording, joint) for joint in joints if joint.is_hip}
     abductions = {joint: abduction_deg for joint, abduction_deg in found.items() if abduction_deg is not None}
     rows, step_s = _rows_of_frames(recording)

@@ -168,7 +168,7 @@ def _write(session: Session, analysis: Analysis, formats: Sequence[Format], fold
                     FileRefusedError(
                         wanted,
                         "this format could not be written ({why})",
-                        "Choose another format; the log holds the details",
+                        "Choose another format. The log has the details.",
                         why=error,
                     )
                 )

@@ -126,11 +126,11 @@ def check_place(out: Path, session: Path) -> None:
     out, session = out.resolve(), session.resolve()
     if out == session or session in out.parents:
         what = "this lies inside the session, which stays as it was recorded"
-        raise FileRefusedError(str(out), what, "Choose a folder outside of it for --out")
+        raise FileRefusedError(str(out), what, "Choose a folder outside it for --out")
     if _is_free(out):
         return
     if read_summary(out / SUMMARY) is None:
-        raise FileRefusedError(str(out), "this is there already and is not an analysis", "Choose another --out")
+        raise FileRefusedError(str(out), "this already exists and is not an analysis", "Choose another --out")
     _refuse_recordings(out, out / OWN_SESSION if session == out / OWN_SESSION else None)
 
 
@@ -147,7 +147,7 @@ def check_demonstration_place(out: Path) -> None:
         return
     summary = read_summary(out / SUMMARY)
     if summary is None or summary.get("simulated") is not True or not _is_simulated(out / OWN_SESSION):
-        raise FileRefusedError(str(out), "this is there already and is not a demonstration", "Choose another --out")
+        raise FileRefusedError(str(out), "this already exists and is not a demonstration", "Choose another --out")
     _refuse_recordings(out, out / OWN_SESSION)
 
 

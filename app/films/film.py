@@ -41,17 +41,19 @@ Paint = Callable[[QPainter, QRectF, Theme, int, float], None]
 PAINTED: dict[Film, Paint] = {Film.SENSOR_PLACEMENT: paint_strapping, Film.FREE_MOTION: paint_seated}
 SCENES: dict[Film, tuple[Scene, ...]] = {
     Film.SENSOR_PLACEMENT: (
-        Scene(later("Thigh"), later("A hand above the knee, on the outside.")),
+        Scene(later("Thigh"), later("A hand's width above the knee, on the outside.")),
         Scene(later("Shank"), later("On the flat of the shin, or on the outside.")),
-        Scene(later("Foot"), later("On the back of the foot, over the laces.")),
-        Scene(later("Any way round"), later("Which way a sensor points is found. That it does not slip matters.")),
+        Scene(later("Foot"), later("On top of the foot, over the laces.")),
+        Scene(
+            later("Any orientation"), later("Sensor orientation is detected automatically. The strap must not slip.")
+        ),
     ),
     Film.FREE_MOTION: (
-        Scene(later("Bend the left knee"), later("To and fro, as far as is comfortable. Held by the hand is fine.")),
-        Scene(later("Circle the left lower leg"), later("Seated, lying or standing, held by the hand.")),
-        Scene(later("Change direction"), later("Now and then, the other way round.")),
-        Scene(later("Circle the left foot"), later("Round the ankle, and the other way round.")),
-        Scene(later("Then the right leg"), later("The gauges say which joint is still open.")),
+        Scene(later("Bend the left knee"), later("Back and forth, as far as comfortable. Moving it by hand is fine.")),
+        Scene(later("Circle the left lower leg"), later("Seated, lying or standing, moved by hand if needed.")),
+        Scene(later("Change direction"), later("From time to time, reverse the direction.")),
+        Scene(later("Circle the left foot"), later("Circle at the ankle, in both directions.")),
+        Scene(later("Then the right leg"), later("The gauges show which joint still needs movement.")),
     ),
 }
 

@@ -145,9 +145,9 @@ class HelpPage(Themed):
         total = sum(count or 0 for count in counts.values())
         said = ""
         if wanted and total:
-            said = tr_n("Found once.", "Found {count} times. Enter goes on.", total).format(count=total)
+            said = tr_n("1 match.", "{count} matches. Enter goes to the next.", total).format(count=total)
         elif wanted:
-            said = tr("Nothing is found. Try another word.")
+            said = tr("No matches. Try another word.")
         self.found.setText(said)
         self.found.setVisible(bool(said))
 
@@ -256,7 +256,7 @@ class _TopicRow(QAbstractButton):
     def show_count(self, count: int | None) -> None:
         """Tell how often the topic has what is searched for; None while nothing is."""
         self._count = count
-        found = "" if count is None else tr_n("{count} place", "{count} places", count).format(count=count)
+        found = "" if count is None else tr_n("{count} match", "{count} matches", count).format(count=count)
         self.setAccessibleName(", ".join(filter(None, [self.text(), found])))
         self.updateGeometry()
         self.update()

@@ -155,8 +155,8 @@ class Home(Themed):
             self._settings_controller.show_library(state)
         if state.is_end_lost:
             self.banner.tell(
-                tr("The library was not closed well, and what was saved last is damaged."),
-                tr("Look through the latest session."),
+                tr("The library was not closed properly. The data saved last are damaged."),
+                tr("Check the latest session."),
             )
         self.notices.show(state)
         self.recovering.begin(state)
@@ -338,7 +338,7 @@ class Home(Themed):
             tr("Patients"),
             tr("Leave the demonstration") if is_demonstration else tr("Open demonstration"),
             tr("Import recordings"),
-            tr("Questions"),
+            tr("Cohort"),
         )
         rows = (
             RailRow(name, state=StepState.CURRENT if is_current else StepState.TODO, icon=icon)
@@ -348,9 +348,9 @@ class Home(Themed):
         is_shared = self.state is not None and self.state.library.shared is not None
         note = tr("Everything stays on this computer, encrypted.")
         if is_shared:
-            note = tr("The clinic's library, shared by its stations.")
+            note = tr("The clinic's library, shared by its workstations.")
         elif is_demonstration:
-            note = tr("Simulated, not encrypted, gone when it is closed.")
+            note = tr("Simulated, not encrypted, deleted on closing.")
         self.rail.show_below(home_below(can_lock=not is_demonstration), note)
         self.bar.show_state(self._bar())
         self.bar.setVisible(current is not self.working)

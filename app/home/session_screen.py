@@ -48,11 +48,11 @@ PURPOSE_WIDTH = 120  # what it was made for, in two lines
 
 STOPPED = (
     later("The analysis was stopped."),
-    later("Nothing was changed; open the session again to go on."),
+    later("Nothing was changed. Reopen the session to continue."),
 )
 ENDED_EARLY = (
-    later("The analysis ended before it was done."),
-    later("The folder is unchanged; the log holds the details."),
+    later("The analysis stopped before it finished."),
+    later("The folder is unchanged. See the log for details."),
 )
 
 
@@ -136,7 +136,7 @@ class SessionScreen(Themed):
         if len(paths) == 1 and paths[0].name == "session.toml":
             paths = [paths[0].parent]
         if len(paths) != 1 or not paths[0].is_dir():
-            self.banner.tell(tr("This is not one folder."), tr("Drop the folder that holds session.toml."))
+            self.banner.tell(tr("This is not a single folder."), tr("Drop the folder that contains session.toml."))
             return
         self.open_folder(paths[0])
 
@@ -303,7 +303,7 @@ class _ActionBar(Themed):
         self.back.hide()
         self.open_folder = Button(look, tr("Open a session folder"), ButtonKind.SECONDARY, Icon.FOLDER, tr("Ctrl O"))
         self.open_demonstration = Button(look, tr("Open the demonstration"), ButtonKind.QUIET, Icon.PLAY, tr("Ctrl D"))
-        self.how_found = Button(look, tr("How was this found?"), ButtonKind.QUIET, Icon.SEARCH)
+        self.how_found = Button(look, tr("Show calibration"), ButtonKind.QUIET, Icon.SEARCH)
         self._purpose = Text(look, tr(PURPOSE), size=12, tone="ink2", wraps=True)
         self._purpose.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
         self._row = QHBoxLayout(self)

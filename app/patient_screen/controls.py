@@ -71,7 +71,7 @@ class ControlsCard(Card):
         self._choose, self._set = QBoxLayout(ACROSS), QBoxLayout(ACROSS)
         super().__init__(look)
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Maximum)
-        self.setAccessibleName(tr("Patient's screen"))
+        self.setAccessibleName(tr("Patient screen"))
         self._choose.addWidget(self.measure, 1)
         self._choose.addWidget(self.side)
         for field in (self.target, self.rate):
@@ -124,7 +124,7 @@ class ControlsCard(Card):
         gated = {m for m in TargetMeasure if all(choice in reasons for choice in choices() if choice[0] is m)}
         if gated != set(TargetMeasure):  # one has to be chosen, whatever it is worth
             for measure in TargetMeasure:
-                self.measure.set_reason(measure, tr("cannot be read") if measure in gated else "")
+                self.measure.set_reason(measure, tr("not available") if measure in gated else "")
         self._show()
         self._tell()
 
@@ -153,14 +153,14 @@ class ControlsCard(Card):
         if measure.has_side:
             gated = [one for one in Side if (measure, one) in self._reasons]
             for one in Side:  # one has to be chosen, whatever it is worth
-                self.side.set_reason(one, tr("cannot be read") if gated == [one] else "")
+                self.side.set_reason(one, tr("not available") if gated == [one] else "")
         self.target.low, self.target.high = measure.limits
         units = {"deg": "°", "%": "%", "steps/min": tr("/min")}
         self.target.set_unit(units[measure.unit])
         self.target.set_value(self._typed.get(measure))
         self.target.setEnabled(not self.reason)
         self._reason.setVisible(bool(self.reason))
-        self._reason.tell(Icon.WITHHELD, tr("This cannot be a target now."), self.reason)
+        self._reason.tell(Icon.WITHHELD, tr("This measure cannot be a target now."), self.reason)
         self._show_wrong()
 
     def _show_wrong(self) -> None:
@@ -193,7 +193,7 @@ class ControlsCard(Card):
         elif self.rate.value is not None:
             self.metronome_pressed.emit(round(self.rate.value))
         else:
-            self.rate.set_wrong(tr("Type how many steps per minute."))
+            self.rate.set_wrong(tr("Enter the steps per minute."))
             self._show_wrong()
 
     def _on_look_changed(self) -> None:

@@ -34,11 +34,11 @@ class PatientView:
     def in_words(self) -> str:
         """All of it, for who cannot see it."""
         if self.target is None:
-            return tr("Please wait") if self.steps is None else f"{self.steps} {so_far_words(self.steps)}"
+            return tr("One moment") if self.steps is None else f"{self.steps} {so_far_words(self.steps)}"
         said = [f"{title_of(self.target)}."]
         said.append(tr("Target {value}.").format(value=figure(self.target.value, self.target.measure)))
         if self.is_waiting:
-            return " ".join([*said, tr("Please wait")])
+            return " ".join([*said, tr("One moment")])
         if self.value is not None:
             said.append(tr("Now {value}.").format(value=figure(self.value, self.target.measure)))
             said.append(f"{steps_words(len(self.last))}: {reached_words(self)}.")
@@ -48,7 +48,7 @@ class PatientView:
 def title_of(target: Target) -> str:
     """What to do, in words for the patient."""
     if target.measure is TargetMeasure.CADENCE:
-        return tr("Both legs: step more often")
+        return tr("Both legs: take quicker steps")
     left, right = {
         TargetMeasure.KNEE_SWING_PEAK: (tr("Left knee: bend it as you swing"), tr("Right knee: bend it as you swing")),
         TargetMeasure.FOOT_STRIKE: (tr("Left foot: toes up as you land"), tr("Right foot: toes up as you land")),
@@ -80,7 +80,7 @@ def so_far_words(count: int) -> str:
 
 def steps_words(count: int) -> str:
     if not count:
-        return tr("No step yet")
+        return tr("No steps yet")
     return tr_n("Last {count} step", "Last {count} steps", count).format(count=count)
 
 

@@ -64,7 +64,7 @@ def paint_patient_view(painter: QPainter, room: QRectF, view: PatientView, look:
     painter.scale(scale, scale)
     painter.translate(-WIDTH / 2, -HEIGHT / 2)
     if view.target is None and view.steps is None:
-        _text(painter, theme, QRectF(0, 0, WIDTH, HEIGHT), tr("Please wait"), 96, flags=MIDDLE)
+        _text(painter, theme, QRectF(0, 0, WIDTH, HEIGHT), tr("One moment"), 96, flags=MIDDLE)
     elif view.target is None:
         _text(painter, theme, QRectF(0, 190, WIDTH, 300), str(view.steps), 320, flags=MIDDLE)
         _text(painter, theme, QRectF(LEFT, 520, RIGHT - LEFT, 80), so_far_words(view.steps or 0), 64, flags=MIDDLE)
@@ -77,7 +77,7 @@ def _paint(painter: QPainter, view: PatientView, target: Target, theme: Theme) -
     inks = _inks(target.side, theme)
     _paint_heading(painter, view, target, theme)
     if view.is_waiting:
-        _text(painter, theme, QRectF(LEFT, 170, 620, 180), tr("Please wait"), 80)
+        _text(painter, theme, QRectF(LEFT, 170, 620, 180), tr("One moment"), 80)
     else:
         shown = NO_VALUE if view.value is None else figure(view.value, target.measure)
         _text(painter, theme, QRectF(LEFT, 150, 560, 216), shown, 240 if len(shown) <= 3 else 184, fits=True)

@@ -27,7 +27,7 @@ class PatientWindow(QWidget):
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look, self.view = look, PatientView()
-        self.setWindowTitle(tr("Patient's screen"))
+        self.setWindowTitle(tr("Patient screen"))
         self.setAttribute(Qt.WidgetAttribute.WA_ShowWithoutActivating)
         self.setAttribute(Qt.WidgetAttribute.WA_OpaquePaintEvent)
         self.setMinimumSize(480, 300)

@@ -48,12 +48,12 @@ class CostMap(Themed):
         """Draw the map of the sensor on the segment `name`; the circle about the axis is 2 SD wide."""
         self._cost, self._side, self._axis_sd_rad = cost, side, axis_sd_rad
         said = tr(
-            "{sensor}: the axis in use lies {apart}° from the direction that fits best; misfits range from {low} to "
-            "{high} °/s."
+            "{sensor}: the axis in use is {apart}° from the best-fitting direction; misfits range from "
+            "{low} to {high} °/s."
         )
         low, high = self.limits_deg_s
         apart = figure_text(math.degrees(cost.apart_rad), ".1f")
-        self.setAccessibleName(tr("Map of all axes, {sensor}").format(sensor=name))
+        self.setAccessibleName(tr("Misfit of all axes, {sensor}").format(sensor=name))
         self.setAccessibleDescription(said.format(sensor=name, apart=apart, low=f"{low:.0f}", high=f"{high:.0f}"))
         self._on_look_changed()
 

@@ -68,7 +68,7 @@ class CourseCard(Card):
         self.rows: dict[LaneKind, LaneRow] = {}
         self.axis = DateAxis(look)
         self.note = Text(look, size=12, tone="ink2", wraps=True)
-        self.compute = Button(look, tr("Compute"), ButtonKind.SECONDARY, height=36)
+        self.compute = Button(look, tr("Calculate"), ButtonKind.SECONDARY, height=36)
         self._grid_room, self._legend_room = QWidget(), QWidget()
         self._is_narrow: bool | None = None
         self._foot.addWidget(self.note, 1)
@@ -98,7 +98,7 @@ class CourseCard(Card):
         self.note.setText(" ".join(filter(None, [nothing_between(visits), key_in_words(lanes)])))
         self.note.setVisible(bool(self.note.text()))
         self.compute.setVisible(any(visit.course is None for visit in visits))
-        self.setAccessibleName(tr("Course over the visits"))
+        self.setAccessibleName(tr("Progress across visits"))
         self.setAccessibleDescription(
             " ".join(filter(None, [*(lane_in_words(lane, visits) for lane in lanes), self.note.text()]))
         )

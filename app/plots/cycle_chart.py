@@ -54,9 +54,11 @@ from core.verdicts.norms import ReferenceCurves
 LEAST_SIZE, TIGHT_SIZE = (284, 144), (160, 100)  # of two charts, or of three where there is little room
 EARLIER = (0, 2)  # the thin one of two curves, as in every comparison
 DOUBTS = {
-    NO_ZERO: later("{sides}: no zero. Range and shape hold, height does not."),
-    NO_HEIGHT: later("{sides}: the height cannot be read. Range and shape hold."),
-    MAY_BE_MIRRORED: later("{sides}: sign unsure. The curve may be upside down."),
+    NO_ZERO: later(
+        "{sides}: no standing reference. Range of motion and curve shape are valid; absolute angles are not."
+    ),
+    NO_HEIGHT: later("{sides}: absolute angle not reported. Range of motion and curve shape are valid."),
+    MAY_BE_MIRRORED: later("{sides}: sign unclear, flexion or extension. The curve may be inverted."),
 }
 
 
@@ -251,7 +253,7 @@ class CycleFrame(Card):
         for widget in (self._mark, self._note):
             widget.setVisible(bool(self._note.text()))
         self._show_chart()
-        self.chart.setAccessibleName(tr("{joint} over one stride").format(joint=title_in_words(self.kind)))
+        self.chart.setAccessibleName(tr("{joint} over one gait cycle").format(joint=title_in_words(self.kind)))
         self.chart.setAccessibleDescription(self.in_words())
 
     def show_marks(self, deviations: Sequence[Deviation], gaps: Sequence[Gap]) -> None:
@@ -307,9 +309,11 @@ class CycleFrame(Card):
             if joint not in against.joints:
                 said.append(tr("{side}: not measured in {walk}.").format(side=LETTERS[joint.side], walk=against.name))
             elif not against.is_drawn(joint):
-                said.append(tr("{side}: withheld in {walk}.").format(side=LETTERS[joint.side], walk=against.name))
+                said.append(tr("{side}: not reported in {walk}.").format(side=LETTERS[joint.side], walk=against.name))
         if has_other_zero and self.chart.beside:
-            said.append(tr("No common zero: range and shape hold, height does not."))
+            said.append(
+                tr("No common standing reference: compare range of motion and curve shape, not absolute angles.")
+            )
         return " ".join(said)
 
     def _show_chart(self) -> None:
@@ -358,7 +362,7 @@ class CycleFrame(Card):
             sides = [LETTERS[side] for side in doubts if doubts[side] == why]
             notes += [tr(what).format(sides=joined(sides))] if sides else []
         if self.chart.is_about_mean:
-            notes.append(tr("0° is the mean of the stride."))
+            notes.append(tr("0° is the mean of the gait cycle."))
         if not cycles:
             notes.append(nothing_in_words(self.kind))
         empty = [LETTERS[s] for s, cycle in cycles.items() if not cycle.mean.n and s not in self.chart.withheld]

@@ -32,10 +32,10 @@ SPEEDS = (
 )
 PELVIS_M, PELVIS_HALF_M = 0.14, 0.08  # as large as it looks right
 LANE, LANE_GAP, LANES_HEIGHT = 18, 8, 84
-NO_LEGS = later("Legs are drawn where a thigh was heard and a knee's height can be read.")
-APART = later("The clocks of both legs are not known to agree: drawn half a stride apart.")
-DRAWN = later("Drawn from angles and the thighs' inclination, not measured.")
-DRAWN_WITH_PELVIS = later("Drawn from angles and the inclination of thighs and pelvis, not measured.")
+NO_LEGS = later("Legs are drawn where a thigh sensor was received and a knee has an absolute angle.")
+APART = later("Left and right sensors are not synchronised: legs are drawn half a gait cycle apart.")
+DRAWN = later("Drawn from joint angles and thigh inclination; not measured directly.")
+DRAWN_WITH_PELVIS = later("Drawn from joint angles and the inclination of thighs and pelvis; not measured directly.")
 
 
 class MovingLegs(Card):
@@ -54,7 +54,7 @@ class MovingLegs(Card):
         head = QHBoxLayout()
         head.setSpacing(8)
         head.addWidget(Text(look, tr("Legs"), size=16, weight=SEMIBOLD))
-        head.addWidget(Text(look, tr("from the side"), size=12, tone="ink2"))
+        head.addWidget(Text(look, tr("side view"), size=12, tone="ink2"))
         self.picture = _LegsPicture(look)
         self.picture.pointed.connect(self.show_percent)
         self.play = Button(look, "", ButtonKind.SECONDARY, Icon.PLAY, height=40)
@@ -112,7 +112,7 @@ class MovingLegs(Card):
         self.percent = percent % 100.0
         self.picture.show_legs(self._legs, self.percent)
         if self._legs is not None:
-            said = tr("{percent:.0f} % of the {side} stride")
+            said = tr("{percent:.0f} % of the {side} gait cycle")
             side = side_name(self._legs.reference)
             self.where.setText(said.format(percent=self.percent, side=side))
             widest = self.where.fontMetrics().horizontalAdvance(said.format(percent=100.0, side=side))

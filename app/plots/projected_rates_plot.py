@@ -39,7 +39,7 @@ class ProjectedRatesPlot(Themed):
     def show_rates(self, shown: ProjectedRates | None, side: Side) -> None:
         """Draw both pairings; None where no second showed them."""
         self._shown, self._side = shown, side
-        self.setAccessibleName(tr("Turning beside the axis"))
+        self.setAccessibleName(tr("Off-axis rotation"))
         self.setAccessibleDescription(". ".join(self._titles()) if shown is not None else "")
         self._on_look_changed()
 
@@ -135,8 +135,8 @@ class ProjectedRatesPlot(Themed):
         assert self._shown is not None
         paired, turned = (100 * share for share in (self._shown.congruence, self._shown.reversed_congruence))
         return (
-            tr("As paired: {percent} % alike").format(percent=f"{paired:.0f}"),
-            tr("One axis reversed: {percent} % alike").format(percent=f"{turned:.0f}"),
+            tr("As paired: {percent} % agree").format(percent=f"{paired:.0f}"),
+            tr("One axis reversed: {percent} % agree").format(percent=f"{turned:.0f}"),
         )
 
     def _font(self, weight: QFont.Weight) -> QFont:

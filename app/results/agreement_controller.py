@@ -91,7 +91,7 @@ class AgreementController(QObject):
         self._background.stop()
 
     def _on_reference_wished(self) -> None:
-        title = tr("What the optical system measured")
+        title = tr("Choose optical reference files")
         self._dialog = ask_for_files(self._page, title, self._on_files_selected)
 
     def _on_files_selected(self, names: Sequence[str]) -> None:
@@ -114,7 +114,7 @@ class AgreementController(QObject):
             self._page.show_refused(f"{error.where}: {what}.", f"{remedy}.")
             return
         _log.error("a reference was not compared", exc_info=error)
-        self._page.show_refused(tr("The reference cannot be compared."), tr("The log holds the details."))
+        self._page.show_refused(tr("The reference could not be compared."), tr("See the log for details."))
 
     def _on_save_wished(self) -> None:
         if self._study is None or self._session is None:
@@ -122,7 +122,7 @@ class AgreementController(QObject):
         name = session_name(self._session.patient.code, self._session.started, WHAT)
         self._dialog = ask_for_new_folder(
             self._page,
-            tr("Save the agreement into a new folder"),
+            tr("Save the agreement to a new folder"),
             lambda place: free_name(place, name),
             self._on_folder_selected,
         )

@@ -16,8 +16,8 @@ from app.widgets.themed import Themed
 from app.wording.translation import joined, later, tr
 
 KINDS = later(
-    "CSV with time_s and left_knee, left_ankle, right_knee, right_ankle in degrees, OpenSim .mot, C3D, or the text of "
-    "Visual3D. Clocks and signs are found from the motion."
+    "CSV with time_s and left_knee, left_ankle, right_knee, right_ankle in degrees, OpenSim .mot, "
+    "C3D or Visual3D text. Time offset and signs are detected from the movement."
 )
 
 
@@ -42,7 +42,7 @@ class AgreementPage(Themed):
         super().__init__()
         self._look = look
         self.back = Button(look, tr("Back to the results"), ButtonKind.SECONDARY, Icon.BACK)
-        self.choose = Button(look, tr("Choose the reference"), ButtonKind.SECONDARY, Icon.FOLDER)
+        self.choose = Button(look, tr("Choose reference file"), ButtonKind.SECONDARY, Icon.FOLDER)
         self.save = Button(look, tr("Save PDF and CSV"), ButtonKind.SECONDARY, Icon.FOLDER)
         self.note = Text(look, tone="ink2", wraps=True)
         self.waiting = SentencePage(look)
@@ -51,7 +51,7 @@ class AgreementPage(Themed):
         self.reading.setFrameShape(QFrame.Shape.NoFrame)
         self.reading.setWidgetResizable(True)
         self.reading.setWidget(self.sheets)
-        self.reading.setAccessibleName(tr("The agreement's pages"))
+        self.reading.setAccessibleName(tr("Agreement report"))
         self._stack = QStackedWidget()
         for page in (self.waiting, self.reading):
             self._stack.addWidget(page)
@@ -79,17 +79,17 @@ class AgreementPage(Themed):
 
     def show_nothing(self) -> None:
         """Ask for what the optical system measured."""
-        self._say(tr("What did the optical system measure?"), tr(KINDS), tr("Choose the reference"))
+        self._say(tr("Choose the optical system's file"), tr(KINDS), tr("Choose reference file"))
 
     def show_working(self, names: Sequence[str]) -> None:
-        self._say(tr("Looking for these walks in {files}.").format(files=joined(list(names))), "", "")
+        self._say(tr("Searching for these walks in {files}.").format(files=joined(list(names))), "", "")
 
     def show_refused(self, what: str, remedy: str) -> None:
-        self._say(what, remedy, tr("Choose another reference"))
+        self._say(what, remedy, tr("Choose another file"))
 
     def show_pages(self, pages: Sequence[bytes], left_over: Sequence[str]) -> None:
         """Show pages, each a PNG; `left_over` are walks and trials that found no partner."""
-        said = tr("Not compared, as nothing fits them: {names}.").format(names=", ".join(left_over))
+        said = tr("Not compared, no matching recording: {names}.").format(names=", ".join(left_over))
         self.note.setText(said if left_over else "")
         self.sheets.show_pages([Sheet(page) for page in pages])
         self.choose.show()

@@ -32,9 +32,9 @@ class BesideChoice(Choice):
     """The choice, and the comparison that comes of it."""
 
     def __init__(self, look: ThemeNotifier) -> None:
-        super().__init__(look, tr("Beside"))
+        super().__init__(look, tr("Compare with"))
         self.let_shrink(NARROWEST, WIDEST)  # conditions are typed
-        self.keep_whole(tr("Beside the band"), tr("The legs alone"))
+        self.keep_whole(tr("Versus reference"), tr("Legs only"))
         self._visit: AnalysedVisit | None = None
         self._walks: Mapping[str, Part] = {}  # of this session, each alone
         self._shown = ""
@@ -50,14 +50,14 @@ class BesideChoice(Choice):
         called = self._visit.shown_names if self._visit is not None else {}
         self.blockSignals(True)
         self.clear()
-        self.addItem(tr("Beside the band"), Beside.BAND)
-        self.setItemData(0, tr("The band's inner part is 1 SD, its outer part 2 SD."), Qt.ItemDataRole.ToolTipRole)
-        self.addItem(tr("The legs alone"), Beside.LEGS)
+        self.addItem(tr("Versus reference"), Beside.BAND)
+        self.setItemData(0, tr("Reference: inner area 1 SD, outer area 2 SD."), Qt.ItemDataRole.ToolTipRole)
+        self.addItem(tr("Legs only"), Beside.LEGS)
         for name in self._walks if shown in self._walks else ():
             if name != shown:
-                self.addItem(tr("Beside {walk}").format(walk=called.get(name, name)), name)
+                self.addItem(tr("Versus {walk}").format(walk=called.get(name, name)), name)
         if has_visits and shown in self._walks:
-            self.addItem(tr("Beside the last visit"), Beside.LAST_VISIT)
+            self.addItem(tr("Versus last visit"), Beside.LAST_VISIT)
         self.setCurrentIndex(max(self.findData(before), 0))
         self.blockSignals(False)
         self.updateGeometry()
@@ -85,9 +85,9 @@ class BesideChoice(Choice):
         walk = replace(facts.part, name=str(names.get(self._shown, self._shown)))
         if chosen is Beside.LAST_VISIT:
             if visits is None:
-                return None, tr("The earlier visits are being read.")
+                return None, tr("Reading earlier visits.")
             found = beside_last_visit(walk, facts.condition, visits, is_simulated=is_simulated)
-            return found, "" if found is not None else tr("No earlier visit was walked in this condition.")
+            return found, "" if found is not None else tr("No earlier visit has a walk in this condition.")
         if chosen not in self._walks:
             return None, ""
         other = replace(part_of(visit, chosen, self.walks), name=str(names.get(chosen, chosen)))

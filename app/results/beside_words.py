@@ -34,7 +34,7 @@ def beside_columns(found: Comparison) -> list[TableColumn]:
 
     A name that somebody typed at length is cut here; the sentence over the curves has it whole.
     """
-    heads, beside = (tr("this walk"), found.against.name, tr("change")), tr("Beside {walk}")
+    heads, beside = (tr("this walk"), found.against.name, tr("change")), tr("Versus {walk}")
     title = TextCell(
         beside.format(walk=shortened(found.against.name, LONGEST_TITLE)),
         weight=SEMIBOLD,
@@ -46,7 +46,7 @@ def beside_columns(found: Comparison) -> list[TableColumn]:
         *(TableColumn(head_cell(shortened(head, LONGEST_HEAD), spoken=head), share=1) for head in heads),
         TableColumn(TextCell(tr("grey: error"), align=CENTRE, size=12, tone="ink2"), share=2),
         TableColumn(head_cell(tr("error")), share=1),
-        TableColumn(TextCell(tr("in words"), size=12, tone="ink2"), share=1),
+        TableColumn(TextCell(tr("result"), size=12, tone="ink2"), share=1),
     ]
 
 
@@ -65,7 +65,7 @@ def key_figures_beside(figures: Sequence[KeyFigure], found: Comparison) -> list[
             told.append(figure)
             continue
         note = ", ".join(_in_short(row) for row in rows)
-        words = tr("{name}: {value}, {change} beside {walk}.").format(
+        words = tr("{name}: {value}, {change} versus {walk}.").format(
             name=figure.name, value=f"{figure.value} {figure.unit}".strip(), change=note, walk=found.against.name
         )
         told.append(replace(figure, note=note, words=words))
@@ -79,14 +79,16 @@ def answer_beside(found: Comparison) -> Answer:
     worth = [row for row in told if row.difference.is_worth_a_sentence]
     if worth:
         most = max(worth, key=lambda row: row.difference.ratio)
-        then = tr("Larger than its error ({error}).").format(error=error_in_sentence(most))
+        then = tr("Beyond measurement error (±{error}).").format(error=error_in_sentence(most))
         return Answer(Outcome.DIFFERS, _sentence(most), then)
     if not told:
         return Answer(Outcome.OPEN, tr("Nothing can be compared with {walk}.").format(walk=walk), "")
     if any(row.exceeds for row in told):
-        first = tr("No change from {walk} is far larger than its error.").format(walk=walk)
-        return Answer(Outcome.OPEN, first, tr("The table marks those that exceed it."))
-    return Answer(Outcome.NOTHING, tr("No change from {walk} is larger than its error.").format(walk=walk), "")
+        first = tr("Some changes from {walk} are beyond measurement error, none clearly.").format(walk=walk)
+        return Answer(Outcome.OPEN, first, tr("The table marks them."))
+    return Answer(
+        Outcome.NOTHING, tr("All judged changes from {walk} are within measurement error.").format(walk=walk), ""
+    )
 
 
 def _sentence(row: Compared) -> str:
@@ -99,9 +101,9 @@ def _sentence(row: Compared) -> str:
     name = tr(measure.name)
     name = name.rpartition(",")[0] if unit_behind(measure) and not measure.kind else name  # the unit is with the figure
     pattern = (
-        tr("{measure}: {size} less than {walk}, {value} against {other}.")
+        tr("{measure}: {size} less than {walk}, {value} versus {other}.")
         if change < 0
-        else tr("{measure}: {size} more than {walk}, {value} against {other}.")
+        else tr("{measure}: {size} more than {walk}, {value} versus {other}.")
     )
     return pattern.format(
         measure=name if measure.is_of_walk else f"{LETTERS[row.side]} {name}",
@@ -156,7 +158,7 @@ def _row(row: Compared) -> TableRow:
 def _strip(row: Compared) -> TableCell:
     found = row.difference
     if not row.is_told:
-        return TextCell(tr("no difference is given"), align=CENTRE, size=12, tone="ink2")
+        return TextCell(tr("difference not reported"), align=CENTRE, size=12, tone="ink2")
     if not is_judged(row):
         word = tr("too few strides") if found.judgement is Judgement.TOO_FEW_STRIDES else tr("no published error")
         return TextCell(word, align=CENTRE, size=12, tone="ink2")

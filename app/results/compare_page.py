@@ -48,15 +48,18 @@ from core.verdicts.norms import AgeAndHeight, ReferenceCurves
 CURVES, PLOT, TABLE = "curves", "plot", "table"
 MOST_WITH_STRIDES = 3  # visits whose strides are counted beside their day
 KINDS = (200, 360)  # px: the narrowest and the widest that the box becomes
-OTHER_ZERO = later("No common zero: range and shape hold, height does not. 0° is the mean of the stride.")
+OTHER_ZERO = later(
+    "No common standing reference: compare range of motion and curve shape, not absolute angles. "
+    "0° is the mean of the gait cycle."
+)
 NO_COMMON_CONDITION = later(
-    "This visit has no condition in common with an earlier one, so they are not compared. {walked} “Any visits and "
-    "conditions” compares two that you choose."
+    "This visit shares no condition with an earlier visit, so they are not compared. {walked} "
+    "“Any visits and conditions” compares any two you choose."
 )
 NOTHING = {
-    Contrast.CONDITIONS: later("One walk has strides. Record a second one to compare."),
+    Contrast.CONDITIONS: later("Only one walk has strides. Record a second walk to compare."),
     Contrast.VISITS: later("No earlier visit of this patient has a walk to compare."),
-    Contrast.SIDES: later("One leg was measured, so there is nothing to compare it with."),
+    Contrast.SIDES: later("Only one leg was measured, so the legs cannot be compared."),
     Contrast.CHOSEN: later("No earlier visit of this patient has a walk to compare."),
 }
 
@@ -95,7 +98,7 @@ class ComparePage(Themed):
         self.view = Segmented(
             look, tr("View"), [(CURVES, tr("Curves"), ""), (PLOT, tr("Differences"), ""), (TABLE, tr("Table"), "")]
         )
-        self.chips = Chips(look, tr("What is compared"), [("", " ")])
+        self.chips = Chips(look, tr("Compared items"), [("", " ")])
         self.nothing = Text(look, size=16, wraps=True)
         self.frames: dict[tuple[Side, JointKind], ComparedFrame] = {}
         for kind in JointKind:
@@ -120,9 +123,9 @@ class ComparePage(Themed):
         self._analysis, self._who = analysis, who
         affected = analysis.affected_side
         self._affected, self._is_simulated = affected, analysis.is_simulated
-        self._affected_words = tr("Left against right")
+        self._affected_words = tr("Left vs right")
         if affected is not None:
-            said = tr("Prosthetic against sound side") if is_prosthetic else tr("Affected against sound side")
+            said = tr("Prosthetic vs sound side") if is_prosthetic else tr("Affected vs sound side")
             self._affected_words = said
         self._offer_kinds()
 
@@ -305,7 +308,7 @@ class ComparePage(Themed):
         return self._every if self.kind is Contrast.CHOSEN else self._conditions
 
     def _make_chips(self, parts: Sequence[Part]) -> None:
-        chips = Chips(self._look, tr("What is compared"), self._words_of(parts) or [("", " ")])
+        chips = Chips(self._look, tr("Compared items"), self._words_of(parts) or [("", " ")])
         ends = [*parts[:1], *parts[-1:]]  # of many, the oldest and the latest to begin with
         chips.choose([part.letter for part in (ends if self.kind is Contrast.CHOSEN else parts)])
         chips.turned.connect(self._on_turned)
@@ -382,7 +385,7 @@ class ComparePage(Themed):
 
     def _why_nothing(self) -> str:
         if self.kind is Contrast.VISITS and self._visits is None:
-            return tr("The earlier visits are being read.")
+            return tr("Reading earlier visits.")
         parts = self._parts()
         if self.kind is Contrast.SIDES:
             return "" if any(len(part.sides) > 1 for part in parts) else tr(NOTHING[Contrast.SIDES])
@@ -421,7 +424,7 @@ class ComparePage(Themed):
         latest = found.latest if self.kind is Contrast.VISITS else None
         said = conclusion(worth, [row.difference for row in told], latest) if found.others else []
         if visits is not None and visits.without:
-            without = tr("Not compared, for want of a walk of this condition: {visits}.")
+            without = tr("Not compared, no walk in this condition: {visits}.")
             said.append(without.format(visits=", ".join(visits.without)))
         self._say(said, chosen, is_marked=bool(worth))
         self.card.show_comparison(found, title, self.conclusion.text())

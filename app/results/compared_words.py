@@ -22,9 +22,9 @@ BRIEF = ("knee_stance_to_swing_deg", "knee_while_loading_deg", "ankle_push_off_d
 JUDGED = (Judgement.EXCEEDS_ERROR, Judgement.INSIDE_ERROR)
 MOST_SAID = 3  # sentences about differences; the table has all of them
 
-ERROR = later("Grey: measurement error. It holds {sources}.")
-BORROWED = later("For the ankle the knee's figure is borrowed.")
-UNVERIFIED = later("\N{DAGGER} rests on a figure whose source could not be verified.")
+ERROR = later("Grey: measurement error. It includes {sources}.")
+BORROWED = later("The ankle uses the knee's error figure.")
+UNVERIFIED = later("† based on a figure whose source could not be verified.")
 
 
 def part_in_words(part: Part, name: str) -> str:
@@ -72,7 +72,7 @@ def error_in_sentence(row: Compared | SideRow) -> str:
 def why_not_told(row: Compared | SideRow) -> str:
     """Why a difference has no figure."""
     if isinstance(row, Compared) and row.reservation is Reservation.OTHER_ZERO:
-        return tr("no zero")
+        return tr("no standing reference")
     withheld = isinstance(row, Compared) and row.reservation is Reservation.WITHHELD
     is_withheld = withheld or row.difference.judgement is Judgement.WITHHELD
     if not is_withheld and row.difference.judgement is Judgement.NO_PUBLISHED_FIGURE:
@@ -82,7 +82,7 @@ def why_not_told(row: Compared | SideRow) -> str:
 
 def withheld_in_words(part: Part, joint: Joint) -> str:
     """Why a part's curve is not drawn."""
-    pattern = tr("{letter}: withheld. {reason}")
+    pattern = tr("{letter}: not reported. {reason}")
     return pattern.format(letter=part.letter, reason=reason_in_words(part.verdicts.joint(joint)))
 
 
@@ -97,9 +97,9 @@ def side_weight(row: SideRow) -> float:
 
 def sentence(row: Compared) -> str:
     """A difference that lies beyond the measurement error."""
-    pattern = tr("{measure} {change} from {first} to {last}: larger than its error ({error}).")
+    pattern = tr("{measure} {change} from {first} to {last}: beyond measurement error (±{error}).")
     if not row.measure.is_of_walk:
-        pattern = tr("{side} {measure} {change} from {first} to {last}: larger than its error ({error}).")
+        pattern = tr("{side} {measure} {change} from {first} to {last}: beyond measurement error (±{error}).")
     measure = tr(row.measure.name)
     return pattern.format(
         side=capitalised(side_name(row.side)),
@@ -113,7 +113,7 @@ def sentence(row: Compared) -> str:
 
 def side_sentence(row: SideRow, first: Side, second: Side) -> str:
     """A difference between the legs that lies beyond the measurement error."""
-    pattern = tr("{measure} {change}, {first} against {second}: larger than its error ({error}).")
+    pattern = tr("{measure} {change}, {first} versus {second}: beyond measurement error (±{error}).")
     return pattern.format(
         measure=tr(row.measure.name),
         change=change_in_words(row.difference.difference, row.measure),
@@ -134,21 +134,18 @@ def conclusion(worth: Sequence[str], told: Sequence[Difference], latest: Part | 
         The visit that all of them lead to; None: they are those of any parts.
     """
     if len(worth) > MOST_SAID:
-        return [*worth[:MOST_SAID], tr("The table has all of them.")]
+        return [*worth[:MOST_SAID], tr("The table shows all of them.")]
     if worth:
         return list(worth)
     if any(found.exceeds for found in told):
-        none = tr("No difference is so much larger than its error that it is said here; the table marks them.")
-        of_visit = tr(
-            "No change to visit {visit} is so much larger than its error that it is said here; the table marks those "
-            "that are larger."
-        )
+        none = tr("Some differences are beyond measurement error, none clearly. The table marks them.")
+        of_visit = tr("Some changes to visit {visit} are beyond measurement error, none clearly. The table marks them.")
     elif any(found.error > 0 for found in told):
-        none = tr("No difference is larger than its error.")
-        of_visit = tr("No change to visit {visit} is larger than its error.")
+        none = tr("All judged differences are within measurement error.")
+        of_visit = tr("All judged changes to visit {visit} are within measurement error.")
     else:
-        none = tr("No difference could be judged.")
-        of_visit = tr("No change to visit {visit} could be judged.")
+        none = tr("The differences could not be judged.")
+        of_visit = tr("The changes to visit {visit} could not be judged.")
     return [none if latest is None else of_visit.format(visit=latest.letter)]
 
 

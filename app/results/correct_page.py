@@ -65,7 +65,7 @@ class CorrectPage(Themed):
         self.joint_rows: dict[Joint, _JointRow] = {}
         self.back = Button(look, tr("Back to the results"), ButtonKind.SECONDARY, Icon.BACK)
         self.note = Text(
-            look, tr("Every correction is kept with who made it, and can be undone."), tone="ink2", wraps=True
+            look, tr("Each correction is recorded with its user and can be undone."), tone="ink2", wraps=True
         )
         self.walks = Card(look)
         self.walks.column.addWidget(Text(look, tr("Walks"), size=16, weight=SEMIBOLD))
@@ -73,7 +73,7 @@ class CorrectPage(Themed):
         self.joints.column.addWidget(Text(look, tr("Joints"), size=16, weight=SEMIBOLD))
         self.sides = Card(look)
         self.sides.column.addWidget(Text(look, tr("Sides"), size=16, weight=SEMIBOLD))
-        self.swap = Button(look, tr("Left and right were swapped"), ButtonKind.SECONDARY, Icon.REPEAT)
+        self.swap = Button(look, tr("Swap left and right"), ButtonKind.SECONDARY, Icon.REPEAT)
         self.swap_note = Text(look, size=14, tone="ink2", wraps=True)
         self._build()
         self.back.clicked.connect(self.closed)
@@ -113,7 +113,7 @@ class CorrectPage(Themed):
     def show_sides(self, why_not: str) -> None:
         """Offer to swap the sides, or say why that is not possible here."""
         self.swap.setEnabled(not why_not)
-        said = tr("All recordings of this visit take the other leg's name, and are read anew.")
+        said = tr("Swaps left and right in all recordings of this visit and analyses them again.")
         self.swap_note.setText(why_not or said)
 
     def set_room(self, width: float, _height: float) -> None:
@@ -179,7 +179,7 @@ class _WalkRow(QWidget):
         self._name = Text(look, size=15, weight=SEMIBOLD, wraps=True)
         self._note = Text(look, size=12, tone="ink2", wraps=True)
         self.condition = Field(look, "", has_label=False, placeholder=tr("condition"))
-        self.kept = Toggle(look, tr("Counts"), "", is_on=line.is_kept)
+        self.kept = Toggle(look, tr("Included"), "", is_on=line.is_kept)
         words = QVBoxLayout()
         words.setSpacing(0)
         words.addWidget(self._name)
@@ -197,7 +197,7 @@ class _WalkRow(QWidget):
         self._line = line
         self._name.setText(line.name)  # its condition is part of it
         self.condition.set_label(tr("Condition of {walk}").format(walk=line.name))
-        self.kept.setAccessibleName(tr("{walk} counts").format(walk=line.name))
+        self.kept.setAccessibleName(tr("{walk} included").format(walk=line.name))
         self._note.setText(line.note)
         self.kept.show_on(line.is_kept)
 
@@ -209,9 +209,9 @@ class _WalkRow(QWidget):
 class _JointRow(QWidget):
     def __init__(self, look: ThemeNotifier, joint: Joint) -> None:
         super().__init__()
-        self.turned = Toggle(look, tr("This joint bends the wrong way"), "", is_on=False)
+        self.turned = Toggle(look, tr("Reverse the sign of this joint"), "", is_on=False)
         name = capitalised(name_of(joint))
-        self.turned.setAccessibleName(tr("{joint}: this joint bends the wrong way").format(joint=name))
+        self.turned.setAccessibleName(tr("{joint}: reverse the sign of this joint").format(joint=name))
         self._note = Text(look, size=12, tone="ink2", wraps=True)
         head = QHBoxLayout()
         head.setSpacing(8)

@@ -41,10 +41,10 @@ GROUPS = (
 SPEED_WORDS = {"slow": later("slow"), "comfortable": later("comfortable"), "fast": later("fast")}
 KIND_WORDS = {"hip": later("Hip"), "pelvis": later("Pelvis"), "knee": later("Knee"), "ankle": later("Ankle")}
 LEG_KINDS, HIP_KINDS = ("knee", "ankle"), ("hip", "pelvis")
-NO_SPEED = later("This walk: speed not known, or withheld.")
-NO_SIDE = later("No band: a prosthetic leg is not compared with other people's.")
-CARE = later("{mark} read with care.")
-HIP_BAND = later("At the hip it is laid at the height of the curves and tells their shape alone.")
+NO_SPEED = later("This walk: speed not known or not reported.")
+NO_SIDE = later("No reference: a prosthetic leg is not compared with other people.")
+CARE = later("{mark}: caution.")
+HIP_BAND = later("At the hip the reference is shifted to the curves: compare shape only.")
 
 
 class CyclePage(QWidget):
@@ -147,7 +147,7 @@ def _only_for(sides_of_band: frozenset[Side], part: Part) -> str:
     if not sides_of_band or sides_of_band.issuperset(part.sides):
         return ""
     sides = joined([side_name(side) for side in Side if side in sides_of_band])
-    return tr("The band is for the {side} leg alone.").format(side=sides)
+    return tr("The reference applies to the {side} leg only.").format(side=sides)
 
 
 class FiguresCard(Card):
@@ -184,7 +184,7 @@ def _whose(bands: Bands, only: str) -> str:
     band = bands.curves
     if band is None:
         return tr(WHY_NO_BAND[bands.why_no_curves or NoBand.OTHER_SPEED])
-    whose = tr("Band: {count} {group}, {speed_m_s:.2f} m/s, {source}.")
+    whose = tr("Reference: {count} {group}, {speed_m_s:.2f} m/s, {source}.")
     first, year = _authors(band.source).partition(",")[0], _authors(band.source).rpartition(" ")[2]
     said = whose.format(count=band.n, group=tr(band.group), speed_m_s=band.speed_m_s, source=f"{first} {year}")
     others = tr(OTHER_AGES) if bands.are_curves_of_other_ages else ""
@@ -195,7 +195,7 @@ def _group_in_words(group: ReferenceValues | None, why_none: NoBand | None) -> s
     """Whose figures stand in the column of the band, or why there are none."""
     if group is None:
         return tr(WHY_NO_BAND[why_none]) if why_none is not None else tr(NO_SIDE)
-    told = tr("Band: {count} of {group}; {speed_class} for the leg's length, {speed_m_s:.2f} m/s.")
+    told = tr("Reference: {count} of {group}; {speed_class} for leg length, {speed_m_s:.2f} m/s.")
     said = told.format(
         count=group.n,
         group=tr(group.group),

@@ -122,7 +122,7 @@ class DiagnosticsController(QObject):
     def _on_failed(self, error: Exception) -> None:
         _log.error("how a joint was found could not be shown", exc_info=error)
         self._page.show_nothing(self._joint)
-        self.refused.emit(tr("How this joint was found cannot be shown."), tr("The log holds the details."))
+        self.refused.emit(tr("The calibration of this joint cannot be shown."), tr("See the log for details."))
 
     def _on_save_wished(self) -> None:
         if self._found is None or self._session is None:
@@ -130,7 +130,7 @@ class DiagnosticsController(QObject):
         name = session_name("", "", WHAT)  # its files name no patient, so neither does their folder
         self._dialog = ask_for_new_folder(
             self._page,
-            tr("Save these figures into a new folder"),
+            tr("Save these figures to a new folder"),
             lambda place: free_name(place, name),
             self._on_folder_selected,
         )
@@ -161,8 +161,8 @@ def saved_from_library(
 
 def cannot_write(folder: Path) -> tuple[str, str]:
     """What is said of a folder that takes no files."""
-    return tr("{folder} cannot be written").format(folder=folder.name), tr(
-        "Choose another folder; the recordings are untouched"
+    return tr("{folder} is not writable").format(folder=folder.name), tr(
+        "Choose another folder; the recordings are unchanged"
     )
 
 

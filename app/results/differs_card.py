@@ -36,7 +36,7 @@ class DiffersCard(Card):
         self._columns: Sequence[TableColumn] = ()
         self._rows: Sequence[TableRow] = ()
         self._most = 0
-        self.table = CellTable(look, tr("What differs most"), row=ROW, head=HEAD)
+        self.table = CellTable(look, tr("Largest differences"), row=ROW, head=HEAD)
         self.column.addWidget(self.table)
 
     def show_facts(self, facts: Facts, found: Comparison | None = None) -> None:
@@ -73,13 +73,13 @@ def _columns(facts: Facts) -> list[TableColumn]:
     first, second = facts.first_and_second
     less = f"{LETTERS[first]} \N{MINUS SIGN} {LETTERS[second]}"
     return [
-        TableColumn(TextCell(tr("What differs most"), weight=SEMIBOLD), share=3),
+        TableColumn(TextCell(tr("Largest differences"), weight=SEMIBOLD), share=3),
         *(TableColumn(_counted(facts, side), share=1) for side in Side),
         TableColumn(TextCell(less, align=RIGHT, size=12, tone="ink2"), share=1),
         TableColumn(TextCell(tr("grey: error"), align=CENTRE, size=12, tone="ink2"), share=2),
         TableColumn(TextCell(tr("error"), align=RIGHT, size=12, tone="ink2"), share=1),
-        TableColumn(TextCell(tr("band 2 SD"), align=RIGHT, size=12, tone="ink2"), share=1),
-        TableColumn(TextCell(tr("in words"), size=12, tone="ink2"), share=1),
+        TableColumn(TextCell(tr("ref. ±2 SD"), align=RIGHT, size=12, tone="ink2"), share=1),
+        TableColumn(TextCell(tr("result"), size=12, tone="ink2"), share=1),
     ]
 
 
@@ -132,14 +132,14 @@ def _value(row: LegsRow, side: Side) -> TextCell:
     said = tr("{measure}, {side}: {value}{unit}").format(
         measure=row.name, side=side_name(side), value=f"{mean} {spread}".strip(), unit=row.unit
     )
-    said = tr("{said}, read with care").format(said=said) if is_care else said
+    said = tr("{said}, caution").format(said=said) if is_care else said
     return TextCell(mean, small, align=RIGHT, weight=REGULAR if is_care else SEMIBOLD, spoken=said)
 
 
 def _strip(row: LegsRow) -> TableCell:
     found = row.difference
     if not found.is_told:
-        return TextCell(tr("no difference is given"), align=CENTRE, size=12, tone="ink2")
+        return TextCell(tr("difference not reported"), align=CENTRE, size=12, tone="ink2")
     if not row.is_judged:
         word = tr("too few strides") if found.judgement is Judgement.TOO_FEW_STRIDES else tr("no published error")
         return TextCell(word, align=CENTRE, size=12, tone="ink2")

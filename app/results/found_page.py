@@ -70,7 +70,7 @@ class FoundPage(Themed):
         self.back = Button(look, tr("Back to the results"), ButtonKind.SECONDARY, Icon.BACK)
         names = [(str(joint), capitalised(name_of(joint)), "") for joint in _IN_ORDER]
         self.joints = Segmented(look, tr("Joint"), names)
-        self.save = Button(look, tr("Save these figures as CSV"), ButtonKind.SECONDARY, Icon.FOLDER)
+        self.save = Button(look, tr("Save values as CSV"), ButtonKind.SECONDARY, Icon.FOLDER)
         self.note = Text(look, tone="ink2", wraps=True)
         self.waiting = SentencePage(look)
         self.axis = _AxisCard(look)
@@ -104,14 +104,14 @@ class FoundPage(Themed):
         """Say that the recordings are being looked through; nothing of another joint stays in sight."""
         self.save.setEnabled(False)
         self.note.setText("")
-        self.waiting.show_sentence(tr("Looking through the recordings of the {joint}.").format(joint=name_of(joint)))
+        self.waiting.show_sentence(tr("Analysing the recordings of the {joint}.").format(joint=name_of(joint)))
         self._stack.setCurrentWidget(self.waiting)
 
     def show_nothing(self, joint: Joint) -> None:
         self.save.setEnabled(False)
         self.waiting.show_sentence(
-            tr("This recording shows nothing of the {joint}.").format(joint=name_of(joint)),
-            tr("Choose another joint, or another recording among the results."),
+            tr("This recording has no data for the {joint}.").format(joint=name_of(joint)),
+            tr("Choose another joint, or another recording in the results."),
         )
         self._stack.setCurrentWidget(self.waiting)
 
@@ -120,7 +120,7 @@ class FoundPage(Themed):
         figures = figures_of(found)
         self.save.setEnabled(True)
         self.note.setText(
-            tr("{joint}, found from {recordings}; the angle is that of {walk}.").format(
+            tr("{joint}, calibrated from {recordings}. The angle is from {walk}.").format(
                 joint=capitalised(name_of(found.joint)), recordings=joined(found.from_recordings), walk=found.walk
             )
         )
@@ -164,7 +164,7 @@ class FoundPage(Themed):
         self.cards.setFrameShape(QFrame.Shape.NoFrame)
         self.cards.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         self.cards.setFocusPolicy(Qt.FocusPolicy.StrongFocus)  # so that the keys can scroll it
-        self.cards.setAccessibleName(tr("How this joint was found"))
+        self.cards.setAccessibleName(tr("Calibration of this joint"))
         for page in (self.waiting, self.cards):
             self._stack.addWidget(page)
         self._page = QVBoxLayout(self)
@@ -190,7 +190,7 @@ class FoundPage(Themed):
     def _show_findings(self, findings: Sequence[Finding]) -> None:
         _empty(self.noticed)
         column = self.noticed.column
-        column.addWidget(Text(self._look, tr("Noticed about this joint"), size=16, weight=SEMIBOLD))
+        column.addWidget(Text(self._look, tr("Findings for this joint"), size=16, weight=SEMIBOLD))
         for finding in sorted(findings, key=lambda one: ORDER.index(one.severity)):
             icon = SEVERITY_ICONS[finding.severity]
             column.addWidget(FindingRow(self._look, icon, finding.severity, sentence(finding)))
@@ -235,16 +235,17 @@ class _AxisCard(Card):
 
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__(look)
-        self.head = _Head(look, tr("Where the joint axis lies"), tr("Figure 3"))
+        self.head = _Head(look, tr("Direction of the joint axis"), tr("Figure 3"))
         self.maps = (CostMap(look), CostMap(look))
         self._names = [Text(look, size=14, weight=MEDIUM) for _ in self.maps]
         self._verdict = Text(look, weight=MEDIUM, wraps=True)
         words = tr(
-            "Each map is the globe of all directions that the axis could have in one sensor. Full colour: a hinge with "
-            "that axis would move as this joint did (equation 6). An axis has two ends, so there are two such spots."
+            "Each map shows all directions that the axis could have in one sensor. Full colour: a hinge "
+            "with that axis would move as this joint did (equation 6). An axis has two ends, so there are "
+            "two such spots."
         )
         marks = tr(
-            "Cross: the axis in use. Circle: its certainty, 2 SD. Ring: what fits best in this picture. Scale: misfit "
+            "Cross: axis in use. Circle: its certainty, 2 SD. Ring: best fit in this map. Scale: misfit "
             "of equation 3, root mean square."
         )
         self._row = QBoxLayout(QBoxLayout.Direction.LeftToRight)
@@ -272,7 +273,7 @@ class _AxisCard(Card):
             name.setText(sensor)
             chart.show_cost(cost, found.joint.side, calibration.axis_sd_rad, sensor)
         near, far = (figures[f"lowest_{sensor}_apart_deg"].in_words for sensor in ("proximal", "distal"))
-        said = tr("The axis in use lies {near} and {far} from the best fit and is certain to {axis_sd} (1 SD).")
+        said = tr("The axis in use lies {near} and {far} from the best fit. Calibration certainty: {axis_sd} (1 SD).")
         said = said.format(near=near, far=far, axis_sd=figures["axis_sd_deg"].in_words)
         self._verdict.setText(f"{said} {_why_apart(found)}".strip())
 
@@ -281,8 +282,8 @@ def _why_apart(found: JointDiagnostics) -> str:
     if found.calibration.method is Method.PUBLISHED:
         return ""
     if found.calibration.is_hinge:
-        return tr("This joint moves like a true hinge, so this picture decides.")
-    return tr("A living joint is no hinge, so this picture alone does not decide: the whole relative motion does.")
+        return tr("This joint moves like a true hinge, so this map decides.")
+    return tr("An anatomical joint is not a hinge. The whole relative motion decides, not this map alone.")
 
 
 class _PairingCard(Card):
@@ -290,14 +291,14 @@ class _PairingCard(Card):
 
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__(look)
-        self.head = _Head(look, tr("Whether both axes point the same way"), tr("Figure 4"))
+        self.head = _Head(look, tr("Same direction of both axes"), tr("Figure 4"))
         self.plot = ProjectedRatesPlot(look)
         self._keys = LineKeys(look)
         self._verdict = Text(look, weight=MEDIUM, wraps=True)
         words = tr(
-            "One second in which the joint hardly bends: both segments then turn alike beside the axis. One curve is "
-            "turned to fit the other. If the two axes point the same way they lie on each other; if not, one is the "
-            "other's mirror image."
+            "One second in which the joint hardly bends: both segments then rotate alike off the axis. "
+            "One curve is rotated to fit the other. If both axes point the same way, the curves overlap. "
+            "If not, they are mirror images."
         )
         self.column.addLayout(self.head)
         self.column.addWidget(Text(look, words, tone="ink2", wraps=True))
@@ -317,16 +318,16 @@ class _PairingCard(Card):
 
 def _paired(found: JointDiagnostics, figures: dict[str, FoundFigure]) -> str:
     if found.projected is None:
-        return tr("No second of this motion turned enough beside the axis to draw it.")
+        return tr("No second of this motion has enough rotation off the axis to draw.")
     apart = found.projected.congruence - found.projected.reversed_congruence
     paired, reverse = (figures[f"{name}congruence_percent"].in_words for name in ("", "reversed_"))
     if abs(apart) < MIN_APART:
-        return tr("Both fit: {paired} and {reverse} alike. This second tells no pairing.").format(
+        return tr("Both fit: {paired} and {reverse} agreement. This second does not decide the pairing.").format(
             paired=paired, reverse=reverse
         )
-    said = tr("As paired {paired} alike, reversed {reverse}: the pairing holds.")
+    said = tr("Agreement as paired {paired}, reversed {reverse}: the pairing is confirmed.")
     if apart < 0:
-        said = tr("As paired {paired} alike, reversed {reverse}: this second speaks against the pairing.")
+        said = tr("Agreement as paired {paired}, reversed {reverse}: this second contradicts the pairing.")
     return said.format(paired=paired, reverse=reverse)
 
 
@@ -335,10 +336,10 @@ def _decided(found: JointDiagnostics, figures: dict[str, FoundFigure]) -> str:
     if found.calibration.method is Method.PUBLISHED or margin is None:
         return ""
     if margin > MARGIN_BEYOND:
-        return tr("It was decided by the accelerations: the next best answer fits over {most} times worse.").format(
+        return tr("The accelerations decided it: the next best solution fits over {most} times worse.").format(
             most=f"{MARGIN_BEYOND:.0f}"
         )
-    return tr("It was decided by the accelerations: the next best answer fits {times} times worse.").format(
+    return tr("The accelerations decided it: the next best solution fits {times} times worse.").format(
         times=figures["pairing_margin"].in_words
     )
 
@@ -348,18 +349,18 @@ class _AngleCard(Card):
 
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__(look)
-        self.head = _Head(look, tr("The angle, found in two ways"), tr("Figure 6"))
+        self.head = _Head(look, tr("Joint angle by two methods"), tr("Figure 6"))
         self.stretch = Segmented(
-            look, tr("Stretch of time"), [(WHOLE, tr("Whole recording"), ""), (TEN_SECONDS, tr("Ten seconds"), "")]
+            look, tr("Time segment"), [(WHOLE, tr("Whole recording"), ""), (TEN_SECONDS, tr("Ten seconds"), "")]
         )
         self.chart = TwoWaysChart(look)
         self._keys = LineKeys(look)
         self._cut = Text(look, size=12, tone="ink2", wraps=True)
         self._verdict = Text(look, weight=MEDIUM, wraps=True)
         words = tr(
-            "The gyroscopes alone (equation 11) are smooth and drift away. The accelerometers alone (equation 14) stay "
-            "in place and scatter. Together (equation 15) they do neither: that is the published angle, which stands "
-            "beside the result under Whole walk."
+            "Gyroscopes alone (equation 11) are smooth but drift. Accelerometers alone (equation 14) do "
+            "not drift but scatter. Combined (equation 15), they do neither. This is the published angle, "
+            "shown with the result under Whole walk."
         )
         self.column.addLayout(self.head)
         self.column.addWidget(Text(look, words, tone="ink2", wraps=True))
@@ -378,11 +379,11 @@ class _AngleCard(Card):
             [
                 (self.chart.forces_pen, tr("Accelerometers")),
                 (self.chart.rates_pen, tr("Gyroscopes")),
-                (self.chart.fused_pen, tr("Both together")),
+                (self.chart.fused_pen, tr("Combined")),
             ]
         )
         self._verdict.setText(_drifted(found, figures))
-        self.chart.setAccessibleName(tr("The angle in two ways, {joint}").format(joint=name_of(found.joint)))
+        self.chart.setAccessibleName(tr("Joint angle by two methods, {joint}").format(joint=name_of(found.joint)))
         self.chart.setAccessibleDescription(self._verdict.text())
         self._on_stretch_chosen()
 
@@ -392,18 +393,18 @@ class _AngleCard(Card):
         is_whole = self.stretch.choice == WHOLE or last - first <= CLOSE_S
         self.chart.see(*((first, last) if is_whole else (middle - CLOSE_S / 2, middle + CLOSE_S / 2)))
         percent = 100 * self.chart.cut_share
-        cut = tr("{percent} % of the accelerometers' angle lies beyond this axis and is cut off here.")
+        cut = tr("{percent} % of the accelerometer angle is beyond this axis and cut off here.")
         self._cut.setText(cut.format(percent=figure_text(percent, ".1f")) if percent >= 0.05 else "")
         self._cut.setVisible(bool(self._cut.text()))
 
 
 def _drifted(found: JointDiagnostics, figures: dict[str, FoundFigure]) -> str:
-    scatter = tr("The accelerometers scatter by {scatter}.").format(scatter=figures["scatter_deg"].in_words)
+    scatter = tr("Accelerometer scatter: {scatter}.").format(scatter=figures["scatter_deg"].in_words)
     if not math.isfinite(found.ways.drift_rad_s):
         return scatter
-    drift = tr("The gyroscopes drift by {drift}, their bias taken off.")
+    drift = tr("Gyroscope drift: {drift}, offset removed.")
     if found.bias_drift_rad_s is None:
-        drift = tr("The gyroscopes drift by {drift}; their bias is not known.")
+        drift = tr("Gyroscope drift: {drift}, offset not known.")
     return f"{drift.format(drift=figures['drift_deg_s'].in_words)} {scatter}"
 
 
@@ -415,7 +416,7 @@ class _FiguresCard(Card):
         super().__init__(look)
         self._figures: Sequence[FoundFigure] = ()
         self._columns = 2
-        self.column.addWidget(Text(look, tr("In figures"), size=16, weight=SEMIBOLD))
+        self.column.addWidget(Text(look, tr("In numbers"), size=16, weight=SEMIBOLD))
         self.column.addLayout(self._grid)
         self._texts: list[Text] = []
 

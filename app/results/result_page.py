@@ -95,13 +95,13 @@ class ResultPage(Themed):
             look,
             tr("View"),
             [
-                (ANSWER, tr("Answer"), ""),
+                (ANSWER, tr("Summary"), ""),
                 (COMPARE, tr("Compare"), ""),
                 (WHOLE, tr(WALK), ""),
                 (STRIDES, tr("Strides"), ""),
             ],
         )
-        self.to_answer = Button(look, tr("Answer"), ButtonKind.SECONDARY, Icon.BACK, tr("Esc"))
+        self.to_answer = Button(look, tr("Summary"), ButtonKind.SECONDARY, Icon.BACK, tr("Esc"))
         self.recordings = Choice(look, tr("Recording"))
         self.beside = BesideChoice(look)
         self.recordings.let_shrink(*RECORDINGS)  # conditions are typed
@@ -109,7 +109,7 @@ class ResultPage(Themed):
         self.key_figures = FactStrip(look)
         self.differs = DiffersCard(look)
         self.door = Door(look, tr("Q"))
-        self.all_figures = Toggle(look, tr("All figures"), tr("F"), is_on=False)
+        self.all_figures = Toggle(look, tr("All values"), tr("F"), is_on=False)
         self.show_legs = Toggle(look, tr("Legs"), tr("G"), is_on=False)
         self.cycles = parts.cycles
         self.legs = parts.legs

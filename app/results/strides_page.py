@@ -33,8 +33,8 @@ class StridesPage(Card):
         self._recording: RecordingAnalysis | None = None
         self.list = StrideList(look, tr("Strides"))
         self.turn = Button(look, "", ButtonKind.SECONDARY, key=tr("Space"), height=44)
-        self.all = Button(look, tr("Take all in again"), ButtonKind.QUIET, Icon.REPEAT, height=44)
-        self.legend = Text(look, tr("Each curve is over its side's mean, in grey."), size=12, tone="ink2")
+        self.all = Button(look, tr("Include all again"), ButtonKind.QUIET, Icon.REPEAT, height=44)
+        self.legend = Text(look, tr("Grey: mean of the same side."), size=12, tone="ink2")
         self.note = Text(look, size=12, tone="ink2", wraps=True)
         self._buttons = QHBoxLayout()
         self._buttons.addWidget(self.turn)
@@ -63,9 +63,9 @@ class StridesPage(Card):
         self.list.show_lines(stride_lines(recording), can_turn=can_choose)
         told = [by_hand_in_words(recording)]
         if not can_choose:
-            told.append(tr("Strides are left out in the library: import this session first."))
+            told.append(tr("Strides can be excluded only in the library. Import this session first."))
         said = " ".join(filter(None, told))
-        self.note.setText(said or tr("What is left out stays in the files, with the reason beside it."))
+        self.note.setText(said or tr("Excluded strides stay in the files with the reason."))
         self.turn.setVisible(can_choose)
         self.all.setVisible(can_choose and any(line.is_by_hand for line in self.list.lines))
 
@@ -100,7 +100,7 @@ class StridesPage(Card):
     def _on_chosen(self, line: StrideLine | None) -> None:
         self.turn.setEnabled(line is not None and line.can_be_turned)
         is_out = line is not None and line.is_by_hand
-        words = tr("Take this stride in again") if is_out else tr("Leave this stride out")
+        words = tr("Include this stride") if is_out else tr("Exclude this stride")
         self.turn.setText(words)
         self.turn.setAccessibleName(words)
         self.turn.updateGeometry()

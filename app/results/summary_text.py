@@ -25,14 +25,14 @@ def door_words(found: DataQuality) -> DoorWords:
     """The verdict of the gravest remark, where it holds, what to do or why, and how many there are."""
     if not found.lines:
         is_judged = bool(found.in_order)
-        first = tr("Everything that was measured can be read.") if is_judged else found.first
+        first = tr("Good data quality throughout.") if is_judged else found.first
         return DoorWords(Verdict.READ, first, found.in_order)
     line = found.lines[0]
-    pattern = tr("{where}: {verdict}.") if line.where else tr("Data: {verdict}.")
+    pattern = tr("{where}: {verdict}.") if line.where else tr("Data quality: {verdict}.")
     first = pattern.format(where=line.where, verdict=verdict_word(line.verdict))
     then = line.to_do or line.why if line.is_grave else line.why
     count = len(found.lines)
-    remarks = tr_n("{count} remark", "{count} remarks", count).format(count=count)
+    remarks = tr_n("{count} finding", "{count} findings", count).format(count=count)
     return DoorWords(line.verdict, first, then, remarks, is_caution=line.is_grave)
 
 
@@ -55,7 +55,7 @@ def _of_row(row: Figure, goals: Sequence[Goal]) -> KeyFigure:
         note = ", ".join(f"{side[0].upper()} {fixed(mean, row.decimals)}" for side, mean in told.items())
     elif row.band is not None:
         low, high = (fixed(edge, row.decimals) for edge in row.band)
-        note = tr("band {low} to {high}").format(low=low, high=high)
+        note = tr("ref. {low} to {high}").format(low=low, high=high)
     if is_known and goals:  # in place of the legs' values or the band, but not of a doubt
         doubt = [note] if row.with_care else []
         note = ", ".join([*doubt, *map(goal_mark, goals)])
@@ -80,7 +80,7 @@ def strides_in_short(facts: Facts) -> str:
     sides = facts.part.sides
     used = ", ".join(f"{side[0].upper()} {facts.strides(side)}" for side in sides)
     if not used:
-        return tr("No stride was found.")
+        return tr("No strides found.")
     out = {side: facts.part.reasons(side) for side in sides}
     left_out = ", ".join(f"{side[0].upper()} {out[side].total() - out[side][Reason.USED]}" for side in sides)
-    return tr("Strides used: {used}. Left out: {left_out}.").format(used=used, left_out=left_out)
+    return tr("Strides used: {used}. Excluded: {left_out}.").format(used=used, left_out=left_out)

@@ -20,13 +20,13 @@ from core.results import JointAngle, RecordingAnalysis
 RESULT, PUBLISHED, ORIENTATION, BOTH = "result", "published", "orientation", "both"
 
 HINTS = {
-    RESULT: later("Pale: certainty, ± 2 SD."),
-    PUBLISHED: later("Equation 15 of the paper, on the same joint axes. No certainty is known for it."),
-    ORIENTATION: later("Equation 10 of the paper, from orientations with magnetometer. No certainty is known for it."),
-    BOTH: later("Bold: the result, pale its certainty of ± 2 SD. Thin: the published method."),
+    RESULT: later("Shaded: certainty, ± 2 SD."),
+    PUBLISHED: later("Equation 15 of the paper, with the same joint axes. Its certainty is not known."),
+    ORIENTATION: later("Equation 10 of the paper, from orientations with magnetometer. Its certainty is not known."),
+    BOTH: later("Bold: result, shaded with its certainty (± 2 SD). Thin: published method."),
 }
-KEYS = later("Wheel or + \N{MINUS SIGN} zooms, drag or Page Up, Page Down moves, mouse or arrows read.")
-EVENT_KEYS = later("[ ] step through contacts and toe-offs. Pre-swing is heel rise to toe-off.")
+KEYS = later("Zoom: wheel or + −. Move: drag or Page Up, Page Down. Read values: mouse or arrow keys.")
+EVENT_KEYS = later("[ ] step through initial contacts and toe-offs. Pre-swing: heel rise to toe-off.")
 
 
 class WholePage(Themed):

@@ -14,9 +14,9 @@ from core.results import Analysis, RecordingAnalysis
 from core.samples import RecordingKind, Session
 
 KEY = later(
-    "Lines: thick in the leg's colour, the result; thin around it, 2 SD of its certainty; thin and light, the "
-    "published method; thin and grey, orientation. Below them the phases: full, loading; pale, foot flat; narrow, "
-    "pre-swing; thin grey, swing."
+    "Thick line in the leg's colour: result. Thin lines around it: uncertainty, 2 SD. Thin light "
+    "line: published method. Thin grey line: orientation. Phases below: full, loading response; "
+    "pale, foot flat; narrow, pre-swing; thin grey, swing."
 )
 
 
@@ -41,7 +41,11 @@ def _line(recording: RecordingAnalysis, joint: Joint, is_drawn: bool) -> str:
     reason = why(found.sign) if doubt == MAY_BE_MIRRORED else reason_in_words(found)
     grey = ""
     if is_drawn and not joint.is_hip and joint_status(recording, joint) not in WITH_HEIGHT:
-        said = tr("The {side} leg and foot are grey.") if joint.is_knee else tr("The {side} foot is grey.")
+        said = (
+            tr("The {side} leg and foot are shown in grey.")
+            if joint.is_knee
+            else tr("The {side} foot is shown in grey.")
+        )
         grey = said.format(side=side_name(joint.side))
     pattern = tr("{part}: {verdict}.")
     said = pattern.format(part=capitalised(name_of(joint)), verdict=verdict)
@@ -51,5 +55,5 @@ def _line(recording: RecordingAnalysis, joint: Joint, is_drawn: bool) -> str:
 def _slipped(recording: RecordingAnalysis, side: Side) -> Iterator[str]:
     from_s = recording.slipped_from_s.get(side)
     if from_s is not None and len(recording.time_s) and from_s <= recording.time_s[-1]:
-        said = tr("A strap of the {side} leg slipped: from {time:.1f} s on its curves are withheld, the leg is grey.")
+        said = tr("Strap moved on the {side} leg. From {time:.1f} s its curves are not reported; the leg is grey.")
         yield said.format(side=side_name(side), time=from_s)

@@ -63,10 +63,13 @@ def viewer_program() -> Path | None:
 def why_not(program: Path | None) -> str:
     """Say why nothing can be shown here; empty where it can."""
     if program is None:
-        return tr("Rerun is not installed here. Open the file session.rrd of the results where it is.")
+        return tr("Rerun is not installed on this computer. Open session.rrd from the results on one that has it.")
     has_screen = any(os.environ.get(name) for name in ("DISPLAY", "WAYLAND_DISPLAY"))
     if sys.platform.startswith("linux") and not has_screen:
-        return tr("There is no screen for Rerun here. Open the file session.rrd of the results where there is one.")
+        return tr(
+            "Rerun needs a display, and there is none here. Open session.rrd from the results on a "
+            "computer that has one."
+        )
     return ""
 
 
@@ -113,7 +116,7 @@ class Viewer:
         except (OSError, subprocess.TimeoutExpired) as problem:
             _log.warning("Rerun was not started", exc_info=True)
             raise ViewerRefusedError(
-                tr("Rerun could not be started. See whether the disk has room, then try again.")
+                tr("Rerun could not be started. Check for free disk space, then try again.")
             ) from problem
 
     @property

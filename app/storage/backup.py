@@ -86,14 +86,14 @@ def back_up(
     """
     if opened.shared is not None:
         raise LibraryError(
-            "A clinic's library is on its server, which is backed up there", "Use pg_dump and a copy of the recordings"
+            "This library is on the clinic's server and is backed up there", "Use pg_dump, and copy the recordings"
         )
     made_at = now().astimezone(datetime.UTC)
     folder = into.resolve() / f"{NAME}{made_at:%Y-%m-%dT%H-%M-%SZ}"
     if folder.is_relative_to(opened.folder.resolve()):
-        raise LibraryError("A backup cannot be kept inside of its library", "Choose another folder, on another disk")
+        raise LibraryError("A backup cannot be stored inside its own library", "Choose a folder on another disk")
     if not into.is_dir():  # a disk that is not connected is not made up for by a folder of its name
-        raise LibraryError("The folder of the backups is not there", "Connect its disk, or choose another folder")
+        raise LibraryError("The backup folder was not found", "Connect its disk, or choose another folder")
     opened.library.audit.note(Action.BACKUP, "library")
     with made_beside(folder) as beside:
         # the database first: what it knows of is then there, and what came later is found as left over
@@ -195,10 +195,10 @@ class _Work:
             into = into.parent
         if (free := shutil.disk_usage(into).free) < needed:
             raise LibraryError(
-                tr("This needs {needed_mb:.0f} MB of free disk, and {free_mb:.0f} MB are left").format(
+                tr("Not enough disk space: {needed_mb:.0f} MB needed, {free_mb:.0f} MB free").format(
                     needed_mb=needed / 1e6, free_mb=free / 1e6
                 ),
-                "Make room, or choose another disk",
+                "Free disk space, or choose another disk",
             )
 
     def add(self, count: int, what: str) -> None:
@@ -266,7 +266,8 @@ def _check(
     for name, sha256 in hashes.items():
         if _sha256(folder / name, work) != sha256:
             raise LibraryError(
-                tr("{file} was not copied as it is").format(file=name), "Try again, or choose another disk"
+                tr("The copy of {file} does not match the original").format(file=name),
+                "Try again, or choose another disk",
             )
     database = Database(sqlite_engine(folder / DATABASE, data_key, creates=False))
     try:
@@ -347,4 +348,4 @@ def _read_list(folder: Path) -> tuple[Backup, dict[str, str]]:
         return Backup(folder, made_at, checkpoint, len(hashes) + 1, int(told["bytes"])), hashes
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
         remedy = tr("Choose a folder whose name starts with {name}").format(name=NAME)
-        raise LibraryError("This folder is not a backup that this version can read", remedy) from None
+        raise LibraryError("This version cannot read this folder as a backup", remedy) from None

@@ -66,9 +66,9 @@ class Corrections:
         with self._unit.writing(Role.CLINICIAN) as session:
             row = session.get(CorrectionRow, correction_id)
             if row is None:
-                raise LibraryError("This correction is not there any more", "Reload what is shown")
+                raise LibraryError("This correction no longer exists", "Reload this view")
             if session.scalar(select(CorrectionRow.id).where(CorrectionRow.undoes_id == row.id)):
-                raise LibraryError("This correction was undone already", "Reload what is shown")
+                raise LibraryError("This correction was already undone", "Reload this view")
             back = [Change(c.table, c.row, c.field, old=c.new, new=c.old) for c in reversed(_changes(row))]
             apply(self._unit, session, back, row.patient_id, row.session_id, undoes=row.id)
 

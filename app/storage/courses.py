@@ -46,7 +46,7 @@ class Courses:
                 return
         with self._unit.writing(Role.VIEWER) as session:
             if session.get(SessionRow, session_id) is None:
-                raise LibraryError("This session is not in the library any more", "Reload the list")
+                raise LibraryError("This session is no longer in the library", "Reload the list")
             row = session.get(CourseRow, session_id)
             if row is None:
                 session.add(CourseRow(session_id=session_id, key=key, content=content))

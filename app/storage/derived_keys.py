@@ -50,7 +50,9 @@ def derived_keys(session: OrmSession, data_key: KeyMaterial | None) -> DerivedKe
         kept = base64.b64decode(row.value)
         content = _wrapping(data_key).decrypt(kept[:NONCE_BYTES], kept[NONCE_BYTES:], None)
     except (InvalidTag, ValueError, TypeError):
-        raise LibraryFaultError("The keys of the library's audit are damaged", "Restore it from a backup") from None
+        raise LibraryFaultError(
+            "The keys of the library's audit log are damaged", "Restore the library from a backup"
+        ) from None
     return DerivedKeys(content[:KEY_BYTES], content[KEY_BYTES:])
 
 

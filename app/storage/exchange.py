@@ -178,7 +178,7 @@ def export_session(
         As in `session_with_samples`, or the folder cannot be written.
     """
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
-        raise LibraryError("There is something in this folder already", "Choose an empty folder, or a new one")
+        raise LibraryError("This folder is not empty", "Choose an empty or new folder")
     visit = opened.library.sessions.get(session_id)
     subject = about("session", session_id)
     typed = "all" if is_identified else ", ".join(sorted(kept))
@@ -236,7 +236,7 @@ def _refuse_undecoded(name: str, decoded: DecodedJournal) -> None:
     if decoded.undecoded:
         what = tr("{recording} was recorded with {driver}, which this version cannot read")
         told = what.format(recording=name, driver=decoded.undecoded[0])
-        raise LibraryError(told, "Install the version that recorded it, or a later one")
+        raise LibraryError(told, "Install the version used to record it, or a later one")
 
 
 def _import_recordings(opened: OpenedLibrary, session_id: UUID, session: Session, report: Report, room: Room) -> None:

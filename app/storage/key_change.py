@@ -101,8 +101,8 @@ def refuse_change(opened: OpenedLibrary) -> None:
     """
     if opened.shared is not None or opened.away_from is not None:
         raise LibraryError(
-            "The key of a clinic's library stays while stations share it",
-            "Bring it back into a folder, change its key there, and take it to the server again",
+            "The key of a clinic's library cannot change while workstations share it",
+            "Move it back to a folder, change its key there, then move it to the server again",
         )
     shelter = opened.shelter
     if shelter is None:
@@ -110,16 +110,16 @@ def refuse_change(opened: OpenedLibrary) -> None:
     opened.refuse_gone()
     if find_segments(shelter.folder):
         raise LibraryError(
-            "What was recorded while the library was gone is not in it yet, and could not be read under another key",
+            "Recordings made while the library was unavailable are not in it yet. A new key could not read them",
             tr(
-                "It waits in {shelter} and is added while Gaitwright is open, unless the library holds a file of that "
-                "name with other content. Try again once that folder is empty"
+                "They are in {shelter} and are added while Gaitwright is open. A file stays there if the "
+                "library has a different file of the same name. Try again once that folder is empty"
             ).format(shelter=shelter.folder),
         )
     if any(not one.problem for one in find_interrupted(opened)):
         raise LibraryError(
-            "A recording goes on or was left over, so the key cannot be changed now",
-            "End it or look at it, then try again",
+            "A recording is running or was not completed, so the key cannot be changed now",
+            "Stop or review it, then try again",
         )
 
 
@@ -136,7 +136,7 @@ def _replace(folder: Path, old: DataKey, new: DataKey, keys: dict[str, object], 
             _wrap_anew(folder, beside, old, new, report)
             salt = salt_of(beside)
             if salt is None:
-                raise LibraryError("The new database is not there", "Try again, or see to the disk")
+                raise LibraryError("The new database was not found", "Try again, or check the disk")
             replace_file(folder / NEW_KEYS, json.dumps({**keys, "database": salt}, indent=1).encode())
             if os.name == "nt":
                 source.close()  # what is open is not replaced there
@@ -189,7 +189,7 @@ def _wrap_anew(folder: Path, beside: Path, old: DataKey, new: DataKey, report: R
                 done += size
                 report(share, "")
         if database.faults():
-            raise LibraryError("The database could not be copied as it is", "Try again, or see to the disk")
+            raise LibraryError("The copy of the database is faulty", "Try again, or check the disk")
     finally:
         database.close()
     with beside.open("rb") as file:

@@ -31,7 +31,7 @@ def settle(folder: Path) -> None:
             remove_database(beside)
             sync_folder(folder)
     except BlockingIOError:
-        raise KeyRefusedError("Somebody else is changing the keys", "Try again in a moment") from None
+        raise KeyRefusedError("Someone else is changing the keys", "Try again in a moment") from None
 
 
 def salt_of(database: Path) -> str | None:

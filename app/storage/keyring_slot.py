@@ -34,7 +34,7 @@ def remember(slots: KeySlots, data_key: KeyMaterial, code: str) -> None:
     """
     keyring = _keyring()
     if keyring is None:
-        raise KeyRefusedError("This machine has no keyring", "Go on with the passphrase")
+        raise KeyRefusedError("This computer has no keyring", "Continue with the passphrase")
     forget(slots, code)
     secret = secrets.token_hex(KEY_BYTES)
     slot = slots.set_keyring_slot(data_key, code, secret.encode())
@@ -42,7 +42,9 @@ def remember(slots: KeySlots, data_key: KeyMaterial, code: str) -> None:
         keyring.set_password(SERVICE, slot.salt, secret)
     except Exception as problem:  # each system's keyring has errors of its own, which the package lets through
         slots.remove_keyring_slot(code)
-        raise KeyRefusedError("The keyring takes no key", "Unlock it, or go on with the passphrase") from problem
+        raise KeyRefusedError(
+            "The keyring does not accept the key", "Unlock it, or continue with the passphrase"
+        ) from problem
 
 
 def open_remembered(slots: KeySlots, code: str) -> DataKey | None:

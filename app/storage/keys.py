@@ -90,7 +90,7 @@ class KeySlots:
             There are slots already, or the passphrase is too short or weak; `known` are names that it must not rest on.
         """
         if self.exists:
-            raise KeyRefusedError("This library has its keys already", "Log in, or use the recovery key")
+            raise KeyRefusedError("This library already has its keys", "Log in, or use the recovery key")
         data_key, text = DataKey(os.urandom(KEY_BYTES)), new_recovery_key()
         own = Slot.wrapping(data_key, _checked_code(code), _checked(passphrase, (code, *known)), self._cost)
         recovery = Slot.wrapping(data_key, RECOVERY, _recovery_bytes(text), self._cost)
@@ -108,7 +108,9 @@ class KeySlots:
         slot = self._read().get(_normal(code))
         data_key = self._opened(slot, _secret(passphrase)) if slot is not None and _is_operators(slot.code) else None
         if data_key is None:
-            raise KeyRefusedError("This passphrase does not open the library", "Type it again, or use the recovery key")
+            raise KeyRefusedError(
+                "This passphrase does not open the library", "Enter it again, or use the recovery key"
+            )
         return data_key
 
     def open_with_recovery_key(self, text: str) -> DataKey:
@@ -123,7 +125,9 @@ class KeySlots:
         slot = self._read().get(RECOVERY)
         data_key = self._opened(slot, secret) if slot is not None else None
         if data_key is None:
-            raise KeyRefusedError("This recovery key belongs to another library", "Look for the sheet of this one")
+            raise KeyRefusedError(
+                "This recovery key belongs to another library", "Find the recovery sheet of this library"
+            )
         return data_key
 
     def add(
@@ -138,7 +142,7 @@ class KeySlots:
         """
         with self._changing() as slots:
             if _checked_code(code) in slots:
-                raise KeyRefusedError(tr("{code} is taken").format(code=_normal(code)), "Choose another code")
+                raise KeyRefusedError(tr("{code} is already in use").format(code=_normal(code)), "Choose another code")
             own = Slot.wrapping(data_key, _normal(code), _checked(passphrase, (code, *known)), self._cost)
             given = self._given()
             self._write({**slots, own.code: own}, given=given | {own.code} if is_given else given - {own.code})
@@ -159,11 +163,11 @@ class KeySlots:
         with self._changing() as slots:
             if _checked_code(code) not in slots:
                 raise KeyRefusedError(
-                    tr("{code} has no key to this library").format(code=_normal(code)), "Add the operator first"
+                    tr("{code} has no key to this library").format(code=_normal(code)), "Add the user first"
                 )
             secret = _checked(passphrase, (code, *known))
             if self.is_given(code) and slots[_normal(code)].opened(secret) is not None:
-                raise KeyRefusedError("This is the passphrase that somebody else chose", "Choose another one")
+                raise KeyRefusedError("Another person chose this passphrase", "Choose another session")
             own = Slot.wrapping(data_key, _normal(code), secret, self._cost)
             self._write({**slots, own.code: own}, given=self._given() - {own.code})
 
@@ -179,7 +183,7 @@ class KeySlots:
             slots.pop(_checked_code(code), None)
             slots.pop(KEYRING + _normal(code), None)
             if not any(_is_operators(left) for left in slots):
-                raise KeyRefusedError("The last operator keeps the key", "Add another operator first")
+                raise KeyRefusedError("The last user's key cannot be removed", "Add another user first")
             self._write(slots)
 
     def renew_recovery_key(self, data_key: KeyMaterial) -> str:
@@ -221,7 +225,7 @@ class KeySlots:
             text, is_confirmed = new_recovery_key(), False
             kept[RECOVERY] = Slot.wrapping(new, RECOVERY, _recovery_bytes(text), self._cost)
         if not any(_is_operators(code) for code in kept):
-            raise KeyRefusedError("Nobody would have a key to the library any more", "Log in with the passphrase once")
+            raise KeyRefusedError("Nobody would have a key to the library", "Log in with the passphrase once")
         left_out = sorted(code for code in codes if code in slots and code not in kept)
         return SealedAnew(_file(kept, is_confirmed, self._given()), text, tuple(left_out))
 
@@ -240,7 +244,7 @@ class KeySlots:
         with self._changing() as slots:
             if _checked_code(code) not in slots:
                 raise KeyRefusedError(
-                    tr("{code} has no key to this library").format(code=_normal(code)), "Add the operator first"
+                    tr("{code} has no key to this library").format(code=_normal(code)), "Add the user first"
                 )
             own = Slot.wrapping(data_key, KEYRING + _normal(code), secret, self._cost)
             self._write({**slots, own.code: own})
@@ -290,7 +294,7 @@ class KeySlots:
                     return
             except BlockingIOError:
                 if time.monotonic() >= deadline:
-                    raise KeyRefusedError("Somebody else is changing the keys", "Try again in a moment") from None
+                    raise KeyRefusedError("Someone else is changing the keys", "Try again in a moment") from None
                 time.sleep(0.05)
 
     def _load(self) -> bytes:
@@ -315,7 +319,7 @@ class KeySlots:
                 raise ValueError(content["format"])
         except FileNotFoundError:
             raise KeyRefusedError(
-                tr("{file} is not there").format(file=self._path.name), "Restore the library from a backup"
+                tr("{file} is missing").format(file=self._path.name), "Restore the library from a backup"
             ) from None
         except (ValueError, KeyError, TypeError):
             raise self._damaged() from None
@@ -369,14 +373,16 @@ def _recovery_bytes(text: str) -> bytes:
     count = RECOVERY_BYTES * 8 // 5
     if len(letters) != count + 1 or any(c not in LETTERS for c in letters):
         raise KeyRefusedError(
-            tr("A recovery key has {wanted} letters, this has {count}").format(wanted=count + 1, count=len(letters)),
-            "Compare with the sheet",
+            tr("A recovery key has {wanted} characters; this one has {count}").format(
+                wanted=count + 1, count=len(letters)
+            ),
+            "Compare it with the recovery sheet",
         )
     number = 0
     for c in letters[:-1]:
         number = number << 5 | LETTERS.index(c)
     if LETTERS[number % 31] != letters[-1]:
-        raise KeyRefusedError("A letter of the recovery key is mistyped", "Compare with the sheet")
+        raise KeyRefusedError("A character of the recovery key is wrong", "Compare it with the recovery sheet")
     return number.to_bytes(RECOVERY_BYTES, "big")
 
 
@@ -395,8 +401,8 @@ def _is_operators(code: str) -> bool:
 def _checked_code(code: str) -> str:
     code = _normal(code)
     if not (code.isalnum() and len(code) <= 12) or code == RECOVERY:
-        what = tr("{code} cannot be a code").format(code=code) if code else tr("An operator needs a code")
-        raise KeyRefusedError(what, "Take up to 12 letters and figures")
+        what = tr("{code} is not a valid code").format(code=code) if code else tr("A user needs a code")
+        raise KeyRefusedError(what, "Use up to 12 letters and digits")
     return code
 
 

@@ -101,7 +101,7 @@ class Library:
         try:
             folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         except OSError as error:
-            raise LibraryError("This folder cannot be written", "Choose another folder") from error
+            raise LibraryError("This folder is not writable", "Choose another folder") from error
         library = cls(_database(folder, data_key, creates=True), data_key, now)
         try:
             library._take_root(folder)
@@ -136,15 +136,17 @@ class Library:
         try:
             station = station_of(folder)
             if station is None and not (folder / DATABASE).exists():
-                raise LibraryError("This folder holds no library", "Choose another folder, or restore it from a backup")
+                raise LibraryError(
+                    "This folder contains no library", "Choose another folder, or restore it from a backup"
+                )
             if station is None and not is_to_be_moved and (folder / MOVING).exists():
                 raise LibraryError(
                     "This library is being moved to the clinic's server",
-                    "Go on with that, or give it up: gaitwright clinic move --help",
+                    "Continue or cancel the move: gaitwright clinic move --help",
                 )
             is_lost = station is None and is_end_lost(folder / f"{DATABASE}-wal")
         except OSError as error:
-            raise LibraryError("The library's files cannot be read", "See to the rights of its folder") from error
+            raise LibraryError("The library files cannot be read", "Check the permissions of its folder") from error
         database = _database(folder, data_key, creates=False) if station is None else station.database_kept()
         try:
             if station is not None and not is_to_be_moved:
@@ -192,7 +194,7 @@ class Library:
         first = replace(operator, code=folded(operator.code), role=Role.ADMINISTRATOR, is_active=True)
         with self.database.writing() as session:
             if session.scalars(select(OperatorRow.code).limit(1)).first() is not None:
-                raise NotAllowedError("There is a library already", "Log in to it, or choose another folder")
+                raise NotAllowedError("This folder already has a library", "Log in to it, or choose another folder")
             self._unit.operator = first
             add_operator(session, self._unit, first)
         return self.log_in(first.code)
@@ -215,7 +217,7 @@ class Library:
                 refuse_closed(session)
             row = session.get(OperatorRow, folded(code))
             if row is None or not row.is_active:
-                raise NotAllowedError("This operator does not work here", "Ask an administrator of this library")
+                raise NotAllowedError("This user is not active in this library", "Ask an administrator of this library")
             operator = operator_of(row)
             details: dict[str, object] = {"failed_before": failed_before}
             if self.is_end_lost:
@@ -258,7 +260,7 @@ class Library:
         try:
             self.root = root_of(folder, self.database)
         except OSError as error:
-            raise LibraryError("The library's files cannot be read", "See to the rights of its folder") from error
+            raise LibraryError("The library files cannot be read", "Check the permissions of its folder") from error
         self.database.guard = self.root.refuse_gone
 
     def suspend(self) -> None:

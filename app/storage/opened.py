@@ -132,10 +132,10 @@ def open_library(folder: Path, passphrase: str, code: str = "", *, is_to_be_move
     """
     slots = slots_of(folder)
     if not slots.exists:
-        raise LibraryError("This folder holds no library", "Choose another folder, or restore it from a backup")
+        raise LibraryError("This folder contains no library", "Choose another folder, or restore it from a backup")
     if not code:
         if len(slots.codes) > 1:
-            raise KeyRefusedError("Several operators work with this library", "Say who you are")
+            raise KeyRefusedError("This library has several users", "Enter your user code")
         (code,) = slots.codes
     return logged_in(folder, slots.open(code, passphrase), code, is_to_be_moved=is_to_be_moved)
 
@@ -199,7 +199,7 @@ def made_beside(folder: Path) -> Iterator[Path]:
     folder = folder.resolve()
     try:
         if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
-            raise LibraryError("There is something in this folder already", "Choose an empty folder, or a new one")
+            raise LibraryError("This folder is not empty", "Choose an empty or new folder")
         folder.parent.mkdir(parents=True, exist_ok=True)
         _remove_unfinished(folder)
         beside = Path(tempfile.mkdtemp(prefix=f".{folder.name}-", dir=folder.parent))
@@ -215,7 +215,7 @@ def made_beside(folder: Path) -> Iterator[Path]:
             shutil.rmtree(beside, ignore_errors=True)
     except OSError as error:
         raise LibraryError(
-            tr("This folder cannot be written ({why})").format(why=error.strerror), "Choose another folder"
+            tr("This folder is not writable ({why})").format(why=error.strerror), "Choose another folder"
         ) from error
 
 
@@ -244,4 +244,4 @@ def held_alone(folder: Path) -> Iterator[None]:
             _remove_unfinished(folder)
             yield
     except BlockingIOError as error:
-        raise LibraryError("Gaitwright is open with this library already", "Use that window, or close it") from error
+        raise LibraryError("This library is already open in Gaitwright", "Use that window, or close it") from error

@@ -34,7 +34,7 @@ class Operators:
         """
         with self._unit.writing(Role.ADMINISTRATOR) as session:
             if session.get(OperatorRow, folded(operator.code)) is not None:
-                raise LibraryError("Another operator has this code", "Choose another code")
+                raise LibraryError("Another user has this code", "Choose another code")
             row = add_operator(session, self._unit, operator)
             return operator_of(row)
 
@@ -58,7 +58,7 @@ class Operators:
                 OperatorRow.role == Role.ADMINISTRATOR, OperatorRow.is_active
             )
             if session.scalars(administrators).first() is None:
-                raise LibraryError("A library needs an administrator", "Give somebody else the role first")
+                raise LibraryError("A library needs an administrator", "Give the role to someone else first")
             details = {"role": row.role.value, "is_active": row.is_active}
             note(self._unit, session, Action.EDIT, about("operator", row.code), **details)
             return operator_of(row)

@@ -124,7 +124,7 @@ class Patients:
         with self._unit.writing(Role.CLINICIAN) as session:
             row, other = _current(session, kept), _current(session, double)
             if row is other or row.deleted_at or other.deleted_at:
-                raise LibraryError("These two cannot be merged", "Choose two patients that are not deleted")
+                raise LibraryError("These two patients cannot be merged", "Choose two patients who are not deleted")
             filled = {
                 name: getattr(other, name)
                 for name in PATIENT_CORRECTABLE
@@ -264,7 +264,7 @@ def patient_changes(session: OrmSession, row: PatientRow, told: Patient) -> list
 def existing_patient(session: OrmSession, patient_id: UUID) -> PatientRow:
     row = session.get(PatientRow, patient_id)
     if row is None:
-        raise LibraryError("This patient is not in the library any more", "Reload the list")
+        raise LibraryError("This patient is no longer in the library", "Reload the list")
     return row
 
 
@@ -279,7 +279,9 @@ def _refuse_taken(session: OrmSession, code: str) -> None:
     if row.deleted_at is not None:
         raise LibraryError("A deleted patient has this code", "Restore that patient, or choose another code")
     if row.merged_into_id is not None:
-        raise LibraryError("This code was merged into another patient's", "Open that patient, or choose another code")
+        raise LibraryError(
+            "This code was merged into another patient's code", "Open that patient, or choose another code"
+        )
     raise LibraryError("Another patient has this code", "Open that patient, or choose another code")
 
 
@@ -287,12 +289,14 @@ def _checked(told: Patient) -> Patient:
     """What a session folder can hold too; the limits are its own."""
     told = replace(told, code=told.code.strip())
     if not told.code:
-        raise LibraryError("A patient needs a code", "Type one that the clinic knows the patient by")
+        raise LibraryError("A patient needs a code", "Enter the code your clinic uses for this patient")
     for key, (name, check) in PATIENT.items():
         value = getattr(told, name)
         try:
             if value is not None:
                 check(value)
         except ValueError as error:
-            raise LibraryError(tr("{field} has to be {wanted}").format(field=key, wanted=error), "Correct it") from None
+            raise LibraryError(
+                tr("{field} must be {wanted}").format(field=key, wanted=error), "Correct the value"
+            ) from None
     return told

@@ -70,7 +70,7 @@ class Recordings:
         with self._unit.writing(Role.CLINICIAN) as session:
             visit = session.get(SessionRow, session_id)
             if visit is None:
-                raise LibraryError("This session is not in the library any more", "Reload the list")
+                raise LibraryError("This session is no longer in the library", "Reload the list")
             _refuse_taken(visit, told.name)
             row = RecordingRow(
                 id=recording_id or uuid7(),
@@ -103,7 +103,7 @@ class Recordings:
         with self._unit.writing(Role.CLINICIAN) as session:
             row = existing_recording(session, recording_id)
             if any(other.segment == journal.segment for other in row.journals):
-                raise LibraryError("The recording has this segment already", "Recover it first")
+                raise LibraryError("The recording already has this part", "Recover it first")
             row.journals.append(JournalRow(**asdict(journal)))
 
     def close(self, recording_id: UUID, state: RecordingState, sha256: Mapping[int, str]) -> StoredRecording:
@@ -117,7 +117,7 @@ class Recordings:
         with self._unit.writing(Role.CLINICIAN) as session:
             row = existing_recording(session, recording_id)
             if {journal.segment for journal in row.journals} != set(sha256):
-                raise LibraryError("The recording has other files than the library knows of", "Recover it first")
+                raise LibraryError("The files of the recording do not match the library", "Recover it first")
             for journal in row.journals:
                 journal.sha256 = sha256[journal.segment]
             row.state = state
@@ -136,7 +136,7 @@ class Recordings:
         with self._unit.writing(Role.CLINICIAN) as session:
             row = existing_recording(session, recording_id)
             if row.journals:
-                raise LibraryError("This recording has begun", "Stop it, and do not keep it")
+                raise LibraryError("This recording has already started", "Stop it, then exclude it")
             session.delete(row)
             note(self._unit, session, Action.DELETE, about("recording", row.id), is_final=True)
 
@@ -365,10 +365,10 @@ def _instant(started: str) -> datetime.datetime | None:
 def existing_recording(session: OrmSession, recording_id: UUID) -> RecordingRow:
     row = session.get(RecordingRow, recording_id)
     if row is None:
-        raise LibraryError("This recording is not in the library any more", "Reload the session")
+        raise LibraryError("This recording is no longer in the library", "Reload the session")
     return row
 
 
 def _refuse_taken(visit: SessionRow, name: str) -> None:
     if any(other.name == name for other in visit.recordings):
-        raise LibraryError("The session has a recording of this name already", "Choose another name")
+        raise LibraryError("The session already has a recording of this name", "Choose another name")

@@ -162,7 +162,7 @@ def adopt_home(opened: OpenedLibrary, orphan: Interrupted, report: Report) -> Re
         As `adopt`; a LibraryError too where it does not say which session that is.
     """
     if orphan.belonging is None:
-        raise LibraryError("This recording does not say which session it is of", "Export it")
+        raise LibraryError("The session of this recording is unknown", "Export the recording")
     told, visit = orphan.belonging.details, opened.library.sessions.get(orphan.belonging.session_id)
     if any(other.name == told.name for other in visit.details.recordings):
         name = free_name(visit.details, told.kind)

@@ -92,4 +92,4 @@ def _wanted(session_id: UUID, kind: ResultKind, key: str) -> Any:
 
 def _existing(session: OrmSession, session_id: UUID) -> None:
     if session.get(SessionRow, session_id) is None:
-        raise LibraryError("This session is not in the library any more", "Reload the list")
+        raise LibraryError("This session is no longer in the library", "Reload the list")

@@ -22,7 +22,7 @@ ID_FILE = "library-id"
 ID_BYTES = 16
 ID_SETTING = "library id"
 SHELTERS = "sheltered recordings"
-GONE = later("The library is gone from {folder}")
+GONE = later("The library is no longer in {folder}")
 BRING_BACK = later("Put its folder back, or connect its disk")
 
 

@@ -65,7 +65,7 @@ class Sessions:
         with self._unit.writing(Role.CLINICIAN) as session:
             patient = session.get(PatientRow, patient_id)
             if patient is None or patient.deleted_at or patient.merged_into_id:
-                raise LibraryError("This patient is not in the library any more", "Reload the list")
+                raise LibraryError("This patient is no longer in the library", "Reload the list")
             row = SessionRow(
                 patient=patient,
                 comment="",
@@ -231,7 +231,7 @@ def new_placement(
 ) -> PlacementRow:
     """Add what is said now of who is worn where; raises as `Sessions.place`."""
     if len({sensor.name for sensor in sensors.values()}) < len(sensors):
-        raise LibraryError("One sensor cannot be worn at two sites", "Assign each sensor once")
+        raise LibraryError("One sensor cannot have two positions", "Assign each sensor once")
     row = PlacementRow(
         session_id=visit.id,
         number=len(visit.placements) + 1,
@@ -279,7 +279,7 @@ def refuse_early(deleted_at: datetime.datetime | None, now: datetime.datetime) -
     """
     if deleted_at is None or now - deleted_at < KEPT_DELETED:
         raise LibraryError(
-            tr("Only what was deleted {days} days ago is destroyed").format(days=KEPT_DELETED.days), "Wait until then"
+            tr("Deleted data can be destroyed only after {days} days").format(days=KEPT_DELETED.days), "Wait until then"
         )
 
 
@@ -295,13 +295,13 @@ def _refuse_wrong_joints(told: Session) -> None:
         for joint, sign in told.turned_sign.items():
             SIGN[joint][1](sign)
     except ValueError as error:
-        raise LibraryError(tr("The value of a joint has to be {wanted}").format(wanted=error), "Correct it") from None
+        raise LibraryError(tr("The joint value must be {wanted}").format(wanted=error), "Correct the value") from None
 
 
 def existing_session(session: OrmSession, session_id: UUID) -> SessionRow:
     row = session.get(SessionRow, session_id)
     if row is None:
-        raise LibraryError("This session is not in the library any more", "Reload the list")
+        raise LibraryError("This session is no longer in the library", "Reload the list")
     return row
 
 

@@ -63,7 +63,7 @@ class SharedEdits:
         with self._unit.writing(Role.CLINICIAN) as session:
             row = existing_patient(session, patient_id)
             if row.merged_into_id is not None:
-                raise LibraryError("This patient was merged into another meanwhile", "Open that patient in the list")
+                raise LibraryError("This patient has since been merged with another", "Open that patient in the list")
             _refuse_deleted(row)
 
             def changes(values: Values) -> list[Change]:
@@ -215,9 +215,13 @@ class _Edit:
 def _refuse_deleted(row: PatientRow | SessionRow) -> None:
     patient = row if isinstance(row, PatientRow) else row.patient
     if patient.deleted_at is not None:
-        raise LibraryError("This patient was deleted meanwhile", "Restore the patient in the settings, then change it")
+        raise LibraryError(
+            "This patient has since been deleted", "Restore the patient in the settings, then make your change"
+        )
     if row.deleted_at is not None:
-        raise LibraryError("This session was deleted meanwhile", "Restore it in the settings, then change it")
+        raise LibraryError(
+            "This session has since been deleted", "Restore the session in the settings, then make your change"
+        )
 
 
 def _worn(row: RecordingRow) -> Worn:

@@ -340,7 +340,7 @@ class Checkpoint:
         match text.split():
             case ["gaitwright-audit/1", number, digest] if number.isdecimal() and len(digest) == 64:
                 return cls(int(number), digest)
-        raise LibraryError("This is not a checkpoint of an audit", "Choose a file that the audit's export has written")
+        raise LibraryError("This is not a checkpoint of an audit log", "Choose a file written by the audit log export")
 
 
 BEGINNING = Checkpoint(0, "0" * 64)  # before the first entry

@@ -41,7 +41,7 @@ class UnitOfWork:
     @property
     def code(self) -> str:
         if self.operator is None:
-            raise NotAllowedError("Nobody is logged in", "Log in first")
+            raise NotAllowedError("No user is logged in", "Log in first")
         return self.operator.code
 
     @contextmanager
@@ -78,7 +78,7 @@ class UnitOfWork:
             row = session.get(OperatorRow, code)
             if row is None or not row.is_active or not row.role.includes(needed):
                 raise NotAllowedError(
-                    tr("This needs the role of {role}").format(role=needed), "Ask somebody who has it"
+                    tr("This requires the role {role}").format(role=needed), "Ask someone with this role"
                 )
             yield session
             session.flush()
@@ -95,7 +95,7 @@ class UnitOfWork:
     def _keep_simulated_apart(self, session: OrmSession) -> None:
         if self.is_demonstration:
             if session.scalar(select(exists().where(RecordingRow.is_simulated.is_(False)))):
-                raise LibraryError("The demonstration keeps simulated recordings only", "Open your own library")
+                raise LibraryError("The demonstration stores simulated recordings only", "Open your own library")
             return
         misplaced = (
             select(SessionRow.id)

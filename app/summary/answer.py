@@ -48,12 +48,12 @@ def answer_of(facts: Facts) -> Answer:
     """The weightiest finding of a walk and the one after it, or the caveat where there is no other."""
     strides = {side: facts.strides(side) for side in facts.gait}
     if not strides:
-        first = tr("Nothing can be read of this walk: no foot or shank sensor told a stride.")
+        first = tr("No results for this walk: no stride was found from a foot or shank sensor.")
         return Answer(Outcome.UNREADABLE, first)
     if not any(map(is_mean_enough, strides.values())):
         counted = joined([f"{side[0].upper()}\u00a0{strides[side]}" for side in Side if side in strides])
         first = tr("Too few strides for a mean: {counted}.").format(counted=counted)
-        return Answer(Outcome.UNREADABLE, first, tr("Walk once more, further or longer."))
+        return Answer(Outcome.UNREADABLE, first, tr("Repeat the walk, further or longer."))
     last = _brief_caveat(facts)
     if found := ranked_findings(facts, None, BANDS_ON_SCREEN):
         beside = [found[1].said] if len(found) > 1 else last
@@ -73,4 +73,4 @@ def _goal(facts: Facts) -> list[str]:
 def _brief_caveat(facts: Facts) -> list[str]:
     """Which joint or leg cannot be read; why, and what to do, stands one step behind the answer."""
     withheld = [cause.where for cause in quality.causes(facts, (Verdict.WITHHELD,)) if not cause.is_aside]
-    return [tr("Withheld: {where}.").format(where=within_sentence(withheld[0]))] if withheld else []
+    return [tr("Not reported: {where}.").format(where=within_sentence(withheld[0]))] if withheld else []

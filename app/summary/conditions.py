@@ -305,6 +305,6 @@ def by_hand_in_words(*walks: RecordingAnalysis) -> str:
     for side in Side:
         gaits = [walk.gait[side] for walk in walks if side in walk.gait]
         if count := sum(map(left_out_by_hand, gaits)):
-            told = tr("{count} of {of} {side} strides left out by hand.")
+            told = tr("{count} of {of} {side} strides excluded by hand.")
             said.append(told.format(count=count, of=sum(len(g.strides) for g in gaits), side=side_name(side)))
     return " ".join(said)

@@ -63,7 +63,7 @@ def last_in_words(one: LaneChange, kind: LaneKind) -> str:
     """The last value with its unit."""
     last = one.line.points[-1]
     if not last.is_told:
-        return tr("not readable")
+        return tr("not reported")
     return value_in_words(last.value, kind) + short_unit(kind.column)
 
 
@@ -73,13 +73,13 @@ def judged_in_words(found: Difference, kind: LaneKind) -> str:
         return _verdict(found)
     error = fixed(found.error, max(1, decimals(kind.column))) + (f" {DAGGER}" if found.is_unverified else "")
     if ErrorSource.SPEED in found.sources:
-        return tr("{verdict} ({error}; the speed differs)").format(verdict=_verdict(found), error=error)
+        return tr("{verdict} ({error}; different speed)").format(verdict=_verdict(found), error=error)
     return tr("{verdict} ({error})").format(verdict=_verdict(found), error=error)
 
 
 def since_last_in_words(found: Difference, kind: LaneKind) -> str:
     """What has changed since the visit before."""
-    said = tr("last visit {change}, {verdict}")
+    said = tr("since last visit {change}, {verdict}")
     return said.format(change=change_in_words(found, kind), verdict=_verdict(found))
 
 
@@ -88,14 +88,14 @@ def _verdict(found: Difference) -> str:
         return tr("too few strides to judge")
     if not found.error > 0:
         return tr("not judged")
-    return tr("larger than error") if found.exceeds else tr("inside error")
+    return tr("beyond error") if found.exceeds else tr("within error")
 
 
 def key_in_words(lanes: Sequence[CourseLane]) -> str:
     """What is drawn beside the values; empty where nothing of it is."""
     has_whiskers = any(math.isfinite(point.whisker) for lane in lanes for line in lane.lines for point in line.told)
     changes = [found for lane in lanes for one in lane.changes if (found := one.since_first) is not None]
-    said = [tr("Whisker: half of the error of a change.")] if has_whiskers else []
+    said = [tr("Whisker: half the error of a change.")] if has_whiskers else []
     said += [tr("Grey: first visit \N{PLUS-MINUS SIGN} error.")] if any(lane.band for lane in lanes) else []
     said += [tr("Dotted: goal.")] if any(lane.goals for lane in lanes) else []
     if any(found.is_unverified for found in changes):
@@ -152,12 +152,12 @@ def visit_in_words(number: int, lanes: Sequence[CourseLane], visits: Sequence[Co
         for line in lane.lines:
             for point in line.points:
                 if point.visit == number:
-                    value = tr("not readable")
+                    value = tr("not reported")
                     if point.is_told:
                         value = spoken_value(lane.kind.column, value_in_words(point.value, lane.kind))
                     said.append(f"{_head(lane.kind, line, has_condition=len(conditions) > 1)}: {value}")
     if visits[number].course is None:
-        said = [tr("not computed yet")]
+        said = [tr("not calculated yet")]
     return f"{day_of(number, visits)}. {'. '.join(said or [tr('no walk')])}."
 
 
@@ -166,11 +166,11 @@ def nothing_between(visits: Sequence[CourseVisit]) -> str:
     missing = sum(visit.course is None for visit in visits)
     walked = sum(bool(visit.course and visit.course.conditions) for visit in visits)
     if missing:
-        return tr_n("{count} visit is not computed yet.", "{count} visits are not computed yet.", missing).format(
+        return tr_n("{count} visit is not calculated yet.", "{count} visits are not calculated yet.", missing).format(
             count=missing
         )
     if walked == 1:
-        return tr("A second visit makes a trend.")
+        return tr("A trend needs a second visit.")
     return "" if walked else tr("No visit has a walk yet.")
 
 
@@ -181,10 +181,10 @@ def next_step(recovered: NextStep | None, latest: LatestVisit | None, today: dat
     day = short_date(latest.day)
     if latest.withheld:
         names = joined([name_of(joint) for joint in latest.withheld])
-        said = tr("{joints} could not be read on {day}: see why.")
-        return NextStep(said.format(joints=names, day=day), tr("Look"), latest.id)
+        said = tr("check {joints}, not reported on {day}.")
+        return NextStep(said.format(joints=names, day=day), tr("Review"), latest.id)
     if latest.has_walk and not latest.has_report:
-        return NextStep(tr("write the report of {day}.").format(day=day), tr("Open"), latest.id)
+        return NextStep(tr("write the report for {day}.").format(day=day), tr("Open"), latest.id)
     if latest.reached:
         return NextStep(reached_in_words(latest.reached, day), tr("Goals"))
     if (ago := today - latest.day) >= LONG_AGO:
@@ -208,10 +208,10 @@ def reached_in_words(reached: Sequence[GoalFigure], day: str) -> str:
 
 def undecided_step(session_id: UUID, day: datetime.date | None) -> NextStep:
     """A walk of which nobody has said whether it is kept."""
-    said = tr("keep or discard the last walk.")
+    said = tr("include or exclude the last walk.")
     if day is not None:
-        said = tr("keep or discard the walk of {day}.").format(day=short_date(day))
-    return NextStep(said, tr("Look"), session_id)
+        said = tr("include or exclude the walk of {day}.").format(day=short_date(day))
+    return NextStep(said, tr("Review"), session_id)
 
 
 def _head(kind: LaneKind, line: LaneLine, *, has_condition: bool) -> str:
@@ -225,7 +225,7 @@ def _head(kind: LaneKind, line: LaneLine, *, has_condition: bool) -> str:
 def _spoken(point: LanePoint, kind: LaneKind, visits: Sequence[CourseVisit]) -> str:
     day = day_of(point.visit, visits)
     if not point.is_told:
-        return tr("not readable on {day}").format(day=day)
+        return tr("not reported on {day}").format(day=day)
     value = spoken_value(kind.column, value_in_words(point.value, kind))
     return tr("{value} on {day}").format(value=value, day=day)
 

@@ -34,12 +34,12 @@ GATES_OF_FINDINGS = {
 }
 FREE_MOTION_MENDS = frozenset({"axis", "pairing", "disagreement", "strap"})  # gates that a new free motion may open
 ALL_READ = {
-    1: later("The {joint} can be read."),
-    2: later("Both joints can be read."),
-    3: later("All three joints can be read."),
-    4: later("All four joints can be read."),
-    5: later("All five joints can be read."),
-    6: later("All six joints can be read."),
+    1: later("The {joint} is reported."),
+    2: later("Both joints are reported."),
+    3: later("All three joints are reported."),
+    4: later("All four joints are reported."),
+    5: later("All five joints are reported."),
+    6: later("All six joints are reported."),
 }
 
 
@@ -98,7 +98,7 @@ def data_quality(facts: Facts) -> DataQuality:
 def quality_without_walk(visit: AnalysedVisit, recording: str) -> DataQuality:
     """What was noticed about a recording of which nothing is judged; empty: about the whole session."""
     lines = [_of_finding(finding) for finding in _noticed(visit, {recording} - {""}, set())]
-    first = tr("Nothing stands out.") if not lines else tr("This was noticed.")
+    first = tr("No data quality findings.") if not lines else tr("There are findings.")
     return _quality(first, "", lines, "")
 
 
@@ -151,14 +151,14 @@ def _in_words(facts: Facts) -> tuple[str, str]:
         for wanted in (Verdict.CARE, Verdict.WITHHELD)
     )
     if len(out) == len(joints):
-        return tr("No joint can be read in this walk."), ""
+        return tr("No joint is reported for this walk."), ""
     first = _readable(list(map(name_of, joints)), care, out)
     heights = [name_of(joint) for joint in joints if facts.verdicts.joint(joint).height.verdict is Verdict.WITHHELD]
     if out or not heights:
         return first, ""
     if len(heights) == len(joints):
-        return first, tr("Range and shape hold; heights are withheld.")
-    return first, tr("Of these joints the height is withheld: {joints}.").format(joints=joined(heights))
+        return first, tr("Range of motion and curve shape are valid. Absolute angles are not reported.")
+    return first, tr("Absolute angle not reported: {joints}.").format(joints=joined(heights))
 
 
 def _readable(joints: list[str], care: list[str], out: list[str]) -> str:
@@ -167,14 +167,10 @@ def _readable(joints: list[str], care: list[str], out: list[str]) -> str:
     if read == len(joints):
         return tr(ALL_READ[read]).format(joint=joints[0])
     if len(care) == len(joints):
-        return (
-            tr("All joints: read with care.")
-            if len(joints) > 1
-            else tr("Read with care: {joints}.").format(joints=care[0])
-        )
-    said = [tr("{count} of {all} joints can be read.").format(count=read, all=len(joints))] if read else []
-    said += [tr("Read with care: {joints}.").format(joints=joined(care))] if care else []
-    said += [tr("Withheld: {joints}.").format(joints=joined(out))] if out else []
+        return tr("All joints: Caution.") if len(joints) > 1 else tr("Caution: {joints}.").format(joints=care[0])
+    said = [tr("{count} of {all} joints: Good.").format(count=read, all=len(joints))] if read else []
+    said += [tr("Caution: {joints}.").format(joints=joined(care))] if care else []
+    said += [tr("Not reported: {joints}.").format(joints=joined(out))] if out else []
     return " ".join(said)
 
 
@@ -182,13 +178,13 @@ def one_time_in_words(walk: RecordingAnalysis) -> str:
     """What ties the clocks of both legs, inside a sentence: where the hips do, by how much they are apart."""
     clock = walk.leg_clock
     if clock is None or walk.clocks is None or walk.clocks.tie is not ClockTie.PELVIS:
-        return tr("one time for both legs")
+        return tr("left and right sensors synchronised")
     sd = f"{1000 * clock.sd_s:.0f}"
     if clock.applied_s == 0.0:
-        return tr("one time for both legs, found through the hips to ± {sd} ms").format(sd=sd)
+        return tr("left and right sensors synchronised from hip movement to ± {sd} ms").format(sd=sd)
     late = f"{1000 * abs(clock.applied_s):.0f}"
     side = side_name(Side.RIGHT if clock.applied_s > 0 else Side.LEFT)
-    said = tr("one time for both legs, found through the hips: the {side} leg's clock was {late} ms late, ± {sd} ms")
+    said = tr("left and right sensors synchronised from hip movement: the {side} leg was {late} ms late, ± {sd} ms")
     return said.format(side=side, late=late, sd=sd)
 
 
@@ -196,9 +192,9 @@ def _in_order(facts: Facts) -> str:
     """What was looked at without finding anything."""
     said = []
     if not quality.slipped_straps(facts):
-        said.append(tr("no strap slipped"))
+        said.append(tr("no strap moved"))
     if max((lost for walk in facts.part.walks for lost in walk.lost_percent.values()), default=0.0) < MIN_LOSS_PERCENT:
-        said.append(tr("no samples lost"))
+        said.append(tr("hardly any samples lost"))
     if facts.verdicts.between.verdict is Verdict.READ:
         said.append(one_time_in_words(facts.walk))
-    return tr("In order: {what}.").format(what=joined(said)) if said else ""
+    return tr("Checked: {what}.").format(what=joined(said)) if said else ""

@@ -6,15 +6,15 @@ from app.wording.translation import joined, later, tr
 from core.verdicts.measurement_error import Difference, ErrorSource
 
 ERROR_SOURCES = {
-    ErrorSource.CHANCE: later("chance between strides"),
+    ErrorSource.CHANCE: later("variation between strides"),
     ErrorSource.DRIFT: later("drift within a walk"),
-    ErrorSource.CLOCK: later("the sensors' clocks"),
-    ErrorSource.SPEED: later("another walking speed"),
-    ErrorSource.WALKS: later("what walks differ by"),
-    ErrorSource.STRAPS: later("strapping the sensors on"),
-    ErrorSource.DAYS: later("what days differ by"),
-    ErrorSource.EVENTS: later("events that come early or late"),
-    ErrorSource.ZERO: later("the zero"),
+    ErrorSource.CLOCK: later("sensor synchronisation"),
+    ErrorSource.SPEED: later("different walking speed"),
+    ErrorSource.WALKS: later("variation between walks"),
+    ErrorSource.STRAPS: later("sensor attachment"),
+    ErrorSource.DAYS: later("variation between days"),
+    ErrorSource.EVENTS: later("timing of gait events"),
+    ErrorSource.ZERO: later("the standing reference"),
 }
 
 

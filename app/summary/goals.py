@@ -129,27 +129,27 @@ def standing_in_words(found: GoalFigure) -> str:
     """How a value stands to its goal, after the goal was named."""
     error = fixed(found.error, _places(found.goal.column)) + short_unit(found.goal.column)
     said = {
-        GoalStanding.SHORT: tr("short of it by more than the error ({error})"),
-        GoalStanding.SHORT_INSIDE: tr("short of it inside the error ({error}), so not told from the goal"),
-        GoalStanding.REACHED_INSIDE: tr("reached inside the error ({error}), so not told from the goal"),
-        GoalStanding.REACHED: tr("reached by more than the error ({error})"),
-        GoalStanding.NOT_JUDGED: tr("not judged: no error is known"),
-        GoalStanding.UNKNOWN: tr("no value can be told"),
+        GoalStanding.SHORT: tr("not reached, beyond measurement error (±{error})"),
+        GoalStanding.SHORT_INSIDE: tr("not reached, but within measurement error (±{error})"),
+        GoalStanding.REACHED_INSIDE: tr("reached, but within measurement error (±{error})"),
+        GoalStanding.REACHED: tr("reached, beyond measurement error (±{error})"),
+        GoalStanding.NOT_JUDGED: tr("not judged: measurement error not known"),
+        GoalStanding.UNKNOWN: tr("no value reported"),
     }
     return said[found.standing].format(error=error)
 
 
 def beyond_in_words(found: GoalStanding) -> str:
     """Of a goal that is reached, whether that is more than the error."""
-    return tr("beyond error") if found is GoalStanding.REACHED else tr("inside error, not told from the goal")
+    return tr("beyond error") if found is GoalStanding.REACHED else tr("within error, so not certain")
 
 
 def brief_standing(found: GoalStanding) -> str:
     """The same in a few words, where the goal stands beside."""
     return {
-        GoalStanding.SHORT: tr("short of goal, beyond error"),
-        GoalStanding.SHORT_INSIDE: tr("not told from the goal"),
-        GoalStanding.REACHED_INSIDE: tr("reached, inside error"),
+        GoalStanding.SHORT: tr("not reached, beyond error"),
+        GoalStanding.SHORT_INSIDE: tr("not reached, within error"),
+        GoalStanding.REACHED_INSIDE: tr("reached, within error"),
         GoalStanding.REACHED: tr("reached, beyond error"),
         GoalStanding.NOT_JUDGED: tr("goal not judged"),
         GoalStanding.UNKNOWN: tr("goal not judged"),

@@ -146,7 +146,7 @@ def _beyond(joint: Joint, curve: FloatArray, band: Band) -> tuple[Gap, ...]:
         limits.append((KNEE_OVERREAD * low, KNEE_OVERREAD * high))
     low = np.min([one for one, _ in limits], axis=0)
     high = np.max([one for _, one in limits], axis=0)
-    return gaps_outside(joint, curve, low, high, tr("more than 2 SD from the band"))
+    return gaps_outside(joint, curve, low, high, tr("more than 2 SD from the reference"))
 
 
 def _limits(band: Band) -> tuple[FloatArray, FloatArray]:

@@ -41,47 +41,55 @@ def leg_beside_leg(facts: Facts, column: str, found: Difference) -> str:
     match column:
         case parameters.KNEE_RANGE | parameters.ANKLE_RANGE:
             pattern = (
-                tr("The {joint} moves {size} less over the stride than the {second}: {value} against {other}.")
+                tr("The {joint} has {size} less range of motion than the {second}: {value} against {other}.")
                 if is_less
-                else tr("The {joint} moves {size} more over the stride than the {second}: {value} against {other}.")
+                else tr("The {joint} has {size} more range of motion than the {second}: {value} against {other}.")
             )
         case "knee_stance_to_swing_deg":
             pattern = (
-                tr("The {joint} bends {size} less from stance to swing than the {second}: {value} against {other}.")
+                tr("The {joint} flexes {size} less from stance to swing than the {second}: {value} against {other}.")
                 if is_less
                 else tr(
-                    "The {joint} bends {size} more from stance to swing than the {second}: {value} against {other}."
+                    "The {joint} flexes {size} more from stance to swing than the {second}: {value} against {other}."
                 )
             )
         case "knee_while_loading_deg":
             pattern = (
-                tr("The {joint} bends {size} less while loading than the {second}: {value} against {other}.")
+                tr("The {joint} flexes {size} less in loading response than the {second}: {value} against {other}.")
                 if is_less
-                else tr("The {joint} bends {size} more while loading than the {second}: {value} against {other}.")
+                else tr(
+                    "The {joint} flexes {size} more in loading response than the {second}: {value} against {other}."
+                )
             )
         case "knee_straightening_deg":
             pattern = (
-                tr("The {joint} straightens {size} less in stance than the {second}: {value} against {other}.")
+                tr("The {joint} extends {size} less in mid-stance than the {second}: {value} against {other}.")
                 if is_less
-                else tr("The {joint} straightens {size} more in stance than the {second}: {value} against {other}.")
+                else tr("The {joint} extends {size} more in mid-stance than the {second}: {value} against {other}.")
             )
         case "stance_percent":
             pattern = (
-                tr("Stance is {size} of the stride shorter {first} than {second}: {value} against {other}.")
+                tr(
+                    "Stance is {size} of the gait cycle shorter on the {first} than on the {second}: {value} "
+                    "against {other}."
+                )
                 if is_less
-                else tr("Stance is {size} of the stride longer {first} than {second}: {value} against {other}.")
+                else tr(
+                    "Stance is {size} of the gait cycle longer on the {first} than on the {second}: {value} "
+                    "against {other}."
+                )
             )
         case "step_time_s":
             pattern = (
-                tr("The step takes {size} less {first} than {second}: {value} against {other}.")
+                tr("Step time is {size} shorter on the {first} than on the {second}: {value} against {other}.")
                 if is_less
-                else tr("The step takes {size} more {first} than {second}: {value} against {other}.")
+                else tr("Step time is {size} longer on the {first} than on the {second}: {value} against {other}.")
             )
         case _:
             pattern = (
-                tr("{measure} is {size} less {first} than {second}: {value} against {other}.")
+                tr("{measure} is {size} lower on the {first} than on the {second}: {value} and {other}.")
                 if is_less
-                else tr("{measure} is {size} more {first} than {second}: {value} against {other}.")
+                else tr("{measure} is {size} higher on the {first} than on the {second}: {value} and {other}.")
             )
     joint = joint_of_column(column, first)
     return pattern.format(

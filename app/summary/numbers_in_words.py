@@ -54,7 +54,7 @@ def against_band(value: float, band: Band) -> str:
 def away_in_words(away_sd: float) -> str:
     """Say how many SD something lies from the group's mean."""
     if abs(away_sd) <= 1:
-        return tr("inside\u00a01\u00a0SD")
+        return tr("within\N{NO-BREAK SPACE}1\N{NO-BREAK SPACE}SD")
     if abs(away_sd) <= 2:
         return tr("1–2\u00a0SD\u00a0below") if away_sd < 0 else tr("1–2\u00a0SD\u00a0above")
     return tr("more than 2\u00a0SD\u00a0below") if away_sd < 0 else tr("more than 2\u00a0SD\u00a0above")
@@ -80,15 +80,15 @@ def marked(said: str, verdict: Verdict) -> str:
 
 
 def care_note() -> str:
-    return tr("{mark}: read with care; page 1 says why.").format(mark=CARE)
+    return tr("{mark}: caution; reason on page 1.").format(mark=CARE)
 
 
 def in_words(verdict: Judgement) -> str:
     """Say in a table whether a difference is larger than the measurement error."""
     return {
-        Judgement.EXCEEDS_ERROR: tr("exceeds error"),
-        Judgement.INSIDE_ERROR: tr("inside error"),
-        Judgement.WITHHELD: tr("withheld"),
+        Judgement.EXCEEDS_ERROR: tr("beyond error"),
+        Judgement.INSIDE_ERROR: tr("within error"),
+        Judgement.WITHHELD: tr("not reported"),
         Judgement.TOO_FEW_STRIDES: tr("too few strides"),
         Judgement.NO_PUBLISHED_FIGURE: tr("not judged"),
     }[verdict]
@@ -96,9 +96,7 @@ def in_words(verdict: Judgement) -> str:
 
 def in_brief(verdict: Judgement) -> str:
     """The same in a narrow column, whose head says what is judged against what."""
-    return {Judgement.EXCEEDS_ERROR: tr("exceeds"), Judgement.INSIDE_ERROR: tr("inside")}.get(
-        verdict, in_words(verdict)
-    )
+    return {Judgement.EXCEEDS_ERROR: tr("beyond"), Judgement.INSIDE_ERROR: tr("within")}.get(verdict, in_words(verdict))
 
 
 def judged_in_words(found: Difference) -> str:
@@ -111,7 +109,7 @@ def judged_in_words(found: Difference) -> str:
 
 
 def dagger_note() -> str:
-    return tr("{dagger}: the error rests on a figure whose source could not be verified.").format(dagger=DAGGER)
+    return tr("{dagger}: error based on a figure whose source could not be verified.").format(dagger=DAGGER)
 
 
 def signed_error(sigma: Sigma | None) -> str:

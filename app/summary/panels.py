@@ -57,15 +57,15 @@ def axis_of(facts: Facts, kind: str, *, is_about_mean: bool = False) -> Axis:
     low, high = usual_range_deg(JointKind(kind), is_about_mean=is_about_mean or facts.has_no_zero(kind))
     if kind == JointKind.ANKLE:
         return Axis(low, high, 10, 10, tr("toes up"), tr("toes down"))
-    return Axis(low, high, 20, 10, tr("bent"), tr("straight") if kind == JointKind.KNEE else tr("extended"))
+    return Axis(low, high, 20, 10, tr("flexed"), tr("extended"))
 
 
 def title_of(facts: Facts, kind: str) -> str:
     if facts.has_no_zero(kind):
         from_mean = {
-            JointKind.HIP: tr("Hip angle, degrees from the mean of the stride (flexion +)"),
-            JointKind.KNEE: tr("Knee angle, degrees from the mean of the stride (flexion +)"),
-            JointKind.ANKLE: tr("Ankle angle, degrees from the mean of the stride (dorsiflexion +)"),
+            JointKind.HIP: tr("Hip angle, degrees from its mean (flexion +)"),
+            JointKind.KNEE: tr("Knee angle, degrees from its mean (flexion +)"),
+            JointKind.ANKLE: tr("Ankle angle, degrees from its mean (dorsiflexion +)"),
         }
         return from_mean[JointKind(kind)]
     measured = {
@@ -84,9 +84,9 @@ def title_with_side(facts: Facts, kind: str, side: Side, *, is_about_mean: bool 
 def small_title(facts: Facts, kind: str, *, is_about_mean: bool = False) -> str:
     """Of a panel half as wide as the page, as it goes on behind a side."""
     short = {
-        "knee": tr("knee, degrees from the mean (flexion +)"),
-        "ankle": tr("ankle, degrees from the mean (dorsiflexion +)"),
-        "hip": tr("hip, degrees from the mean (flexion +)"),
+        "knee": tr("knee, degrees from its mean (flexion +)"),
+        "ankle": tr("ankle, degrees from its mean (dorsiflexion +)"),
+        "hip": tr("hip, degrees from its mean (flexion +)"),
     }
     title = title_of(facts, kind)
     return short[kind] if is_about_mean or facts.has_no_zero(kind) else within_sentence(title)
@@ -166,7 +166,7 @@ def why_withheld(facts: Facts, joint: Joint) -> str:
     for cause in quality.causes(facts, (Verdict.WITHHELD,), is_of_joints=True):
         if joint in cause.places and cause.gate not in quality.HEIGHT_GATES:
             return cause.words.why
-    return tr("No stride of this joint could be used.")
+    return tr("No usable stride for this joint.")
 
 
 def why_missing(facts: Facts, joint: Joint) -> str:
@@ -195,7 +195,7 @@ def why_no_joint(facts: Facts, kind: str) -> str:
 def why_no_band(facts: Facts, why: NoBand | None) -> str:
     """Why no band stands beside this walk; empty where one does."""
     if facts.gait and not facts.sides_with_band:
-        return tr("No band: a prosthetic leg is not compared with other people's.")
+        return tr("No reference: a prosthetic leg is not compared with other people.")
     return tr(WHY_NO_BAND[why]) if why is not None else ""
 
 
@@ -205,21 +205,23 @@ def band_in_words(facts: Facts, *, is_at_height: bool) -> str:
     if group is None:
         return why_no_band(facts, facts.bands.why_no_curves)
     if not is_at_height and all(facts.has_no_zero(kind) for kind in KINDS if facts.has_joint(kind)):
-        return tr("No band: without a zero there is no height to compare.")
+        return tr("No reference: without a standing reference there are no absolute angles to compare.")
     said = [
-        tr("Grey: mean, ±1 and ±2 SD of {n} young adults, barefoot, on a treadmill at {speed} m/s [1].").format(
+        tr("Grey: reference (mean, ±1 and ±2 SD of {n} young adults, barefoot, treadmill, {speed} m/s) [1].").format(
             n=group.n, speed=fixed(group.speed_m_s, 2)
         )
     ]
     if is_at_height:
-        said.append(tr("It is laid at the height of each curve, so the picture judges shape; height stands beside it."))
+        said.append(
+            tr("It is shifted to the level of each curve to compare shape; the absolute angle is shown beside it.")
+        )
     elif JointKind.HIP in facts.kinds:
-        said.append(tr("At the hip it has another zero and is on page 1 alone."))
+        said.append(tr("For the hip it has a different zero and is shown on page 1 only."))
     if facts.bands.are_curves_of_other_ages:
         said.append(tr(OTHER_AGES))
     if not facts.sides_with_band.issuperset(facts.gait):
         sides = joined([side_name(side) for side in Side if side in facts.sides_with_band])
-        said.append(tr("It is for the {side} leg alone.").format(side=sides))
+        said.append(tr("It applies to the {side} leg only.").format(side=sides))
     return " ".join(said)
 
 
@@ -261,7 +263,7 @@ def band_swatches() -> list[tuple[Picture, str]]:
     ]
     outer = [box(0.2, 1, SWATCH_WIDTH - 0.4, 7, PAPER.band_2sd, PAPER.band_2sd_edge, 0.35)]
     return [
-        (picture(inner, SWATCH_WIDTH, SWATCH_HEIGHT), tr("Band mean, ±1 SD [1]")),
+        (picture(inner, SWATCH_WIDTH, SWATCH_HEIGHT), tr("Reference mean, ±1 SD [1]")),
         (picture(outer, SWATCH_WIDTH, SWATCH_HEIGHT), tr("±2 SD [1]")),
     ]
 
@@ -274,7 +276,7 @@ def not_drawn(facts: Facts, kind: str) -> list[str]:
         if not np.isfinite(facts.mean_curve_deg(side, kind)).any() and not len(facts.strides_deg(side, kind)):
             found = facts.verdicts.joint(joint_of(kind, side))
             is_withheld = Verdict.WITHHELD in (found.shape.verdict, found.sign.verdict)
-            pattern = tr("Not drawn: {joint}, withheld.") if is_withheld else tr("Not drawn: {joint}.")
+            pattern = tr("Not drawn: {joint}, not reported.") if is_withheld else tr("Not drawn: {joint}.")
             said.append(pattern.format(joint=joint))
     return said
 
@@ -292,7 +294,7 @@ def curve_alt(facts: Facts, kind: str, sides: Sequence[Side]) -> str:
                 numbers.append(peak.format(name=name, value=fixed(value.mean, 0), percent=fixed(at.mean, 0)))
         found = facts.value(side, f"{kind}_range_deg")
         if is_mean_enough(found.n):
-            numbers.append(tr("range {value}°").format(value=fixed(found.mean, 0)))
+            numbers.append(tr("range of motion {value}°").format(value=fixed(found.mean, 0)))
         off = facts.value(side, "stance_percent")
         if is_mean_enough(off.n):
             numbers.append(tr("toe\u2011off at {percent} %").format(percent=fixed(off.mean, 0)))
@@ -302,27 +304,27 @@ def curve_alt(facts: Facts, kind: str, sides: Sequence[Side]) -> str:
 
 def peak_name(column: str) -> str:
     return {
-        "knee_loading_peak_deg": tr("most flexed, loading"),
-        "knee_stance_minimum_deg": tr("least flexed, stance"),
-        "knee_swing_peak_deg": tr("most flexed, swing"),
-        "ankle_loading_plantarflexion_deg": tr("most plantarflexed, loading"),
-        "ankle_stance_dorsiflexion_deg": tr("most dorsiflexed, stance"),
-        "ankle_push_off_plantarflexion_deg": tr("most plantarflexed, push\u2011off"),
-        "ankle_swing_dorsiflexion_deg": tr("most dorsiflexed, swing"),
-        "hip_flexion_peak_deg": tr("most flexed"),
-        "hip_extension_peak_deg": tr("most extended"),
-        "hip_abduction_peak_deg": tr("most abducted"),
-        "hip_adduction_peak_deg": tr("most adducted"),
+        "knee_loading_peak_deg": tr("peak flexion, loading"),
+        "knee_stance_minimum_deg": tr("least flexion, stance"),
+        "knee_swing_peak_deg": tr("peak flexion, swing"),
+        "ankle_loading_plantarflexion_deg": tr("peak plantarflexion, loading"),
+        "ankle_stance_dorsiflexion_deg": tr("peak dorsiflexion, stance"),
+        "ankle_push_off_plantarflexion_deg": tr("peak plantarflexion, push\u2011off"),
+        "ankle_swing_dorsiflexion_deg": tr("peak dorsiflexion, swing"),
+        "hip_flexion_peak_deg": tr("peak flexion"),
+        "hip_extension_peak_deg": tr("peak extension"),
+        "hip_abduction_peak_deg": tr("peak abduction"),
+        "hip_adduction_peak_deg": tr("peak adduction"),
     }[column]
 
 
 def excursion_name(column: str) -> str:
     return {
-        "knee_while_loading_deg": tr("bend while loading"),
-        "knee_straightening_deg": tr("straightening in stance"),
-        "knee_stance_to_swing_deg": tr("stance to swing"),
+        "knee_while_loading_deg": tr("flexion, loading response"),
+        "knee_straightening_deg": tr("extension, mid-stance"),
+        "knee_stance_to_swing_deg": tr("flexion, stance to swing"),
         "ankle_heel_rocker_deg": tr("heel rocker"),
         "ankle_rocker_deg": tr("ankle rocker"),
         "ankle_push_off_deg": tr("push\u2011off"),
-        "ankle_toes_lifted_deg": tr("toes lifted"),
+        "ankle_toes_lifted_deg": tr("dorsiflexion, swing"),
     }[column]

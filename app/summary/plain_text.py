@@ -55,7 +55,7 @@ def plain(text: str) -> str:
 
 def typed(text: str, most: int = MAX_TYPED) -> str:
     """Give what the clinic typed, ready to stand within a line of ours."""
-    return isolated(breakable(shortened(plain(text), most))) or tr("not stated")
+    return isolated(breakable(shortened(plain(text), most))) or tr("not recorded")
 
 
 def plain_lines(text: str) -> list[str]:

@@ -32,7 +32,7 @@ def caveats(
     `is_of_joints`: of the joints alone, not of the legs' timing and distance.
     """
     if not facts.gait:
-        return [tr("No foot or shank sensor told a stride of this walk.")]
+        return [tr("No stride was found from a foot or shank sensor.")]
     return [f"{one.where}: {one.said}" for one in causes(facts, of, is_of_joints=is_of_joints)]
 
 
@@ -97,10 +97,10 @@ def _named(gate: str, where: str) -> str:
     """What of a place a gate is about, where that is not all of it."""
     inside = within_sentence(where)
     if gate in HEIGHT_GATES:
-        return tr("Height of {joints}").format(joints=inside)
+        return tr("Absolute angle of {joints}").format(joints=inside)
     if gate in ABDUCTION_GATES:
         return tr("Abduction of {joints}").format(joints=inside)
-    return tr("All of {joints} but the range").format(joints=inside) if gate == "sign" else where
+    return tr("All values of {joints} except range of motion").format(joints=inside) if gate == "sign" else where
 
 
 def _where(facts: Facts, places: Sequence[Place]) -> str:
@@ -108,7 +108,7 @@ def _where(facts: Facts, places: Sequence[Place]) -> str:
     sides = [side for side in Side if side in places]
     joints = [joint for joint in places if isinstance(joint, Joint) and joint.side not in sides]
     if not sides and not joints:
-        return tr("Between the legs")
+        return tr("Left vs right")
     if len(sides) == len(Side) and not joints:
         return tr("Both legs")
     if not sides and len(joints) > 1 and len(joints) == len(facts.verdicts.joints):
@@ -123,7 +123,7 @@ def gravest(facts: Facts) -> list[str]:
     if len(sentences) < 2:
         return sentences
     more = len(sentences) - 1
-    said = tr_n("{count} more remark on page 4.", "{count} more remarks on page 4.", more)
+    said = tr_n("{count} more finding on page 4.", "{count} more findings on page 4.", more)
     return [f"{sentences[0]} {said.format(count=more)}"]
 
 
@@ -137,11 +137,11 @@ def cells(facts: Facts) -> list[tuple[str, str]]:
     """What the verdicts rest on, as label and value."""
     return [
         (tr("Strides used"), _each(facts, lambda side: str(facts.strides(side)))),
-        (tr("Left out"), _left_out(facts)),
+        (tr("Excluded"), _left_out(facts)),
         (tr("Samples lost"), _loss_in_words(facts)),
         (tr("Joint axes, 1 SD"), _axes(facts)),
-        (tr("Lag of sensors"), _lag(facts)),
-        (tr("Zero"), _zero(facts)),
+        (tr("Sensor clock lag"), _lag(facts)),
+        (tr("Standing reference"), _zero(facts)),
         (tr("Straps"), _straps(facts)),
     ]
 
@@ -193,7 +193,7 @@ def _lag(facts: Facts) -> str:
     if not facts.calibrated:
         return NOTHING
     if all(found.is_clock_shared for found in facts.calibrated.values()):
-        return tr("none: one clock")
+        return tr("none: same clock")
     untold = _without_lag(facts)
     if len(untold) == len(facts.calibrated):
         return tr("not resolvable")
@@ -216,7 +216,7 @@ def _zero(facts: Facts) -> str:
     said = {
         ZeroKind.STANDING: tr("standing"),
         ZeroKind.GONIOMETER: tr("standing, with goniometer"),
-        ZeroKind.NONE: tr("none: heights are not shown"),
+        ZeroKind.NONE: tr("none: no absolute angles"),
     }
     if not kinds:
         return NOTHING
@@ -237,4 +237,4 @@ def slipped_straps(facts: Facts) -> list[Site]:
 
 def _straps(facts: Facts) -> str:
     names = [name_of(site) for site in slipped_straps(facts)]
-    return tr("slipped: {sites}").format(sites=joined(names)) if names else tr("no slip found")
+    return tr("moved: {sites}").format(sites=joined(names)) if names else tr("none moved")

@@ -98,4 +98,4 @@ def conditions_in_words(visits: Sequence[WalkedVisit]) -> str:
 
 
 def condition_in_words(condition: str) -> str:
-    return condition or tr("no condition stated")
+    return condition or tr("no condition recorded")

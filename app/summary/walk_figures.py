@@ -52,34 +52,34 @@ class Figure:
 WITHOUT_BAND_WORDS = frozenset({"stance_percent"})
 PEAKS = (  # name of the column in strides.csv, name for the reader, window of the band's peak
     ("at_initial_contact_deg", later("At initial contact"), None),
-    ("loading_peak_deg", later("Loading peak"), "knee_loading_peak"),
-    ("stance_minimum_deg", later("Stance minimum"), "knee_stance_minimum"),
-    ("swing_peak_deg", later("Swing peak"), "knee_swing_peak"),
-    ("swing_peak_percent", later("Swing peak at, %"), None),
-    ("range_deg", later("Range"), None),
-    ("stance_dorsiflexion_deg", later("Stance dorsiflexion"), "ankle_stance_dorsiflexion"),
-    ("push_off_plantarflexion_deg", later("Push-off plantarflexion"), "ankle_push_off_plantarflexion"),
-    ("swing_dorsiflexion_deg", later("Swing dorsiflexion"), "ankle_swing_dorsiflexion"),
+    ("loading_peak_deg", later("Peak flexion, loading"), "knee_loading_peak"),
+    ("stance_minimum_deg", later("Least flexion, stance"), "knee_stance_minimum"),
+    ("swing_peak_deg", later("Peak flexion, swing"), "knee_swing_peak"),
+    ("swing_peak_percent", later("Time of peak flexion, swing, %"), None),
+    ("range_deg", later("Range of motion"), None),
+    ("stance_dorsiflexion_deg", later("Peak dorsiflexion, stance"), "ankle_stance_dorsiflexion"),
+    ("push_off_plantarflexion_deg", later("Peak plantarflexion, push-off"), "ankle_push_off_plantarflexion"),
+    ("swing_dorsiflexion_deg", later("Peak dorsiflexion, swing"), "ankle_swing_dorsiflexion"),
 )
 KNEE_ROWS, ANKLE_ROWS = PEAKS[:6], (PEAKS[0], *PEAKS[6:], PEAKS[5])
 HIP_ROWS = (
-    ("range_deg", later("Range"), None),
-    ("flexion_peak_deg", later("Most flexed"), None),
-    ("extension_peak_deg", later("Most extended"), None),
+    ("range_deg", later("Range of motion"), None),
+    ("flexion_peak_deg", later("Peak flexion"), None),
+    ("extension_peak_deg", later("Peak extension"), None),
     ("abduction_range_deg", later("Abduction, range"), None),
-    ("abduction_peak_deg", later("Most abducted"), None),
-    ("adduction_peak_deg", later("Most adducted"), None),
+    ("abduction_peak_deg", later("Peak abduction"), None),
+    ("adduction_peak_deg", later("Peak adduction"), None),
 )
 ROWS = {JointKind.HIP: HIP_ROWS, JointKind.KNEE: KNEE_ROWS, JointKind.ANKLE: ANKLE_ROWS}
 PELVIS_ROWS = (
     ("pelvis_obliquity_range_deg", later("Obliquity, range")),
     ("pelvis_drop_deg", later("Drop in swing")),
     ("pelvis_rotation_range_deg", later("Rotation, range")),
-    ("pelvis_lean_deg", later("Lean, forward +")),
+    ("pelvis_lean_deg", later("Mean tilt, forward +")),
     ("pelvis_tilt_range_deg", later("Tilt, range")),
 )
-WITHHELD, MAY_BE_MIRRORED = later("withheld"), later("sign unsure")
-NO_ZERO, NO_HEIGHT = later("no zero"), later("height withheld")
+WITHHELD, MAY_BE_MIRRORED = later("not reported"), later("sign unclear")
+NO_ZERO, NO_HEIGHT = later("no standing reference"), later("no absolute angle")
 
 
 def strides_in_words(part: Part, side: Side) -> str:
@@ -94,8 +94,8 @@ def strides_in_words(part: Part, side: Side) -> str:
         return tr_n("{side}: {used} stride used.", "{side}: {used} strides used.", used).format(side=letter, used=used)
     reasons = [f"{count} {words}" for words, count in left_out.most_common()] if len(left_out) > 1 else list(left_out)
     said = tr_n(
-        "{side}: {used} stride used, {out} left out ({reasons}).",
-        "{side}: {used} strides used, {out} left out ({reasons}).",
+        "{side}: {used} stride used, {out} excluded ({reasons}).",
+        "{side}: {used} strides used, {out} excluded ({reasons}).",
         used,
     )
     return said.format(side=letter, used=used, out=left_out.total(), reasons=", ".join(reasons))
@@ -108,10 +108,10 @@ def few_strides_in_words(part: Part) -> str:
     without_spread = [side for side, n in counts.items() if is_mean_enough(n) and not is_spread_enough(n)]
     said = []
     if without_mean:
-        none = tr("{sides}: under {count} strides, so without a mean.")
+        none = tr("{sides}: fewer than {count} strides, no mean.")
         said.append(none.format(sides=joined(without_mean), count=MIN_STRIDES_FOR_MEAN))
     if without_spread:
-        bare = tr("{sides}: under {count} strides, so without spread.")
+        bare = tr("{sides}: fewer than {count} strides, no SD.")
         said.append(bare.format(sides=joined(without_spread), count=MIN_STRIDES_FOR_SD))
     return " ".join(said)
 
@@ -172,8 +172,8 @@ def pelvis_in_words(part: Part) -> list[str]:
     withheld: dict[str, list[str]] = {}
     for name, found in (
         (tr("pelvis"), said.pelvis),
-        *((tr("abduction, {side}").format(side=side_name(side)), one) for side, one in said.abduction.items()),
-        (tr("tilt"), said.pelvis_tilt if said.pelvis.is_told else said.pelvis),
+        *((tr("{side} hip abduction").format(side=side_name(side)), one) for side, one in said.abduction.items()),
+        (tr("pelvic tilt"), said.pelvis_tilt if said.pelvis.is_told else said.pelvis),
     ):
         for reason in found.reasons[:1]:
             if reason.verdict is Verdict.WITHHELD:

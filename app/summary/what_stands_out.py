@@ -34,8 +34,8 @@ from core.verdicts.model import Verdict
 from core.verdicts.quantities import joint_of as joint_of_column
 
 MAX_FINDINGS = 3
-BANDS_ON_PAPER = later("band [1]"), later("band [2]")  # with the numbers of the sources on its last page
-BANDS_ON_SCREEN = later("the band"), later("the band")
+BANDS_ON_PAPER = later("reference [1]"), later("reference [2]")  # with the numbers of the sources on its last page
+BANDS_ON_SCREEN = later("reference"), later("reference")
 MAX_AWAY_SD = 2.0  # of a band: what lies nearer is inside of it
 MAX_OFFSET_DEG = 10.0  # laboratories differ by 7 deg in the height of their curves, a standing zero by 3 deg
 
@@ -138,14 +138,24 @@ def nothing_found(facts: Facts, comparison: Comparison | None) -> list[str]:
     has_angles = any(joint_of_column(column, Side.LEFT) is not None for column in judged)
     if any(difference.exceeds for difference in judged.values()):
         said.append(
-            tr("No difference is so much larger than its error that it is told here; the tables mark what exceeds it.")
+            tr(
+                "No difference is far enough beyond measurement error to be listed here. The tables mark "
+                "every difference beyond error."
+            )
         )
     elif judged and (has_angles or not any(map(facts.is_measured, Joint))):
-        said.append(tr("No difference is larger than its error."))
+        said.append(tr("All judged differences are within measurement error."))
     elif judged:
-        said.append(tr("No angle can be compared. No difference of times or steps is larger than its error."))
+        said.append(
+            tr("No angle can be compared. All judged differences in timing and steps are within measurement error.")
+        )
     if away and max(away) <= MAX_AWAY_SD:
-        said.append(tr("Every peak that could be judged lies within 2\u00a0SD of the band, at its curve's height."))
+        said.append(
+            tr(
+                "All judged peaks are within 2\N{NO-BREAK SPACE}SD of the reference, shifted to the level of "
+                "each curve."
+            )
+        )
     return said or [tr("Nothing could be judged.")]
 
 
@@ -239,9 +249,15 @@ def _beyond_band(facts: Facts, bands: tuple[str, str]) -> Iterator[Candidate]:
             continue
         offset = facts.offset_deg(side, kind)
         pattern = (
-            tr("{joint} {peak}: {value}°; {group} at the curve's height {band}°: more than 2\u00a0SD below.")
+            tr(
+                "{joint} {peak}: {value}°; {group} at the level of the curve {band}°: more than "
+                "2\N{NO-BREAK SPACE}SD below."
+            )
             if away < 0
-            else tr("{joint} {peak}: {value}°; {group} at the curve's height {band}°: more than 2\u00a0SD above.")
+            else tr(
+                "{joint} {peak}: {value}°; {group} at the level of the curve {band}°: more than "
+                "2\N{NO-BREAK SPACE}SD above."
+            )
         )
         said = pattern.format(
             joint=capitalised(name_of(joint_of(kind, side))),
@@ -282,9 +298,9 @@ def _heights(facts: Facts) -> Iterator[Candidate]:
         for kind in KINDS:
             offset = facts.offset_deg(side, kind)
             if abs(offset) > MAX_OFFSET_DEG:
-                said = tr("{joint}: the whole curve lies {offset}° from the band: look at the zero first.").format(
-                    joint=capitalised(name_of(joint_of(kind, side))), offset=signed(offset, 1)
-                )
+                said = tr(
+                    "{joint}: the whole curve is {offset}° from the reference. Check the standing reference first."
+                ).format(joint=capitalised(name_of(joint_of(kind, side))), offset=signed(offset, 1))
                 topics: tuple[Topic, ...] = ((joint_of(kind, side), Rank.HEIGHT, offset > 0),)
                 yield Candidate(Rank.HEIGHT, abs(offset) / MAX_OFFSET_DEG, topics, said)
 
@@ -295,9 +311,9 @@ def caveat(facts: Facts, comparison: Comparison | None) -> list[str]:
         return withheld[:1]
     speeds = _speeds_apart(comparison)
     if speeds:
-        return [tr("Speed {speeds} m/s: part of a difference can come from speed.").format(speeds=speeds)]
+        return [tr("Speed {speeds} m/s: part of a difference may be due to speed.").format(speeds=speeds)]
     if any(found.zero is ZeroKind.STANDING for found in facts.calibrated.values()):
-        return [tr("Zero is the standing posture: how the patient stood moves a whole curve up or down.")]
+        return [tr("Angles start from the patient's standing posture. That posture shifts the whole curve up or down.")]
     return []
 
 
@@ -329,9 +345,9 @@ def _changed(facts: Facts, comparison: Comparison | None, row: Compared) -> str:
     unit, decimals = unit_and_decimals(row.measure.column)
     is_visits = comparison is not None and comparison.kind is Contrast.VISITS
     pattern = (
-        tr("{what}: {value}, at the earlier visit {other}; difference {difference}, error {error}.")
+        tr("{what}: {value}, earlier visit {other}; difference {difference}, error {error}.")
         if is_visits
-        else tr("{what}: {value} at {this}, {other} at {first}; difference {difference}, error {error}.")
+        else tr("{what}: {this} {value}, {first} {other}; difference {difference}, error {error}.")
     )
     measure = measure_in_words(row.measure.column)
     of_leg = tr("{side}, {measure}").format(side=role(facts, row.side), measure=measure)

@@ -50,25 +50,25 @@ def strength_in_words(passphrase: str, shortest: int, known: Iterable[str] = ())
     known = tuple(known)
     strength = strength_of(passphrase, shortest, known)
     if strength is Strength.NONE:
-        return tr("Five words that have nothing to do with each other are good, and easier to keep than signs.")
+        return tr("Five unrelated words are strong and easier to remember than symbols.")
     if strength in (Strength.TOO_SHORT, Strength.WEAK):
         return "{}. {}.".format(*refusal_of_passphrase(passphrase, shortest, known))
     held = _in_words(held_for_s(passphrase, known))
     if strength is Strength.FAIR:
-        return tr("Fair: guessing it would take {held} or so. One more word makes it strong.").format(held=held)
+        return tr("Fair: guessing it would take {held}. One more word makes it strong.").format(held=held)
     return tr("Strong: guessing it would take {held}.").format(held=held)
 
 
 def refusal_of_passphrase(passphrase: str, shortest: int, known: Iterable[str] = ()) -> tuple[str, str]:
     """What is wrong with a passphrase that is not accepted, and what to do; both without their full stop."""
     if strength_of(passphrase, shortest, known) is not Strength.WEAK:
-        return tr("{shortest} letters or more are needed").format(shortest=shortest), tr("Take a few words")
+        return tr("At least {shortest} characters are needed").format(shortest=shortest), tr("Use several words")
     judged = _judged(passphrase, known)
     held = _in_words(_held_s(judged.guesses))
-    what = tr("{why}, so who has a copy of the library could guess it within {held}").format(
+    what = tr("{why}, so anyone with a copy of the library could guess it within {held}").format(
         why=_why(judged.parts), held=held
     )
-    return what, tr("Take four or five words that have nothing to do with each other")
+    return what, tr("Use four or five unrelated words")
 
 
 def held_for_s(passphrase: str, known: Iterable[str] = ()) -> float:
@@ -100,16 +100,16 @@ def _why(parts: list[dict[str, Any]]) -> str:
         case "repeat":
             return tr("It repeats itself")
         case "sequence":
-            return tr("Its letters or figures follow each other")
+            return tr("Its letters or digits are in sequence")
         case "spatial":
             return tr("Its keys lie side by side")
         case "date" | "regex":
-            return tr("It is made of a date or a year")
+            return tr("It contains a date or a year")
         case "dictionary" if longest["dictionary_name"] == "user_inputs":
-            return tr("It holds your name or code, the clinic's or the program's")
+            return tr("It contains your name or code, or that of the clinic or program")
         case "dictionary":
-            return tr("It is made of what is tried first: a common password, word or name")
-    return tr("It has too few letters for what it is made of")
+            return tr("It contains a common password, word or name")
+    return tr("It is too short for the characters it uses")
 
 
 def _in_words(seconds: float) -> str:
@@ -125,4 +125,4 @@ def _in_words(seconds: float) -> str:
         return tr("months")
     if seconds < 100 * YEAR_S:
         return tr("years")
-    return tr("centuries") if seconds < 1e4 * YEAR_S else tr("longer than anybody waits")
+    return tr("centuries") if seconds < 1e4 * YEAR_S else tr("longer than anyone would wait")

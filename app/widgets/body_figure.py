@@ -40,8 +40,8 @@ def mark_words(mark: SensorMark) -> str:
     """Say a mark as a reader of screens does."""
     return {
         SensorMark.WORN: tr("worn"),
-        SensorMark.LOOK: tr("wants a look"),
-        SensorMark.SILENT: tr("silent"),
+        SensorMark.LOOK: tr("needs checking"),
+        SensorMark.SILENT: tr("no signal"),
         SensorMark.GAP: tr("no sensor yet"),
     }[mark]
 

@@ -48,7 +48,7 @@ class Door(PaintedButton):
 
     def tell(self, shown: DoorWords) -> None:
         self._shown = shown
-        self.setAccessibleName(tr("Data: {words}").format(words=f"{self.words} {self._details}"))
+        self.setAccessibleName(tr("Data quality: {words}").format(words=f"{self.words} {self._details}"))
         self.setToolTip(self.words)
         self.update()
 

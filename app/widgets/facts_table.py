@@ -92,7 +92,7 @@ def _cell(fact: Fact, question: str, joint: Joint) -> TextCell:
         align=RIGHT,
         weight=SEMIBOLD if fact.needs_look else REGULAR,
         mark=Icon.WARNING if fact.needs_look else None,
-        spoken=tr("{cell}, look at it").format(cell=said) if fact.needs_look else said,
+        spoken=tr("{cell}, needs checking").format(cell=said) if fact.needs_look else said,
     )
 
 
@@ -117,7 +117,7 @@ def _margin_of(margin: float, wanted: float = MARGIN_WANTED) -> Fact:
 
 
 def _direction(found: JointCalibration) -> Fact:
-    return Fact(tr("sure")) if found.is_sign_certain else Fact(tr("uncertain"), needs_look=True)
+    return Fact(tr("certain")) if found.is_sign_certain else Fact(tr("uncertain"), needs_look=True)
 
 
 def _lag(found: JointCalibration | HipIdentification) -> Fact:
@@ -165,23 +165,31 @@ def _apart(found: HipIdentification) -> Fact:
 
 
 HIP_QUESTIONS: tuple[tuple[str, str, Callable[[HipIdentification], Fact]], ...] = (
-    (later("Heading certainty"), later("One standard deviation of the heading of pelvis against thigh."), _heading),
+    (
+        later("Heading certainty"),
+        later("One standard deviation of the pelvis heading relative to the thigh."),
+        _heading,
+    ),
     (
         later("Margin"),
-        later("How much worse the next best answer fits. Under {wanted} is doubt."),
+        later("How much worse the next best solution fits. Below {wanted}, the result is uncertain."),
         lambda found: _margin_of(found.margin, LIMITS.pairing_margin),
     ),
-    (later("Disagreement"), later("How much of what both sensors feel of the hip they do not share."), _disagreement),
-    (later("Centre from the sensors"), later("How far the hip lies from the pelvis's and the thigh's."), _centre),
-    (later("Hips apart"), later("How far the left hip lies to the left of the right one."), _apart),
-    (later("Clock lag"), later("What was added to the farther sensor's clock."), _lag),
-    (later("Zero"), later("What reads zero."), lambda _: Fact(tr("standing"))),
+    (later("Disagreement"), later("Share of the hip acceleration on which the two sensors disagree."), _disagreement),
+    (later("Centre to sensors"), later("Distance from the hip centre to the pelvis and thigh sensors."), _centre),
+    (later("Hip spacing"), later("How far the left hip centre lies to the left of the right one."), _apart),
+    (later("Clock lag"), later("Time added to the clock of the distal sensor."), _lag),
+    (later("Standing reference"), later("Posture taken as zero."), lambda _: Fact(tr("standing"))),
 )
 QUESTIONS: tuple[tuple[str, str, Callable[[JointCalibration], Fact]], ...] = (
-    (later("Axis from"), later("Which recording showed how the joint turns."), _axis_from),
-    (later("Axis certainty"), later("One standard deviation of the direction of the joint axis."), _axis_certainty),
-    (later("Margin"), later("How much worse the next best answer fits. Under {wanted} is doubt."), _margin),
-    (later("Direction"), later("Whether flexion is told from extension."), _direction),
-    (later("Clock lag"), later("What was added to the farther sensor's clock."), _lag),
-    (later("Zero"), later("What reads zero, or the goniometer's value in standing."), _zero),
+    (later("Axis from"), later("Recording used to determine the joint axis."), _axis_from),
+    (later("Calibration certainty"), later("One standard deviation of the joint axis direction."), _axis_certainty),
+    (
+        later("Margin"),
+        later("How much worse the next best solution fits. Below {wanted}, the result is uncertain."),
+        _margin,
+    ),
+    (later("Direction"), later("Whether flexion and extension can be distinguished."), _direction),
+    (later("Clock lag"), later("Time added to the clock of the distal sensor."), _lag),
+    (later("Standing reference"), later("Posture taken as zero, or the goniometer value in standing."), _zero),
 )

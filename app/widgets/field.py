@@ -182,7 +182,7 @@ class Field(Themed):
 
     def _on_input_rejected(self) -> None:
         self._is_too_long = True
-        self.set_wrong(tr("There is room for {count} characters.").format(count=self._box.maxLength()))
+        self.set_wrong(tr("At most {count} characters.").format(count=self._box.maxLength()))
 
     def _on_editing_finished(self) -> None:
         self._is_pending = False
@@ -258,7 +258,7 @@ class NumberField(Field):
             self.set_wrong("")
             return
         wanted = (
-            tr("Type a number from {low} to {high}.") if self.decimals else tr("Type {low} to {high}, no decimals.")
+            tr("Enter a number from {low} to {high}.") if self.decimals else tr("Enter {low} to {high}, no decimals.")
         )
         unit = self._box.unit
         space = "" if unit in ("", "°", "%") else " "

@@ -16,7 +16,7 @@ from core.gait.spatiotemporal import MeanAndSd
 from core.verdicts.model import Verdict
 
 FIGURE = 15  # px of the letters of a value
-BAND_HEAD = later("band 1 SD")
+BAND_HEAD = later("ref. ±1 SD")
 MINUS = "\N{MINUS SIGN}"
 CARE_MARK = "*"  # behind what is to be read with care
 
@@ -48,7 +48,7 @@ def _side_head(side: Side, strides: Mapping[Side, int]) -> TextCell:
 def _figure_cells(row: Figure, heading: str) -> tuple[TextCell, ...]:
     name = TextCell(row.name, "" if row.unit == "°" or row.name.endswith(row.unit) else row.unit)
     band = "" if row.band is None else _range(row)
-    of_band = _cell(("", band), row, heading, tr("reference band"))
+    of_band = _cell(("", band), row, heading, tr("reference"))
     if row.both is not None:
         return name, _cell(_of_both(row), row, heading, tr("both sides"), span=2), EMPTY, of_band
     return name, *(_cell(_of_side(row, side), row, heading, side_name(side), side) for side in Side), of_band

@@ -16,11 +16,11 @@ from core.findings import Finding, Severity
 ORDER = (Severity.GRAVE, Severity.WARNING, Severity.INFO)
 LEAST_SIZE = (320, 96)  # the rest is scrolled
 SEVERITY_WORDS = {
-    Severity.GRAVE: later("grave"),
+    Severity.GRAVE: later("serious"),
     Severity.WARNING: later("warning"),
     Severity.INFO: later("info"),
 }
-NOTHING = later("Nothing stands out.")
+NOTHING = later("No data quality findings.")
 USUAL = frozenset({"not_a_hinge"})  # of living joints: a figure of theirs, which summary.json has
 
 

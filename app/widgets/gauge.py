@@ -434,7 +434,7 @@ class Gauge(QWidget):
                 space = "" if measure.unit == "°" else " "
                 known = f"{measure.figure}{space}{measure.unit}" if measure.figure != UNKNOWN else tr("unknown")
                 parts.append(f"{name} {known}")
-                parts.append(tr("under {limit} needed").format(limit=measure.wanted))
+                parts.append(tr("under {limit} required").format(limit=measure.wanted))
         parts.append(face.note or (tr("move now") if face.state is GaugeState.NOW else state_word(face.state)))
         self.setAccessibleName(", ".join(parts))
 
@@ -459,9 +459,9 @@ def state_word(state: GaugeState) -> str:
     return {
         GaugeState.OPEN: tr("To do"),
         GaugeState.NOW: tr("Now"),
-        GaugeState.ENOUGH: tr("Enough motion"),
-        GaugeState.CENTRE: tr("Enough motion for its centre"),
-        GaugeState.PLATEAU: tr("as good as this motion gives"),
-        GaugeState.LOOSE: tr("no hinge"),
+        GaugeState.ENOUGH: tr("Enough movement"),
+        GaugeState.CENTRE: tr("Enough movement for centre"),
+        GaugeState.PLATEAU: tr("certainty no longer rises"),
+        GaugeState.LOOSE: tr("not a hinge"),
         GaugeState.ABSENT: "",
     }[state]

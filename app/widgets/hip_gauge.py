@@ -123,7 +123,9 @@ class HipGauge(QWidget):
     @property
     def said(self) -> str:
         """What would show the hip, or that it is shown."""
-        return self._face.note or (tr("Enough motion") if self._face.is_met else tr("Walk 15 s with a turn, or lunge"))
+        return self._face.note or (
+            tr("Enough movement") if self._face.is_met else tr("Walk 15 s with a turn, or lunge")
+        )
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         theme, face = self._look.theme, self._face
@@ -184,5 +186,5 @@ class HipGauge(QWidget):
         if face.heading is not None and not face.note:
             is_known = face.heading.figure != UNKNOWN
             figure = f"{face.heading.figure}{face.heading.unit}" if is_known else tr("unknown")
-            parts += [f"{tr('heading')} {figure}", tr("under {limit} needed").format(limit=face.heading.wanted)]
+            parts += [f"{tr('heading')} {figure}", tr("under {limit} required").format(limit=face.heading.wanted)]
         self.setAccessibleName(", ".join([*parts, self.said]))

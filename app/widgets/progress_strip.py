@@ -22,7 +22,7 @@ class ProgressStrip(Themed):
         self.words = Text(look, tone="ink2", wraps=True)
         self._line = QProgressBar()
         self._line.setTextVisible(False)
-        self._line.setAccessibleName(tr("Progress"))
+        self._line.setAccessibleName(tr("Progress so far"))
         self._row = QHBoxLayout(self)
         self._row.addWidget(self.words, 1)
         self._row.addWidget(self._line, 0, Qt.AlignmentFlag.AlignVCenter)

@@ -287,6 +287,6 @@ def _state_word(state: StepState) -> str:
         StepState.DONE: tr("done"),
         StepState.CURRENT: tr("current"),
         StepState.TODO: tr("to do"),
-        StepState.ATTENTION: tr("wants a look"),
+        StepState.ATTENTION: tr("needs checking"),
         StepState.SKIPPED: tr("skipped"),
     }[state]

@@ -69,7 +69,7 @@ class SensorTile:
             case TileState.NOT_WORN:
                 return tr("found later") if self.is_awaited else tr("not used")
             case TileState.SILENT:
-                return tr("silent {seconds} s").format(seconds=int(self.silent_s))
+                return tr("no signal {seconds} s").format(seconds=int(self.silent_s))
             case TileState.QUIET:
                 return quiet_words(self.quiet)
             case TileState.LOSS:
@@ -89,12 +89,12 @@ def sentence(tiles: Mapping[Site, SensorTile]) -> str:
     if len(bad) == 1:
         return tr("{site}: {words}").format(site=capitalised(name_of(bad[0].site)), words=bad[0].words)
     if bad:
-        return tr("{bad} of {count} sensors want a look").format(bad=len(bad), count=len(worn))
+        return tr("Check {bad} of {count} sensors").format(bad=len(bad), count=len(worn))
     if not worn:
         return tr("No sensors yet")
     if all(tile.state is TileState.QUIET for tile in worn):
         return tr("{count} sensors, {state}").format(count=len(worn), state=worn[0].words)
-    return tr("{count} sensors, all heard").format(count=len(worn))
+    return tr("{count} sensors, all connected").format(count=len(worn))
 
 
 def marks(tiles: Mapping[Site, SensorTile]) -> dict[Site, SensorMark]:

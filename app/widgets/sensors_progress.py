@@ -201,5 +201,5 @@ _STATES = {
     LineState.DONE: lambda: tr("done"),
     LineState.NOW: lambda: tr("now"),
     LineState.TO_DO: lambda: tr("to do"),
-    LineState.WRONG: lambda: tr("wants a look"),
+    LineState.WRONG: lambda: tr("needs checking"),
 }

@@ -20,7 +20,7 @@ class ServerFields(QObject):
         super().__init__(parent)
         self._is_place_optional = is_place_optional
         self.address = Field(look, tr("Address of the clinic's server"), placeholder=ADDRESS)
-        self.password = Field(look, tr("Password at the server, if it asks for one"), is_secret=True)
+        self.password = Field(look, tr("Server password, if required"), is_secret=True)
         self.place = Field(look, place, is_optional=is_place_optional)
         for field in self.fields:
             field.edited.connect(self._on_edited)
@@ -42,9 +42,9 @@ class ServerFields(QObject):
     @property
     def is_complete(self) -> bool:
         """Whether what has to be typed is; what is missing is said at its field."""
-        missing = [(self.address, tr("Type the address of the clinic's server."))]
+        missing = [(self.address, tr("Enter the address of the clinic's server."))]
         if not self._is_place_optional:
-            missing.append((self.place, tr("Name a folder that all stations reach, or s3://bucket/folder.")))
+            missing.append((self.place, tr("Enter a folder that all workstations can access, or s3://bucket/folder.")))
         wrong = [(field, sentence) for field, sentence in missing if not field.text.strip()]
         for field, sentence in wrong:
             field.set_wrong(sentence)

@@ -34,7 +34,7 @@ def home_below(*, can_lock: bool) -> tuple[BelowRow, ...]:
     lock = (BelowRow("lock", tr("Lock"), Icon.LOCK),) if can_lock else ()  # a demonstration keeps nobody's secrets
     return (
         *lock,
-        BelowRow("look", tr("Light or dark"), Icon.LIGHT_OR_DARK),
+        BelowRow("look", tr("Appearance"), Icon.LIGHT_OR_DARK),
         BelowRow("settings", tr("Settings"), Icon.SETTINGS),
         BelowRow("help", tr("Help"), Icon.HELP, tr("F1")),
     )

@@ -222,7 +222,7 @@ class MovementBars(QWidget):
         bar_left = left + chip + px(8) + self._name_width + px(8)
         if row.is_silent:
             painter.setFont(theme.font(14, SEMIBOLD))
-            painter.drawText(place.adjusted(0, 0, -left, 0), upright | Qt.AlignmentFlag.AlignRight, tr("silent"))
+            painter.drawText(place.adjusted(0, 0, -left, 0), upright | Qt.AlignmentFlag.AlignRight, tr("no signal"))
             return
         figure = place.adjusted(place.width() - self._figure_width, 0, -left, 0)
         painter.setFont(theme.font(14, SEMIBOLD if row.has_moved else REGULAR))

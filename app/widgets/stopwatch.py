@@ -80,7 +80,7 @@ class Stopwatch(QWidget):
     def _words(self) -> str:
         minutes = TARGET_S // 60
         if self._elapsed_s > TARGET_S:
-            return tr("{minutes} min target passed").format(minutes=minutes)
+            return tr("{minutes} min target exceeded").format(minutes=minutes)
         return tr("of {minutes} min target").format(minutes=minutes)
 
     def _time_size(self) -> int:
@@ -91,7 +91,7 @@ class Stopwatch(QWidget):
         theme = self._look.theme
         minutes = TARGET_S // 60
         small = QFontMetrics(theme.font(12))
-        said = [tr("{minutes} min target passed"), tr("of {minutes} min target")]
+        said = [tr("{minutes} min target exceeded"), tr("of {minutes} min target")]
         widest = max(small.horizontalAdvance(words.format(minutes=minutes)) for words in said)
         large = QFontMetrics(theme.font(self._time_size(), SEMIBOLD))
         time = max(large.horizontalAdvance("00:00"), large.horizontalAdvance(clock_time(self._elapsed_s)))

@@ -24,11 +24,11 @@ PADDING, MARK = 8, 20
 STRIDE, BEGINS, TAKES, HIP, KNEE, ANKLE, STATE, HIP_SHAPE, KNEE_SHAPE, ANKLE_SHAPE = range(10)
 HEADS = (
     later("Stride"),
-    later("at (s)"),
-    later("takes (s)"),
-    later("hip range (°)"),
-    later("knee range (°)"),
-    later("ankle range (°)"),
+    later("start (s)"),
+    later("duration (s)"),
+    later("hip ROM (°)"),
+    later("knee ROM (°)"),
+    later("ankle ROM (°)"),
     "",
     later("hip"),
     later("knee"),
@@ -177,7 +177,7 @@ class StrideList(CellTable):
     def show_lines(self, lines: Sequence[StrideLine], *, can_turn: bool) -> None:
         """Show these strides. Where they cannot be turned they are only looked at, and nothing looks like a box."""
         self.lines, self._can_turn = tuple(lines), can_turn
-        self.setAccessibleDescription(tr("Space leaves the stride out, or takes it in again.") if can_turn else "")
+        self.setAccessibleDescription(tr("Press Space to exclude or include the stride.") if can_turn else "")
         self.show_rows(_columns(lines), _rows(lines, can_turn=can_turn))
         self.chosen.emit(self.line)
 

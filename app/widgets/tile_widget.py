@@ -56,7 +56,7 @@ class TileWidget(QWidget):
         name = QFontMetrics(self._name_font()).horizontalAdvance(self._segment())
         bold = QFontMetrics(self._words_font(is_bold=True))
         if self._is_compact:
-            words = bold.horizontalAdvance(tr("silent {seconds} s").format(seconds=88))
+            words = bold.horizontalAdvance(tr("no signal {seconds} s").format(seconds=88))
             return px(self._chip_room + 2 * 8) + max(name + px(4 + 18), words) + px(2)
         longest = max((tr("charge soon · {percent} %").format(percent=88)).split(), key=len)
         words = 2 * px(PADDING) + bold.horizontalAdvance(longest)

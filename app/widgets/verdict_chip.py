@@ -20,9 +20,9 @@ PADDING = 6
 ICON = 16
 GAP = 6
 BRIEF = {
-    Verdict.READ: later("read"),
-    Verdict.CARE: later("with care"),
-    Verdict.WITHHELD: later("withheld"),
+    Verdict.READ: later("good"),
+    Verdict.CARE: later("caution"),
+    Verdict.WITHHELD: later("not reported"),
     Verdict.NOT_MEASURED: later("none"),
 }
 

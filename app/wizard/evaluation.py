@@ -118,7 +118,7 @@ class Evaluation(QObject):
 
 def failure_in_words() -> tuple[str, str]:
     """That an analysis ended early, and what is left."""
-    return tr("The analysis ended before it was done."), tr("The recordings are kept; the log holds the details.")
+    return tr("The analysis stopped before it finished."), tr("The recordings are safe. See the log for details.")
 
 
 def calibration_of(analysis: "Analysis") -> "Mapping[Joint, JointCalibration]":

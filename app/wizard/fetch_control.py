@@ -48,14 +48,14 @@ class FetchControl(QObject):
     @property
     def cannot_leave(self) -> str:
         """Why the step cannot be left now; empty where it can."""
-        return tr("A walk is being fetched. Wait until it is, or fetch it later.") if self.is_fetching else ""
+        return tr("A walk is being fetched. Wait, or fetch it later.") if self.is_fetching else ""
 
     @property
     def shown(self) -> ProgressShown | None:
         """What is shown of it; None: nothing is fetched."""
         if self.has_failed:
             what, then = self._recordings.fetches.failure
-            return ProgressShown(tr("The walk is in the sensors still"), what=what, then=then, is_running=False)
+            return ProgressShown(tr("The walk is still in the sensors"), what=what, then=then, is_running=False)
         return self._progress if self.is_fetching else None
 
     def bar(self) -> BarState | None:
@@ -93,9 +93,9 @@ class FetchControl(QObject):
         names = self._sensors.acquisition.sensors if self._sensors.acquisition is not None else ()
         view = fetches.view(len(names))
         if not fetches.waiting:
-            return ProgressShown(tr("The walk is being read back"))
+            return ProgressShown(tr("The walk is being loaded"))
         if not fetches.is_running:
-            return ProgressShown(tr("The sensors are being let go"), tr("This takes some seconds."))
+            return ProgressShown(tr("The sensors are being released"), tr("This takes a few seconds."))
         title = tr("The walk is being fetched from the sensors")
         if view.waiting > 1:
             title = tr("{count} walks are being fetched from the sensors").format(count=view.waiting)
@@ -111,12 +111,12 @@ def _state(name: str, view: "FetchView") -> LineState:
 
 def _sentence(view: "FetchView") -> str:
     if not view.sensor:
-        return tr("The sensors are told to end, and asked what they hold.")
+        return tr("Stopping the sensors and checking what they recorded.")
     said = tr("{sensor}: {done} of about {of} samples.").format(sensor=view.sensor, done=view.done, of=view.of)
     if view.left_s is None or view.left_s <= SOON_S:
         return said
     seconds = math.ceil(view.left_s / SOON_S) * round(SOON_S)
-    return said + " " + tr("About {seconds} s are left.").format(seconds=seconds)
+    return said + " " + tr("About {seconds} s left.").format(seconds=seconds)
 
 
 def _share(view: "FetchView", sensors: int) -> float | None:

@@ -25,8 +25,8 @@ def trouble_message(trouble: Trouble, status: JournalStatus, lost: int = 0) -> M
     if trouble in (Trouble.DISK_SLOW, Trouble.DROPPED):
         what, remedy = (f"{tr(words)}." for words in TOLD[Trouble.DROPPED])
         dropped = tr_n(
-            "{count} packet of samples was dropped so far, and stays a gap.",
-            "{count} packets of samples were dropped so far, and stay gaps.",
+            "{count} data packet was lost so far and stays a gap.",
+            "{count} data packets were lost so far and stay gaps.",
             status.dropped_records,
         )
         return what, f"{dropped.format(count=status.dropped_records)} {remedy}"
@@ -37,21 +37,21 @@ def trouble_message(trouble: Trouble, status: JournalStatus, lost: int = 0) -> M
 
 def _late_message(status: JournalStatus, lost: int, remedy: str) -> Message:
     """Nothing has been dropped: say so of all samples only where none was lost on its way here either."""
-    nothing = tr("Nothing is lost yet.") if not lost else tr("What comes waits, and nothing of it was dropped.")
+    nothing = tr("No data lost so far.") if not lost else tr("Incoming data wait; none of them were discarded.")
     if status.stuck_s > SLOW_S:
-        return tr("The disk answers late."), f"{nothing} {remedy}"
-    kept = tr("Nothing was lost by it.") if not lost else tr("Nothing was dropped because of it.")
-    return tr("The disk answered late, and answers again."), kept
+        return tr("The disk responds slowly."), f"{nothing} {remedy}"
+    kept = tr("No data were lost because of this.") if not lost else tr("No data were discarded because of this.")
+    return tr("The disk was slow and now responds again."), kept
 
 
 def _written(trouble: Trouble, status: JournalStatus) -> str:
     """Up to where the recording is kept: on a disk that is gone only what it had confirmed."""
     if trouble is Trouble.DISK_GONE:
-        return tr("The disk has confirmed the first {time} of it.").format(time=clock(status.synced_s))
+        return tr("The first {time} are confirmed on the disk.").format(time=clock(status.synced_s))
     if status.dropped_records:
-        said = tr("Its first {time} are written; what came after that is lost.")
+        said = tr("The first {time} are written; everything after that is lost.")
     else:
-        said = tr("Its first {time} are written.")
+        said = tr("The first {time} are written.")
     return said.format(time=clock(status.written_s))
 
 
@@ -63,25 +63,25 @@ def is_written(status: JournalStatus) -> bool:
 def unread_message(status: JournalStatus, *, is_tried_again: bool) -> str:
     """Say where a recording is that has been stopped and is not in the library yet."""
     if status.state is State.RECORDING and is_tried_again:
-        return tr("The recording is still being written; it is read back as soon as that can be.")
+        return tr("The recording is still being written. It is loaded as soon as possible.")
     if status.state is State.RECORDING:
-        return tr("The recording is still being written; what is written is found when Gaitwright starts again.")
+        return tr("The recording is still being written. What is written is found when Gaitwright next starts.")
     is_whole = status.state is State.CLOSED and not status.dropped_records
     if is_tried_again:
-        whole = tr("The recording is safe on the disk; it is read back as soon as that can be.")
-        part = tr("The first {time} of the recording are on the disk; they are read back as soon as that can be.")
+        whole = tr("The recording is safe on the disk. It is loaded as soon as possible.")
+        part = tr("The first {time} of the recording are on the disk. They are loaded as soon as possible.")
     else:
-        whole = tr("The recording is safe on the disk; it is found when Gaitwright starts again.")
-        part = tr("The first {time} of the recording are on the disk; they are found when Gaitwright starts again.")
+        whole = tr("The recording is safe on the disk. It is found when Gaitwright next starts.")
+        part = tr("The first {time} of the recording are on the disk. They are found when Gaitwright next starts.")
     return whole if is_whole else part.format(time=clock(status.synced_s))
 
 
 def no_row_message(status: JournalStatus) -> Message:
     """Say of a recording that goes on where the library did not take its row."""
-    what = tr("The library does not answer.")
+    what = tr("The library does not respond.")
     if status.dropped_records or status.state is not State.RECORDING:
-        return what, tr("The recording is added as soon as the library answers.")
-    return what, tr("The recording is written to the disk all the same; it is added as soon as the library answers.")
+        return what, tr("The recording is added once the library responds.")
+    return what, tr("The recording is still written to the disk. It is added once the library responds.")
 
 
 def standstill_message(
@@ -100,15 +100,15 @@ def standstill_message(
     """
     if standstill.ended_s < began_s or now_s - standstill.ended_s > STANDSTILL_TOLD_S:
         return NOTHING
-    said = tr("Gaitwright stood still for {seconds:.0f} s, {time} into the recording.")
+    said = tr("Gaitwright stalled for {seconds:.0f} s, {time} into the recording.")
     if standstill.was_asleep:
-        said = tr("The computer slept for {seconds:.0f} s, {time} into the recording.")
+        said = tr("The computer was asleep for {seconds:.0f} s, {time} into the recording.")
     what = said.format(seconds=standstill.lasted_s, time=clock(standstill.began_s - began_s))
     if not are_heard or now_s - standstill.ended_s < SETTLED_S:
-        return what, tr("What is missing of it is being counted.")
+        return what, tr("Missing samples are being counted.")
     if any(count > standstill.lost_before.get(name, 0) for name, count in lost.items()):
         # without a figure: live clocks are still settling, and were up to a tenth off the journal's own count
-        return what, tr("Samples were lost and stay gaps, counted when the recording is read back.")
+        return what, tr("Samples were lost and stay gaps. They are counted when the recording is loaded.")
     if not are_counted:
-        return what, tr("What is missing is counted when the recording has been read back.")
-    return what, tr("No sample is missing: what the sensors sent meanwhile was read afterwards.")
+        return what, tr("Missing samples are counted when the recording is loaded.")
+    return what, tr("No sample is missing: data sent in the meantime were read afterwards.")

@@ -50,45 +50,49 @@ class Losses:
         if self._silent_s:
             return self._silent_message(is_recording, joints)
         if self._back and is_recording and now_s - self._back_s < BACK_TOLD_S:
-            if len(self._back) == 1:
-                said = tr("{sensor} is back after {seconds:.1f} s.")
-            elif len(self._back) < self._worn:
-                said = tr("{sensor} are back after {seconds:.1f} s.")
-            else:
-                said = tr("All sensors are back after {seconds:.1f} s.")
+            is_all = 1 < len(self._back) == self._worn
+            said = (
+                tr("All sensors: signal back after {seconds:.1f} s.")
+                if is_all
+                else tr("{sensor}: signal back after {seconds:.1f} s.")
+            )
             names = ", ".join(name_of(site) for site in Site if site in self._back)
             what = capitalised(said.format(sensor=names, seconds=max(self._back.values())))
-            then = tr("The strides in between are left out.")
-            return what, tr("Only the hips are missing in between.") if set(self._back) == {Site.PELVIS} else then
+            then = tr("Strides in between are excluded.")
+            return what, tr("Only hip angles are missing in between.") if set(self._back) == {Site.PELVIS} else then
         return NOTHING
 
     def _silent_message(self, is_recording: bool, joints: Sequence[Joint]) -> Message:
         longest_s = int(max(self._silent_s.values()))
         if 1 < len(self._silent_s) == self._worn:  # it is not the sensors
-            what = tr("No sensor has been heard for {seconds} s.").format(seconds=longest_s)
-            then = tr("Check that the receiver is plugged in and near the patient, and the sensors are switched on.")
-            return what, f"{tr('Recording goes on.')} {then}" if is_recording else then
+            what = tr("No signal from any sensor for {seconds} s.").format(seconds=longest_s)
+            then = tr(
+                "Check that the receiver is plugged in and near the patient, and that the sensors are switched on."
+            )
+            return what, f"{tr('Recording continues.')} {then}" if is_recording else then
         names = ", ".join(name_of(site) for site in self.silent)
         is_one = len(self._silent_s) == 1
         if self.silent == (Site.PELVIS,):
-            what = tr("The pelvis has been silent for {seconds} s.").format(seconds=longest_s)
-            goes_on = tr("Recording goes on, and so do knees and ankles. The hips are missing until it is back.")
-            return what, goes_on if is_recording else tr("Switch it off and on, or go on without hip angles.")
-        have = tr("{sensor} have been silent for {seconds} s.")
-        said = tr("{sensor} has been silent for {seconds} s.") if is_one else have
+            what = tr("Pelvis: no signal for {seconds} s.").format(seconds=longest_s)
+            goes_on = tr(
+                "Recording continues, including knees and ankles. Hip angles are missing until the signal is back."
+            )
+            return what, goes_on if is_recording else tr("Switch it off and on, or continue without hip angles.")
+        have = tr("{sensor}: no signal for {seconds} s.")
+        said = tr("{sensor}: no signal for {seconds} s.") if is_one else have
         lost = [name_of(joint) for joint in joints if {joint.proximal, joint.distal} & self._silent_s.keys()]
-        phases = {Side.LEFT: tr("left phases"), Side.RIGHT: tr("right phases")}
+        phases = {Side.LEFT: tr("left gait phases"), Side.RIGHT: tr("right gait phases")}
         feet = [phases[site.leg_side] for site in self.silent if site.segment is Segment.FOOT]
         if is_recording:
             missing = ", ".join([*lost, *feet])
-            they = tr("Recording goes on. Missing until they are back: {missing}.")
-            it = tr("Recording goes on. Missing until it is back: {missing}.")
+            they = tr("Recording continues. Missing until the signal is back: {missing}.")
+            it = tr("Recording continues. Missing until the signal is back: {missing}.")
             then = (it if is_one else they).format(missing=missing)
         elif lost:
-            they = tr("Switch them off and on, or go on without these angles: {joints}.")
-            it = tr("Switch it off and on, or go on without these angles: {joints}.")
+            they = tr("Switch them off and on, or continue without these angles: {joints}.")
+            it = tr("Switch it off and on, or continue without these angles: {joints}.")
             then = (it if is_one else they).format(joints=", ".join(lost))
         else:
-            they = tr("Switch them off and on, or go on without them.")
-            then = tr("Switch it off and on, or go on without it.") if is_one else they
+            they = tr("Switch them off and on, or continue without them.")
+            then = tr("Switch it off and on, or continue without it.") if is_one else they
         return capitalised(said.format(sensor=names, seconds=longest_s)), then

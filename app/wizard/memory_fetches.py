@@ -126,12 +126,12 @@ class MemoryFetches(QObject):
         if self.is_running:
             return "", ""
         if self._is_broken:
-            return tr("Fetching ended early."), tr("Fetch it again; the log has more.")
+            return tr("Fetching stopped early."), tr("Fetch it again. See the log for details.")
         for sensor, problem in self._failed.items():
             if isinstance(problem, SourceRefusedError):
                 return f"{filled(problem.what, problem.values)}.", f"{filled(problem.remedy, problem.values)}."
-            what = tr("{sensor} is out of reach.").format(sensor=sensor)
-            return what, tr("What it recorded is in it still. Bring it nearer, then fetch it again.")
+            what = tr("{sensor} is out of range.").format(sensor=sensor)
+            return what, tr("Its recording is still in the sensor. Bring it closer, then fetch it again.")
         return "", ""
 
     def add(self, recorder: Recorder) -> None:

@@ -487,7 +487,7 @@ class SessionRecordings(QObject):
     def _on_waited(self) -> None:
         self._go_on()
         self.changed.emit()
-        self.refused.emit(tr("The recording is not read back yet."), self._reading_back.where)
+        self.refused.emit(tr("The recording is not loaded yet."), self._reading_back.where)
 
     def _on_not_halted(self, _what: str, _remedy: str) -> None:
         """Whoever reads it back meets the same, and tells."""

@@ -79,4 +79,4 @@ class Reviewing(QObject):
             self.refused.emit(str(error), "")
             return
         _log.error("Rerun was not shown", exc_info=error)
-        self.refused.emit(tr("Rerun could not be started."), tr("The log holds the details."))
+        self.refused.emit(tr("Rerun could not be started."), tr("See the log for details."))

@@ -20,18 +20,18 @@ if TYPE_CHECKING:
 
 SOON_S = 5.0  # so finely, and no later, it is told how long it takes still
 REASONS = {
-    SyncFailure.LOST: later("out of reach"),
-    SyncFailure.STAYS: later("stays on its old clock"),
-    SyncFailure.FEW_SAMPLES: later("heard too little of the others"),
-    SyncFailure.SKEW_TOO_LARGE: later("its clock runs too differently"),
-    SyncFailure.START_FAILED: later("began too late"),
-    SyncFailure.NOT_STARTED: later("did not begin"),
-    SyncFailure.UNKNOWN: later("does not tell how it went"),
-    SyncFailure.NOT_BACK: later("did not come back"),
-    SyncFailure.SILENT: later("does not begin to measure"),
-    SyncFailure.NOT_HEARD: later("is not heard"),
-    SyncFailure.CUT: later("what it sends arrives cut: use another Bluetooth adapter"),
-    SyncFailure.OTHER_CLOCK: later("its clock is another"),
+    SyncFailure.LOST: later("out of range"),
+    SyncFailure.STAYS: later("keeps its old clock"),
+    SyncFailure.FEW_SAMPLES: later("received too little from the others"),
+    SyncFailure.SKEW_TOO_LARGE: later("clock rate differs too much"),
+    SyncFailure.START_FAILED: later("started too late"),
+    SyncFailure.NOT_STARTED: later("did not start"),
+    SyncFailure.UNKNOWN: later("gives no result"),
+    SyncFailure.NOT_BACK: later("did not reconnect"),
+    SyncFailure.SILENT: later("does not start measuring"),
+    SyncFailure.NOT_HEARD: later("no signal"),
+    SyncFailure.CUT: later("its data arrive incomplete: use another Bluetooth adapter"),
+    SyncFailure.OTHER_CLOCK: later("its clock differs"),
 }
 
 
@@ -108,12 +108,14 @@ class SensorSync(QObject):
         if isinstance(error, NotSynchronisedError):
             said = [f"{name} ({tr(REASONS[why])})" for name, why in error.failed.items()]
             what = tr("Not synchronised: {sensors}.").format(sensors=", ".join(said))
-            return what, tr("Lay all sensors side by side near this computer, switch these off and on, then try again.")
+            return what, tr(
+                "Place all sensors side by side near this computer. Switch these off and on, then try again."
+            )
         if isinstance(error, SourceRefusedError):
             return f"{filled(error.what, error.values)}.", f"{filled(error.remedy, error.values)}."
         if isinstance(error, SourceLostError):
-            return tr("A sensor is out of reach."), tr("Bring all sensors nearer to this computer, then try again.")
-        return tr("Synchronising ended early."), tr("Try again; the log has more.")
+            return tr("A sensor is out of range."), tr("Bring all sensors closer to this computer, then try again.")
+        return tr("Synchronisation stopped early."), tr("Try again. See the log for details.")
 
     def start(self, group: "DotGroup", purpose: SyncPurpose, before: Callable[[], None] = lambda: None) -> None:
         """Make them ready; `before` is waited for, beside the screen."""
@@ -193,40 +195,40 @@ def sentence_of(view: SyncView) -> str:
         case SyncStage.PREPARING if view.sensor:
             return tr("{sensor} is being set up.").format(sensor=view.sensor)
         case SyncStage.PREPARING:
-            return tr("The sensors are being reached.")
+            return tr("Connecting to the sensors.")
         case SyncStage.WAITING:
-            return tr("The sensors compare their clocks by themselves. Leave them where they are.")
+            return tr("The sensors are comparing their clocks. Leave them where they are.")
         case SyncStage.CONNECTING:
-            return tr("{sensor} is asked how it went.").format(sensor=view.sensor)
+            return tr("Checking the result of {sensor}.").format(sensor=view.sensor)
         case SyncStage.LISTENING:
-            return tr("Their clocks are held against one another.")
+            return tr("Comparing the sensor clocks.")
 
 
 def progress_of(sync: SensorSync, names: Collection[str]) -> ProgressShown:
     """What is shown while sensors of these names are brought onto one clock."""
     if sync.is_ending:
-        return ProgressShown(tr("The sensors are being let go"), tr("This takes some seconds."))
+        return ProgressShown(tr("The sensors are being released"), tr("This takes a few seconds."))
     view = sync.view
     title = tr("The sensors are being synchronised")
     if view.attempt > 1:
-        title = tr("Some did not follow: the sensors are being synchronised once more")
+        title = tr("Some sensors did not synchronise: all are being synchronised again")
     sentence = sentence_of(view)
     if view.left_s is not None and view.left_s > SOON_S:
         seconds = math.ceil(view.left_s / SOON_S) * round(SOON_S)
-        sentence += " " + tr("About {seconds} s are left.").format(seconds=seconds)
+        sentence += " " + tr("About {seconds} s left.").format(seconds=seconds)
     return ProgressShown(title, sentence, view.share, lines_of(view, names), stop=tr("Cancel"))
 
 
 def lines_of(view: SyncView, names: Collection[str]) -> tuple[SensorLine, ...]:
     """Done are those before the one that it is about."""
     if view.stage is SyncStage.WAITING:
-        return tuple(SensorLine(name, LineState.NOW, tr("compares its clock")) for name in names)
+        return tuple(SensorLine(name, LineState.NOW, tr("comparing clocks")) for name in names)
     order = list(names)
     if view.sensor not in order:
         state = LineState.DONE if view.stage is SyncStage.LISTENING else LineState.TO_DO
         return tuple(SensorLine(name, state) for name in order)
     at = order.index(view.sensor)
-    done = tr("set up") if view.stage is SyncStage.PREPARING else tr("asked")
+    done = tr("set up") if view.stage is SyncStage.PREPARING else tr("checked")
     before = (SensorLine(name, LineState.DONE, done) for name in order[:at])
     after = (SensorLine(name, LineState.TO_DO) for name in order[at + 1 :])
     return (*before, SensorLine(view.sensor, LineState.NOW), *after)

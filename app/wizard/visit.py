@@ -197,20 +197,20 @@ class Visit(QObject):
         acquisition = self.sensors.acquisition
         if acquisition is None or not acquisition.is_simulated or self.may_simulate:
             return ""
-        said = tr("These sensors are simulated, and {code} is no demonstration patient: nothing would be recorded.")
+        said = tr("These sensors are simulated and {code} is not a demonstration patient. Nothing would be recorded.")
         return said.format(code=self.patient.details.code)
 
     @property
     def cannot_calibrate(self) -> str:
         """What is missing for standing or free motion, in a sentence; empty where nothing is."""
         if self.session is None:
-            return tr("Type the patient's code first.")
+            return tr("Enter the patient's code first.")
         if self.sensors.acquisition is None:
-            return tr("Choose the source of the sensors first.")
+            return tr("Choose the sensor source first.")
         if not self.sensors.site_of and not self.sensors.is_left_to_motion:
-            return tr("Say first which sensor is worn where.")
+            return tr("Set the sensor positions first.")
         if self.sensors.are_in_memory:
-            return tr("The sensors are ready for walks. Set them back to live on the sensors' step first.")
+            return tr("The sensors are ready for walks. Return them to live on the Sensors step first.")
         return self.cannot_record
 
     @property
@@ -455,10 +455,10 @@ class Visit(QObject):
         own = self.patient.stored.details.code
         if not self.patient.has_this_session_only:
             what = tr("This session belongs to {code}.").format(code=own)
-            return what, tr("Go back to all patients to begin one with another.")
+            return what, tr("Go back to all patients to start a session for another patient.")
         if self.recordings.every and self.is_simulated and own.startswith(DEMO) and not code.startswith(DEMO):
-            what = tr("What is simulated cannot become the session of {code}.").format(code=code)
-            return what, tr("Go back to all patients to begin one with another.")
+            what = tr("Simulated recordings cannot be assigned to {code}.").format(code=code)
+            return what, tr("Go back to all patients to start a session for another patient.")
         return "", ""
 
     def _on_sensors_opened(self) -> None:
@@ -467,8 +467,8 @@ class Visit(QObject):
             self._is_of_another_day = False
             self.recordings.say_restrapped()
             self.refused.emit(
-                tr("This session was begun on another day, and the sensors were put on anew."),
-                tr("Stand still and move freely once more before the next walk."),
+                tr("This session began on another day. The sensors have been reattached since."),
+                tr("Repeat standing still and free motion before the next walk."),
             )
 
     def _on_recording_ended(self, _take: SessionRecording) -> None:

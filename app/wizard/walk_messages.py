@@ -21,9 +21,9 @@ def slip_message(slips: Sequence[Slip], began_s: float) -> Message:
     if not since:
         return NOTHING
     slip = since[-1]
-    what = tr("The {site} strap slipped at {time}.").format(site=name_of(slip.site), time=clock(slip.from_s - began_s))
-    left = tr("Strides after it are left out; tighten it and repeat free motion for the left leg.")
-    right = tr("Strides after it are left out; tighten it and repeat free motion for the right leg.")
+    what = tr("Strap moved: {site}, at {time}.").format(site=name_of(slip.site), time=clock(slip.from_s - began_s))
+    left = tr("Later strides are excluded. Tighten the strap and repeat free motion for the left leg.")
+    right = tr("Later strides are excluded. Tighten the strap and repeat free motion for the right leg.")
     return what, left if slip.site.side is Side.LEFT else right
 
 
@@ -38,7 +38,7 @@ def bias_message(corrections: Sequence[BiasCorrection]) -> Message:
     """Tell of the latest gyroscope whose bias from standing was wrong."""
     if not corrections:
         return NOTHING
-    what = tr("The {site} sensor's gyroscope bias was wrong and is now corrected.")
+    what = tr("The gyroscope offset of the {site} sensor was wrong and is now corrected.")
     return what.format(site=name_of(corrections[-1].site)), tr(
         "The patient moved while standing: record standing again."
     )
@@ -46,9 +46,9 @@ def bias_message(corrections: Sequence[BiasCorrection]) -> Message:
 
 def no_angles_message(worn: Collection[Site]) -> Message:
     """Say when the angles come that were not known when the walk began."""
-    then = tr("They come after five strides of each leg.")
+    then = tr("They appear after five strides of each leg.")
     if not any(site.segment is Segment.FOOT for site in worn):
-        then = tr("They come once the walk is stopped.")  # nothing counts strides before
+        then = tr("They appear when the walk has been stopped.")  # nothing counts strides before
     return tr("Angles are not shown yet."), then
 
 
@@ -64,21 +64,21 @@ def no_foot_message(worn: Collection[Site]) -> Message:
         what = tr("No left foot sensor: left strides are counted after the walk.")
     elif blind == [Side.RIGHT]:
         what = tr("No right foot sensor: right strides are counted after the walk.")
-    return what, tr("Steps come from the shank. It will be printed.")
+    return what, tr("Steps are detected from the shank. The report states this.")
 
 
 def recovered_message(walk: str, seconds: float) -> Message:
     """Say how much of a walk the journal holds, and what the end of the program may have cost besides."""
-    recovered = tr("{time} of {walk} was recovered, up to the last record on the disk.")
-    said, look = recovered.format(time=clock(seconds), walk=walk), tr("Look at it, then keep or discard.")
-    return tr("The program was closed while recording."), f"{said} {look} {recovery_costs()}"
+    recovered = tr("{time} of {walk} was recovered, up to the last record on disk.")
+    said, look = recovered.format(time=clock(seconds), walk=walk), tr("Review it, then include or exclude it.")
+    return tr("The program closed during recording."), f"{said} {look} {recovery_costs()}"
 
 
 def recovery_costs() -> str:
     """What the end of a program costs at most; the figures are those of T1 in the evidence."""
     return tr(
-        "Ending the program costs 0.1 s at most in 99 of 100 cases, a power cut up to 0.5 s and what the disk still "
-        "held back."
+        "In 99 of 100 cases, ending the program loses at most 0.1 s. A power cut loses up to 0.5 s "
+        "and any data not yet on disk."
     )
 
 
@@ -86,27 +86,29 @@ def lacks_message(walk: str, lacks: "Sequence[Lack]") -> Message:
     """Say what could not be fetched of a walk from the sensors' memories; the gravest first."""
     early = max(lacks, key=lambda one: one.early_s, default=None)
     if early is not None and early.early_s > 0:
-        what = tr("{sensor} ended {seconds} s before {walk} was stopped.").format(
+        what = tr("{sensor} stopped {seconds} s before the end of {walk}.").format(
             sensor=early.sensor, seconds=round(early.early_s), walk=walk
         )
-        return what, tr("Its button was pressed, or its memory is full. Angles with it end there.")
+        return what, tr("Its button was pressed or its memory is full. Angles from this sensor end there.")
     lost = [one for one in lacks if one.lost]
     if lost:
         said = ", ".join(f"{one.sensor} {one.lost}" for one in lost)
         what = tr("Samples of {walk} could not be fetched: {sensors}.").format(walk=walk, sensors=said)
-        return what, tr("They are left out. The sensors keep the recording until their memories are erased.")
+        return what, tr("They are missing here. The sensors keep the recording until their memory is erased.")
     if lacks:
-        what = tr("{sensor} did not say where {walk} ends.").format(sensor=lacks[0].sensor, walk=walk)
-        return what, tr("What it has sent is kept; its end may be missing.")
+        what = tr("{sensor} did not report the end of {walk}.").format(sensor=lacks[0].sensor, walk=walk)
+        return what, tr("Received data are saved; the end may be missing.")
     return NOTHING
 
 
 def loose_message(on_own_clocks: Sequence[str]) -> Message:
     """Say that sensors that stream are to be synchronised again; `on_own_clocks`: those without the common one."""
-    what = tr("The sensors were synchronised half an hour ago: their clocks drift apart.")
+    what = tr("Last synchronised half an hour ago: the sensor clocks drift apart.")
     if on_own_clocks:
-        what = tr("Not on the common clock: {sensors}.").format(sensors=", ".join(on_own_clocks))
-    return what, tr("Synchronise again before the next walk, or go on: what both legs share is measured less well.")
+        what = tr("Not synchronised: {sensors}.").format(sensors=", ".join(on_own_clocks))
+    return what, tr(
+        "Synchronise again before the next walk. Otherwise measures that combine both legs are less accurate."
+    )
 
 
 def few_strides_message(counts: Mapping[Side, int]) -> Message:
@@ -114,13 +116,13 @@ def few_strides_message(counts: Mapping[Side, int]) -> Message:
     left, right = (counts.get(side, STRIDES_FOR_SPREAD) for side in Side)
     if min(left, right) >= STRIDES_FOR_SPREAD:
         return NOTHING
-    said = tr("Only {left} left and {right} right strides, {wanted} make a spread.")
+    said = tr("Only {left} left and {right} right strides; a standard deviation needs {wanted}.")
     if left >= STRIDES_FOR_SPREAD:
-        said = tr("Only {right} right strides, {wanted} make a spread.")
+        said = tr("Only {right} right strides; a standard deviation needs {wanted}.")
     elif right >= STRIDES_FOR_SPREAD:
-        said = tr("Only {left} left strides, {wanted} make a spread.")
+        said = tr("Only {left} left strides; a standard deviation needs {wanted}.")
     what = said.format(left=left, right=right, wanted=STRIDES_FOR_SPREAD)
-    return what, tr("Walk once more, or go on without a spread.")
+    return what, tr("Record another walk, or continue without a standard deviation.")
 
 
 def clock(seconds: float) -> str:

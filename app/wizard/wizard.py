@@ -487,9 +487,9 @@ class Wizard(QWidget):
 
     def _on_changed_elsewhere(self) -> None:
         self.shell.banner.tell(
-            tr("Another station changed this session."),
-            tr("What stands here is as it was before."),
-            tr("Show the new state"),
+            tr("Another workstation changed this session."),
+            tr("This page shows the earlier version."),
+            tr("Show new version"),
         )
 
     def _on_new_state_wished(self) -> None:

@@ -32,7 +32,7 @@ class SetUpFirstError(SourceRefusedError):
     """Sensors that were found, and have to be set up by the choice of this `key` before they are opened."""
 
     def __init__(self, key: str) -> None:
-        super().__init__(later("These sensors are to be set up first"), later("Choose them as the source"))
+        super().__init__(later("These sensors must be set up first"), later("Choose them as the source"))
         self.key = key
 
 
@@ -283,7 +283,7 @@ class WornSensors(QObject):
         lost = [name_of(joint) for joint in wanted if joint not in (*self.joints, *self.hips)]
         if not lost or not worn:
             return ""
-        return tr("Without {sites}: no {joints} angles.").format(
+        return tr("No sensor at {sites}: no angles for {joints}.").format(
             sites=", ".join(name_of(site) for site in missing), joints=", ".join(lost)
         )
 
@@ -308,7 +308,8 @@ class WornSensors(QObject):
             _log.error("a source did not open", exc_info=error)
             name = choice.name if choice is not None else tr("This source")
             self.refused.emit(
-                tr("{name} cannot be opened.").format(name=name), tr("Choose another source; the log has more.")
+                tr("{name} could not be opened.").format(name=name),
+                tr("Choose another source. See the log for details."),
             )
         self.changed.emit()
 

@@ -8,15 +8,15 @@ from core.alignment import AlignmentChange, NetChange, PartChange, ProsthesisPar
 MINUS = "\N{MINUS SIGN}"
 EIGHTHS = ("", "⅛", "¼", "⅜", "½", "⅝", "¾", "⅞")
 NAMES = {
-    ProsthesisPart.FOOT_FRONT_SCREW: later("Foot, front screw"),
-    ProsthesisPart.FOOT_BACK_SCREW: later("Foot, back screw"),
-    ProsthesisPart.FOOT_INNER_SCREW: later("Foot, inner screw"),
-    ProsthesisPart.FOOT_OUTER_SCREW: later("Foot, outer screw"),
+    ProsthesisPart.FOOT_FRONT_SCREW: later("Foot, anterior screw"),
+    ProsthesisPart.FOOT_BACK_SCREW: later("Foot, posterior screw"),
+    ProsthesisPart.FOOT_INNER_SCREW: later("Foot, medial screw"),
+    ProsthesisPart.FOOT_OUTER_SCREW: later("Foot, lateral screw"),
     ProsthesisPart.FOOT_ROTATION: later("Foot, rotation"),
-    ProsthesisPart.SOCKET_FRONT_SCREW: later("Socket, front screw"),
-    ProsthesisPart.SOCKET_BACK_SCREW: later("Socket, back screw"),
-    ProsthesisPart.SOCKET_INNER_SCREW: later("Socket, inner screw"),
-    ProsthesisPart.SOCKET_OUTER_SCREW: later("Socket, outer screw"),
+    ProsthesisPart.SOCKET_FRONT_SCREW: later("Socket, anterior screw"),
+    ProsthesisPart.SOCKET_BACK_SCREW: later("Socket, posterior screw"),
+    ProsthesisPart.SOCKET_INNER_SCREW: later("Socket, medial screw"),
+    ProsthesisPart.SOCKET_OUTER_SCREW: later("Socket, lateral screw"),
     ProsthesisPart.KNEE_UNIT: later("Knee unit"),
     ProsthesisPart.PYLON: later("Pylon"),
     ProsthesisPart.SHOE: later("Heel or shoe"),
@@ -25,8 +25,9 @@ NAMES = {
 # Jonkergouw et al. 2019, Gait Posture 68:122-129, doi:10.1016/j.gaitpost.2018.11.004; its abstract and highlights were
 # read, not the figures
 NO_PROOF = later(
-    "Angles and times may not show what was changed: in ten people with a prosthesis below the knee, induced changes "
-    "of alignment affected neither (Jonkergouw 2019, Gait Posture 68:122; abstract and highlights read)."
+    "Joint angles and times may not reflect an alignment change. In ten people with a transtibial "
+    "prosthesis, induced changes affected neither (Jonkergouw 2019, Gait Posture 68:122; abstract "
+    "and highlights read)."
 )
 OF_FOOT, OF_SOCKET = later("Foot"), later("Socket")  # what a screw's shift and height are of
 PLANTAR = later("plantar"), later("dorsal")
@@ -38,7 +39,7 @@ DIRECTIONS: Mapping[ProsthesisPart, tuple[str, str]] = {
     ProsthesisPart.FOOT_BACK_SCREW: PLANTAR,
     ProsthesisPart.FOOT_INNER_SCREW: EVERTED,
     ProsthesisPart.FOOT_OUTER_SCREW: EVERTED,
-    ProsthesisPart.FOOT_ROTATION: (later("toes out"), later("toes in")),
+    ProsthesisPart.FOOT_ROTATION: (later("toe-out"), later("toe-in")),
     ProsthesisPart.SOCKET_FRONT_SCREW: FLEXED,
     ProsthesisPart.SOCKET_BACK_SCREW: FLEXED,
     ProsthesisPart.SOCKET_INNER_SCREW: ABDUCTED,
@@ -64,7 +65,7 @@ def direction_words(part: ProsthesisPart) -> tuple[str, str]:
     angle = tr("Angle")
     if part in DIRECTIONS:
         angle = tr("Angle, {direction} +").format(direction=tr(DIRECTIONS[part][0]))
-    return angle, tr("Shift, outwards +") if part.is_frontal else tr("Shift, back +")
+    return angle, tr("Shift, lateral +") if part.is_frontal else tr("Shift, posterior +")
 
 
 def turns_words(turns: float) -> str:
@@ -75,9 +76,9 @@ def turns_words(turns: float) -> str:
 def shift_words(part: ProsthesisPart, shift_mm: float) -> str:
     """Say a shift: "4 mm back", or "2 mm inwards" at an inner or outer screw."""
     if part.is_frontal:
-        said = tr("{amount} mm inwards") if shift_mm < 0 else tr("{amount} mm outwards")
+        said = tr("{amount} mm medial") if shift_mm < 0 else tr("{amount} mm lateral")
     else:
-        said = tr("{amount} mm forward") if shift_mm < 0 else tr("{amount} mm back")
+        said = tr("{amount} mm anterior") if shift_mm < 0 else tr("{amount} mm posterior")
     return said.format(amount=figure_text(abs(shift_mm), "g"))
 
 
@@ -151,7 +152,7 @@ def _line(changes: Iterable[NetChange], *, has_angle_beside_turns: bool) -> str:
 
 
 def _texts(change: NetChange) -> list[str]:
-    return [*change.done, *(tr("take back: {text}").format(text=text) for text in change.undone)]
+    return [*change.done, *(tr("undo: {text}").format(text=text) for text in change.undone)]
 
 
 def _turn(turns: float) -> str:

@@ -16,69 +16,69 @@ NAMES = {
     "stance_percent": later("Stance"),
     "swing_percent": later("Swing"),
     "double_support_percent": later("Double support"),
-    "clearance_m": later("Foot clearance"),
-    "knee_range_deg": later("Knee range"),
-    "knee_stance_to_swing_deg": later("Knee, stance to swing"),
-    "knee_while_loading_deg": later("Knee while loading"),
-    "knee_straightening_deg": later("Knee straightening in stance"),
+    "clearance_m": later("Foot clearance (sensor)"),
+    "knee_range_deg": later("Knee range of motion"),
+    "knee_stance_to_swing_deg": later("Knee flexion, stance to swing"),
+    "knee_while_loading_deg": later("Knee flexion, loading response"),
+    "knee_straightening_deg": later("Knee extension, mid-stance"),
     "knee_at_initial_contact_deg": later("Knee at initial contact"),
-    "knee_loading_peak_deg": later("Knee loading peak"),
-    "knee_stance_minimum_deg": later("Knee stance minimum"),
-    "knee_swing_peak_deg": later("Knee swing peak"),
-    "knee_swing_peak_percent": later("Knee swing peak, when"),
-    "ankle_range_deg": later("Ankle range"),
-    "ankle_push_off_deg": later("Ankle push-off"),
-    "ankle_rocker_deg": later("Ankle rocker"),
-    "ankle_heel_rocker_deg": later("Ankle heel rocker"),
-    "ankle_toes_lifted_deg": later("Ankle, toes lifted in swing"),
+    "knee_loading_peak_deg": later("Peak knee flexion, loading"),
+    "knee_stance_minimum_deg": later("Least knee flexion, stance"),
+    "knee_swing_peak_deg": later("Knee peak flexion, swing"),
+    "knee_swing_peak_percent": later("Peak knee flexion, swing, timing"),
+    "ankle_range_deg": later("Ankle range of motion"),
+    "ankle_push_off_deg": later("Ankle plantarflexion, push-off"),
+    "ankle_rocker_deg": later("Ankle dorsiflexion, stance"),
+    "ankle_heel_rocker_deg": later("Ankle plantarflexion, loading response"),
+    "ankle_toes_lifted_deg": later("Ankle dorsiflexion, swing"),
     "ankle_at_initial_contact_deg": later("Ankle at initial contact"),
-    "ankle_loading_plantarflexion_deg": later("Ankle loading plantarflexion"),
-    "ankle_stance_dorsiflexion_deg": later("Ankle stance dorsiflexion"),
-    "ankle_push_off_plantarflexion_deg": later("Ankle push-off plantarflexion"),
-    "ankle_swing_dorsiflexion_deg": later("Ankle swing dorsiflexion"),
-    "hip_range_deg": later("Hip range"),
-    "hip_flexion_peak_deg": later("Hip, most flexed"),
-    "hip_extension_peak_deg": later("Hip, most extended"),
-    "hip_abduction_range_deg": later("Hip abduction range"),
-    "hip_abduction_peak_deg": later("Hip, most abducted"),
-    "hip_adduction_peak_deg": later("Hip, most adducted"),
-    "pelvis_obliquity_range_deg": later("Pelvis, obliquity range"),
-    "pelvis_drop_deg": later("Pelvis drop in swing"),
-    "pelvis_rotation_range_deg": later("Pelvis, rotation range"),
-    "pelvis_tilt_range_deg": later("Pelvis, tilt range"),
-    "pelvis_lean_deg": later("Pelvis, lean"),
-    "knee_terminal_extension_deg": later("Knee, straightest in swing"),
-    "knee_extended_before_contact_percent": later("Knee straight before contact"),
+    "ankle_loading_plantarflexion_deg": later("Peak plantarflexion, loading"),
+    "ankle_stance_dorsiflexion_deg": later("Peak dorsiflexion, stance"),
+    "ankle_push_off_plantarflexion_deg": later("Peak plantarflexion, push-off"),
+    "ankle_swing_dorsiflexion_deg": later("Peak dorsiflexion, swing"),
+    "hip_range_deg": later("Hip range of motion"),
+    "hip_flexion_peak_deg": later("Peak hip flexion"),
+    "hip_extension_peak_deg": later("Hip peak extension"),
+    "hip_abduction_range_deg": later("Hip abduction range of motion"),
+    "hip_abduction_peak_deg": later("Peak hip abduction"),
+    "hip_adduction_peak_deg": later("Peak hip adduction"),
+    "pelvis_obliquity_range_deg": later("Pelvic obliquity range"),
+    "pelvis_drop_deg": later("Pelvic drop in swing"),
+    "pelvis_rotation_range_deg": later("Pelvic rotation range"),
+    "pelvis_tilt_range_deg": later("Pelvic tilt range"),
+    "pelvis_lean_deg": later("Pelvic tilt, mean"),
+    "knee_terminal_extension_deg": later("Knee least flexion, late swing"),
+    "knee_extended_before_contact_percent": later("Knee extended before contact"),
     "foot_heel_rise_deg": later("Heel rise"),
-    "foot_pitch_at_contact_deg": later("Foot pitch at contact"),
-    "foot_flat_percent": later("Foot flat, % of stride"),
-    "shank_over_flat_foot_deg": later("Shank over the flat foot"),
+    "foot_pitch_at_contact_deg": later("Foot angle at contact"),
+    "foot_flat_percent": later("Foot flat (% gait cycle)"),
+    "shank_over_flat_foot_deg": later("Shank forward tilt, foot flat"),
 }
 WITH_UNIT = {  # as they head rows of figures that have no unit of their own
-    "stance_percent": later("Stance time, % of stride"),
+    "stance_percent": later("Stance (% gait cycle)"),
     "stride_length_m": later("Stride length, m"),
     "speed_m_s": later("Walking speed, m/s"),
     "cadence_steps_min": later("Cadence, steps/min"),
 }
 IN_SENTENCE = {
-    "stance_percent": later("stance, share of the stride"),
+    "stance_percent": later("stance phase"),
     "step_time_s": later("step time"),
     "stride_length_m": later("stride length"),
     "speed_m_s": later("walking speed"),
     "cadence_steps_min": later("cadence"),
-    "knee_stance_to_swing_deg": later("knee bend from stance to swing"),
-    "knee_while_loading_deg": later("knee bend while loading"),
-    "knee_straightening_deg": later("knee straightening in stance"),
-    "ankle_push_off_deg": later("ankle push\u2011off"),
+    "knee_stance_to_swing_deg": later("knee flexion, stance to swing"),
+    "knee_while_loading_deg": later("knee flexion, loading response"),
+    "knee_straightening_deg": later("knee extension, mid-stance"),
+    "ankle_push_off_deg": later("ankle plantarflexion, push\u2011off"),
     "ankle_rocker_deg": later("ankle rocker"),
-    "ankle_heel_rocker_deg": later("ankle, heel rocker"),
-    "ankle_toes_lifted_deg": later("ankle, toes lifted in swing"),
-    "knee_range_deg": later("knee range over the stride"),
-    "ankle_range_deg": later("ankle range over the stride"),
-    "hip_range_deg": later("hip range over the stride"),
-    "hip_extension_peak_deg": later("hip, most extended"),
-    "pelvis_obliquity_range_deg": later("pelvis, obliquity over the stride"),
-    "pelvis_drop_deg": later("pelvis drop in swing"),
+    "ankle_heel_rocker_deg": later("ankle plantarflexion, loading response"),
+    "ankle_toes_lifted_deg": later("ankle dorsiflexion, swing"),
+    "knee_range_deg": later("knee range of motion"),
+    "ankle_range_deg": later("ankle range of motion"),
+    "hip_range_deg": later("hip range of motion"),
+    "hip_extension_peak_deg": later("hip peak extension"),
+    "pelvis_obliquity_range_deg": later("pelvic obliquity range"),
+    "pelvis_drop_deg": later("pelvic drop in swing"),
 }
 LESS = "L \N{MINUS SIGN} R"
 NO_BREAK = "\N{NO-BREAK SPACE}"
@@ -93,14 +93,14 @@ def measure_name(column: str, *, is_between: bool = False) -> str:
 def spoken_name(column: str, *, is_between: bool = False) -> str:
     """As it is read out."""
     name = _name(column)
-    return tr("{measure} of the left leg less that of the right").format(measure=name) if is_between else name
+    return tr("{measure}, left minus right").format(measure=name) if is_between else name
 
 
 def unit_name(column: str) -> str:
     """The unit by itself."""
     return {
         Unit.DEGREES: tr("degrees"),
-        Unit.PERCENT: tr("% of stride"),
+        Unit.PERCENT: tr("% gait cycle"),
         Unit.METRES: "m",
         Unit.SPEED: "m/s",
         Unit.CADENCE: tr("steps/min"),
@@ -112,7 +112,7 @@ def spoken_value(column: str, value: str) -> str:
     """A number with its unit, as it is read out."""
     said = {
         Unit.DEGREES: tr("{value} degrees"),
-        Unit.PERCENT: tr("{value} percent of the stride"),
+        Unit.PERCENT: tr("{value} percent of the gait cycle"),
         Unit.METRES: tr("{value} metres"),
         Unit.SPEED: tr("{value} metres per second"),
         Unit.CADENCE: tr("{value} steps per minute"),
@@ -163,7 +163,7 @@ def limit(goal: Goal) -> str:
 def wanted(goal: Goal) -> str:
     """What the goal asks for: "at least 60°", "at most 2 % apart"."""
     if goal.of is GoalOf.BETWEEN:
-        return tr("at most {value} apart").format(value=limit(goal))
+        return tr("difference at most {value}").format(value=limit(goal))
     return (tr("at most {value}") if goal.is_at_most else tr("at least {value}")).format(value=limit(goal))
 
 
@@ -171,7 +171,7 @@ def whose_name(of: GoalOf) -> str:
     """Whose figure a goal is of; empty of the walk, which has one figure only."""
     if of.side is not None:
         return side_name(of.side)
-    return tr("between the legs") if of is GoalOf.BETWEEN else ""
+    return tr("left vs right") if of is GoalOf.BETWEEN else ""
 
 
 def goal_in_words(goal: Goal) -> str:

@@ -20,8 +20,8 @@ def name_of_test(protocol: TimedProtocol) -> str:
         TimedProtocol.TEN_METRES: tr("10-metre walk"),
         TimedProtocol.TWO_MINUTES: tr("2-minute walk"),
         TimedProtocol.SIX_MINUTES: tr("6-minute walk"),
-        TimedProtocol.UP_AND_GO: tr("Timed up and go"),
-        TimedProtocol.SIT_TO_STAND: tr("Sit to stand, 5 {times}").format(times=TIMES),
+        TimedProtocol.UP_AND_GO: tr("Timed Up and Go"),
+        TimedProtocol.SIT_TO_STAND: tr("5 {times} sit to stand").format(times=TIMES),
         TimedProtocol.STAIRS: tr("Stairs"),
     }[protocol]
 
@@ -32,29 +32,29 @@ def planned_words(planned: PlannedTest | None) -> str:
         return tr("no test")
     said = [name_of_test(planned.protocol)]
     if planned.start_key_s is not None:
-        said.append(tr("key at the start: {at:.1f} s").format(at=planned.start_key_s))
+        said.append(tr("start key at {at:.1f} s").format(at=planned.start_key_s))
     if planned.end_key_s is not None:
-        said.append(tr("key at the end: {at:.1f} s").format(at=planned.end_key_s))
+        said.append(tr("end key at {at:.1f} s").format(at=planned.end_key_s))
     return ", ".join(said)
 
 
 def start_words(protocol: TimedProtocol) -> str:
     """What starts the clock where no key does."""
     if protocol is TimedProtocol.TEN_METRES:
-        return tr("2 m on from standing still for 1 s")
+        return tr("2 m after standing still for 1 s")
     if DEFINITIONS[protocol].is_from_chair:
-        return tr("as the thighs leave the seat")
-    return tr("first step after 1 s of standing still")
+        return tr("when the thighs leave the seat")
+    return tr("first step after standing still for 1 s")
 
 
 def end_words(protocol: TimedProtocol) -> str:
     """What ends it where no key does."""
     return {
-        TimedProtocol.TEN_METRES: tr("10 m later, by the sensors"),
+        TimedProtocol.TEN_METRES: tr("10 m later, sensor distance"),
         TimedProtocol.TWO_MINUTES: tr("after 2:00"),
         TimedProtocol.SIX_MINUTES: tr("after 6:00"),
         TimedProtocol.UP_AND_GO: tr("seated again"),
-        TimedProtocol.SIT_TO_STAND: tr("upright for the fifth time"),
+        TimedProtocol.SIT_TO_STAND: tr("standing for the fifth time"),
         TimedProtocol.STAIRS: tr("with the last step"),
     }[protocol]
 
@@ -63,11 +63,11 @@ def reason_words(reason: NotMeasured) -> str:
     """Why something is missing, as a clause."""
     return {
         NotMeasured.NO_FEET: tr("no foot sensor was worn"),
-        NotMeasured.NO_THIGHS: tr("no thigh sensor was heard throughout, or nobody stood still before"),
-        NotMeasured.NO_START: tr("nobody stood still for a second before the first step"),
-        NotMeasured.NO_RISE: tr("nobody rose from the chair"),
-        NotMeasured.NOT_FINISHED: tr("the recording ended before the test did"),
-        NotMeasured.SILENT: tr("a foot sensor was silent"),
+        NotMeasured.NO_THIGHS: tr("no thigh sensor had a continuous signal, or the patient did not stand still before"),
+        NotMeasured.NO_START: tr("no standing still for 1 s before the first step"),
+        NotMeasured.NO_RISE: tr("no rise from the chair was detected"),
+        NotMeasured.NOT_FINISHED: tr("the recording ended before the test"),
+        NotMeasured.SILENT: tr("a foot sensor had no signal"),
     }[reason]
 
 
@@ -80,7 +80,7 @@ def result_sentence(test: TimedTest) -> str:
     """The one sentence of a test: its name and what it is made for."""
     name = name_of_test(test.protocol)
     if not math.isfinite(test.time_s):
-        return tr("{test}: no time was taken.").format(test=name)
+        return tr("{test}: time not measured.").format(test=name)
     said = []
     if test.definition.duration_s is not None and math.isfinite(test.distance_m):
         said = [f"{test.distance_m:.0f} m", f"{figure_text(test.speed_m_s, '.2f')} m/s"]
@@ -89,7 +89,7 @@ def result_sentence(test: TimedTest) -> str:
     elif test.definition.duration_s is None:
         said = [f"{figure_text(test.time_s, '.1f')} s"]
     if not said:
-        return tr("{test}: no distance can be told.").format(test=name)
+        return tr("{test}: distance not measured.").format(test=name)
     return tr("{test}: {figures}.").format(test=name, figures=", ".join(said))
 
 
@@ -98,17 +98,17 @@ def why_sentence(test: TimedTest) -> str:
     if not test.missing:
         return ""
     reasons = [
-        tr("the sensor at the {site} was silent from {start:.1f} to {end:.1f} s").format(
+        tr("the {site} sensor had no signal from {start:.1f} to {end:.1f} s").format(
             site=name_of(one.site), start=one.start_s, end=one.end_s
         )
         for one in test.silences
     ]
     reasons += [reason_words(one) for one in test.missing if one is not NotMeasured.SILENT]
     if not math.isfinite(test.time_s):
-        return tr("The time is not told: {reason}.").format(reason=joined(reasons))
+        return tr("Time not reported: {reason}.").format(reason=joined(reasons))
     if math.isfinite(test.distance_m):
-        return tr("The sensors' distance is not told: {reason}.").format(reason=joined(reasons))
-    return tr("The distance is not told: {reason}.").format(reason=joined(reasons))
+        return tr("Sensor distance not reported: {reason}.").format(reason=joined(reasons))
+    return tr("Distance not reported: {reason}.").format(reason=joined(reasons))
 
 
 def tape_sentence(test: TimedTest) -> str:
@@ -117,12 +117,12 @@ def tape_sentence(test: TimedTest) -> str:
     if not math.isfinite(apart_m):
         return ""
     share = 100.0 * apart_m / test.distance_m
-    told = tr("By the sensors it was {own:.2f} m, {apart:+.2f} m from the tape's {tape:.2f} m").format(
+    told = tr("The sensors measured {own:.2f} m, {apart:+.2f} m from the tape ({tape:.2f} m)").format(
         own=test.sensor_distance_m, apart=apart_m, tape=test.distance_m
     )
     if round(abs(share), 6) <= ALLOWED_PERCENT:
-        return tr("{told}; 3 % is allowed.").format(told=told)
-    return tr("{told}: more than the 3 % that is allowed. Look at where the tape lies.").format(told=told)
+        return tr("{told}; within the 3 % limit.").format(told=told)
+    return tr("{told}; beyond the 3 % limit. Check the position of the tape.").format(told=told)
 
 
 def pauses_sentence(test: TimedTest) -> str:
@@ -130,7 +130,7 @@ def pauses_sentence(test: TimedTest) -> str:
     if not test.pauses_s:
         return ""
     total_s = sum(end - start for start, end in test.pauses_s)
-    told = tr_n("{count} pause, {total:.1f} s.", "{count} pauses, {total:.1f} s together.", len(test.pauses_s))
+    told = tr_n("{count} pause, {total:.1f} s.", "{count} pauses, {total:.1f} s in total.", len(test.pauses_s))
     return told.format(count=len(test.pauses_s), total=total_s)
 
 
@@ -138,13 +138,13 @@ def stairs_sentence(test: TimedTest) -> str:
     """How many strides led up and down, and how long they took; empty where none did."""
     said = []
     for is_up, words in (
-        (True, tr("strides up: {count}, {time:.2f} s each")),
-        (False, tr("strides down: {count}, {time:.2f} s each")),
+        (True, tr("strides up: {count}, mean {time:.2f} s")),
+        (False, tr("strides down: {count}, mean {time:.2f} s")),
     ):
         times_s = [one.end_s - one.start_s for one in test.stairs if one.is_up is is_up]
         if times_s:
             said.append(words.format(count=len(times_s), time=sum(times_s) / len(times_s)))
-    return tr("On stairs, in no mean of walking: {strides}.").format(strides="; ".join(said)) if said else ""
+    return tr("Stair strides, excluded from walking means: {strides}.").format(strides="; ".join(said)) if said else ""
 
 
 def course_sentence(test: TimedTest) -> str:
@@ -155,7 +155,7 @@ def course_sentence(test: TimedTest) -> str:
     return tr("First third {first:.2f} m/s, last third {last:.2f} m/s.").format(first=speeds[0], last=speeds[-1])
 
 
-MEASURED = (later("six minutes by sensors in insoles"), later("six minutes by a rater"))  # in the sources of errors
+MEASURED = (later("6-minute walk, insole sensors"), later("6-minute walk, human rater"))  # in the sources of errors
 
 
 def error_words(error: KnownError) -> str:
@@ -164,9 +164,9 @@ def error_words(error: KnownError) -> str:
     most, least = figure_text(error.high, "g"), figure_text(error.low, "g")
     span = tr("up to {most}").format(most=most) if error.low == 0.0 else f"{least}\N{EN DASH}{most}"
     what = {
-        "distance_m": tr("Distance: {span} m{mark}, {source}."),
-        "distance_percent": tr("Distance: {span} %{mark}, {source}."),
-        "time_s": tr("Time: {span} s{mark}, {source}."),
+        "distance_m": tr("Distance error: {span} m{mark}, {source}."),
+        "distance_percent": tr("Distance error: {span} %{mark}, {source}."),
+        "time_s": tr("Time error: {span} s{mark}, {source}."),
     }[error.quantity]
     return what.format(span=span, mark=mark, source=_source_words(error))
 
@@ -174,5 +174,5 @@ def error_words(error: KnownError) -> str:
 def _source_words(error: KnownError) -> str:
     """Who says so: of a paper what was measured, and the paper as it is cited."""
     if error.courses:
-        return tr("the worst of {count} simulated courses").format(count=error.courses)
+        return tr("worst of {count} simulated runs").format(count=error.courses)
     return ", ".join(filter(None, [tr(error.how) if error.how else "", error.paper]))

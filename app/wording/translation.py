@@ -28,78 +28,85 @@ WITH_COMMAS = {"de"}  # languages that write fractions so
 
 SENTENCES = {
     # what the reader noticed
-    "unknown_key": "the key “{name}” means nothing here. It is kept as it is.",
-    "unknown_column": "the column “{name}” means nothing here. It is kept as it is.",
+    "unknown_key": "the key “{name}” is unknown. It is kept unchanged.",
+    "unknown_column": "the column “{name}” is unknown. It is kept unchanged.",
     "file_left_out": (
-        "“{name}” was left out, because nothing says which site it belongs to. Name it in the map to take it in."
+        "“{name}” was not imported, because its sensor position is unknown. Add it to the map to import it."
     ),
-    "doubled_stamps": "rows that repeat the time before them: {count}. The first of each was kept.",
+    "doubled_stamps": "rows that repeat the previous time: {count}. The first of each was used.",
     "stamps_mended": (
         "wrong time stamps: {count}, the first at sample {first}, off by {off_s:.6g} s. Times were interpolated "
         "between the samples around them; samples left out: {left_out}."
     ),
-    "damaged_stretches": "stretches that are damaged: {count}. They were passed over; what lay in them is missing.",
-    "slower_kept": "angular rate and acceleration came at unequal rates: the {kept} samples with both were kept, "
-    "{count} others left out. Set one rate for both in MT Manager.",
-    "infinite_values": "infinite values: {count}. They are no measurement and count as missing.",
-    "last_line_open": "the last line has no end, so its last value may be cut. Copy the file again if it matters.",
-    "no_sites": "no sensor data. Nothing can be computed from this recording.",
+    "damaged_stretches": "damaged segments: {count}. They were skipped; their data are missing.",
+    "slower_kept": (
+        "angular rate and acceleration have different rates: {kept} samples with both were used, "
+        "{count} others excluded. Set one rate for both in MT Manager."
+    ),
+    "infinite_values": "infinite values: {count}. They count as missing.",
+    "last_line_open": (
+        "the last line has no line end; its last value may be cut off. Copy the file again if it matters."
+    ),
+    "no_sites": "no sensor data. This recording cannot be analysed.",
     "rate_from_orientation": (
-        "no angular rates were recorded, so they come from the sensor's own orientation. Fast movements are "
-        "smoother than they were."
+        "no angular rates were recorded; they were derived from the sensor's orientation. Fast "
+        "movements appear smoother than they were."
     ),
     "columns_understood": (
-        "the columns were read as acceleration ({acc}, in {acc_unit}), angular rate ({gyr}, in {gyr_unit}) and time "
-        "({time}). Check them once for every program that writes such files."
+        "the columns were read as acceleration ({acc}, in {acc_unit}), angular rate ({gyr}, in "
+        "{gyr_unit}) and time ({time}). Check this once for each program that writes such files."
     ),
-    "columns_left_out": "columns that mean nothing here were left out: {names}.",
-    "unit_by_size": "the file does not tell the unit of {names}. By their size they are in {unit}.",
+    "columns_left_out": "unknown columns were not read: {names}.",
+    "unit_by_size": "the file gives no unit for {names}. From the size of the values, {unit} was assumed.",
     "time_from_rate": (
-        "the file tells no times, so its samples are taken to follow each other at {rate_hz:g} Hz. Lost samples do not "
-        "show; export times or a counter with them."
+        "the file contains no times; samples are assumed to be evenly spaced at {rate_hz:g} Hz. Lost "
+        "samples go unnoticed; export times or a counter as well."
     ),
     "times_straightened": (
-        "the times are those of packets, up to {away_ms:.0f} ms early or late, and were put on a straight line, so "
-        "losses shorter than {loss_ms:.0f} ms do not show. Send samples with the sensor's own times."
+        "packet times, up to {away_ms:.0f} ms early or late, were fitted to a straight line. Losses "
+        "shorter than {loss_ms:.0f} ms go unnoticed; send samples with the sensor's own times."
     ),
     "stream_not_ended": (
-        "the recording of this stream was not ended, or samples that were counted are missing. Copy the file again; if "
-        "it stays so, they are lost."
+        "the recording of this stream was not closed, or counted samples are missing. Copy the file "
+        "again; if that does not help, they are lost."
     ),
     "clock_not_measured": (
-        "the clock of “{host}”, which sent this sensor, was not measured, so its recording was set to start with the "
-        "others'. Record again with all computers in one network."
+        "the clock of “{host}”, which sent this sensor, was not measured. Its recording starts with "
+        "the others'; record again with all computers in one network."
     ),
     "orientation_left_out": (
-        "the orientation ({names}) does not turn gravity upwards, so it is not earth from sensor. It was left out."
+        "the orientation ({names}) does not turn gravity upwards, so it is not earth from sensor. It was not used."
     ),
     "gravity_from_orientation": (
-        "the acceleration was recorded without gravity, which was added again by the sensor's own orientation. Where "
-        "that is off, the acceleration is too."
+        "the acceleration was recorded without gravity, which was added back from the sensor's "
+        "orientation. Where the orientation is off, the acceleration is too."
     ),
     "gravity_for_acceleration": (
-        "no acceleration was recorded, so gravity stands in for it. What rests on acceleration, such as the landing of "
-        "a foot, cannot be told."
+        "no acceleration was recorded; gravity alone is used. Events that need acceleration, such as "
+        "initial contact, cannot be detected."
     ),
     "not_synchronised": (
-        "this sensor was not synchronised with the others, so its recording was set to start with theirs. Joints of "
-        "which the motion cannot tell the rest are left out; synchronise the sensors before the next recording."
+        "this sensor was not synchronised with the others; its start was set to theirs, and joints "
+        "whose movement does not show the remaining offset are excluded. Synchronise the sensors "
+        "before the next recording."
     ),
     "sensor_changed": (
-        "another sensor was worn than in the recording before. A calibration does not carry over to it; record "
-        "free motion again."
+        "a different sensor was worn in the recording before. The earlier calibration does not apply; "
+        "record free motion again."
     ),
     # what the data look like
-    "too_few_samples": "too few samples ({samples}). Nothing can be computed from them; record at least three seconds.",
-    "all_zero": "every sample is zero. Check this sensor; its joints are left out.",
-    "bridged": "{missing_percent:.1f} % of the samples are missing, one by one. The angles go on across them.",
+    "too_few_samples": (
+        "too few samples ({samples}). This recording cannot be analysed; record at least three seconds."
+    ),
+    "all_zero": "every sample is zero. Its joints are excluded; check this sensor.",
+    "bridged": ("{missing_percent:.1f} % of the samples are missing, in short gaps. The angles continue across them."),
     "gaps": (
-        "samples are missing ({missing_percent:.1f} % in all; gaps: {count}, the longest {longest_s:.2f} s). "
-        "The angles have gaps there."
+        "samples are missing ({missing_percent:.1f} % in all; gaps: {count}, longest {longest_s:.2f} "
+        "s). The angles have gaps there."
     ),
     "many_gaps": (
-        "samples are missing ({missing_percent:.1f} % in all; gaps: {count}, the longest {longest_s:.2f} s). "
-        "Too few are left to rely on; record again, nearer to the receiver."
+        "samples are missing ({missing_percent:.1f} % in all; gaps: {count}, longest {longest_s:.2f} "
+        "s). Too few remain for a result; record again, closer to the receiver."
     ),
     "pause": (
         "no sensor recorded anything for {length_s:.1f} s from {from_s:.1f} s on. The strides before and after this "
@@ -114,193 +121,208 @@ SENTENCES = {
         "were set. Check the sample rate of this sensor, move the receiver nearer, then record again."
     ),
     "acc_in_g": (
-        "the median acceleration is {median_m_s2:.2f} m/s² where some 9.81 m/s² are expected, as if in g; its "
-        "joints are left out. Convert the file and import it again."
+        "the median acceleration is {median_m_s2:.2f} m/s² instead of about 9.81 m/s², as if in g. "
+        "Its joints are excluded; convert the file and import it again."
     ),
     "acc_implausible": (
-        "the median acceleration is {median_m_s2:.2f} m/s² where some 9.81 m/s² are expected. Check this sensor; "
-        "its joints are left out."
+        "the median acceleration is {median_m_s2:.2f} m/s² instead of about 9.81 m/s². Its joints are "
+        "excluded; check this sensor."
     ),
     "rate_in_deg_s": (
         "angular rates reach {p99_rad_s:.0f} rad/s, as if in degrees per second. Convert the file and import it again."
     ),
     "acc_reversed": (
-        "accelerations and rates do not belong together: where its neighbour turns left, this sensor turns right. Its "
-        "joints are left out; give its accelerations the other sign, or its axes their order, and import it again."
+        "acceleration and angular rate do not match: this sensor turns opposite to the adjacent "
+        "segment, so its joints are excluded. Reverse the sign of its accelerations or correct its "
+        "axis order, then import it again."
     ),
     "time_in_ms": (
-        "the times look like {unit}, not seconds: from one sample to the next they grow by {step:.1f}. Convert the "
+        "the times look like {unit}, not seconds: the step between samples is {step:.1f}. Convert the "
         "file and import it again."
     ),
     "same_data": (
-        "both hold the same data, so their joints are left out. Find out which file is the copy and import the "
-        "right one."
+        "both contain the same data, so their joints are excluded. Find the copied file and import the right one."
     ),
     "clock_offset": (
-        "the clock is {offset_s:.1f} s away from the others', more than can be mended. Use one receiver for all "
-        "sensors, then record again."
+        "the clock differs by {offset_s:.1f} s from the others, too much to correct. Use one receiver "
+        "for all sensors, then record again."
     ),
     "clock_jumps": (
-        "the clock jumps forward by {jump_s:.1f} s, {after_s:.1f} s after it began, so its joints are left out. Split "
-        "the recording there, then import it again."
+        "the clock jumps forward by {jump_s:.1f} s, {after_s:.1f} s after the start. Its joints are "
+        "excluded; split the recording there, then import it again."
     ),
     "impossible_values": (
-        "samples larger than any sensor measures: {count}. They count as missing; check the sensor and its file."
+        "samples beyond the range of any sensor: {count}. They count as missing; check the sensor and its file."
     ),
     "stuck": (
-        "the sensor repeated the same values for {percent:.1f} % of the time; they count as missing. Restart it before "
-        "the next recording."
+        "the sensor repeated the same values for {percent:.1f} % of the time. These count as missing; "
+        "restart the sensor before the next recording."
     ),
-    "stuck_throughout": "the sensor repeated the same values all the time. Restart it; its joints are left out.",
+    "stuck_throughout": (
+        "the sensor repeated the same values all the time. Its joints are excluded; restart the sensor."
+    ),
     "low_rate": (
-        "only {rate_hz:.0f} samples per second. Angles are uncertain by several degrees; 60 or more are wanted."
+        "only {rate_hz:.0f} samples per second; 60 or more are required. Angles are uncertain by several degrees."
     ),
     "clipped": (
-        "{percent:.1f} % of the samples are at the end of the sensor's range. Peaks are cut off; choose a wider range."
+        "{percent:.1f} % of the samples are at the limit of the sensor's range. Peaks are cut off; "
+        "choose a wider range."
     ),
     "missing_site": "no sensor was worn here. There are no {joint} angles.",
     "gyro_bias_unknown": (
-        "the sensors were never still, so their rates at rest are unknown. Angles may drift; let the patient "
-        "stand for three seconds before the next walk."
+        "the sensors were never still, so their gyroscope offsets are unknown. Angles may drift; let "
+        "the patient stand for three seconds before the next walk."
     ),
-    "moved_while_standing": "the patient moved while standing, so this gives no zero. Repeat standing still.",
+    "moved_while_standing": (
+        "the patient moved while standing, so there is no standing reference. Repeat standing still."
+    ),
     "rate_kind_found": (
-        "the file does not say what an angular rate stands for; the data fit {kind} rates best. Note it as "
-        "rate_kind in session.toml."
+        "the file does not state what its angular rates represent; {kind} rates fit the data best. "
+        "Enter this as rate_kind in session.toml."
     ),
     # what was found of the joints
     "no_joint": (
-        "no joint angle could be computed. Two neighbouring sensors, such as thigh and shank, must be worn and move."
+        "no joint angle could be computed. Sensors on two adjacent segments, such as thigh and shank, "
+        "must be worn and move."
     ),
-    "feet_only": "only feet carry sensors, so there are steps and no joint angles.",
-    "too_little_motion": "no axis was found, for lack of motion or usable samples. Record ten seconds of free motion.",
+    "feet_only": "only the feet have sensors, so there are steps but no joint angles.",
+    "too_little_motion": (
+        "no joint axis was found: too little movement or too few usable samples. Record ten seconds of free motion."
+    ),
     "sign_in_doubt": (
-        "two solutions fit almost equally well (margin {margin:.2f}, 1.5 wanted). Check which sensor is where, or "
-        "record free motion."
+        "two solutions fit almost equally well (margin {margin:.2f}, 1.5 required). Check the sensor "
+        "positions, or record free motion."
     ),
     "clinical_sign_uncertain": (
-        "the motion does not tell flexion from extension (margin {margin:.2f}), so only its range is given. Look at "
-        "the curve, then confirm or turn the sign."
+        "flexion and extension cannot be distinguished (margin {margin:.2f}), so only range of motion "
+        "is reported. Check the curve, then confirm or reverse the sign."
     ),
-    "sign_turned": "the sign was turned by hand. The angle is shown as it was corrected.",
-    "sign_confirmed": "the sign was confirmed by hand. It is used as it was found.",
+    "sign_turned": "the sign was reversed by hand. The corrected angle is shown.",
+    "sign_confirmed": "the sign was confirmed by hand. It is used as detected.",
     "not_a_hinge": (
-        "turns about more than one axis (residual {hinge_residual_rad_s:.2f} rad/s). The angle is the part about "
-        "its main axis."
+        "rotates about more than one axis (residual {hinge_residual_rad_s:.2f} rad/s). The angle is "
+        "the rotation about its main axis."
     ),
-    "is_a_hinge": "moves like a true hinge. The stricter method was used and the angle is more certain.",
+    "is_a_hinge": "moves like a true hinge. The stricter method was used, and the angle is more certain.",
     "flexion_did_not_dominate": (
-        "the axis found lies {elevation_deg:.0f}° from horizontal, so flexion did not dominate the motion. Repeat "
-        "free motion and bend this joint more."
+        "the detected axis is {elevation_deg:.0f}° from horizontal, so flexion was not the main "
+        "movement. Repeat free motion with more flexion of this joint."
     ),
     "turns_contradict": (
-        "the feet tell {feet} turns in this test, the pelvis {pelvis}. Look which is right before the turns are used."
+        "the feet show {feet} turns in this test, the pelvis {pelvis}. Check which is right before using the turns."
     ),
     "clock_moved": (
-        "the farther sensor's clock is {lag_ms:+.0f} ms off here and was not in the others. It has been "
-        "corrected; with one receiver for all sensors it does not happen."
+        "the distal sensor's clock is {lag_ms:+.0f} ms off here, but not in the other recordings. "
+        "This was corrected; one receiver for all sensors avoids it."
     ),
     "clock_drifts": (
-        "this sensor's clock runs {drift_percent:+.1f} % faster than the others' of its leg, so its samples are paired "
-        "with the wrong ones. Check its sample rate, or use one receiver for all sensors, and record the walk again."
+        "this sensor's clock runs {drift_percent:+.1f} % faster than the others of its leg. Its "
+        "samples do not match theirs in time; check its sample rate, or use one receiver for all "
+        "sensors, then record the walk again."
     ),
-    "lag_corrected": "the farther sensor's clock was {lag_ms:+.0f} ms off. It has been corrected.",
+    "lag_corrected": "the distal sensor's clock was {lag_ms:+.0f} ms off. This was corrected.",
     "not_the_same_joint": (
         "the two sensors do not move like the two sides of one joint. Check which sensor is where, or use one receiver "
         "for all sensors."
     ),
-    "centre_unknown": "the joint centre could not be found from this motion. The angle does not need it.",
+    "centre_unknown": "the joint centre could not be determined from this movement. The angle does not need it.",
     "ankle_axis_from_rates": (
-        "no tissue rings at this foot, so the axis comes straight from how foot and shank turned in walking."
+        "no soft-tissue vibration at this foot; the axis comes directly from foot and shank rotation in walking."
     ),
     "axis_from_walking": (
         "the joint axis comes from walking alone and is less certain. Record ten seconds of free motion."
     ),
     "zero_unknown": (
-        "has no zero, since no standing was recorded for it. Its range and shape hold, absolute angles do not."
+        "has no standing reference, since no standing was recorded for it. Range of motion and curve "
+        "shape are valid, absolute angles are not."
     ),
     "goniometer_without_standing": (
         "the goniometer value was not used, since no standing was recorded. Let the patient stand for three seconds."
     ),
     "joint_left_out": (
-        "was left out, because a sensor gave nothing usable. What is wrong with it is said beside its name."
+        "is excluded, because one of its sensors gave no usable data. The reason is given with that sensor."
     ),
-    "no_standing": "no standing recording, so there is no zero. Range and shape hold, absolute angles do not.",
+    "no_standing": (
+        "no standing recording, so there is no standing reference. Range of motion and curve shape "
+        "are valid, absolute angles are not."
+    ),
     "zero_from_goniometer": (
-        "reads {value_deg:.1f}° in standing, as measured with the goniometer. All angles refer to it."
+        "is {value_deg:.1f}° in standing, as measured with the goniometer. All angles refer to it."
     ),
     "published_sign_unsure": (
-        "the published method could not pair the directions of the two axes with certainty. Its curve may be mirrored."
+        "the published method could not match the directions of the two axes with certainty. Its curve may be mirrored."
     ),
     "events_from_shank": (
-        "the foot has no usable sensor, so steps come from the shank. Contact and toe-off are known, distances are not."
+        "the foot has no usable sensor, so steps are detected from the shank. Initial contact and "
+        "toe-off are known, distances are not."
     ),
     "doubtful_strides": (
-        "strides whose landing is in doubt: {count}. The foot went another way than its toes point, so averages leave "
-        "them out."
+        "strides with doubtful initial contact: {count}. The foot moved in another direction than its "
+        "toes point, so averages exclude them."
     ),
-    "foot_against_shank": "the foot has no ankle joint. Its angle is that of the foot against the shank.",
+    "foot_against_shank": "the foot has no ankle joint. Its angle is the foot relative to the shank.",
     "prosthetic_toe_off": (
-        "toe-off of a prosthetic foot is timed by when its sole begins to move, tried on simulated feet only. Its "
-        "stance is not judged."
+        "prosthetic toe-off is timed by the first movement of the sole, tested on simulated feet "
+        "only. Stance of this foot is not assessed."
     ),
-    "no_strides": "no whole stride was found. Check that this is a walk, and that the sensors sit on feet or shanks.",
+    "no_strides": ("no complete stride was found. Check that this is a walk, and that sensors are on feet or shanks."),
     "side_without_strides": (
-        "no whole stride was found, though the other side has some. Check that the sensor sits where it is said to, "
-        "then walk once more."
+        "no complete stride was found, though the other side has some. Check the sensor position, "
+        "then record another walk."
     ),
     "strides_all_left_out": (
-        "all strides found ({count}) were left out: {reasons}. So there are no averages; put that right and record the "
-        "walk again."
+        "all detected strides ({count}) were excluded: {reasons}. There are no averages; correct this "
+        "and record the walk again."
     ),
-    "strides_left_out_by_hand": "{count} of {of} {side} strides left out by hand.",
+    "strides_left_out_by_hand": "{count} of {of} {side} strides excluded by hand.",
     "no_mean": (
-        "usable strides on the {side}: {count}; {wanted} make a mean. Walk once more, or read single strides only."
+        "usable strides on the {side}: {count}; a mean needs {wanted}. Record another walk, or assess "
+        "single strides only."
     ),
     "angle_without_mean": (
-        "strides used: {used}, of them without gaps in this angle: {count}; {wanted} make a mean. Record again, nearer "
-        "to the receiver."
+        "strides used: {used}, without gaps in this angle: {count}; a mean needs {wanted}. Record "
+        "again, closer to the receiver."
     ),
     "no_spread": (
-        "only {left} left and {right} right strides, {wanted} make a spread. Walk once more, or go on without a spread."
+        "only {left} left and {right} right strides; a standard deviation needs {wanted}. Record "
+        "another walk, or continue without a standard deviation."
     ),
     "no_spread_of_side": (
-        "only {count} {side} strides, {wanted} make a spread. Walk once more, or go on without a spread."
+        "only {count} {side} strides; a standard deviation needs {wanted}. Record another walk, or "
+        "continue without a standard deviation."
     ),
-    "no_peak": (
-        "no {peak}, since the angle only passes through where it is looked for. Nothing is given in its place."
-    ),
+    "no_peak": ("no {peak}. The angle has no turning point in that phase, so no value is reported."),
     "published_differs": (
-        "the published method differs by {difference_deg:.1f}° in shape. Compare the two curves before relying on it."
+        "the published method differs by {difference_deg:.1f}° in curve shape. Compare both curves "
+        "before relying on it."
     ),
     # what the session is made of
-    "recording_discarded": "this recording was discarded. It is kept in the folder and not analysed.",
+    "recording_discarded": "this recording is excluded. It stays in the folder and is not analysed.",
     "recording_recovered": (
-        "the program was closed while this was recorded. It is kept up to the last record on the disk; ending the "
-        "program costs 0.1 s at most in 99 of 100 cases, a power cut up to 0.5 s and what the disk still held back."
+        "the program closed during this recording, which is complete up to the last record on disk. "
+        "Ending the program loses at most 0.1 s in 99 of 100 cases; a power cut loses up to 0.5 s and "
+        "any data not yet on disk."
     ),
     "recording_changed": (
-        "its file is not what it was when the recording was stopped. What is proved in it was used; restore it from "
-        "a backup."
+        "its file no longer matches the recording as it was stopped. Only the verified part was used; "
+        "restore it from a backup."
     ),
     "strap_slipped": (
-        "the strap slipped near {from_s} s, by about {turn_deg}°. Strides of this leg from 5 s before on are left out; "
-        "tighten it and repeat the free motion."
+        "the strap moved at about {from_s} s, by about {turn_deg}°. Strides of this leg are excluded "
+        "from 5 s before; tighten the strap and repeat free motion."
     ),
-    "restrapped": "the sensors were strapped on anew before this recording. Nothing recorded earlier calibrates it.",
+    "restrapped": "the sensors were reattached before this recording. Earlier recordings do not calibrate it.",
     "calibration_after_walk": (
-        "was calibrated with a recording made after the walk, as there is none before. It holds only if no sensor "
-        "moved in between."
+        "was calibrated with a recording made after the walk, as there is none before. This is valid "
+        "only if no sensor moved in between."
     ),
     "simulated": "these data are simulated. They come from no patient.",
-    "axis_uncertain": "the joint axis is certain to {axis_sd_deg:.1f}° only. Record free motion, or move longer.",
-    "short_recording": "a short recording. Its angles are less certain.",
+    "axis_uncertain": "calibration certainty is only ±{axis_sd_deg:.1f}°. Record free motion, or move longer.",
+    "short_recording": "short recording. Its angles are less certain.",
     "labels_look_swapped": (
-        "seem swapped, as the motion fits better the other way round. Swap them, or keep them as worn."
+        "look swapped, as the movement fits better the other way round. Swap them, or keep the positions."
     ),
-    "labels_look_mixed": (
-        "seem to be worn in another order, as the motion fits that better. Check which sensor is where."
-    ),
+    "labels_look_mixed": ("look mixed up, as another order fits the movement better. Check the sensor positions."),
 }
 
 # what a finding's numbers name by the words of the files, as the sentences say it
@@ -308,25 +330,25 @@ NAMES = {
     "side": {"left": "left", "right": "right"},
     "reason": {
         "gap": "with missing samples",
-        "doubtful_events": "with a landing in doubt",
+        "doubtful_events": "with doubtful initial contact",
         "pause": "with a pause",
         "turn": "turning",
         "start": "starting",
         "stop": "stopping",
         "outlier": "unlike the others",
-        "strap_slipped": "after a strap slipped",
+        "strap_slipped": "after a strap moved",
         "stairs_up": "up stairs",
         "stairs_down": "down stairs",
-        "left_out_by_hand": "left out by hand",
+        "left_out_by_hand": "excluded by hand",
     },
     "peak": {
-        "knee_loading_peak": "loading peak",
-        "knee_stance_minimum": "stance minimum",
-        "knee_swing_peak": "swing peak",
-        "ankle_loading_plantarflexion": "loading plantarflexion",
-        "ankle_stance_dorsiflexion": "stance dorsiflexion",
-        "ankle_push_off_plantarflexion": "push-off plantarflexion",
-        "ankle_swing_dorsiflexion": "swing dorsiflexion",
+        "knee_loading_peak": "peak flexion, loading",
+        "knee_stance_minimum": "least flexion, stance",
+        "knee_swing_peak": "peak flexion, swing",
+        "ankle_loading_plantarflexion": "peak plantarflexion, loading",
+        "ankle_stance_dorsiflexion": "peak dorsiflexion, stance",
+        "ankle_push_off_plantarflexion": "peak plantarflexion, push-off",
+        "ankle_swing_dorsiflexion": "peak dorsiflexion, swing",
     },
 }
 

@@ -6,9 +6,9 @@ from app.wording.translation import figure_text, later, tr
 from core.verdicts.model import GateReason, Verdict
 
 VERDICTS = {
-    Verdict.READ: later("can be read"),
-    Verdict.CARE: later("read with care"),
-    Verdict.WITHHELD: later("withheld"),
+    Verdict.READ: later("good"),
+    Verdict.CARE: later("caution"),
+    Verdict.WITHHELD: later("not reported"),
     Verdict.NOT_MEASURED: later("not measured"),
 }
 DECIMALS = {"deg": 1, "ms": 1, "m/s": 2, "%": 1, "s": 1, "m": 2}
@@ -22,86 +22,88 @@ class GateWords(NamedTuple):
 
 
 _ONE_RECEIVER = later("Use one receiver for all sensors.")
-_LOOK_AT_SIGN = later("Look at the curve, then confirm or turn the sign.")
+_LOOK_AT_SIGN = later("Check the curve, then confirm or reverse the sign.")
 _STRAP_PELVIS = later(
-    "Strap the pelvis sensor to the sacrum, not to a waistband, and walk 15 s with a turn or make lunges."
+    "Strap the pelvis sensor to the sacrum, not to a waistband. Then walk 15 s with a turn, or do lunges."
 )
-_FREE_MOTION = later("Tighten it and record free motion again.")
+_FREE_MOTION = later("Tighten the strap and record free motion again.")
 
 # {value} and {limit} carry their units; where a gate has no figure the first sentence is without one
 WORDS = {
     "pairing": GateWords(
-        later("The two sensors do not move as neighbours (margin {value}, {limit} wanted)."),
-        later("Check which sensor is where, or record free motion."),
+        later("Sensor positions could not be confirmed (margin {value}, required {limit})."),
+        later("Check the sensor positions, or record free motion."),
     ),
     "disagreement": GateWords(
-        later("The two sensors disagree about their joint (disagreement {value}, limit {limit})."),
-        later("Check which sensor is where, or record free motion."),
+        later("The two sensors disagree at their joint (disagreement {value}, limit {limit})."),
+        later("Check the sensor positions, or record free motion."),
     ),
     "labels": GateWords(
-        later("The motion fits better if the sensors were worn in another order."),
-        later("Check which sensor is where."),
+        later("Sensors look swapped: another order fits the movement better."),
+        later("Check the sensor positions."),
     ),
     "hip_disagreement": GateWords(
-        later("Pelvis and thigh disagree about what the hip feels ({value} of it, under {limit} wanted)."),
+        later("Pelvis and thigh sensors disagree on the acceleration at the hip ({value} of it, limit {limit})."),
         _STRAP_PELVIS,
     ),
-    "hip_centre": GateWords(later("The hip's centre lies {value} from a sensor (limit {limit})."), _STRAP_PELVIS),
+    "hip_centre": GateWords(later("The hip joint centre lies {value} from a sensor (limit {limit})."), _STRAP_PELVIS),
     "hips_apart": GateWords(
-        later("The left hip lies {value} to the left of the right one (limit {limit})."),
-        later("Check whether the thighs' sensors are swapped."),
+        later("The left hip joint centre lies {value} to the left of the right one (limit {limit})."),
+        later("Check whether the thigh sensors are swapped."),
     ),
     "hip_found": GateWords(
-        later("The hip was not found: that takes standing, the knee's sensors and motion that shows the hip."),
-        later("Let the patient stand still for three seconds, then walk 15 s with a turn, or make lunges."),
+        later(
+            "The hip joint could not be located. It needs standing, thigh and shank sensors, and enough hip movement."
+        ),
+        later("Let the patient stand still for three seconds, then walk 15 s with a turn, or do lunges."),
     ),
     "hip_heading": GateWords(
-        later("The heading of the thigh in the pelvis is known to {value} only ({limit} wanted): no abduction."),
-        later("Let the patient walk 15 s with a turn, or make lunges."),
+        later("Thigh heading against the pelvis is too uncertain ({value}, limit {limit}). Abduction is not reported."),
+        later("Let the patient walk 15 s with a turn, or do lunges."),
     ),
     "hip_deep": GateWords(
-        later("A hip bends to {value} (limit {limit}): so deep, the sensor shows half of the pelvis's tilt.")
+        later("Hip flexion reaches {value} (limit {limit}). That deep, the sensor shows only half of the pelvic tilt.")
     ),
     "pelvis_tilt": GateWords(
-        later("The pelvis tilts by {value} over the stride: up to {limit} that is not told from measurement error.")
+        later("Pelvic tilt range is {value}. Up to {limit} it cannot be separated from measurement error.")
     ),
     "sign": GateWords(
         later(
-            "The motion does not tell flexion from extension (margin {value}, {limit} wanted), so only the range holds."
+            "Flexion and extension could not be distinguished (margin {value}, required {limit}). Only "
+            "range of motion is reported."
         ),
         _LOOK_AT_SIGN,
     ),
     "axis": GateWords(
-        later("The joint's axis is known to {value} only ({limit} wanted)."),
+        later("Calibration certainty is only ±{value} (limit ±{limit})."),
         later("Record free motion, or move longer and in more directions."),
     ),
-    "lag": GateWords(
-        later("How far the two sensors' clocks are apart is known to {value} only ({limit} wanted)."), _ONE_RECEIVER
-    ),
+    "lag": GateWords(later("The two sensors are synchronised only to ±{value} (limit ±{limit})."), _ONE_RECEIVER),
     "plausible": GateWords(
-        later("The range over the stride is {value} (limit {limit})."), later("Look at the curve and at the sensors.")
+        later("Range of motion is {value} (limit {limit})."), later("Check the curve and the sensors.")
     ),
-    "plausible_height": GateWords(later("The curve reaches {value} (limit {limit})."), later("Set the zero again.")),
+    "plausible_height": GateWords(
+        later("The absolute angle reaches {value} (limit {limit})."), later("Record the standing reference again.")
+    ),
     "zero": GateWords(
-        later("No zero was set, so heights say nothing."), later("Let the patient stand still for three seconds.")
+        later("There is no standing reference, so absolute angles are not reported."),
+        later("Let the patient stand still for three seconds."),
     ),
     "clock_drift": GateWords(
-        later("One sensor's clock runs {value} faster or slower than the others'."),
+        later("One sensor's clock runs {value} faster or slower than the others."),
         later("Use one receiver for all sensors, then record again."),
     ),
-    "strap": GateWords(later("A strap slipped from {value} on; later strides are left out."), _FREE_MOTION),
-    "strides": GateWords(later("Few strides ({value} used, {limit} wanted)."), later("Let the patient walk longer.")),
-    "halves": GateWords(later("The second half of the walk differs from the first by {value} ({limit} at most).")),
-    "halves_time": GateWords(
-        later("The stride time of the second half differs from the first by {value} ({limit} at most).")
-    ),
-    "drift": GateWords(later("The last third of the walk differs from the first by {value} ({limit} at most).")),
+    "strap": GateWords(later("Strap moved; strides from {value} on are excluded."), _FREE_MOTION),
+    "strides": GateWords(later("Few strides ({value} used, {limit} required)."), later("Let the patient walk longer.")),
+    "halves": GateWords(later("First and second half of the walk differ by {value} (limit {limit}).")),
+    "halves_time": GateWords(later("Stride time differs by {value} between the halves of the walk (limit {limit}).")),
+    "drift": GateWords(later("First and last third of the walk differ by {value} (limit {limit}).")),
     "odd_even": GateWords(
-        later("Every second stride differs from the others by {value} standard errors ({limit} at most).")
+        later("Every second stride differs from the others by {value} standard errors (limit {limit}).")
     ),
     "loss": GateWords(
         later("Gaps over 50 ms take {value} of the strides used ({limit} at most)."),
-        later("Move the receiver nearer."),
+        later("Move the receiver closer."),
     ),
     "clipping": GateWords(
         later("The motion exceeded a sensor's range in {value} of the strides used ({limit} at most)."),
@@ -115,42 +117,39 @@ WORDS = {
         later("Every second sample of a sensor is missing: {value} came (limit {limit})."),
         later("Check its sample rate, move the receiver nearer, then record again."),
     ),
-    "events": GateWords(later("Stance takes {value} of the stride (limit {limit}): the events may be wrong.")),
-    "distance": GateWords(later("The stride lengths of both feet differ by {value} ({limit} at most).")),
-    "speed": GateWords(later("The walking speed found is {value} (limit {limit}): the distance may be wrong.")),
+    "events": GateWords(later("Stance is {value} of the gait cycle (limit {limit}). Gait events may be wrong.")),
+    "distance": GateWords(later("Left and right stride length differ by {value} (limit {limit}).")),
+    "speed": GateWords(later("Walking speed is {value} (limit {limit}). Distance may be wrong.")),
     "toe_off": GateWords(
-        later("A prosthetic foot rolls on, so toe-off is found late: stance is not compared or judged.")
+        later("A prosthetic foot rolls on, so toe-off is detected late. Stance is not compared or judged.")
     ),
     "step_share": GateWords(
         later(
-            "The left step takes {value} of both (limit {limit}), though both feet stand equally long: the legs' "
-            "clocks differ."
+            "Left and right sensors are not synchronised: the left step takes {value} of both (limit "
+            "{limit}), with equal stance times."
         ),
         _ONE_RECEIVER,
     ),
     "leg_clock": GateWords(
-        later(
-            "Nothing ties the clocks of both legs together, and the hips do not tell how far they are apart: that "
-            "takes 20 s of walking."
-        ),
+        later("Left and right sensors are not synchronised. Synchronising them by hip movement takes 20 s of walking."),
         later("Let the patient walk for 20 s or longer, or use one receiver for all sensors."),
     ),
-    "clocks": GateWords(later("The clocks of both legs may be {value} apart ({limit} at most)."), _ONE_RECEIVER),
+    "clocks": GateWords(later("Left and right sensors may be {value} out of sync (limit {limit})."), _ONE_RECEIVER),
 }
 WITHOUT_FIGURES = {
     "pairing": GateWords(
-        later("The two sensors do not move as neighbours."),
-        later("Check which sensor is where, or record free motion."),
+        later("Sensor positions could not be confirmed."),
+        later("Check the sensor positions, or record free motion."),
     ),
     "sign": GateWords(
-        later("The motion does not tell flexion from extension, so only the range holds."), _LOOK_AT_SIGN
+        later("Flexion and extension could not be distinguished. Only range of motion is reported."), _LOOK_AT_SIGN
     ),
-    "axis": GateWords(later("How sure the joint's axis is, is not known."), later("Record free motion.")),
-    "lag": GateWords(later("The motion does not show how far the two sensors' clocks are apart."), _ONE_RECEIVER),
-    "strap": GateWords(later("A strap slipped before this walk."), _FREE_MOTION),
+    "axis": GateWords(later("Calibration certainty is not known."), later("Record free motion.")),
+    "lag": GateWords(later("The two sensors could not be synchronised from the movement."), _ONE_RECEIVER),
+    "strap": GateWords(later("Strap moved before this walk."), _FREE_MOTION),
     "step_share": WORDS["step_share"],
     "clocks": GateWords(
-        later("Nothing ties the clocks of both legs together, so nothing that compares instants of both is given."),
+        later("Left and right sensors are not synchronised. Timing between the legs is not reported."),
         _ONE_RECEIVER,
     ),
 }

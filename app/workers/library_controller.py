@@ -250,7 +250,7 @@ class LibraryController(QObject):
             self._tell_refusal(job, *nothing_open())
             return
         if self._long.is_busy:
-            self._tell_refusal(job, tr("Something else is still being done."), tr("Wait for it, or stop it."))
+            self._tell_refusal(job, tr("Another task is still running."), tr("Wait until it has finished, or stop it."))
             return
         if self.gone_words is not None:
             self._tell_refusal(job, *self.gone_words)
@@ -345,7 +345,7 @@ class LibraryController(QObject):
             self._tell_refusal(job, *nothing_open())
             return
         if self._long.is_busy:  # what was stopped is waited for by the next
-            self._tell_refusal(job, tr("Something else is still being done."), tr("Wait for it, or stop it."))
+            self._tell_refusal(job, tr("Another task is still running."), tr("Wait until it has finished, or stop it."))
             return
         self._long_job, self._long_progressed = job, progressed
         library, lock = self._state.library, self._holder.long_work
@@ -444,30 +444,31 @@ class LibraryController(QObject):
         self.gone_words = None
         if self._state.library.shared is not None and not brought:
             self.back.emit(
-                tr("The clinic's server answers again."), tr("What was recorded meanwhile is added to the library now.")
+                tr("The clinic's server responds again."),
+                tr("Recordings made meanwhile are now being added to the library."),
             )
             return
-        then = tr("Nothing had to be added to it.")
+        then = tr("There was nothing to add.")
         if brought:
             then = tr_n(
-                "{count} recording that was made meanwhile is in it now.",
-                "{count} recordings that were made meanwhile are in it now.",
+                "{count} recording made meanwhile was added.",
+                "{count} recordings made meanwhile were added.",
                 brought,
             )
-        self.back.emit(tr("The library is back."), then.format(count=brought))
+        self.back.emit(tr("The library is available again."), then.format(count=brought))
 
     def _on_left_away(self, why: str) -> None:
         shelter = self._state.library.shelter if self._state is not None else None
         if shelter is None or self.sender() is not self._watch:
             return
-        what = tr("What was recorded while the library was gone could not be added to it yet ({why}).")
-        then = tr("It is kept in {shelter}, and is tried again by itself. See to the library's disk.")
+        what = tr("Recordings made while the library was unavailable could not be added yet ({why}).")
+        then = tr("They are stored in {shelter}, and adding them is retried automatically. Check the library's disk.")
         self.refused.emit(what.format(why=why), then.format(shelter=shelter.folder))
 
     def _on_left_here(self, why: str, remedy: str) -> None:
         if self._state is None or self.sender() is not self._watch:
             return
-        kept = tr("What was recorded here is kept on this computer, and handed over by itself once that can be done.")
+        kept = tr("Recordings made here stay on this computer and are transferred automatically as soon as possible.")
         self.refused.emit(why, f"{remedy} {kept}")
 
     def _on_changed_elsewhere(self) -> None:

@@ -91,7 +91,7 @@ class LibraryHolder:
                 data_key = slots.open(code, passphrase)
             if slots.is_given(code):  # keys are changed on the server
                 raise KeyRefusedError(
-                    tr("Somebody else chose this passphrase"), tr("Choose your own once the clinic's server answers")
+                    tr("Another person chose this passphrase"), tr("Choose your own when the clinic's server responds")
                 )
             return open_away(folder, data_key, code), ""
 
@@ -101,7 +101,7 @@ class LibraryHolder:
         def opening() -> Opening:
             data_key = open_remembered(slots_of(folder), code)
             if data_key is None:
-                raise KeyRefusedError(tr("This computer does not remember the passphrase any more"), tr("Type it"))
+                raise KeyRefusedError(tr("The passphrase is no longer stored on this computer"), tr("Enter it"))
             return logged_in(folder, data_key, code), ""
 
         return self._open(opening)
@@ -252,18 +252,19 @@ class LibraryHolder:
         """What is said of a library whose folder is gone, whether something is being recorded or not."""
         if library.shared is not None and library.is_there:
             return Refusal(
-                tr("The clinic's server does not answer."),
+                tr("The clinic's server does not respond."),
                 tr(
-                    "What is recorded now is kept on this computer, encrypted as always, and added to the library by "
-                    "itself once the server answers. Nothing else can be saved until then."
+                    "New recordings stay on this computer, encrypted as always. They are added to the library "
+                    "automatically once the server responds. Nothing else can be saved until then."
                 ),
             )
         what = tr(GONE).format(folder=library.folder) + "."
         if library.shelter is None:
             return Refusal(what, tr("The demonstration ends here. Open it again."))
         then = tr(
-            "Put its folder back, or connect its disk. Until then recordings are kept on this computer in {shelter}, "
-            "encrypted as always, and added to the library by themselves once it is back."
+            "Put its folder back, or connect its disk. Until then recordings stay on this computer in "
+            "{shelter}, encrypted as always. They are added to the library automatically once it is "
+            "available again."
         )
         return Refusal(what, then.format(shelter=library.shelter.folder))
 
@@ -350,10 +351,10 @@ def _end_access(library: OpenedLibrary, operator: Operator, leaving: str) -> Reo
         slots_of(library.folder).remove(leaving)
     except Exception as error:  # told where it was asked for
         return Reopened(state, None, refusal_of(error))
-    what = tr("{code} works here no longer.").format(code=leaving)
+    what = tr("{code} no longer has access.").format(code=leaving)
     then = tr(
-        "The library keeps its key, which all stations share: give the server's logins new passwords, so that nobody "
-        "who knew it reaches the server."
+        "The library keeps its key, which all workstations share. Set new passwords for the server's "
+        "logins, so that nobody who knew the key reaches the server."
     )
     return Reopened(state, None, Refusal(what, then))
 

@@ -56,7 +56,7 @@ def _analysed(session: "Session", report: Report) -> Opened:
 
     report(READING_SHARE / 2, tr("preparing the curves"))
     import_module("app.results.result_page")  # the page itself is made later, on the thread of the screen
-    report(READING_SHARE, tr("looking at the samples"))
+    report(READING_SHARE, tr("checking the samples"))
     analysis = analyse(session, progress=lambda share, what: report(READING_SHARE + (1 - READING_SHARE) * share, what))
     report(1.0, "")
     return Opened(session, analysis)

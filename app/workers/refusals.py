@@ -42,5 +42,5 @@ def refusal_of(error: Exception) -> Refusal:
     _log.error("a call of the library ended early", exc_info=error)
     if isinstance(error, OSError):
         what = tr("A file could not be read or written ({why}).").format(why=error.strerror or type(error).__name__)
-        return Refusal(what, tr("See to the disk and to the rights of its folder, then try again."))
-    return Refusal(tr("This ended before it was done."), tr("Try again; the log holds the details."))
+        return Refusal(what, tr("Check the disk and the folder's permissions, then try again."))
+    return Refusal(tr("This stopped before it was finished."), tr("Try again. See the log for details."))

@@ -195,9 +195,9 @@ class Fetching:
     def _nothing(self, *, is_cut: bool) -> DotRefusedError:
         name = self._sensor.name
         if is_cut:
-            return DotRefusedError("What {sensor} sends arrives cut", "Use another Bluetooth adapter", sensor=name)
+            return DotRefusedError("Data from {sensor} arrive incomplete", "Use another Bluetooth adapter", sensor=name)
         return DotRefusedError(
-            "{sensor} does not send what it recorded", "Switch it off and on, then fetch it again", sensor=name
+            "{sensor} does not send its recording", "Switch it off and on, then fetch it again", sensor=name
         )
 
     def _wanted(self) -> range | None:

@@ -87,7 +87,7 @@ async def record(
             await _stopped_quietly(sensor)
         if isinstance(problem, SourceLostError):
             raise DotRefusedError(
-                "{sensor} is out of reach", "Bring it nearer, then try again", sensor=lost
+                "{sensor} is out of range", "Bring it closer, then try again", sensor=lost
             ) from problem
         raise
     return begun
@@ -101,13 +101,13 @@ async def _made_ready(sensor: DotSensor, rate_hz: int, *, must_be_synchronised: 
             await sensor.stop_stream()
             if (await sensor.settings()).rate_hz != rate_hz:
                 raise DotRefusedError(
-                    "{sensor} does not have the rate that it is to record with",
+                    "{sensor} is not set to the recording rate",
                     "Synchronise the sensors again",
                     sensor=sensor.name,
                 )
             if must_be_synchronised and await has_own_clock(sensor):
                 raise OwnClockError(
-                    "{sensor} was switched off, and has a clock of its own now",
+                    "{sensor} was switched off and is no longer synchronised",
                     "Synchronise the sensors again",
                     sensor=sensor.name,
                 )
@@ -132,14 +132,14 @@ async def _begin(sensor: DotSensor, utc_s: int) -> Begun:
             if told is DotAnswer.FULL or sensor.is_full:
                 raise MemoryFullError(
                     "The memory of {sensor} is full",
-                    "Fetch what is in it and erase it, then record",
+                    "Fetch its recordings and erase its memory, then record",
                     sensor=sensor.name,
                 )
         except SourceLostError:
             if attempt == LINK_TRIES - 1:
                 raise
     raise DotRefusedError(
-        "{sensor} does not begin to record", "Switch it off and on, then try again", sensor=sensor.name
+        "{sensor} does not start recording", "Switch it off and on, then try again", sensor=sensor.name
     )
 
 
@@ -171,7 +171,7 @@ async def stop(sensor: DotSensor) -> None:
         except SourceLostError:
             if attempt == LINK_TRIES - 1:
                 raise
-    raise DotRefusedError("{sensor} goes on recording", "Press its button for a second", sensor=sensor.name)
+    raise DotRefusedError("{sensor} does not stop recording", "Press its button for one second", sensor=sensor.name)
 
 
 async def _has_ended(sensor: DotSensor, within_s: float) -> bool:
@@ -202,9 +202,11 @@ async def list_files(sensor: DotSensor) -> tuple[RecordedFile, ...]:
         if pieces is not None and None not in files:
             return tuple(file for file in files if file is not None)
     if sensor.cut_notices > cut_before:
-        raise DotRefusedError("What {sensor} sends arrives cut", "Use another Bluetooth adapter", sensor=sensor.name)
+        raise DotRefusedError(
+            "Data from {sensor} arrive incomplete", "Use another Bluetooth adapter", sensor=sensor.name
+        )
     raise DotRefusedError(
-        "{sensor} does not tell what is in its memory", "Switch it off and on, then try again", sensor=sensor.name
+        "{sensor} does not report what its memory contains", "Switch it off and on, then try again", sensor=sensor.name
     )
 
 
@@ -257,7 +259,7 @@ async def erase_kept(sensor: DotSensor, kept: Collection[int], utc_s: int) -> No
     unkept = [file for file in await list_files(sensor) if file.started_utc_s not in kept]
     if unkept:
         raise DotRefusedError(
-            "{sensor} holds {count} more recordings", "Fetch them first", sensor=sensor.name, count=len(unkept)
+            "{sensor} contains {count} more recordings", "Fetch them first", sensor=sensor.name, count=len(unkept)
         )
     sensor.fetched_last = None
     await sensor.order(Order.ERASE, erase(utc_s).data[1:])

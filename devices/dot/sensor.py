@@ -171,7 +171,7 @@ class DotSensor:
         await self._write(Characteristic.SETTINGS, setting_profile(profile))
         if await self.settings() != wanted:
             raise DotRefusedError(
-                "{sensor} did not take its rate", "Switch it off and on, then search again", sensor=self.name
+                "{sensor} did not accept its sample rate", "Switch it off and on, then search again", sensor=self.name
             )
 
     async def settings(self) -> DotSettings:
@@ -198,7 +198,7 @@ class DotSensor:
             if await self.control() == StreamControl(is_on=True, mode=mode.number):
                 return mode
         raise DotRefusedError(
-            "{sensor} does not begin to measure", "Switch it off and on, then search again", sensor=self.name
+            "{sensor} does not start measuring", "Switch it off and on, then search again", sensor=self.name
         )
 
     async def stop_stream(self) -> None:

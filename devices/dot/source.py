@@ -283,7 +283,7 @@ class DotSource:
             self.group.radio.run(self._opened())
         except SourceLostError as problem:
             raise SourceRefusedError(
-                "{sensor} does not answer", "Press its button, and bring it nearer", sensor=self.sensor.name
+                "{sensor} does not respond", "Press its button, and bring it closer", sensor=self.sensor.name
             ) from problem
         self._was_open = True
 

@@ -74,7 +74,7 @@ class SyncFailure(StrEnum):
     SILENT = "it does not begin to measure"
     NOT_HEARD = "it is not heard"
     CUT = "what it sends arrives cut"
-    OTHER_CLOCK = "its clock is another"
+    OTHER_CLOCK = "its clock differs"
 
 
 RESULTS = {
@@ -158,7 +158,9 @@ class _Synchronising:
                 await refuse_while_recording(sensor)
                 if sensor.info is None or not sensor.info.can_synchronise:
                     raise DotRefusedError(
-                        "{sensor} is too old to be synchronised", "Update its firmware", sensor=sensor.name
+                        "{sensor} cannot be synchronised: its firmware is too old",
+                        "Update its firmware",
+                        sensor=sensor.name,
                     )
                 await sensor.stop_stream()
                 if not await _is_stopped(sensor):
@@ -266,13 +268,13 @@ async def refuse_while_recording(sensor: DotSensor) -> None:
     state = await sensor.state()
     if state is DotAnswer.RECORDING:
         raise DotRefusedError(
-            "{sensor} is recording in its memory",
-            "Stop that recording in the program that began it, such as Movella's own app, and fetch it there",
+            "{sensor} is recording to its memory",
+            "Stop that recording in the program that started it, such as Movella's app, and fetch it there",
             sensor=sensor.name,
         )
     has_memory = sensor.info is not None and sensor.info.can_synchronise  # both came with the same firmware
     if state is DotAnswer.UNKNOWN and has_memory:
-        raise DotRefusedError("{sensor} does not tell what it does", "Try again", sensor=sensor.name)
+        raise DotRefusedError("{sensor} does not report its state", "Try again", sensor=sensor.name)
 
 
 async def has_own_clock(sensor: DotSensor) -> bool:

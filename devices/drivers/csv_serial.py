@@ -172,8 +172,8 @@ class CsvSerial:
         listen(channel, framer, lambda heard: b"enough" if len(heard.rows) >= ENOUGH_ROWS else b"", SAYS_S)
         if not framer.heard.rows:
             raise SourceRefusedError(
-                "No line of numbers as expected comes from {place}",
-                "Compare its columns, their separator and the baud with what the sensor sends",
+                "{place} sends no text lines (CSV) in the expected format",
+                "Compare its columns, separator and baud rate with what the sensor sends",
                 place=channel.place,
             )
         sensor = self._name or channel.serial or channel.place

@@ -117,8 +117,8 @@ def ask_in(address: str) -> None:
             _QueriedNetwork.address = address
         elif _QueriedNetwork.address != address:
             raise SourceRefusedError(
-                "Lab Streaming Layer has been asked in the network of {other}, and asks there until the program ends",
-                "Close Gaitwright and start it again to ask elsewhere",
+                "Lab Streaming Layer already searches the network of {other}, until the program is closed",
+                "To search elsewhere, close Gaitwright and start it again",
                 other=_QueriedNetwork.address,
             )
 
@@ -197,8 +197,8 @@ def sensors_of(stream: str, labels: Sequence[str], units: Sequence[str]) -> tupl
             )
     if not sensors:
         raise OtherStreamError(
-            "The stream {name} has no channels of angular rate and acceleration that are called so",
-            "Label them gyr_x to gyr_z and acc_x to acc_z where they are sent, or send both",
+            "The stream {name} has no channels labelled as angular rate and acceleration",
+            "In the sending program, label them gyr_x to gyr_z and acc_x to acc_z, or send both",
             name=stream,
         )
     return tuple(sensors)
@@ -225,7 +225,7 @@ def _scale(stream: str, units: Sequence[str], columns: Sequence[int], known: Map
     if len(unit_words) == 1 and (scale := known.get(unit_words.pop())) is not None:
         return scale
     raise SourceRefusedError(
-        "The stream {name} does not tell its units", "Tell them where it is sent, such as deg/s and m/s^2", name=stream
+        "The stream {name} gives no units", "Set the units in the sending program, such as deg/s and m/s^2", name=stream
     )
 
 
@@ -268,7 +268,7 @@ class LslSource:
         found = [one for one in pylsl.resolve_byprop(*self._key(), timeout=OPEN_S) if self._is_same(one)]
         if not found:
             raise SourceRefusedError(
-                "The stream {name} is not there", "Start it in the program that sends it", name=self._stream.name
+                "The stream {name} was not found", "Start it in the sending program", name=self._stream.name
             )
         inlet = pylsl.StreamInlet(found[0], max_buflen=BUFFER_S, recover=False)
         try:
@@ -281,8 +281,8 @@ class LslSource:
                 inlet.time_correction(timeout=OPEN_S)
         except (pylsl.util.LostError, pylsl.util.TimeoutError) as problem:
             raise SourceRefusedError(
-                "The stream {name} does not answer",
-                "Start it anew in the program that sends it",
+                "The stream {name} does not respond",
+                "Restart it in the sending program",
                 name=self._stream.name,
             ) from problem
         self._sensors, self._inlet = tuple(sensors), inlet
@@ -370,8 +370,6 @@ def _imported() -> ModuleType:
         import pylsl
         import pylsl.util
     except (ImportError, RuntimeError, OSError) as problem:  # RuntimeError: its own library is not there
-        raise SourceRefusedError(
-            "Lab Streaming Layer is not installed", "Install Gaitwright with its extra lsl"
-        ) from problem
+        raise SourceRefusedError("Lab Streaming Layer is not installed", "Install gaitwright[lsl]") from problem
     library: ModuleType = pylsl
     return library

@@ -310,7 +310,7 @@ class Shimmer3:
         firmware = talk.asked(Command.FIRMWARE, Command.FIRMWARE_ANSWER, lambda _: 6)
         if not firmware:
             raise SourceRefusedError(
-                "No Shimmer3 answers at {place}",
+                "No Shimmer3 responds at {place}",
                 "Check that it is switched on, paired and not in its dock",
                 place=channel.place,
             )
@@ -339,7 +339,7 @@ class Shimmer3:
             raise _unwilling(channel) from problem
         except (ValueError, struct.error) as problem:
             raise SourceRefusedError(
-                "The Shimmer3 at {place} holds no calibration",
+                "The Shimmer3 at {place} has no calibration",
                 "Calibrate it in Consensys, then search again",
                 place=channel.place,
             ) from problem
@@ -423,7 +423,7 @@ class _Talk:
 
 def _unwilling(channel: Channel) -> SourceRefusedError:
     return SourceRefusedError(
-        "The Shimmer3 at {place} did not take its settings",
-        "Plug it into its dock and out again, then search again",
+        "The Shimmer3 at {place} did not accept its settings",
+        "Put it into its dock and take it out, then search again",
         place=channel.place,
     )

@@ -232,10 +232,12 @@ def _registers(channel: Channel, framer: WitFramer, first: int) -> bytes:
 def _refusal(place: str, is_heard: bool) -> SourceRefusedError:
     if is_heard:
         return SourceRefusedError(
-            "The sensor at {place} sends no time, so that losses would not be seen",
-            "Switch its time output on with the maker's program",
+            "The sensor at {place} sends no time, so lost samples would go unnoticed",
+            "Switch on its time output with the manufacturer's program",
             place=place,
         )
     return SourceRefusedError(
-        "No WitMotion sensor is heard at {place}", "Check that it is switched on, and its baud", place=place
+        "No signal from a WitMotion sensor at {place}",
+        "Check that it is switched on, and check its baud rate",
+        place=place,
     )

@@ -138,7 +138,7 @@ class WitBleSource:
             self._radio.run(self._opened())
         except SourceLostError as problem:
             raise SourceRefusedError(
-                "{sensor} does not answer", "Switch it on, and bring it nearer", sensor=self.name
+                "{sensor} does not respond", "Switch it on, and bring it closer", sensor=self.name
             ) from problem
         self._arrived.clear()
         self._radio.wait(self._arrived, SAYS_S)

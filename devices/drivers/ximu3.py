@@ -232,7 +232,7 @@ class Ximu3:
                 return json.loads(answer)["ping"]
         if not framer.heard.rows:
             raise SourceRefusedError(
-                "No x-IMU3 answers at {place}", "Check that it is switched on, then search again", place=channel.place
+                "No x-IMU3 responds at {place}", "Check that it is switched on, then search again", place=channel.place
             )
         return {}  # it cannot hear us: a line that goes one way only
 

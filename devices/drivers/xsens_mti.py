@@ -165,7 +165,7 @@ class XsensMti:
         framer = MtiFramer(SourceInfo(DRIVER, VERSION))
         if not any(_asked(channel, framer, Mid.GO_TO_CONFIG) for _ in range(TRIES)):
             raise SourceRefusedError(
-                "No Xsens sensor answers at {place}",
+                "No Xsens sensor responds at {place}",
                 "Check that it is plugged in there, and that MT Manager is closed",
                 place=channel.place,
             )
@@ -175,7 +175,7 @@ class XsensMti:
         rate_hz = self._set_up(channel, framer)
         if not serial or not rate_hz or not _asked(channel, framer, Mid.GO_TO_MEASUREMENT):
             raise SourceRefusedError(
-                "The Xsens sensor at {place} did not take its settings",
+                "The Xsens sensor at {place} did not accept its settings",
                 "Plug it in again, then search again",
                 place=channel.place,
             )

@@ -28,7 +28,7 @@ from devices.files.trial import ImportedSensor, ImportedTrial
 MONITORS, TEST_NAME, TIME = "Format=", "Test Name:", "Time"
 HEAD_LINES = 5  # at most, of either dialect
 EXPORT_AGAIN = "Export it again as CSV, from Moveo, Mobility Lab or Motion Studio"
-WITH_IT = "Export it again, with it"
+WITH_IT = "Export it again with these data"
 PER_MONITOR = {"Accelerometer": 3, "Gyroscope": 3, "Magnetometer": 3, "Orientation": 4}
 NAMED = {"Acceleration": "XYZ", "Angular Velocity": "XYZ", "Magnetic Field": "XYZ", "Orientation": "SXYZ"}
 UNITS = {"Acceleration": ("m/s^2", "m/s²"), "Angular Velocity": ("rad/s",)}
@@ -92,13 +92,13 @@ def read_apdm(path: Path) -> ApdmFile:
                 columns, first_row, rate_hz = _named(head, where)
                 ids, tick_s = {}, 1.0
             else:
-                raise FileRefusedError(where, "this is no export of APDM's programs", EXPORT_AGAIN)
+                raise FileRefusedError(where, "this is not an export from APDM software", EXPORT_AGAIN)
             rows = _numbers([*head[first_row:], *reader], len(head[first_row - 1]), first_row, where)
         except (csv.Error, UnicodeDecodeError) as error:
-            raise FileRefusedError(where, "this is no text of comma-separated values", EXPORT_AGAIN) from error
+            raise FileRefusedError(where, "this is not comma-separated text", EXPORT_AGAIN) from error
     last = max((place for found in columns.values() for places in found for place in places), default=0)
     if last >= rows.shape[1]:
-        raise FileRefusedError(where, "its lines of heads are not of one length", EXPORT_AGAIN)
+        raise FileRefusedError(where, "its header lines differ in length", EXPORT_AGAIN)
     clock = _clock(rows[:, 0], tick_s, first_row, where)
     stamps = clock.stamps[clock.is_new]
     time_s = (stamps - stamps[:1]) * tick_s
@@ -118,7 +118,7 @@ def apdm_trial(files: Sequence[Path], _rate_hz: float | None = None) -> Imported
     if len(files) != 1:
         raise FileRefusedError(
             ", ".join(path.name for path in files),
-            "an export of APDM holds all sensors of a trial in one file",
+            "an APDM export contains all sensors of a trial in one file",
             "Import one file at a time",
         )
     with files[0].open("rb") as opened:
@@ -157,7 +157,7 @@ def _of_hdf5(path: Path) -> Iterator[ImportedSensor]:
 def _monitors(head: list[list[str]], where: str) -> tuple[dict[str, Columns], dict[str, str]]:
     """Columns and numbers of the sensors of "Format=7", by their names."""
     if len(head) < 3:
-        raise FileRefusedError(where, "its head is cut off", EXPORT_AGAIN)
+        raise FileRefusedError(where, "its header is cut off", EXPORT_AGAIN)
     sensors, quantities = head[0], head[1]
     cells = [k for k in range(1, len(sensors)) if sensors[k].strip()]
     columns: dict[str, Columns] = {}
@@ -173,7 +173,7 @@ def _monitors(head: list[list[str]], where: str) -> tuple[dict[str, Columns], di
         )
         ids[called] = sensors[number].strip()
     if not columns:
-        raise FileRefusedError(where, "it names no sensor", EXPORT_AGAIN)
+        raise FileRefusedError(where, "it lists no sensors", EXPORT_AGAIN)
     return columns, ids
 
 
@@ -181,7 +181,7 @@ def _named(head: list[list[str]], where: str) -> tuple[dict[str, Columns], int, 
     """Columns of the sensors of the other dialect, the first line with numbers, and the rate."""
     at = next((k for k, line in enumerate(head) if line and line[0].strip() == TIME), None)
     if at is None or at + 1 >= len(head):
-        raise FileRefusedError(where, "there is no line of columns that begins with {name}", EXPORT_AGAIN, name=TIME)
+        raise FileRefusedError(where, "there is no header line that begins with {name}", EXPORT_AGAIN, name=TIME)
     names, units = [cell.strip() for cell in head[at]], [cell.strip() for cell in head[at + 1]]
     places = {name: k for k, name in enumerate(names)}
     columns = {}
@@ -227,7 +227,7 @@ def _numbers(lines: list[list[str]], width: int, first_row: int, where: str) -> 
         if len(line) != width:
             raise FileRefusedError(
                 f"{where}, line {number}",
-                "it has {count} cells, the heads {width}",
+                "it has {count} cells, the header {width}",
                 "The file is cut off or damaged; export it again",
                 count=len(line),
                 width=width,
@@ -241,7 +241,7 @@ def _numbers(lines: list[list[str]], width: int, first_row: int, where: str) -> 
                     float(cell or "nan")
                 except ValueError:
                     raise FileRefusedError(
-                        f"{where}, line {number}", "{cell} is no number", EXPORT_AGAIN, cell=quoted(cell)
+                        f"{where}, line {number}", "{cell} is not a number", EXPORT_AGAIN, cell=quoted(cell)
                     ) from None
         raise
 

@@ -26,7 +26,7 @@ VERSION = "FileFormatVersion"
 CASE_IDS, LABELS, SENSORS, PROCESSED = "CaseIdList", "MonitorLabelList", "Sensors", "Processed"
 VERSIONS = (3, 4, 5)
 SAVE_AGAIN = "Save the recording again as HDF5, from Moveo, Mobility Lab or Motion Studio"
-RECORD_IT = "Switch its accelerometer, its gyroscope and times on in APDM's program before recording"
+RECORD_IT = "Switch on its accelerometer, gyroscope and timestamps in the APDM software before recording"
 TICK_S = 1e-6
 UNITS_ATTRIBUTE = "Units"
 SI = {"acceleration": ("m/s^2", "m/s²"), "angular rate": ("rad/s",)}
@@ -91,7 +91,7 @@ def read_apdm_hdf5(path: Path) -> tuple[RecordedOpal, ...]:
         if version not in VERSIONS:
             raise FileRefusedError(
                 file.where,
-                "it is of version {version} of APDM's files, versions {first} to {last} are read",
+                "APDM file version {version} is not supported, only versions {first} to {last}",
                 SAVE_AGAIN,
                 version="?" if version is None else f"{version:g}",
                 first=VERSIONS[0],
@@ -99,7 +99,7 @@ def read_apdm_hdf5(path: Path) -> tuple[RecordedOpal, ...]:
             )
         layouts = list(_of_version_5(file) if version == VERSIONS[-1] else _of_version_3(file))
         if not layouts or len(layouts) > MOST_SENSORS:
-            raise FileRefusedError(file.where, "it names no sensor", SAVE_AGAIN)
+            raise FileRefusedError(file.where, "it lists no sensors", SAVE_AGAIN)
         return tuple(_read(file, layout) for layout in layouts)
 
 
@@ -139,7 +139,7 @@ def _of_version_5(file: Hdf5File) -> Iterator[_Layout]:
 def _read(file: Hdf5File, layout: _Layout) -> RecordedOpal:
     stamps = file.numbers(layout.time)
     if stamps is None:
-        raise FileRefusedError(file.where, "{sensor} has no times", RECORD_IT, sensor=quoted(layout.name))
+        raise FileRefusedError(file.where, "{sensor} has no timestamps", RECORD_IT, sensor=quoted(layout.name))
     stamps = stamps.reshape(-1)
     n = len(stamps)
     acc, gyr = _matrix(file, layout.acc, (n, 3)), _matrix(file, layout.gyr, (n, 3))
@@ -175,7 +175,7 @@ def _matrix(file: Hdf5File, place: str, shape: tuple[int, int]) -> FloatArray | 
     if values.shape != shape:
         raise FileRefusedError(
             f"{file.where}, {place}",
-            "its values are of shape {shape}, {wanted} are expected",
+            "its values have shape {shape}, expected {wanted}",
             SAVE_AGAIN,
             shape=values.shape,
             wanted=shape,
@@ -207,7 +207,7 @@ def _check_unit(file: Hdf5File, place: str, quantity: str) -> None:
             raise FileRefusedError(
                 f"{file.where}, {place}",
                 "it is in {unit}, expected {wanted}",
-                "Save the recording again in SI units, from APDM's program",
+                "Save the recording again in SI units, in the APDM software",
                 unit=quoted(unit),
                 wanted=SI[quantity][0],
             )

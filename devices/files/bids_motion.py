@@ -44,7 +44,7 @@ AXES, QUATERNION = ("x", "y", "z"), ("quat_w", "quat_x", "quat_y", "quat_z")
 ACC_UNITS = {"m/s^2": 1.0, "m/s²": 1.0, "m/s2": 1.0, "m.s-2": 1.0, "g": 9.80665}
 RATE_UNITS = {"rad/s": 1.0, "deg/s": np.pi / 180, "°/s": np.pi / 180, "dps": np.pi / 180}
 WINDOW_S = 0.25  # over which a sensor turns enough to see whether its acceleration turns with it
-IN_SENSOR_AXES = "Export what the sensors measured, in their own axes"
+IN_SENSOR_AXES = "Export the sensors' own data, in sensor axes"
 
 
 def is_bids_motion(path: Path, head: bytes) -> bool:
@@ -74,7 +74,9 @@ def bids_motion_trial(files: Sequence[Path], rate_hz: float | None = None) -> Im
     bases = list(dict.fromkeys(map(common_base, files)))
     if len({bids_recording(path) for path in files}) > 1:
         raise FileRefusedError(
-            ", ".join(path.name for path in files), "they are of several recordings", "Import one recording at a time"
+            ", ".join(path.name for path in files),
+            "they belong to several recordings",
+            "Import one recording at a time",
         )
     systems: list[MotionSystem] = []
     unread: list[UnreadFile] = []
@@ -115,7 +117,7 @@ def _read_sensors(system: MotionSystem, asked_hz: float | None) -> list[UnreadFi
     if not system.sensors:
         raise FileRefusedError(
             f"{system.base.name}{CHANNELS}",
-            "no tracked point has three channels ACCEL and three GYRO",
+            "no tracked point has three ACCEL and three GYRO channels",
             "Choose a recording of inertial sensors",
         )
     return unread
@@ -178,7 +180,7 @@ def _scale(
         if unit not in units:
             raise FileRefusedError(
                 f"{system.base.name}{CHANNELS}",
-                "{kind} of {point} is in {unit}, which is none of {known}",
+                "{kind} of {point} is in {unit}, expected one of {known}",
                 EXPORT_AGAIN,
                 kind=kind,
                 point=quoted(point),
@@ -198,7 +200,7 @@ def _times(
     rate_hz = system.rate_hz or asked_hz
     if not common:
         if rate_hz is None:
-            raise FileRefusedError(where, "its sampling frequency is not told", "Give it in Hz (--rate)")
+            raise FileRefusedError(where, "its sampling frequency is missing", "Give it in Hz (--rate)")
         return RepairedClock(np.arange(n) / rate_hz, np.ones(n, dtype=bool), ()), rate_hz
     time_s = system.rows[:, (own or common)[0]]
     steps_s = np.diff(time_s)
@@ -209,8 +211,8 @@ def _times(
     if rate_hz is not None and np.isfinite(step_s) and not 0.5 < step_s * rate_hz < 2.0:
         raise FileRefusedError(
             where,
-            "its latencies grow by {step}, which does not fit {rate} samples per second",
-            "Give latencies in seconds, as BIDS has them",
+            "its latency step of {step} does not match {rate} samples per second",
+            "Give latencies in seconds, as BIDS requires",
             step=f"{step_s:g}",
             rate=f"{rate_hz:g}",
         )
@@ -235,7 +237,7 @@ def _check_axes(acc_m_s2: FloatArray, gyr_rad_s: FloatArray, rate_hz: float, poi
     if float(np.sum(expected[is_there] * seen[is_there])) < 0.4 * weight:
         raise FileRefusedError(
             where,
-            "the acceleration of {sensor} does not turn with it, so it is in global axes",
+            "the acceleration of {sensor} does not rotate with it, so it is in global axes",
             IN_SENSOR_AXES,
             sensor=quoted(point),
         )

@@ -104,7 +104,7 @@ def read_system(base: Path) -> MotionSystem:
     for path in (channels_path, motion_path):
         if not path.is_file():
             raise FileRefusedError(
-                path.name, "this file belongs to the recording and is not there", "Put it beside the others"
+                path.name, "this file of the recording is missing", "Put it in the same folder as the others"
             )
     points, channels = _read_channels(channels_path)
     settings = _read_settings(_beside(base, SETTINGS))
@@ -136,13 +136,13 @@ def _read_channels(path: Path) -> tuple[dict[str, dict[tuple[str, str], int]], l
             names = cells
             missing = [name for name in REQUIRED if name not in names]
             if missing:
-                raise FileRefusedError(here, "there is no column {name}", EXPORT_AGAIN, name=missing[0])
+                raise FileRefusedError(here, "column {name} is missing", EXPORT_AGAIN, name=missing[0])
             continue
         if not text.strip():
             continue
         if len(cells) != len(names):
             raise FileRefusedError(
-                here, "it has {count} cells, the heads {width}", EXPORT_AGAIN, count=len(cells), width=len(names)
+                here, "it has {count} cells, the header {width}", EXPORT_AGAIN, count=len(cells), width=len(names)
             )
         row = {name: "" if cell == "n/a" else cell for name, cell in zip(names, cells, strict=True)}
         one = MotionChannel(
@@ -157,7 +157,7 @@ def _read_channels(path: Path) -> tuple[dict[str, dict[tuple[str, str], int]], l
         if (one.type, one.component) in of_point:
             raise FileRefusedError(
                 here,
-                "{point} has two channels {type} {component}",
+                "{point} has two {type} {component} channels",
                 EXPORT_AGAIN,
                 point=quoted(row["tracked_point"]),
                 type=quoted(one.type),
@@ -166,7 +166,7 @@ def _read_channels(path: Path) -> tuple[dict[str, dict[tuple[str, str], int]], l
         of_point[one.type, one.component] = len(channels)
         channels.append(one)
         if len(channels) > MOST_CHANNELS:
-            raise FileRefusedError(here, "these are more than {most} channels", EXPORT_AGAIN, most=MOST_CHANNELS)
+            raise FileRefusedError(here, "there are more than {most} channels", EXPORT_AGAIN, most=MOST_CHANNELS)
     return points, channels
 
 
@@ -178,9 +178,9 @@ def _read_settings(path: Path) -> Mapping[str, object]:
     try:
         settings = json.loads(content)
     except (ValueError, RecursionError) as error:
-        raise FileRefusedError(path.name, "this is no readable JSON", EXPORT_AGAIN) from error
+        raise FileRefusedError(path.name, "this is not readable JSON", EXPORT_AGAIN) from error
     if not isinstance(settings, dict):
-        raise FileRefusedError(path.name, "this is no table of settings", EXPORT_AGAIN)
+        raise FileRefusedError(path.name, "this is not a table of settings", EXPORT_AGAIN)
     return settings
 
 
@@ -195,7 +195,7 @@ def _read_rows(path: Path, width: int) -> FloatArray:
         if len(cells) != width:
             raise FileRefusedError(
                 here,
-                "it has {count} cells, and the table of channels {width} channels",
+                "it has {count} cells, but the channel table has {width} channels",
                 EXPORT_AGAIN,
                 count=len(cells),
                 width=width,
@@ -208,12 +208,12 @@ def _read_rows(path: Path, width: int) -> FloatArray:
             if number == 1:
                 raise FileRefusedError(
                     here,
-                    "it holds what is no number ({why})",
-                    "Remove its line of names: BIDS has none there",
+                    "it contains a value that is not a number ({why})",
+                    "Remove its header line: BIDS has none there",
                     why=quoted(error),
                 ) from error
             raise FileRefusedError(
-                here, "it holds what is no number ({why})", EXPORT_AGAIN, why=quoted(error)
+                here, "it contains a value that is not a number ({why})", EXPORT_AGAIN, why=quoted(error)
             ) from error
     values = np.array(rows, dtype=np.float64).reshape(len(rows), width)
     values[~np.isfinite(values)] = np.nan

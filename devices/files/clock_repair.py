@@ -16,7 +16,7 @@ from devices.files.orientation_rates import Numbers
 from devices.files.refusal import FileRefusedError
 from devices.files.tables import CORRECT_IT, Table
 
-SPLIT_IT = "Split the recording there or export it again"
+SPLIT_IT = "Split the recording there, or export it again"
 FEW = 8  # samples in a row whose stamps may be wrong without another sign that they are
 AS_COUNTED = 0.5  # of a step: the stamps around wrong ones are as far apart as the samples between them make them
 DRIFT = 0.02  # as above, of a long run
@@ -114,7 +114,7 @@ def steps_back(clock: FileClock, row: int, before: float, after: float) -> FileR
     """The refusal of a clock that steps back at a row and goes on from there."""
     return FileRefusedError(
         f"{clock.where}, {clock.place(row)}",
-        "{name} steps back from {before} to {after}",
+        "{name} goes back from {before} to {after}",
         SPLIT_IT,
         name=clock.name,
         before=f"{before:.12g}",

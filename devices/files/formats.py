@@ -92,8 +92,8 @@ def recognised(files: Sequence[Path]) -> str:
         if name is None:
             raise FileRefusedError(
                 path.name,
-                "no format that can be imported is recognised in it",
-                "Those there are: {formats}; say which with --as if it is one of them",
+                "its format is not recognised",
+                "Supported formats: {formats}; if the file has one of these, name it with --as",
                 formats=", ".join(FORMATS),
             )
         found.setdefault(name, path)
@@ -101,7 +101,7 @@ def recognised(files: Sequence[Path]) -> str:
         (one, first), (other, second), *_ = found.items()
         raise FileRefusedError(
             second.name,
-            "it is of {other}, {first} of {one}",
+            "this file comes from {other}, but {first} from {one}",
             "Import the files of one program at a time",
             other=other,
             first=first.name,
@@ -138,4 +138,4 @@ def _is_of_simulated_session(path: Path) -> bool:
 
 def _refuse_missing(path: Path) -> None:
     if not path.exists():
-        raise FileRefusedError(str(path), "there is no such file", "Check its name")
+        raise FileRefusedError(str(path), "this file does not exist", "Check its name")

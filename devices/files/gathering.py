@@ -30,14 +30,14 @@ def gather(paths: Sequence[Path]) -> Gathered:
             refused.append(FileRefusedError(path.name, "this cannot be read ({why})", "Check its permissions", why=why))
             continue
         if name is None:
-            refused.append(FileRefusedError(path.name, "this is of no program whose files can be read", "Leave it out"))
+            refused.append(FileRefusedError(path.name, "this file format is not supported", "Leave it out"))
             continue
         found.setdefault((name, path.parent, _common(name, path)), []).append(str(path))
     if not found and not refused:
         raise FileRefusedError(
             paths[0].name,
-            "there is no session.toml in it, and no file that can be imported",
-            "Choose the folder that holds the recordings",
+            "it contains neither session.toml nor a file that can be imported",
+            "Choose the folder with the recordings",
         )
     trials = tuple(
         FilesOfTrial(name, (common if len(files) > 1 else Path(files[0]).stem) or folder.name, tuple(files))
@@ -66,7 +66,7 @@ def _opened_up(paths: Sequence[Path]) -> list[Path]:
         if len(opened) > MOST_FILES:
             raise FileRefusedError(
                 path.name,
-                "these are more than {count} files",
+                "there are more than {count} files",
                 "Choose the files of a few sessions at a time",
                 count=MOST_FILES,
             )

@@ -78,7 +78,7 @@ class Hdf5File:
         if values is None:
             return None
         if values.dtype.kind not in "fiu":
-            raise FileRefusedError(self.where, "{name} holds no numbers", COPY_AGAIN, name=quoted(place))
+            raise FileRefusedError(self.where, "{name} contains no numbers", COPY_AGAIN, name=quoted(place))
         return np.asarray(values, dtype=np.float64)
 
     def values(self, place: str) -> Any:
@@ -89,7 +89,7 @@ class Hdf5File:
                 return None
             if dataset.external or dataset.is_virtual:
                 raise FileRefusedError(
-                    self.where, "the values of {name} stand in another file", COPY_AGAIN, name=quoted(place)
+                    self.where, "the values of {name} are stored in another file", COPY_AGAIN, name=quoted(place)
                 )
             return np.asarray(dataset[()])
 
@@ -120,7 +120,7 @@ class Hdf5File:
             if link is None:
                 return None
             if isinstance(link, self._h5py.ExternalLink):
-                raise FileRefusedError(self.where, "{name} stands in another file", COPY_AGAIN, name=quoted(place))
+                raise FileRefusedError(self.where, "{name} is stored in another file", COPY_AGAIN, name=quoted(place))
             found = found.get(name)
         return found
 
@@ -131,7 +131,7 @@ class Hdf5File:
         except DAMAGES as error:
             raise FileRefusedError(
                 f"{self.where}, {place}" if place.strip("/") else self.where,
-                "this is not readable as HDF5, the file may be damaged",
+                "this cannot be read as HDF5; the file may be damaged",
                 COPY_AGAIN,
             ) from error
 

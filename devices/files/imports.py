@@ -40,12 +40,12 @@ def parse_map(text: str) -> dict[Site, str]:
     for part in re.split(r",(?=\s*\w+\s*=)", text):
         site, equals, value = (piece.strip() for piece in part.partition("="))
         if not equals or not value:
-            raise FileRefusedError(MAP, "{part} does not say which file is at which site", AS_IN, part=quoted(part))
+            raise FileRefusedError(MAP, "{part} does not assign a file to a site", AS_IN, part=quoted(part))
         if site not in list(Site):
             sites = ", ".join(Site)
             raise FileRefusedError(MAP, "{site} is not a site", "Sites are {sites}", site=quoted(site), sites=sites)
         if site in placement:
-            raise FileRefusedError(MAP, "{site} is there twice", "Name each site once", site=site)
+            raise FileRefusedError(MAP, "{site} is given twice", "Name each site once", site=site)
         placement[Site(site)] = value
     return placement
 
@@ -76,9 +76,11 @@ def place_sensors(trial: ImportedTrial, placed: Sequence[tuple[Site, ImportedSen
     """As `place_trial`, by the sensors themselves."""
     for number, (site, sensor) in enumerate(placed):
         if any(sensor is other for _, other in placed[:number]):
-            raise FileRefusedError(f"{MAP} {site}", "{name} is at two sites", "Name each once", name=sensor.name)
+            raise FileRefusedError(
+                f"{MAP} {site}", "{name} is assigned to two sites", "Name each sensor once", name=sensor.name
+            )
         if site in [other for other, _ in placed[:number]]:
-            raise FileRefusedError(recording, "{site} is there twice", "Name each site once", site=site)
+            raise FileRefusedError(recording, "{site} is given twice", "Name each site once", site=site)
     sensors = [sensor for _, sensor in placed]
     _refuse_apart(sensors)
     _refuse_jumps(sensors)
@@ -106,7 +108,11 @@ def _sensor_of(trial: ImportedTrial, site: Site, value: str) -> ImportedSensor:
     if called:
         names = ", ".join(sensor.name for sensor in called)
         raise FileRefusedError(
-            f"{MAP} {site}", "{value} may be {names}", "Give one of these names", value=quoted(value), names=names
+            f"{MAP} {site}",
+            "{value} is ambiguous: {names}",
+            "Give one of these names",
+            value=quoted(value),
+            names=names,
         )
     for unread in trial.unread:
         if _is_file(value, unread.file) or _plain_id(value) in map(_plain_id, unread.ids):
@@ -114,8 +120,8 @@ def _sensor_of(trial: ImportedTrial, site: Site, value: str) -> ImportedSensor:
     known = [f"{sensor.name} ({', '.join(sensor.ids)})" if sensor.ids else sensor.name for sensor in trial.sensors]
     raise FileRefusedError(
         f"{MAP} {site}",
-        "none of the files is or holds {value}",
-        "The sensors there are {sensors}",
+        "{value} matches no file and no sensor",
+        "Available sensors: {sensors}",
         value=quoted(value),
         sensors=", ".join(known),
     )
@@ -136,7 +142,7 @@ def _refuse_apart(sensors: Sequence[ImportedSensor]) -> None:
     if last.block.time_s[0] > first.block.time_s[-1]:
         raise FileRefusedError(
             last.name,
-            "it starts after the last sample of {other}, so they are not of one trial",
+            "it starts after the last sample of {other}, so they do not belong to one trial",
             "Import the files of one trial at a time",
             other=first.name,
         )
@@ -183,13 +189,13 @@ def add_recording(
         if other.name == recording.name:
             raise FileRefusedError(
                 recording.name,
-                "the session has a recording of this name already",
+                "the session already has a recording with this name",
                 "Choose another name with --recording",
             )
         if Path(other.folder) == Path(recording.folder):
             raise FileRefusedError(
                 recording.name,
-                "the folder {folder} holds the recording {other} already",
+                "the folder {folder} already contains the recording {other}",
                 "Choose another name with --recording",
                 folder=quoted(recording.folder),
                 other=quoted(other.name),

@@ -60,26 +60,26 @@ Waiting = Callable[[], object]
 TIME, CRASH = "time", "crash"
 ENDINGS = {  # refusals that lack only their place
     child.MEMORY: FileRefusedError(
-        "", "reading this takes more memory than a recording needs", "Export it again, or in shorter parts"
+        "", "reading this takes more memory than a recording should need", "Export it again, or in shorter parts"
     ),
     TIME: FileRefusedError(
-        "", "reading this takes longer than a recording needs", "Export it again, or in shorter parts"
+        "", "reading this takes longer than a recording should need", "Export it again, or in shorter parts"
     ),
     CRASH: FileRefusedError(
-        "", "reading this ended early, as a damaged file can end it", "Copy the file again from where it was recorded"
+        "", "reading stopped early; the file may be damaged", "Copy the file again from where it was recorded"
     ),
     child.UNFORESEEN: FileRefusedError(
         "",
-        "reading this ended early, for a reason that the log names",
+        "reading stopped early; the reason is in the log",
         "Copy the file again from where it was recorded",
     ),
 }
 
 
 UNANSWERED = {
-    child.MEMORY: FileRefusedError("SQL", "this takes more memory than a question is given", "Ask for less at a time"),
-    TIME: FileRefusedError("SQL", "this takes longer than a question is given", "Ask for less at a time"),
-    CRASH: FileRefusedError("SQL", "this ended early, for a reason that the log names", "Ask for less at a time"),
+    child.MEMORY: FileRefusedError("SQL", "this query exceeds the memory limit", "Query less data at a time"),
+    TIME: FileRefusedError("SQL", "this query exceeds the time limit", "Query less data at a time"),
+    CRASH: FileRefusedError("SQL", "this query stopped early; the log has the reason", "Query less data at a time"),
 }
 
 
@@ -126,7 +126,7 @@ class LimitedReader:
             if size > most_bytes:
                 raise FileRefusedError(
                     where if len(files) == 1 else str(path),
-                    "this is {size} MB large, more than a recording needs",
+                    "this file has {size} MB, more than a recording should need",
                     "Choose a file of up to {most} MB",
                     size=round(size / 1e6),
                     most=round(most_bytes / 1e6),

@@ -54,7 +54,7 @@ def check_magnitudes(
     if is_export and LIKE_G[0] < middle < LIKE_G[1]:
         raise FileRefusedError(
             where,
-            "the acceleration of {sensor} is {middle} in the middle, which is not gravity in m/s2, as if it were in g",
+            "the median acceleration of {sensor} is {middle}, not gravity in m/s2; it looks like g",
             "Export it again in m/s2, or correct the unit",
             sensor=quoted(sensor),
             middle=f"{middle:.2f}",
@@ -63,15 +63,15 @@ def check_magnitudes(
         if is_export:
             raise FileRefusedError(
                 where,
-                "the acceleration of {sensor} is {middle} in the middle, which is not gravity in m/s2",
-                "Export it again in m/s2, gravity not taken out",
+                "the median acceleration of {sensor} is {middle}, not gravity in m/s2",
+                "Export it again in m/s2, with gravity included",
                 sensor=quoted(sensor),
                 middle=f"{middle:.2f}",
             )
         raise FileRefusedError(
             where,
-            "the acceleration of {sensor} is {middle} in the middle, which is not gravity in m/s2",
-            "Check the sensor's range and calibration with its maker's program, and record again",
+            "the median acceleration of {sensor} is {middle}, not gravity in m/s2",
+            "Check the sensor's range and calibration with the manufacturer's program, and record again",
             sensor=quoted(sensor),
             middle=f"{middle:.2f}",
         )
@@ -87,22 +87,22 @@ def _check_rates(gyr_rad_s: FloatArray, sensor: str, where: str, gyr_unit: str, 
     if is_export and gyr_unit == "rad/s":
         raise FileRefusedError(
             where,
-            "the angular rates of {sensor} are in deg/s and not in rad/s",
+            "the angular rates of {sensor} are in deg/s, not in rad/s",
             "Export it again in rad/s, or correct the unit",
             sensor=quoted(sensor),
         )
     if is_export:
         raise FileRefusedError(
             where,
-            "the angular rates of {sensor} reach {largest} deg/s, more than sensors measure",
+            "the angular rates of {sensor} reach {largest} deg/s, beyond the range of any sensor",
             "Export it again in deg/s, or correct the unit",
             sensor=quoted(sensor),
             largest=f"{np.degrees(largest):.0f}",
         )
     raise FileRefusedError(
         where,
-        "the angular rates of {sensor} reach {largest} deg/s, more than sensors measure",
-        "Check the sensor's range and calibration with its maker's program, and record again",
+        "the angular rates of {sensor} reach {largest} deg/s, beyond the range of any sensor",
+        "Check the sensor's range and calibration with the manufacturer's program, and record again",
         sensor=quoted(sensor),
         largest=f"{np.degrees(largest):.0f}",
     )

@@ -37,8 +37,8 @@ UNITS = ("units", "unit")
 NAMES = ("name", "label", "sensor", "location", "segment", "placement", "site", "id", "serial")
 TABLES = ("table", "timetable", "timeseries")
 TURN_TABLE = (
-    'In MATLAB turn it into a structure with table2struct(T, "ToScalar", true), a timetable into a table before with'
-    " timetable2table(T), times into numbers with seconds(), and save that"
+    "In MATLAB, convert a timetable with timetable2table(T), times with seconds(), and the table "
+    'with table2struct(T, "ToScalar", true). Save that structure'
 )
 
 

@@ -70,7 +70,7 @@ def read_matlab(path: Path) -> dict[str, Variable]:
     with path.open("rb") as file:
         head = file.read(HDF5_AT + len(SIGNATURE))
     if not is_matlab(path, head):
-        raise FileRefusedError(path.name, "this is no MATLAB file of version 5 or later", SAVE_AGAIN)
+        raise FileRefusedError(path.name, "this is not a MATLAB file of version 5 or later", SAVE_AGAIN)
     if head[VERSION_PLACE] in VERSIONS_5:
         return _Version5(path).variables()
     with Hdf5File(path, path.name) as opened:
@@ -89,8 +89,8 @@ class _MatlabFile:
         if depth > MOST_DEPTH or self._values > MOST_VALUES:
             raise FileRefusedError(
                 self._where,
-                "its structures are deeper or hold more than a recording needs",
-                "Save the sensors' variables alone",
+                "its structures are deeper or larger than a recording needs",
+                "Save only the sensor variables",
             )
 
 
@@ -117,7 +117,7 @@ class _Version5(_MatlabFile):
             return variables
         except (*DAMAGES, MatReadError) as error:
             raise FileRefusedError(
-                self._where, "this is not readable as a MATLAB file, it may be damaged", SAVE_AGAIN
+                self._where, "this cannot be read as a MATLAB file; it may be damaged", SAVE_AGAIN
             ) from error
 
     def _plain(self, value: Any, depth: int) -> Variable:

@@ -55,7 +55,7 @@ GRAVITY_M_S2 = 9.8127  # by which the sensors make free acceleration
 ROTATION_ERROR = 0.01
 WRONG_UNIT = 0.05  # of the orientation's turning; rates in rad/s that are taken for deg/s are a 57th
 MEASURE_ANEW = (
-    'Record again in the mode "Custom mode 5" or, in the sensor, with orientation, acceleration and angular velocity'
+    'Record again in "Custom mode 5" or, to sensor memory, with orientation, acceleration and angular velocity'
 )
 EXPORT_AGAIN = "Export it again from the Movella DOT app"
 
@@ -217,7 +217,7 @@ def _read(path: Path, where: str) -> tuple[dict[str, str], Table]:
     else:
         lines, names = header_of(path, where, delimiters=DELIMITERS, header_names=TIME)
         if TIME not in names:
-            raise FileRefusedError(where, "there is no column {name}", EXPORT_AGAIN, name=TIME)
+            raise FileRefusedError(where, "column {name} is missing", EXPORT_AGAIN, name=TIME)
         before = [re.split(f"[{DELIMITERS}]", line, maxsplit=1) for line in lines]
         table = read_csv(path, where, NUMERIC, delimiters=DELIMITERS, keep_others=False, header_names=TIME)
     settings = {
@@ -249,15 +249,15 @@ def _clock(steps: Numbers, told_hz: float | None, where: str) -> tuple[float, fl
                 return tick_s, told_hz
         raise FileRefusedError(
             where,
-            "its times grow by {step}, which does not fit {rate} samples per second",
-            "Give the rate it was recorded at in Hz (--rate), or export it again",
+            "its time step of {step} does not match {rate} samples per second",
+            "Give its recording rate in Hz (--rate), or export it again",
             step=f"{step:.0f}",
             rate=f"{told_hz:g}",
         )
     raise FileRefusedError(
         where,
-        "its times grow by {step}, which is no rate of these sensors in microseconds or tenths of a millisecond",
-        "Give the rate it was recorded at in Hz (--rate)",
+        "its time step of {step} matches no rate of these sensors, in microseconds or tenths of a millisecond",
+        "Give its recording rate in Hz (--rate)",
         step=f"{step:.0f}",
     )
 
@@ -289,7 +289,7 @@ def _refuse_no_rotation(q: FloatArray, table: Table, where: str) -> None:
     is_wrong = np.abs(np.linalg.norm(q, axis=1) - 1.0) > ROTATION_ERROR
     if is_wrong.any():
         row = table.place(int(np.argmax(is_wrong)))
-        raise FileRefusedError(f"{where}, {row}", "the orientation is no rotation", EXPORT_AGAIN)
+        raise FileRefusedError(f"{where}, {row}", "the orientation is not a valid rotation", EXPORT_AGAIN)
 
 
 def _rates(
@@ -301,7 +301,7 @@ def _rates(
         if q is None:
             return gyr, None
         if times_the_turning(gyr, q, counter, rate_hz) < WRONG_UNIT:
-            raise FileRefusedError(where, "the angular rates are in rad/s and not in deg/s", EXPORT_AGAIN)
+            raise FileRefusedError(where, "the angular rates are in rad/s, not in deg/s", EXPORT_AGAIN)
         return gyr, rate_kind_by(q, gyr, counter, rate_hz)
     if names >= set(TURNS):
         turns = table.matrix(TURNS)
@@ -333,7 +333,7 @@ def _specific_force(
     if q is None:
         raise FileRefusedError(
             where,
-            "gravity is taken out of its acceleration (FreeAcc_X), and no orientation is there to add it again",
+            "its acceleration is without gravity (FreeAcc_X), and there is no orientation to restore it",
             MEASURE_ANEW,
         )
     return with_gravity(table.matrix(FREE_ACC)[is_new], q, GRAVITY_M_S2), True

@@ -49,7 +49,7 @@ PIECE = 1 << 20  # bytes
 LEAST_MESSAGES = 3
 MOST_LONE = 0.1  # of the samples: more is no damage, but another rate
 MATRIX, FREE_ACCELERATION = 0x2020, 0x4030
-SET_OUTPUT = "Let the sensor send rate of turn, acceleration and sample time fine (MT Manager, Output Configuration)"
+SET_OUTPUT = "Set the sensor to send rate of turn, acceleration and sample time fine (MT Manager, Output Configuration)"
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,12 +119,10 @@ def read_mti_stream(path: Path) -> MtiStream:
     rows.take(framer.flush())
     if not rows.rows and rows.is_old:
         raise FileRefusedError(
-            path.name, "its messages are of the older kind MTData, whose content they do not tell", SET_OUTPUT
+            path.name, "its messages are of the older type MTData, which does not describe its content", SET_OUTPUT
         )
     if not rows.rows:
-        raise FileRefusedError(
-            path.name, "no message in it holds rate of turn, acceleration or orientation", SET_OUTPUT
-        )
+        raise FileRefusedError(path.name, "it contains no rate of turn, acceleration or orientation", SET_OUTPUT)
     parts = np.split(np.array(rows.rows), np.cumsum([1, 1, 3, 3, 4, 3, 3, 4]), axis=1)
     ticks, counter, rate, force, turn, velocity, free, q, mag = parts
     return MtiStream(
@@ -236,13 +234,13 @@ def _times(stream: MtiStream, asked_hz: float | None, where: str) -> RepairedClo
     elif asked_hz is None:
         raise FileRefusedError(
             where,
-            "not every message tells its time (sample time fine)",
-            "Give the samples per second in Hz (--rate), so that the packet counter tells it",
+            "not every message has a time (sample time fine)",
+            "Give the samples per second in Hz (--rate), so that the packet counter gives the time",
         )
     elif np.isfinite(stream.counter).all():
         time_s = np.unwrap(stream.counter, period=2.0**COUNTER_BITS) / asked_hz
     else:
-        raise FileRefusedError(where, "its messages tell neither time nor packet counter", SET_OUTPUT)
+        raise FileRefusedError(where, "its messages contain neither time nor packet counter", SET_OUTPUT)
     return repaired(time_s, FileClock(where, lambda row: f"sample {row + 1}", "its clock"))
 
 
@@ -279,7 +277,7 @@ def _forces(
     if q is None:
         raise FileRefusedError(
             where,
-            "gravity is taken out of its acceleration, and no orientation is there to add it again",
+            "its acceleration is without gravity, and there is no orientation to restore it",
             SET_OUTPUT,
         )
     return with_gravity(stream.free[is_new], q), True

@@ -81,12 +81,12 @@ def read_mvnx(path: Path) -> MvnxFile:
     except (ET.ParseError, LookupError, ValueError) as error:  # the last two of encodings
         raise FileRefusedError(
             found.where,
-            "this is no whole XML file ({why})",
-            "Copy the file again, or export it again",
+            "this is not a complete XML file ({why})",
+            "Copy or export the file again",
             why=quoted(error),
         ) from error
     if not found.sensors:
-        raise FileRefusedError(found.where, "it names no sensors", WITH_THEM)
+        raise FileRefusedError(found.where, "it lists no sensors", WITH_THEM)
     return found
 
 
@@ -107,13 +107,13 @@ def mvnx_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedT
     if len(files) != 1:
         raise FileRefusedError(
             ", ".join(path.name for path in files),
-            "an MVNX file holds all sensors of a trial",
+            "an MVNX file contains all sensors of a trial",
             "Import one file at a time",
         )
     file = read_mvnx(files[0])
     rate_hz = file.rate_hz or rate_hz
     if rate_hz is None:
-        raise FileRefusedError(file.where, "its frame rate is not told", "Give it in Hz (--rate)")
+        raise FileRefusedError(file.where, "its frame rate is missing", "Give it in Hz (--rate)")
     frames = np.array(file.index, dtype=np.int64)
     clock = repaired(frames, FileClock(file.where, lambda row: f"frame {row + 1}", "index", 1.0 / rate_hz), step=1.0)
     is_new = clock.is_new
@@ -142,7 +142,7 @@ def mvnx_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedT
 
 def _note_subject(found: MvnxFile, subject: ET.Element, number: int) -> None:
     if number > 1:
-        raise FileRefusedError(found.where, "it holds several people", "Export each person to a file of their own")
+        raise FileRefusedError(found.where, "it contains several people", "Export each person to a separate file")
     found.started = subject.get("recDate", "")
     try:
         rate_hz = float(subject.get("frameRate", "nan"))
@@ -159,7 +159,7 @@ def _note(found: MvnxFile, name: str, element: ET.Element) -> None:
         label = element.get("label", "").strip()
         if not label or label in found.sensors:
             raise FileRefusedError(
-                found.where, "{label} is no name for a sensor, or one of two", EXPORT_AGAIN, label=quoted(label)
+                found.where, "{label} is not a sensor name, or is used twice", EXPORT_AGAIN, label=quoted(label)
             )
         found.sensors.append(label)
 
@@ -167,7 +167,7 @@ def _note(found: MvnxFile, name: str, element: ET.Element) -> None:
 def _note_frame(found: MvnxFile, frame: ET.Element) -> None:
     number = frame.get("index", str(len(found.index)))
     if re.fullmatch(r"\d{1,13}", number, re.ASCII) is None or int(number) > LARGEST_FRAME:
-        raise FileRefusedError(found.where, "{number} is no frame's number", EXPORT_AGAIN, number=quoted(number))
+        raise FileRefusedError(found.where, "{number} is not a frame number", EXPORT_AGAIN, number=quoted(number))
     found.index.append(int(number))
     try:
         found.stamps_ms.append(float(frame.get("time", "nan")))
@@ -183,7 +183,10 @@ def _numbers(found: MvnxFile, text: str, width: int, frame: str) -> FloatArray:
         values = np.array(text.split(), dtype=np.float64)
     except ValueError as error:
         raise FileRefusedError(
-            f"{found.where}, frame {frame}", "it holds what is no number ({why})", EXPORT_AGAIN, why=quoted(error)
+            f"{found.where}, frame {frame}",
+            "it contains a value that is not a number ({why})",
+            EXPORT_AGAIN,
+            why=quoted(error),
         ) from error
     if len(values) != width * len(found.sensors):
         raise FileRefusedError(
@@ -206,7 +209,7 @@ def _check_stamps(file: MvnxFile, index: Numbers, rate_hz: float) -> None:
     if by_frames > 1.0 and abs(by_stamps - by_frames) > 0.02 * by_frames + 0.1:
         raise FileRefusedError(
             file.where,
-            "its frames take {frames} s at {rate} Hz, and its stamps {stamps} s",
+            "its frames take {frames} s at {rate} Hz, but its timestamps {stamps} s",
             EXPORT_AGAIN,
             frames=f"{by_frames:.1f}",
             rate=f"{rate_hz:g}",
@@ -236,12 +239,14 @@ def _motion(
         error = np.abs(np.linalg.norm(q, axis=2) - 1.0).max(axis=1, initial=0.0)
         if (error > ROTATION_ERROR).any():
             frame = int(index[int(np.argmax(error > ROTATION_ERROR))])
-            raise FileRefusedError(f"{file.where}, frame {frame}", "the orientation is no rotation", EXPORT_AGAIN)
+            raise FileRefusedError(
+                f"{file.where}, frame {frame}", "the orientation is not a valid rotation", EXPORT_AGAIN
+            )
     if acc is None:
         free = values[FREE_ACC]
         if free is None or q is None:
             raise FileRefusedError(
-                file.where, "there is no acceleration of the sensors, or no orientation to add gravity by", WITH_THEM
+                file.where, "there is no sensor acceleration, or no orientation to add gravity with", WITH_THEM
             )
         acc = with_gravity(free, q)
     sensors = range(len(file.sensors))
@@ -251,7 +256,7 @@ def _motion(
         kinds = [None if q is None else rate_kind_by(q[:, k], gyr[:, k], index, rate_hz) for k in sensors]
         return acc, gyr, kinds
     if q is None:
-        raise FileRefusedError(file.where, "there is no orientation of the sensors", WITH_THEM)
+        raise FileRefusedError(file.where, "there is no sensor orientation", WITH_THEM)
     derived = np.stack([derive_rates(q[:, k], index, rate_hz) for k in sensors], axis=1)
     return acc, derived, [RateKind.INSTANTANEOUS for _ in sensors]
 

@@ -34,8 +34,8 @@ GRAVITY_M_S2 = (7.0, 14.0)  # the middle of what a sensor on a leg at rest or wa
 UP = 0.95  # cosine of the angle to the vertical at which an orientation turns the mean specific force
 
 NAME_THEM = (
-    "Name its columns acc_x, acc_y, acc_z and gyr_x, gyr_y, gyr_z, with their units as in acc_x_m_s2 and gyr_x_deg_s;"
-    " of several sensors left_shank_acc_x and so on"
+    "Name its columns acc_x, acc_y, acc_z and gyr_x, gyr_y, gyr_z, with units as in acc_x_m_s2 "
+    "and gyr_x_deg_s; with several sensors left_shank_acc_x and so on"
 )
 
 
@@ -60,7 +60,7 @@ def sensors_of_table(table: NamedTable, rate_hz: float | None) -> list[ImportedS
     if not found:
         raise FileRefusedError(
             table.where,
-            "its columns do not say which are acceleration and angular rates about three axes each: {names}",
+            "its columns do not identify acceleration and angular rates on three axes each: {names}",
             NAME_THEM,
             names=listed([*table.columns, *table.left_out]) or "-",
         )
@@ -97,8 +97,8 @@ def _sensor(table: NamedTable, named: SensorColumns, asked_hz: float | None, oth
     if len(lengths) != 1:
         raise FileRefusedError(
             table.where,
-            "the columns of {sensor} are not of one length",
-            "Save them with a row for every sample",
+            "the columns of {sensor} differ in length",
+            "Save them with one row per sample",
             sensor=quoted(name),
         )
     findings = list(table.findings)
@@ -148,7 +148,7 @@ def _acc_unit(table: NamedTable, named: SensorColumns, acc: FloatArray, findings
     if told and fits:
         raise FileRefusedError(
             table.where,
-            "the acceleration {names} is said to be in {told}, but is {middle} in the middle, as gravity is in {unit}",
+            "the acceleration {names} is labelled {told}, but its median of {middle} is gravity in {unit}",
             "Correct the unit, or export it again in m/s2",
             names=listed(named.acc),
             told=told,
@@ -158,8 +158,8 @@ def _acc_unit(table: NamedTable, named: SensorColumns, acc: FloatArray, findings
     if not fits:
         raise FileRefusedError(
             table.where,
-            "the acceleration {names} is {middle} in the middle, which is not gravity in {units}",
-            "Export acceleration in m/s2 with gravity, no free or linear acceleration",
+            "the median acceleration {names} is {middle}, not gravity in {units}",
+            "Export acceleration in m/s2 with gravity, not free or linear acceleration",
             names=listed(named.acc),
             middle=f"{middle:.3g}",
             units=told or ", ".join(FORCE_UNITS),
@@ -176,7 +176,7 @@ def _gyr_unit(table: NamedTable, named: SensorColumns, gyr: FloatArray, findings
         if largest * RATE_UNITS[told] > MOST_RAD_S:
             raise FileRefusedError(
                 table.where,
-                "the angular rates {names} are said to be in {told}, but reach {largest}, more than sensors measure",
+                "the angular rates {names} are labelled {told}, but reach {largest}, beyond the range of any sensor",
                 "Correct the unit, or export them again in rad/s",
                 names=listed(named.gyr),
                 told=told,
@@ -188,7 +188,7 @@ def _gyr_unit(table: NamedTable, named: SensorColumns, gyr: FloatArray, findings
     if not MOST_RAD_S < largest < MOST_RAD_S / RATE_UNITS["deg/s"]:
         raise FileRefusedError(
             table.where,
-            "nothing tells whether the angular rates {names} are in rad/s or in deg/s",
+            "it is unclear whether the angular rates {names} are in rad/s or in deg/s",
             "Name the columns with their unit, such as gyr_x_rad_s or gyr_x_deg_s",
             names=listed(named.gyr),
         )
@@ -223,7 +223,7 @@ def _told_unit(table: NamedTable, names: Sequence[str], quantity: Quantity) -> s
     if len(units) > 1:
         raise FileRefusedError(
             table.where,
-            "the columns {names} are not in one unit",
+            "the columns {names} have different units",
             "Export them again in one unit",
             names=listed(names),
         )

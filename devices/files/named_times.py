@@ -63,7 +63,7 @@ def stamps_of(
     elif told_hz is None:
         raise FileRefusedError(
             table.where,
-            "nothing tells the times of its samples",
+            "its samples have no times",
             "Add a column time_s, time_ms or time_us, or give the samples per second with --rate",
         )
     elif named.counter and len(table.columns[named.counter]) == len(is_there):
@@ -80,7 +80,7 @@ def stamps_of(
     if clock.doubled > MOST_DOUBLED * len(values):
         raise FileRefusedError(
             table.where,
-            "of {count} samples {doubled} have the time of the one before",
+            "{doubled} of {count} samples repeat the previous time",
             "Export the times with more digits",
             count=len(values),
             doubled=clock.doubled,
@@ -95,8 +95,8 @@ def _one_rate(table: NamedTable, asked_hz: float | None) -> float | None:
     if asked_hz is not None and told_hz is not None and abs(asked_hz - told_hz) > 0.02 * asked_hz:
         raise FileRefusedError(
             table.where,
-            "it tells {told} samples per second, --rate {asked}",
-            "Give the rate it was recorded at, or leave --rate out",
+            "the file gives {told} samples per second, but --rate {asked}",
+            "Give the recording rate, or leave out --rate",
             told=f"{told_hz:g}",
             asked=f"{asked_hz:g}",
         )
@@ -113,8 +113,8 @@ def _checked_rate(table: NamedTable, time_s: FloatArray, told_hz: float | None) 
     if not least < found_hz < most or (told_hz is not None and abs(found_hz - told_hz) > 0.05 * told_hz):
         raise FileRefusedError(
             table.where,
-            "its times make {found} samples per second, {told} are expected",
-            "Name the column of times with its unit, such as time_ms, or correct the rate",
+            "its times give {found} samples per second, expected {told}",
+            "Name the time column with its unit, such as time_ms, or correct the rate",
             found=f"{found_hz:.4g}",
             told=f"{least:g} to {most:g}" if told_hz is None else f"{told_hz:g}",
         )
@@ -169,7 +169,7 @@ def _time_unit(
     if not fits:
         raise FileRefusedError(
             table.where,
-            "nothing tells the unit of {name}, which grows by {step} from one sample to the next",
+            "the unit of {name} is unclear; its step between samples is {step}",
             "Name it with its unit, such as time_s, time_ms or time_us, or give the samples per second with --rate",
             name=quoted(name),
             step=f"{usual:.6g}",

@@ -79,7 +79,7 @@ def read_opensim_orientations(path: Path) -> OrientationTable:
                 rows.append(_row(text, len(names), here))
                 lines.append(number)
     if not names:
-        raise FileRefusedError(where, "there is no line of columns after {name}", EXPORT_AGAIN, name="endheader")
+        raise FileRefusedError(where, "there is no header line after {name}", EXPORT_AGAIN, name="endheader")
     values = np.array(rows, dtype=np.float64).reshape(len(rows), 1 + 4 * (len(names) - 1))
     values[~np.isfinite(values)] = np.nan
     time_s, q = values[:, 0], values[:, 1:].reshape(len(rows), len(names) - 1, 4)
@@ -90,7 +90,7 @@ def read_opensim_orientations(path: Path) -> OrientationTable:
     is_wrong = (np.abs(np.linalg.norm(q, axis=2) - 1.0) > ROTATION_ERROR).any(axis=1)
     if is_wrong.any():
         line = lines[int(np.argmax(is_wrong))]
-        raise FileRefusedError(f"{where}, line {line}", "the orientation is no rotation", EXPORT_AGAIN)
+        raise FileRefusedError(f"{where}, line {line}", "the orientation is not a valid rotation", EXPORT_AGAIN)
     stamps_s = clock.stamps[clock.is_new]
     return OrientationTable(stamps_s - stamps_s[:1], tuple(names[1:]), q[clock.is_new], clock.findings)
 
@@ -111,7 +111,7 @@ def opensim_trial(files: Sequence[Path], rate_hz: float | None = None) -> Import
     if len(files) != 1:
         raise FileRefusedError(
             ", ".join(path.name for path in files),
-            "a table of orientations holds all sensors of a trial",
+            "an orientation table contains all sensors of a trial",
             "Import one file at a time",
         )
     table = read_opensim_orientations(files[0])
@@ -142,10 +142,10 @@ def opensim_trial(files: Sequence[Path], rate_hz: float | None = None) -> Import
 def _names(text: str, here: str) -> list[str]:
     names = text.split()
     if names[0].casefold() != TIME or len(names) < 2:
-        raise FileRefusedError(here, "the line of columns does not begin with {name}", EXPORT_AGAIN, name=TIME)
+        raise FileRefusedError(here, "the header line does not begin with {name}", EXPORT_AGAIN, name=TIME)
     for name in names:
         if names.count(name) > 1:
-            raise FileRefusedError(here, "column {name} is there twice", EXPORT_AGAIN, name=quoted(name))
+            raise FileRefusedError(here, "column {name} appears twice", EXPORT_AGAIN, name=quoted(name))
     return names
 
 
@@ -153,7 +153,7 @@ def _row(text: str, columns: int, here: str) -> list[float]:
     cells = [cell.strip() for cell in (text.split("\t") if "\t" in text else text.split())]
     if len(cells) != columns:
         raise FileRefusedError(
-            here, "it has {count} cells, the heads {width}", EXPORT_AGAIN, count=len(cells), width=columns
+            here, "it has {count} cells, the header {width}", EXPORT_AGAIN, count=len(cells), width=columns
         )
     try:
         row = [float(cells[0])]
@@ -161,11 +161,13 @@ def _row(text: str, columns: int, here: str) -> list[float]:
             four = [float(part) for part in cell.split(",")] if cell else [np.nan] * 4
             if len(four) != 4:
                 raise FileRefusedError(
-                    here, "{cell} is no orientation of four numbers", EXPORT_AGAIN, cell=quoted(cell)
+                    here, "{cell} is not an orientation of four numbers", EXPORT_AGAIN, cell=quoted(cell)
                 )
             row += four
     except ValueError as error:
-        raise FileRefusedError(here, "it holds what is no number ({why})", EXPORT_AGAIN, why=quoted(error)) from error
+        raise FileRefusedError(
+            here, "it contains a value that is not a number ({why})", EXPORT_AGAIN, why=quoted(error)
+        ) from error
     return row
 
 
@@ -177,8 +179,8 @@ def _counter(time_s: FloatArray, rate_hz: float, where: str) -> Numbers:
     if is_uneven.any() or np.any(steps > 1e9):
         raise FileRefusedError(
             where,
-            "its times are not evenly apart, so no angular rates can be derived from the orientation",
-            "Export it again at an even rate",
+            "its times are not evenly spaced, so angular rates cannot be derived from the orientation",
+            "Export it again at a constant rate",
         )
     counter: Numbers = np.concatenate([np.zeros(len(time_s[:1])), np.cumsum(whole)]).astype(np.int64)
     return counter

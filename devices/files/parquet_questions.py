@@ -32,10 +32,10 @@ KIND = re.compile(r"^[A-Z]\w*(?: \w+){0,2} Error: ")  # what DuckDB calls it, be
 HINTS = ("Candidate bindings", "Did you mean")  # how DuckDB's second line begins where it helps
 MOST_FOUND_BYTES = 500_000_000
 WITH_ZONE = "the column {name} is a time with its zone, which has no one text"
-NO_SELECT = "{kind} is not answered here, since the table is only read"
-TOO_LARGE = "this takes more memory than a question is given ({limit})"
-LIST_COLUMNS = "gaitwright query --columns lists what the table holds"
-ASK_FOR_LESS = "Ask for less at a time"
+NO_SELECT = "{kind} is not allowed: the table is read-only"
+TOO_LARGE = "this query exceeds the memory limit ({limit})"
+LIST_COLUMNS = "gaitwright query --columns lists the table's columns"
+ASK_FOR_LESS = "Query less data at a time"
 LOCKED: Mapping[str, str | bool | int] = {
     "autoinstall_known_extensions": False,
     "autoload_known_extensions": False,
@@ -82,7 +82,7 @@ def _stream(asked: "DuckDBPyRelation") -> "Array":
         for batch in reader:
             stream.write_batch(batch)
             if sink.tell() > MOST_FOUND_BYTES:
-                raise FileRefusedError("SQL", "this finds more than can be shown", ASK_FOR_LESS)
+                raise FileRefusedError("SQL", "this query finds more than can be shown", ASK_FOR_LESS)
     return np.frombuffer(sink.getvalue(), np.uint8)
 
 
@@ -101,8 +101,8 @@ def _opened(file: Path) -> "Iterator[DuckDBPyConnection]":
         except (duckdb.Error, pa.ArrowException, OSError) as problem:
             raise FileRefusedError(
                 str(file),
-                "this cannot be read as Parquet ({why})",
-                "Choose the parameters.parquet that gaitwright batch writes",
+                "this is not a readable Parquet file ({why})",
+                "Choose the parameters.parquet written by gaitwright batch",
                 why=_reason(problem),
             ) from None
         yield connection
@@ -111,7 +111,7 @@ def _opened(file: Path) -> "Iterator[DuckDBPyConnection]":
 def _refuse_other_than_one_select(connection: "DuckDBPyConnection", sql: str) -> None:
     statements = connection.extract_statements(sql)
     if len(statements) != 1:
-        raise FileRefusedError("SQL", "{count} statements", "One at a time is answered", count=len(statements))
+        raise FileRefusedError("SQL", "{count} statements", "Enter one query at a time", count=len(statements))
     if statements[0].type != duckdb.StatementType.SELECT:
         kind = statements[0].type.name
         said = "PIVOT without IN" if kind == "MULTI" else kind
@@ -135,7 +135,7 @@ def _shown(name: str, kind: str) -> str:
 def _refused(problem: Exception) -> FileRefusedError:
     if isinstance(problem, duckdb.OutOfMemoryException):
         return FileRefusedError("SQL", TOO_LARGE, ASK_FOR_LESS, limit=LOCKED["memory_limit"])
-    return FileRefusedError("SQL", "this cannot be answered: {why}", LIST_COLUMNS, why=_reason(problem))
+    return FileRefusedError("SQL", "this query failed: {why}", LIST_COLUMNS, why=_reason(problem))
 
 
 def _reason(problem: Exception) -> str:

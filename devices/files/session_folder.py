@@ -155,7 +155,7 @@ def _read(folder: Path, reader: SessionReader) -> Session:
             if held_bytes > MOST_HELD_BYTES:  # Parquet says in a kilobyte that a number stands there a billion times
                 raise FileRefusedError(
                     plan.recording.name,
-                    "its files hold more samples than files of their size can",
+                    "its files contain more samples than their size allows",
                     "Export the recordings again",
                 )
         recordings.append(replace(plan.recording, imu=imu))
@@ -171,8 +171,8 @@ def _read_toml(folder: Path, reader: SessionReader) -> Mapping[str, object]:
     if not path.is_file():
         raise FileRefusedError(
             str(folder),
-            "this is not a session folder, it holds no {file}",
-            "Choose the folder that holds {file}, or import the recordings first",
+            "this is not a session folder; it contains no {file}",
+            "Choose the folder with {file}, or import the recordings first",
             file=FILE_NAME,
         )
     _check_inside(path, folder, FILE_NAME)
@@ -187,7 +187,7 @@ def _site_files(folder: Path, plan: Plan, session: Session) -> dict[Site, SiteFi
         raise FileRefusedError(
             recording.name,
             "the folder of this recording is missing ({folder})",
-            "Put it back or take the recording out of {file}",
+            "Put it back, or remove the recording from {file}",
             folder=recording.folder,
             file=FILE_NAME,
         )
@@ -196,7 +196,7 @@ def _site_files(folder: Path, plan: Plan, session: Session) -> dict[Site, SiteFi
         if len(names) > 1:
             raise FileRefusedError(
                 recording.folder,
-                "{site} is there twice: {first} and {second}",
+                "{site} exists twice: {first} and {second}",
                 "Keep one of the two files",
                 site=site,
                 first=names[0],
@@ -220,7 +220,7 @@ def _check_inside(path: Path, folder: Path, where: str) -> None:
     except (OSError, RuntimeError):
         is_inside = False  # a link that leads to itself
     if not is_inside:
-        raise FileRefusedError(where, "this leads outside of the session folder", "Copy the files into the folder")
+        raise FileRefusedError(where, "this leads out of the session folder", "Copy the files into the folder")
 
 
 def _size(files: Mapping[str, Mapping[Site, SiteFile]]) -> int:
@@ -262,9 +262,7 @@ def _strays(folder: Path, reader: SessionReader) -> Sequence[Path]:
     if not folder.exists() or (folder.is_dir() and not any(folder.iterdir())):
         return []
     if not (folder / FILE_NAME).is_file():
-        raise FileRefusedError(
-            str(folder), "this is there already and is not a session folder", "Choose another folder"
-        )
+        raise FileRefusedError(str(folder), "this already exists and is not a session folder", "Choose another folder")
     session, plans = parse_document(_read_toml(folder, reader))
     sites = {file.path for plan in plans for file in _site_files(folder, plan, session).values()}
     return [

@@ -199,7 +199,7 @@ def parse_toml(text: str) -> dict[str, object]:
     except (ValueError, RecursionError) as error:
         raise FileRefusedError(FILE_NAME, "this is not TOML ({why})", CORRECT_IT, why=error) from error
     if _is_deeper(document, DEEPEST):
-        raise FileRefusedError(FILE_NAME, "its tables lie too deep within each other", CORRECT_IT)
+        raise FileRefusedError(FILE_NAME, "its tables are nested too deeply", CORRECT_IT)
     return document
 
 
@@ -311,8 +311,8 @@ def _check_format(document: Table) -> None:
             version=quoted(name),
         )
     if name is None:
-        raise FileRefusedError(FILE_NAME, "the format is not named", SAYS_FORMAT)
-    raise FileRefusedError(FILE_NAME, "the format {name} is not known", SAYS_FORMAT, name=quoted(name))
+        raise FileRefusedError(FILE_NAME, "the format is missing", SAYS_FORMAT)
+    raise FileRefusedError(FILE_NAME, "the format {name} is unknown", SAYS_FORMAT, name=quoted(name))
 
 
 def _plans(tables: object) -> tuple[Plan, ...]:
@@ -320,7 +320,7 @@ def _plans(tables: object) -> tuple[Plan, ...]:
         raise FileRefusedError(FILE_NAME, "recordings is not a list of tables", "Start each one with [[recordings]]")
     if not tables:
         raise FileRefusedError(
-            FILE_NAME, "there is no recording at all", "Add one with [[recordings]] and its name, kind and folder"
+            FILE_NAME, "there is no recording", "Add one with [[recordings]] and its name, kind and folder"
         )
     plans: list[Plan] = []
     for number, table in enumerate(tables, 1):
@@ -346,8 +346,8 @@ def _plans(tables: object) -> tuple[Plan, ...]:
                 if _normal(getattr(other, key), key) == _normal(getattr(recording, key), key):
                     raise FileRefusedError(
                         f"{FILE_NAME}, {where}",
-                        "two recordings have the {key} {value}",
-                        "Give each recording a {key} of its own",
+                        "two recordings have the same {key}: {value}",
+                        "Give each recording its own {key}",
                         key=key,
                         value=quoted(getattr(recording, key)),
                     )

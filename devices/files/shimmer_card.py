@@ -63,7 +63,7 @@ ORDER: Mapping[str, tuple[int, int]] = {
 }
 KNOWN_SWITCHES = sum(1 << bit for bit, _ in ORDER.values()) | 1 << 17  # a temperature that takes no room
 CALIBRATIONS = {"acc_wide": 76, "rate": 97, "acc_low_noise": 139}
-SET_IT = "Switch its gyroscope and wide-range accelerometer on in Consensys, and record again"
+SET_IT = "Switch on gyroscope and wide-range accelerometer in Consensys, and record again"
 Bytes = NDArray[np.uint8]
 Ticks = NDArray[np.int64]
 
@@ -123,7 +123,9 @@ def read_card(files: Sequence[Path]) -> ImportedSensor:
     parts = sorted((_part(path) for path in files), key=lambda part: int(part.ticks[0]))
     name, first = card_recording(files[0]), parts[0]
     if any(part.period != first.period or part.is_synced != first.is_synced for part in parts):
-        raise FileRefusedError(name, "its parts were not recorded with one setting", "Import each recording by itself")
+        raise FileRefusedError(
+            name, "its parts were recorded with different settings", "Import each recording separately"
+        )
     ticks = np.concatenate([part.ticks for part in parts])
     clock = repaired(ticks / TICK_HZ, FileClock(name, lambda row: f"sample {row + 1}", "its clock"))
     is_new = clock.is_new
@@ -154,7 +156,7 @@ def _part(path: Path) -> CardPart:
     data = path.read_bytes()
     head = data[:HEAD]
     if len(head) < HEAD:
-        raise FileRefusedError(path.name, "it ends within its head", "Copy the file again from the card")
+        raise FileRefusedError(path.name, "the file ends within its header", "Copy the file again from the card")
     period, switches = _head(head)
     is_synced, size = _is_synced(head), _size(switches)
     places, at = {}, TIME_SIZE
@@ -164,10 +166,10 @@ def _part(path: Path) -> CardPart:
             at += count
     acc = next((what for what in ("acc_wide", "acc_low_noise") if what in places), "")
     if not acc or "rate" not in places:
-        raise FileRefusedError(path.name, "no gyroscope, or no accelerometer, was on", SET_IT)
+        raise FileRefusedError(path.name, "the gyroscope or the accelerometer was not switched on", SET_IT)
     samples, offsets = _samples(np.frombuffer(data, np.uint8, offset=HEAD), size, is_synced)
     if not len(samples):
-        raise FileRefusedError(path.name, "it holds no sample", "Choose another recording of the card")
+        raise FileRefusedError(path.name, "it contains no samples", "Choose another recording on the card")
     times = samples[:, :TIME_SIZE].astype(np.int64)
     raw: Ticks = times[:, 0] | times[:, 1] << 8 | times[:, 2] << 16
     begun = int.from_bytes(head[START + 1 : START + 5] + head[START : START + 1], "little")
@@ -208,8 +210,8 @@ def _ahead(name: str, offsets: Sequence[tuple[int, int]], count: int, period: in
     if abs(slope) > MOST_OFF_RATE * period:
         raise FileRefusedError(
             name,
-            "its times make {found} samples per second, {told} are expected",
-            "Synchronise the sensors again in Consensys, and record again",
+            "its times give {found} samples per second, expected {told}",
+            "Synchronise the sensors again in Consensys, then record again",
             found=f"{TICK_HZ / (period - slope):.4g}",
             told=f"{TICK_HZ / period:.4g}",
         )
@@ -238,7 +240,7 @@ def _vector(path: Path, head: bytes, samples: Bytes, what: str, place: int, numb
         offset, matrix = calibrating(head[CALIBRATIONS[what] :][:CALIBRATION_SIZE], scale)
     except ValueError as problem:
         raise FileRefusedError(
-            path.name, "no calibration is stored in it", "Calibrate the sensor in Consensys, and record again"
+            path.name, "it contains no calibration", "Calibrate the sensor in Consensys, and record again"
         ) from problem
     raw = np.ascontiguousarray(samples[:, place : place + 6]).view(numbers).astype(float)
     return np.asarray((raw - offset) @ matrix.T)

@@ -39,7 +39,7 @@ CALIBRATED = "_CAL"  # in every name of a header that can be read
 MS_PER_S = 1000.0
 DELIMITERS = ",;\t"
 MOST_HEAD = 1 << 16  # bytes
-NOT_CALIBRATED = "no sensor in it has calibrated acceleration, angular rates and Unix time"
+NOT_CALIBRATED = "no sensor has calibrated acceleration, angular rates and Unix time"
 EXPORT_AGAIN = "Export it again from Consensys, calibrated, with Unix time in milliseconds, accelerometer and gyroscope"
 
 
@@ -151,7 +151,7 @@ def _sensor(path: Path, table: Table, units: Mapping[str, str], name: str, colum
     clock = repaired(table.numbers[time], FileClock(path.name, table.place, time, 1.0 / MS_PER_S))
     time_s, is_new = clock.stamps / MS_PER_S, clock.is_new
     if not is_new.any():
-        raise FileRefusedError(path.name, "no sample in it has a time", EXPORT_AGAIN)
+        raise FileRefusedError(path.name, "no sample has a time", EXPORT_AGAIN)
     mag = columns.axes(MAG)
     block = ImuBlock(
         sensor=name,
@@ -181,7 +181,7 @@ def _scale(path: Path, units: Mapping[str, str], names: Sequence[str], quantity:
     if not unit:
         raise FileRefusedError(
             path.name,
-            "{name} is in {unit}, which is no unit that is known",
+            "{name} is in {unit}, which is not a known unit",
             EXPORT_AGAIN,
             name=quoted(names[0]),
             unit=quoted(units.get(names[0], "")),

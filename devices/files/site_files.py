@@ -215,8 +215,8 @@ def _check_clock(time_s: FloatArray, table: Table, where: str) -> BoolArray:
         row = int(back[0]) + 1
         raise FileRefusedError(
             f"{where}, {table.place(row)}",
-            "the clock steps back from {before} s to {after} s",
-            "Split the recording there or export it again",
+            "the clock goes back from {before} s to {after} s",
+            "Split the recording there, or export it again",
             before=f"{time_s[row - 1]:.9g}",
             after=f"{time_s[row]:.9g}",
         )

@@ -86,7 +86,7 @@ def read_xlsx(path: Path, where: str, numeric: Collection[str], header_names: st
         raise FileRefusedError(
             where, "this is not a readable Excel file ({why})", COPY_AGAIN, why=quoted(error)
         ) from error
-    raise FileRefusedError(where, "there is no column {name}", CORRECT_IT, name=header_names)
+    raise FileRefusedError(where, "column {name} is missing", CORRECT_IT, name=header_names)
 
 
 def _read_sheet(
@@ -105,13 +105,13 @@ def _read_sheet(
     places = {name: texts.index(name) for name in texts if name in numeric}
     for name in places:
         if texts.count(name) > 1:
-            raise FileRefusedError(where, "column {name} is there twice", CORRECT_IT, name=name)
+            raise FileRefusedError(where, "column {name} appears twice", CORRECT_IT, name=name)
     first = len(before) + 2
     values: list[list[float]] = []
     numbers: list[int] = []
     for number, row in enumerate(rows, first):
         if number > MOST_ROWS:
-            raise FileRefusedError(where, "it names rows beyond {most}", COPY_AGAIN, most=MOST_ROWS)
+            raise FileRefusedError(where, "it refers to rows beyond {most}", COPY_AGAIN, most=MOST_ROWS)
         cells = [row[place] if place < len(row) else None for place in places.values()]
         if any(cell not in (None, "") for cell in cells):
             values.append([_number(cell, f"{where}, row {number}") for cell in cells])
@@ -127,4 +127,4 @@ def _number(cell: object, where: str) -> float:
     try:
         return float(str(cell))
     except ValueError:
-        raise FileRefusedError(where, "{cell} is no number", CORRECT_IT, cell=quoted(cell)) from None
+        raise FileRefusedError(where, "{cell} is not a number", CORRECT_IT, cell=quoted(cell)) from None

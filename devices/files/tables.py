@@ -169,7 +169,7 @@ def read_parquet(path: Path, where: str, numeric: Collection[str]) -> Table:
             if name in numeric:
                 if not (is_number or pa.types.is_decimal(column.type) or pa.types.is_null(column.type)):
                     raise FileRefusedError(
-                        where, "column {name} holds {kind}, not numbers", CORRECT_IT, name=name, kind=column.type
+                        where, "column {name} contains {kind}, not numbers", CORRECT_IT, name=name, kind=column.type
                     )
                 numbers[name] = np.asarray(column.cast(pa.float64(), safe=False).to_numpy(), dtype=float)
             elif is_number and column.null_count == 0:
@@ -214,7 +214,7 @@ def _read_header(
         except UnicodeDecodeError as error:
             raise FileRefusedError(f"{where}, line {number}", "this is not UTF-8 text", CORRECT_IT) from error
         if "\r" in text:
-            raise FileRefusedError(f"{where}, line {number}", "a carriage return stands inside of the line", CORRECT_IT)
+            raise FileRefusedError(f"{where}, line {number}", "there is a carriage return within the line", CORRECT_IT)
         if "\0" in text or len(raw) == LONGEST_HEADER:
             raise FileRefusedError(f"{where}, line {number}", "this is not a table but binary data", CORRECT_IT)
         if not text or (comment is not None and text.startswith(comment)):
@@ -258,7 +258,7 @@ def _refuse_twice(names: list[str], where: str, place: str) -> None:
     for name in names:
         if names.count(name) > 1:
             here = f"{where}, {place}"
-            raise FileRefusedError(here, "column {name} is there twice", CORRECT_IT, name=quoted(name))
+            raise FileRefusedError(here, "column {name} appears twice", CORRECT_IT, name=quoted(name))
 
 
 def _read_body(
@@ -343,7 +343,7 @@ def _refuse_line(
         if len(cells) < len(names):
             raise FileRefusedError(
                 here,
-                "the line ends after {count} of {whole} columns, the file may have been cut",
+                "the line ends after {count} of {whole} columns; the file may have been cut off",
                 COPY_AGAIN,
                 count=len(cells),
                 whole=len(names),

@@ -29,14 +29,14 @@ from devices.live import SourceRefusedError
 
 NOT_MEASURED = "clock_not_measured"
 LABEL_THEM = (
-    "Label the channels acc_x to acc_z and gyr_x to gyr_z with their units where they are sent, both in one stream"
+    "In the sending program, label the channels acc_x to acc_z and gyr_x to gyr_z with units, all in one stream"
 )
 EVEN = 0.25  # of a step: stamps nearer to whole steps were made by the sensor's own clock
 MOST_UNEVEN = 0.02  # of the samples
 LATE_S = 2.0  # so long a packet may be late; what is missing for longer was lost
 LEAST_LOSS_S = 0.03  # packets are not more punctual
 MOST_OFF_RATE = 0.02  # of what the sender tells; clocks of sensors are off by a thousandth of that
-SEND_RATE = "Let the sender tell the rate it sends at, or send samples with the sensor's own times"
+SEND_RATE = "Set the sender to give its sample rate, or to send the sensor's own times"
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,7 +99,7 @@ def _tables(path: Path, started: list[str]) -> Sequence[NamedTable]:
     if not found:
         raise FileRefusedError(
             path.name,
-            "no stream in it has acceleration and angular rates about three axes each. Streams there are: {names}",
+            "no stream has acceleration and angular rates on three axes each. Available streams: {names}",
             LABEL_THEM,
             names=listed(others) or "-",
         )
@@ -199,7 +199,7 @@ def _straightened(stamp_s: FloatArray, rate_hz: float, clock: FileClock) -> Stra
     if straight is not None and abs(straight.rate_hz / rate_hz - 1.0) > MOST_OFF_RATE:
         raise FileRefusedError(
             f"{clock.where}, {clock.place(0).partition(',')[0]}",
-            "its times make {found} samples per second, {told} are expected",
+            "its times give {found} samples per second, expected {told}",
             SEND_RATE,
             found=f"{straight.rate_hz:.4g}",
             told=f"{rate_hz:g}",

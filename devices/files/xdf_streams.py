@@ -22,7 +22,7 @@ from devices.files.refusal import FileRefusedError
 
 SIGNATURE = b"XDF:"
 LIBRARY = "pyxdf"
-COPY_AGAIN = "Copy the file again from the computer that LabRecorder runs on"
+COPY_AGAIN = "Copy the file again from the computer that runs LabRecorder"
 FILE_HEADER, STREAM_HEADER, STREAM_FOOTER = 1, 2, 6  # tags of chunks
 LENGTHS = {1: "<B", 4: "<I", 8: "<Q"}
 NUMBERS = frozenset({"float32", "double64", "int8", "int16", "int32", "int64"})
@@ -118,7 +118,7 @@ def read_xdf(path: Path) -> XdfRecording:
                 started,
             )
     except DAMAGES as error:
-        raise FileRefusedError(path.name, "this is not readable as XDF, the file may be damaged", COPY_AGAIN) from error
+        raise FileRefusedError(path.name, "this cannot be read as XDF; the file may be damaged", COPY_AGAIN) from error
 
 
 def _looked_through(file: BinaryIO, size: int) -> tuple[dict[int, Element], set[int], str]:

@@ -30,7 +30,7 @@ ACC = tuple(f"Accelerometer {axis} (g)" for axis in "XYZ")
 QUAT = ("W", "X", "Y", "Z")
 US_PER_S = 1e6
 LEAST_MESSAGES = 3
-CONVERT_AGAIN = "Convert the .ximu3 file again, or import that file itself"
+CONVERT_AGAIN = "Convert the .ximu3 file again, or import that file directly"
 
 
 def is_ximu3(path: Path, head: bytes) -> bool:
@@ -69,7 +69,9 @@ def _sensor(path: Path) -> ImportedSensor:
     is_table = path.is_dir() or path.name == INERTIAL or _begins(path).startswith(TIME)
     block, findings = _of_table(path / INERTIAL if path.is_dir() else path) if is_table else _of_bytes(path)
     if not len(block):
-        raise FileRefusedError(path.name, "it holds no inertial messages", "Let the sensor send them, and record again")
+        raise FileRefusedError(
+            path.name, "it contains no inertial messages", "Set the sensor to send them, and record again"
+        )
     check_magnitudes(block.acc_m_s2, block.gyr_rad_s, block.sensor, path.name, gyr_unit="deg/s", is_export=is_table)
     step_s = np.diff(block.time_s)
     hz = round(1.0 / float(np.median(step_s)), 1) if len(step_s) else None
@@ -98,7 +100,7 @@ def _of_table(path: Path) -> tuple[ImuBlock, list[Finding]]:
     table = read_csv(path, where, {TIME, *GYR, *ACC}, keep_others=False)
     missing = [name for name in (TIME, *GYR, *ACC) if name not in table.numbers]
     if missing:
-        raise FileRefusedError(where, "there is no column {name}", CONVERT_AGAIN, name=missing[0])
+        raise FileRefusedError(where, "column {name} is missing", CONVERT_AGAIN, name=missing[0])
     is_there = np.isfinite(table.numbers[TIME])
     if not is_there.all():
         row = int(np.argmin(is_there))

@@ -40,7 +40,7 @@ FINE_TURNS_AT = 2.0**32
 ROTATION_ERROR = 0.01  # of a matrix or norm; six decimals leave 1e-5
 LARGEST_RATE_RAD_S = 35.0  # 2000 deg/s, the widest range of these sensors
 EXPORT_AGAIN = "Export it again from MT Manager"
-WITH_IT = "Export it again from MT Manager, with it"
+WITH_IT = "Export it again from MT Manager with these data"
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +80,7 @@ def read_mtmanager(path: Path) -> MtFile:
     where = path.name
     comments, names = header_of(path, where, comment="//", delimiters=DELIMITERS)
     if COUNTER not in names:
-        raise FileRefusedError(where, "there is no column {name}", WITH_IT, name=COUNTER)
+        raise FileRefusedError(where, "column {name} is missing", WITH_IT, name=COUNTER)
     if not set(ACC) <= set(names):
         raise FileRefusedError(where, "there is no acceleration (Acc_X, Acc_Y, Acc_Z)", WITH_IT)
     table = read_csv(path, where, NUMERIC, comment="//", delimiters=DELIMITERS, keep_others=False)
@@ -90,7 +90,7 @@ def read_mtmanager(path: Path) -> MtFile:
         raise FileRefusedError(
             where,
             "there are neither angular rates (Gyr_X) nor an orientation to derive them from",
-            "Export it again from MT Manager, with one of them",
+            "Export it again from MT Manager with one of them",
         )
     settings = dict(line.split(":", 1) for line in comments if ":" in line)
     rate_hz = _header_rate(settings) or _fine_rate(table, counter)
@@ -176,7 +176,9 @@ def _orientation(table: Table, where: str) -> FloatArray | None:
         return None
     wrong = np.flatnonzero(error > ROTATION_ERROR)
     if len(wrong):
-        raise FileRefusedError(f"{where}, {table.place(int(wrong[0]))}", "the orientation is no rotation", EXPORT_AGAIN)
+        raise FileRefusedError(
+            f"{where}, {table.place(int(wrong[0]))}", "the orientation is not a valid rotation", EXPORT_AGAIN
+        )
     return q
 
 
@@ -213,16 +215,16 @@ def _common_rate(files: Sequence[MtFile], asked_hz: float | None) -> float:
     if not rates_hz:
         raise FileRefusedError(
             ", ".join(file.path.name for file in files),
-            "its update rate is not told",
-            "Give it in Hz (--rate), as set in MT Manager when recording",
+            "its update rate is missing",
+            "Give it in Hz (--rate), as set in MT Manager for the recording",
         )
     (first, rate_hz), *others = rates_hz.items()
     for name, other_hz in others:
         if abs(other_hz - rate_hz) > 0.002 * rate_hz:  # clocks of two sensors differ less, settings more
             raise FileRefusedError(
                 name,
-                "the update rate is {here} Hz, in {other} {there} Hz",
-                "Import files of one trial, with the rate it was recorded at",
+                "the update rate is {here} Hz, but {there} Hz in {other}",
+                "Import files of one trial, with its recording rate",
                 here=f"{other_hz:g}",
                 other=first,
                 there=f"{rate_hz:g}",
@@ -274,15 +276,15 @@ def _check_units(file: MtFile) -> None:
     if 0.7 < median < 1.4:
         raise FileRefusedError(
             where,
-            "the acceleration is {middle} in the middle, as if it were in g and not in m/s2",
+            "the median acceleration is {middle}, as if in g and not in m/s2",
             EXPORT_AGAIN,
             middle=f"{median:.2f}",
         )
     if median < 0.7:
         raise FileRefusedError(
             where,
-            "the acceleration is {middle} m/s2 in the middle, as if gravity had been taken out of it",
-            "Export it again from MT Manager, with Acc and not with FreeAcc",
+            "the median acceleration is {middle} m/s2, as if gravity had been removed",
+            "Export it again from MT Manager with Acc, not with FreeAcc",
             middle=f"{median:.2f}",
         )
     if file.gyr_rad_s is None:
@@ -293,7 +295,7 @@ def _check_units(file: MtFile) -> None:
         rate_hz = file.rate_hz or 100.0  # a ratio of 57 is seen with a rate that is off by two, too
         ratio = times_the_turning(file.gyr_rad_s, file.q_earth_from_sensor, file.counter, rate_hz)
     if ratio > 20.0 or (np.isnan(ratio) and np.any(speed > 2.0 * LARGEST_RATE_RAD_S)):
-        raise FileRefusedError(where, "the angular rates are in deg/s and not in rad/s", EXPORT_AGAIN)
+        raise FileRefusedError(where, "the angular rates are in deg/s, not in rad/s", EXPORT_AGAIN)
 
 
 def _findings(file: MtFile, block: ImuBlock) -> Iterator[Finding]:

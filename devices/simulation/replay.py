@@ -152,7 +152,7 @@ class ReplaySource:
     def open(self) -> None:
         with self._lock:
             if self._is_away:
-                raise SourceRefusedError("The sensors do not answer", "Check that they are switched on and near")
+                raise SourceRefusedError("The sensors do not respond", "Check that they are switched on and in range")
             now_s = self._now_s()
             if not self._clips:
                 self._opened_s = now_s

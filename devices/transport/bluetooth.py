@@ -123,8 +123,8 @@ class Radio:
             return list(self.heard())
         if find_spec("bleak") is None:
             raise BluetoothMissingError(
-                "Sensors with Bluetooth LE are not heard: a library is missing",
-                "Install Gaitwright with its extra bluetooth",
+                "Bluetooth LE sensors cannot connect: a software library is missing",
+                "Install gaitwright[bluetooth]",
             )
         from bleak import BleakScanner
         from bleak.exc import BleakError
@@ -134,7 +134,7 @@ class Radio:
                 found = await BleakScanner.discover(timeout=seconds, return_adv=True)
             except (BleakError, OSError, EOFError) as problem:
                 raise SourceRefusedError(
-                    "Bluetooth does not answer on this computer",
+                    "Bluetooth does not respond on this computer",
                     "Switch it on, or plug in an adapter, then search again",
                 ) from problem
         return [

@@ -118,7 +118,7 @@ class UdpChannel:
             self._port = _UdpPort.shared(self._receive_port, self._address)
         except OSError as problem:
             raise SourceRefusedError(
-                "Port {number} of this computer is used by another program",
+                "Port {number} of this computer is in use by another program",
                 "Close that program",
                 number=self._receive_port,
             ) from problem
@@ -231,5 +231,5 @@ def _close(one: socket.socket | None) -> None:
 
 def _unreachable(place: str) -> SourceRefusedError:
     return SourceRefusedError(
-        "Nothing answers at {place}", "Check that the sensor is switched on and in the same network", place=place
+        "Nothing responds at {place}", "Check that the sensor is switched on and on the same network", place=place
     )

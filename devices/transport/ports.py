@@ -143,19 +143,21 @@ def _refusal(device: str, problem: Exception) -> SourceRefusedError:
     number = problem.errno if isinstance(problem, OSError) else None
     text = str(problem)
     if number == errno.ENOENT or "FileNotFoundError" in text or "No such file" in text:
-        return SourceRefusedError("{place} is not there", "Plug the sensor in, and switch it on", place=device)
+        return SourceRefusedError("{place} was not found", "Plug in the sensor and switch it on", place=device)
     if number == errno.EACCES and sys.platform.startswith("linux"):
         return SourceRefusedError(
-            "{place} may only be used by members of the group {group}",
-            "Let the administrator run: sudo usermod -aG {group} $USER; then log in anew",
+            "Only members of the group {group} may use {place}",
+            "Ask the administrator to run: sudo usermod -aG {group} $USER; then log in again",
             place=device,
             group=_group(device),
         )
     if number in (errno.EBUSY, errno.EAGAIN, errno.EACCES) or "lock" in text or "PermissionError" in text:
         return SourceRefusedError(
-            "{place} is used by another program", "Close that program, then search again", place=device
+            "{place} is in use by another program", "Close that program, then search again", place=device
         )
-    return SourceRefusedError("{place} does not open", "Plug the sensor in again, then search again", place=device)
+    return SourceRefusedError(
+        "{place} could not be opened", "Plug in the sensor again, then search again", place=device
+    )
 
 
 def _group(device: str) -> str:

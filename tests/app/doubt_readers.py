@@ -37,25 +37,25 @@ PEAKS = {  # rows of the table on page two by the beginning of their names, in e
         "Most flexed, loading (5–30 %)": "knee_loading_peak_deg",
         "Least flexed, stance (25–60 %)": "knee_stance_minimum_deg",
         "Most flexed, swing (55–90 %)": "knee_swing_peak_deg",
-        "Range over the stride": "knee_range_deg",
+        "Range of motion": "knee_range_deg",
     },
     "ankle": {
         "Most plantarflexed, loading (0–20 %)": "ankle_loading_plantarflexion_deg",
         "Most dorsiflexed, stance (20–60 %)": "ankle_stance_dorsiflexion_deg",
         "Most plantarflexed, push\u2011off (50–80 %)": "ankle_push_off_plantarflexion_deg",
         "Most dorsiflexed, swing (70–95 %)": "ankle_swing_dorsiflexion_deg",
-        "Range over the stride": "ankle_range_deg",
+        "Range of motion": "ankle_range_deg",
     },
 }
 TIMES = {  # rows of the table on page three
     "Stride time, s": "stride_time_s",
     "Stride length, m": "stride_length_m",
-    "Stance, % of stride": "stance_percent",
+    "Stance (% gait cycle)": "stance_percent",
 }
 OF_BOTH = {
     "Walking speed, m/s": "speed_m_s",
     "Cadence, steps/min": "cadence_steps_min",
-    "Double support, % of stride": "double_support_percent",
+    "Double support (% gait cycle)": "double_support_percent",
 }
 
 
@@ -70,7 +70,7 @@ def said_in_report(pdf: bytes) -> Doubts:
         match = re.search(rf"{re.escape(name)} (\d+(?:\.\d+)?(?: \*)?|withheld|not measured) ", times)
         assert match is not None, f"page three has no row {name}"
         found |= {(side, column): _in_report(match[1]) for side in Side}
-    knee, _, ankle = pages[1].partition("Ankle: how far it moves")
+    knee, _, ankle = pages[1].partition("Ankle: movement ranges")
     for kind, group in (("knee", knee), ("ankle", ankle)):
         for name, column in PEAKS[kind].items() if group else ():
             found |= _row(group, rf"{re.escape(name)} {CELL} {CELL} ", column)

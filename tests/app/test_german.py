@@ -41,7 +41,15 @@ TEMPLATE = ROOT / "resources" / "locale" / "gaitwright.pot"
 ALIKE = {
     *("plantar", "dorsal", "April", "August", "September", "November", "Goniometer, {joint}", "Software", "Name"),
     *("Parquet", "Patient", "Passphrase", "Esc", "Xsens MTi", "Lab Streaming Layer", "Bias, °", "Band", "Band [1]"),
-    *("Band [2]", "Band: {count} {group}, {speed_m_s:.2f} m/s, {source}.", "still", "CSV", "XLSX", "OpenSim", "FHIR"),
+    *(
+        "Band [2]",
+        "Reference: {count} {group}, {speed_m_s:.2f} m/s, {source}.",
+        "still",
+        "CSV",
+        "XLSX",
+        "OpenSim",
+        "FHIR",
+    ),
     *(
         "Rerun",
         "Letter",
@@ -213,14 +221,14 @@ def test_the_catalogue_is_compiled_anew(monkeypatch: pytest.MonkeyPatch) -> None
 
 @pytest.mark.usefixtures("german")
 def test_a_fraction_has_a_comma_and_what_only_looks_like_one_its_point() -> None:
-    said = tr("Speed {first} and {second} m/s.")
+    said = tr("Walking speed {first} and {second} m/s.")
     assert said.format(first=1.05, second="1.2.3") == "Geschwindigkeit 1,05 und 1.2.3 m/s."
     assert said.format_map({"first": np.float64(0.5), "second": 2}) == "Geschwindigkeit 0,5 und 2 m/s."
     assert (figure_text(-1.25, "+.1f"), figure_text(1.25, ".2f", "en")) == ("-1,2", "1.25")
     assert (fixed(-0.04, 1), signed(0.0, 1), signed(2.5, 1)) == ("0,0", "0,0", "+2,5")
     use_language("en")
     assert (figure_text(1.25, ".2f"), figure_text(1.25, ".2f", "de")) == ("1.25", "1,25")
-    assert tr("Speed {first} and {second} m/s.").format(first=1.05, second=1.1) == "Speed 1.05 and 1.1 m/s."
+    assert tr("Walking speed {first} and {second} m/s.").format(first=1.05, second=1.1) == "Speed 1.05 and 1.1 m/s."
     assert spoken_in("de")("{value} degrees").format(value=1.5) == "1,5 Grad"
 
 

@@ -472,10 +472,10 @@ def test_the_cover_says_that_a_recording_goes_on(qtbot: QtBot, open_window: Open
     logged_in(qtbot, window)
     assert window.entry is not None
     window.entry.cover("hk", is_recording=True)
-    assert "Recording goes on" in words_in_sight(window)
+    assert "Recording continues" in words_in_sight(window)
     assert not window.entry.log_in.leave.isVisible()
     window.entry.show_recording(False)
-    assert "Recording goes on" not in words_in_sight(window)
+    assert "Recording continues" not in words_in_sight(window)
 
 
 def test_activity_puts_the_cover_off(open_window: Open, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -738,7 +738,7 @@ def test_a_library_that_goes_is_said_at_home_and_so_is_its_return(
     # home may have been refused its list before the library was missed
     qtbot.waitUntil(lambda: entry.log_in.banner.text == home.banner.text, timeout=WAIT_MS)
     elsewhere.rename(folder)
-    qtbot.waitUntil(lambda: entry.log_in.banner.text.startswith("The library is back."), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: entry.log_in.banner.text.startswith("The library is available again."), timeout=WAIT_MS)
     assert entry.log_in.banner.text == home.banner.text
 
 

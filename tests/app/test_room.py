@@ -26,7 +26,7 @@ def parts(look: ThemeNotifier) -> list[QWidget]:
     return [
         Text(look, "The patient faces you"),
         Text(look, "Unreasonableness is one word", wraps=True),
-        Button(look, "Go on to walking"),
+        Button(look, "Continue to walking"),
         Segmented(look, "View", options),
         field,
         Painted(),

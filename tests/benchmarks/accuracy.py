@@ -152,7 +152,7 @@ def _score_calibration(errors: Errors, kind: str, found: JointCalibration, truth
         errors[f"{kind} centre unknown, not a hinge"].append(1.0)
     errors["lag"].append(1000 * abs(found.lag_s - truth.lag_s))
     errors["margin under 1.3"].append(float((found.sign_margin or 0.0) < 1.3))
-    errors["sign unsure"].append(float(not found.is_sign_certain))
+    errors["sign unclear"].append(float(not found.is_sign_certain))
     errors[f"{kind} called hinge"].append(float(found.is_hinge))
 
 
@@ -212,7 +212,7 @@ def main() -> None:
         pooled = run(name, range(arguments.first, arguments.first + arguments.seeds), arguments.workers)
         print(f"\n{name} ({arguments.seeds} sessions)")
         for key, values in pooled.items():
-            if key in ("pairing wrong", "sign wrong", "margin under 1.3", "sign unsure", "missing") or "hinge" in key:
+            if key in ("pairing wrong", "sign wrong", "margin under 1.3", "sign unclear", "missing") or "hinge" in key:
                 print(f"  {key:24s} {int(values.sum()):5d} of {len(values)}")
                 continue
             p50, p90 = np.quantile(values, [0.5, 0.9])

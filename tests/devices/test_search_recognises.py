@@ -46,7 +46,7 @@ class ScriptedPort:
 
     def open(self) -> None:
         if self._voice is None:
-            raise SourceRefusedError("{place} is not there", "Plug it in", place=self.place)
+            raise SourceRefusedError("{place} was not found", "Plug it in", place=self.place)
 
     def read(self) -> bytes:
         assert self._voice is not None

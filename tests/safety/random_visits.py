@@ -107,7 +107,7 @@ class SensibleUser(Hands):
         elif deed == "undo":
             self.press(Key.Key_Z, CTRL)
         elif deed == "theme":
-            self.press_named("Light or dark")
+            self.press_named("Appearance")
         return deed
 
     def _in_settings(self, home: Any) -> str:
@@ -196,7 +196,7 @@ class SensibleUser(Hands):
             return "chooses the sensors"
         if (not sensors.site_of and not sensors.is_left_to_motion) or self._chance.random() < 0.1:
             if self._chance.random() < 0.4:
-                self.press_named("Movement decides", page)
+                self.press_named("Detect from movement", page)
                 return "leaves it to the movement"
             self._place_by_digits(page)
             return "places the sensors"

@@ -139,7 +139,7 @@ def _set_up(one: StationOnScreen, two: StationOnScreen, server: Server, place: P
         Stop("10-home", offers("New patient"), ("click Settings",)),
         Stop(
             "11-settings",
-            says("More than one station"),
+            says("Several workstations"),
             (
                 "to Address of the clinic",
                 f"type {server.address}",
@@ -148,7 +148,7 @@ def _set_up(one: StationOnScreen, two: StationOnScreen, server: Server, place: P
                 "to Move to the clinic",
             ),
         ),
-        Stop("12-to-be-moved", says("More than one station"), ("press space",)),
+        Stop("12-to-be-moved", says("Several workstations"), ("press space",)),
         Stop("13-moved", says("compared row by row"), ("press Escape",), patience_s=PATIENCE_S),
         Stop("14-home", offers("New patient")),
     )
@@ -227,7 +227,7 @@ def _lose_the_server(one: StationOnScreen, two: StationOnScreen, server: Server,
         Stop("51-home", offers("New session for DEMO-7"), ("click New session",)),
         Stop("52-patient", at_step("PatientStep"), ("click Put on sensors",)),
         Stop("53-source", at_step("SensorsStep"), ("press Return",), lingers_s=1.0),
-        Stop("53b-sensors", offers("Movement decides"), placed, lingers_s=5.0),
+        Stop("53b-sensors", offers("Detect from movement"), placed, lingers_s=5.0),
         Stop("53c-placed", says("All six are worn"), ("press Return",), lingers_s=1.0),
         Stop("54-stand-still", at_step("StandStillStep"), ("press space",), lingers_s=1.0),
         Stop("55-standing", is_recording, lingers_s=1.0),

@@ -37,11 +37,11 @@ def find_sessions(folder: Path, out: Path) -> tuple[FoundSession, ...]:
     """
     folder = folder.resolve()
     if not folder.is_dir():
-        raise FileRefusedError(str(folder), "this folder is not there", "Choose the folder that holds the sessions")
+        raise FileRefusedError(str(folder), "this folder does not exist", "Choose the folder with the sessions")
     places = {place: _own_name(place) for place in _session_folders(folder, out.resolve())}
     if not places:
         remedy = f"Choose a folder that holds folders with {FILE_NAME}"
-        raise FileRefusedError(str(folder), "there is no session folder here", remedy)
+        raise FileRefusedError(str(folder), "there is no session folder in it", remedy)
     by_name = defaultdict(list)
     for place, (name, _) in places.items():
         by_name[name.casefold()].append(place)  # some disks do not tell large letters from small ones
@@ -64,7 +64,7 @@ def _session_folders(folder: Path, out: Path) -> Iterator[Path]:
 
 def _refuse(problem: OSError) -> None:
     what = f"this folder cannot be looked into ({problem.strerror})"
-    raise FileRefusedError(str(problem.filename), what, "Check its permissions, or move it away") from problem
+    raise FileRefusedError(str(problem.filename), what, "Check its permissions, or move it elsewhere") from problem
 
 
 def _own_name(place: Path) -> tuple[str, Path]:

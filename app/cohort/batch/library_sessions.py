@@ -30,7 +30,7 @@ class LibrarySessions:
         self._ids = {str(one.id): one.id for one in sorted(listed, key=lambda one: one.id) if one.recordings}
         self._without = len(listed) - len(self._ids)
         if not self._ids:
-            raise FileRefusedError(str(opened.folder), "no session here has a recording", "Choose another library")
+            raise FileRefusedError(str(opened.folder), "no session in it has a recording", "Choose another library")
 
     @property
     def names(self) -> Sequence[str]:
@@ -65,7 +65,7 @@ class LibrarySessions:
         except JournalRefusedError as refusal:
             raise FileRefusedError(refusal.where, refusal.what, refusal.remedy) from refusal
         if not session.recordings:
-            raise FileRefusedError(name, "this session has no recording that can be read", "Recover the library first")
+            raise FileRefusedError(name, "no recording of this session can be read", "Recover the library first")
         pseudonyms = Pseudonyms(opened.library.pseudonyms_key)
         told = ToldOf(
             pseudonyms.code(visit.patient_id, session.is_simulated),

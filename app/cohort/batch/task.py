@@ -130,9 +130,9 @@ def _check_worker(task: BatchTask) -> None:
         raise FileRefusedError(here, what, "Install the same version on all of them")
     remedy = "FOLDER and OUT have to be on a disk that all workers see under the same path"
     if read_mark(task.batch.out) != task.batch.mark:
-        raise FileRefusedError(here, "the worker here does not see OUT", remedy)
+        raise FileRefusedError(here, "the worker here cannot access OUT", remedy)
     if isinstance(task.source, Path) and not task.source.is_dir():
-        raise FileRefusedError(here, "the worker here does not see the session's folder", remedy)
+        raise FileRefusedError(here, "the worker here cannot access the session folder", remedy)
 
 
 def making_of(choices: AnalysisChoices, with_software: str) -> str:

@@ -52,9 +52,9 @@ def check_csv_place(out: Path, table: Path) -> None:
         Something else is there.
     """
     if out.is_dir():
-        raise FileRefusedError(str(out), "this is a folder", "Give a file's name, such as answer.csv")
+        raise FileRefusedError(str(out), "this is a folder", "Enter a file name, such as answer.csv")
     if out.exists() and (out.suffix.lower() != ".csv" or out.resolve() == table.resolve()):
-        raise FileRefusedError(str(out), "this is there already and is no CSV file", "Choose another --out")
+        raise FileRefusedError(str(out), "this already exists and is not a CSV file", "Choose another --out")
 
 
 def write_csv(columns: Sequence[str], rows: Iterable[Sequence[object]], out: Path) -> int:

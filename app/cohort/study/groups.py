@@ -156,8 +156,8 @@ def measures_of(table: ParameterTable) -> tuple[str, ...]:
     if not table.measures:
         raise FileRefusedError(
             table.where,
-            "there is no parameter with its status in the table",
-            "Choose the parameters.parquet that gaitwright batch writes",
+            "the table has no parameter with a status column",
+            "Choose the parameters.parquet written by gaitwright batch",
         )
     return table.measures
 
@@ -178,14 +178,14 @@ def answer(table: ParameterTable, question: GroupQuestion) -> GroupAnswer:
     if question.measure not in table.measures:
         raise FileRefusedError(
             table.where,
-            "there is no parameter {name} with its status in the table",
+            "the table has no parameter {name} with a status column",
             "Choose another measure",
             name=question.measure,
         )
     for column in REQUIRED[question.grouping]:
         if column not in table.columns:
             raise FileRefusedError(
-                table.where, "there is no column {name} in the table", "Group by something else", name=column
+                table.where, "the table has no column {name}", "Choose another grouping", name=column
             )
     sides = _sides(table, question.measure)
     found = list(table.found(_sql(table, question, sides)).rows)

@@ -6,7 +6,7 @@ from app.wording.measures import NAMES, unit_symbol
 from app.wording.translation import later, tr
 from core.parameters import SPEED, unit_of
 
-OF_TABLE = {"walk_speed_m_s": later("Walking speed"), SPEED: later("Speed by leg")}  # a batch tells both
+OF_TABLE = {"walk_speed_m_s": later("Walking speed"), SPEED: later("Walking speed, by leg")}  # a batch tells both
 
 
 @dataclass(frozen=True, slots=True)

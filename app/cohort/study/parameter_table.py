@@ -41,8 +41,8 @@ class ParameterTable:
             if name not in self.columns:
                 raise FileRefusedError(
                     self.where,
-                    "this is no table of a batch: there is no column {name}",
-                    "Choose the parameters.parquet that gaitwright batch writes",
+                    "this is not a batch table: column {name} is missing",
+                    "Choose the parameters.parquet written by gaitwright batch",
                     name=name,
                 )
 
@@ -58,9 +58,7 @@ class ParameterTable:
         """
         file = place / PARQUET if place.is_dir() else place
         if not file.is_file():
-            raise FileRefusedError(
-                str(file), "this is not there", "Choose the parameters.parquet that gaitwright batch writes"
-            )
+            raise FileRefusedError(str(file), "not found", "Choose the parameters.parquet written by gaitwright batch")
         yield cls(file)
 
     @property

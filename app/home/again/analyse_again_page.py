@@ -38,7 +38,7 @@ class AgainLine:
     def state(self) -> str:
         if self.failure:
             return self.failure
-        return tr("analysed by this version") if self.is_current else tr("not by this version")
+        return tr("analysed with this version") if self.is_current else tr("not with this version")
 
     @property
     def in_words(self) -> str:
@@ -108,17 +108,17 @@ class AnalyseAgainPage(Themed):
         self._lead = Text(
             look,
             tr(
-                "With this version, by all processors. What was typed, corrected and left out stays; results and "
-                "courses are kept in the library."
+                "Uses this version and all processors. Entries, corrections and exclusions are kept. Results "
+                "and progress are saved in the library."
             ),
             tone="ink2",
             wraps=True,
         )
-        self.earlier = Button(look, tr("Those not by this version"), ButtonKind.SECONDARY, height=44)
+        self.earlier = Button(look, tr("Not with this version"), ButtonKind.SECONDARY, height=44)
         self.all = Button(look, tr("All"), ButtonKind.SECONDARY, height=44)
         self.none = Button(look, tr("None"), ButtonKind.QUIET, height=44)
         self.list = TickList(look, tr("Sessions"), row=ROW, head=HEAD, padding=PADDING, edge=PADDING, is_list=True)
-        self.list.setAccessibleDescription(tr("Space turns the tick of a session."))
+        self.list.setAccessibleDescription(tr("Space selects or clears a session."))
         self.nothing = Text(look, tr("No session here has a recording."), wraps=True)
         self._build()
         self.list.opened.connect(self._turn)
@@ -180,7 +180,7 @@ class AnalyseAgainPage(Themed):
         self.nothing.setVisible(not self._lines)
         waiting = sum(not line.is_current for line in self._lines)
         self.earlier.setText(
-            tr_n("{count} not by this version", "{count} not by this version", waiting).format(count=waiting)
+            tr_n("{count} not with this version", "{count} not with this version", waiting).format(count=waiting)
         )
         self.earlier.setEnabled(bool(waiting))
         self.all.setEnabled(bool(self._lines))

@@ -68,7 +68,9 @@ class AnalysingAgain(QObject):
     def bar(self) -> BarState:
         count = len(self.page.ticked)
         words = tr_n("Analyse {count} session", "Analyse {count} sessions", count).format(count=count)
-        folder = BarAction(tr("Into a folder, with a table"), icon=Icon.FOLDER, is_wished=False, is_enabled=bool(count))
+        folder = BarAction(
+            tr("Analyse to a folder, with table"), icon=Icon.FOLDER, is_wished=False, is_enabled=bool(count)
+        )
         return BarState(BarAction(words, icon=Icon.PLAY, is_enabled=bool(count)), others=(folder,))
 
     def begin(self, patient_id: UUID | None) -> None:
@@ -92,7 +94,7 @@ class AnalysingAgain(QObject):
 
     def choose_folder(self) -> None:
         self._dialog = ask_for_new_folder(
-            self.page.window(), tr("Results and a table of these sessions"), _proposed, self._on_folder
+            self.page.window(), tr("Choose a folder for results and table"), _proposed, self._on_folder
         )
 
     def write(self, out: Path) -> None:
@@ -113,13 +115,13 @@ class AnalysingAgain(QObject):
                 batch.run(workers, report)
             return batch.result
 
-        self._begin(tr("Analysing into a folder"))
+        self._begin(tr("Analysing to a folder"))
         self._controller.run_long(work, self._on_written, self._on_refused, self._on_progressed, self)
 
     def stop(self) -> None:
         """End it; what was done until now is kept."""
         self._controller.stop_long()
-        self._end(tr("This was stopped."), tr("The sessions that were analysed until then are kept."))
+        self._end(tr("Stopped."), tr("Sessions analysed so far are kept."))
         self._read()
 
     def _begin(self, title: str) -> None:
@@ -167,7 +169,9 @@ class AnalysingAgain(QObject):
         ).format(count=result.analysed)
         then = []
         if result.as_before:
-            before = tr_n("{count} was analysed by it before.", "{count} were analysed by it before.", result.as_before)
+            before = tr_n(
+                "{count} was analysed with it before.", "{count} were analysed with it before.", result.as_before
+            )
             then.append(before.format(count=result.as_before))
         if result.failures:
             then.append(_failed(len(result.failures)))
@@ -175,7 +179,7 @@ class AnalysingAgain(QObject):
         self._read()
 
     def _on_written(self, result: "BatchResult") -> None:
-        said = tr("Results and the table are in {folder}.").format(folder=self._out)
+        said = tr("Results and table saved in {folder}.").format(folder=self._out)
         self._end(said, _failed(len(result.failures)) if result.failures else "")
         self.table_made.emit(self._out / TABLE)
 
@@ -194,5 +198,9 @@ def _proposed(place: Path) -> str:
 
 
 def _failed(count: int) -> str:
-    said = tr_n("{count} could not be analysed: the list says why.", "{count} could not be: the list says why.", count)
+    said = tr_n(
+        "{count} could not be analysed. The list shows why.",
+        "{count} could not be analysed. The list shows why.",
+        count,
+    )
     return said.format(count=count)

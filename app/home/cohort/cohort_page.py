@@ -46,7 +46,7 @@ class QuestionsPage(Themed):
         super().__init__()
         self._look, self._width = look, 1000.0
         self.found: GroupAnswer | None = None
-        self._title = Text(look, tr("Questions"), size=26, weight=SEMIBOLD)
+        self._title = Text(look, tr("Cohort"), size=26, weight=SEMIBOLD)
         self._name = Text(look, tone="ink2", wraps=True)
         self.choose_table = Button(look, tr("Choose a table"), ButtonKind.SECONDARY, Icon.FOLDER)
         self.refusal = Notice(look, size=16)
@@ -54,13 +54,13 @@ class QuestionsPage(Themed):
         self.first_table = Button(look, tr("Choose a table"), ButtonKind.PRIMARY, Icon.FOLDER, height=56)
         self._controls = QWidget()
         self.measure = Choice(look, tr("Measure"))
-        self.grouping = Choice(look, tr("Grouped by"))
+        self.grouping = Choice(look, tr("Group by"))
         for choice in (self.measure, self.grouping):
             choice.let_shrink(LEAST_CHOICE, MOST_CHOICE)
         self.included = Segmented(
-            look, tr("What counts"), [(READ, tr("Read"), ""), (WITH_CARE, tr("Also with care"), "")]
+            look, tr("Include"), [(READ, tr("Good"), ""), (WITH_CARE, tr("Good and caution"), "")]
         )
-        self.simulated = Toggle(look, tr("Simulated too"), "", is_on=False)
+        self.simulated = Toggle(look, tr("Include simulated"), "", is_on=False)
         self.simulated.set_face(height=48)
         self.answer = QWidget()
         self.sentence = Text(look, size=22, weight=SEMIBOLD, wraps=True)
@@ -69,8 +69,8 @@ class QuestionsPage(Themed):
         self._legend = Text(
             look,
             tr(
-                "Dot: mean over sessions, of each the mean of its walks, then of its legs. Bar: 95 % interval of that "
-                "mean; hollow without one. Whether groups differ is not judged here."
+                "Dot: mean of the sessions (walks averaged per leg, then both legs). Bar: 95 % interval of "
+                "that mean. Hollow dot: no interval. Groups are not tested for differences."
             ),
             size=12,
             tone="ink2",
@@ -169,7 +169,7 @@ class QuestionsPage(Themed):
             GroupLine(group_name(grouping, row.group), row.mean, row.half_interval, _sessions(row)) for row in drawn
         ]
         in_words = ". ".join(_line_in_words(line, words.decimals, words.unit) for line in lines)
-        self.plot.show_groups(lines, words.with_unit, tr("Means of the groups"), in_words)
+        self.plot.show_groups(lines, words.with_unit, tr("Group means"), in_words)
         self.plot.setVisible(bool(lines))
         self._legend.setVisible(bool(lines))
         self._show_table()
@@ -196,8 +196,8 @@ class QuestionsPage(Themed):
         head.addWidget(self._name, 1)
         head.addWidget(self.choose_table)
         how = tr(
-            "Many sessions become one table without names by the command gaitwright batch FOLDER --out OUT. "
-            "It writes parameters.parquet into OUT: choose that file."
+            "To combine many sessions into one table without names, run gaitwright batch FOLDER --out "
+            "OUT. It writes parameters.parquet into OUT. Choose that file here."
         )
         self._empty.column.addWidget(Text(look, tr("No table yet"), size=26, weight=SEMIBOLD, wraps=True))
         self._empty.column.addWidget(Text(look, how, size=16, tone="ink2", wraps=True))
@@ -207,8 +207,8 @@ class QuestionsPage(Themed):
             QBoxLayout(QBoxLayout.Direction.LeftToRight),
         )
         for half, named in (
-            (self._first_half, ((tr("Measure"), self.measure), (tr("Grouped by"), self.grouping))),
-            (self._second_half, ((tr("What counts"), self.included), ("", self.simulated))),
+            (self._first_half, ((tr("Measure"), self.measure), (tr("Group by"), self.grouping))),
+            (self._second_half, ((tr("Include"), self.included), ("", self.simulated))),
         ):
             for label, control in named:
                 part = QVBoxLayout()
@@ -281,11 +281,11 @@ def _more(found: GroupAnswer, drawn: int) -> str:
     """How many groups are not in sight, and where they are."""
     said = []
     if len(found.told) > drawn:
-        told = tr("The chart has the {drawn} groups with most sessions, of {count}.")
+        told = tr("The chart shows the {drawn} groups with the most sessions, of {count}.")
         said.append(told.format(drawn=drawn, count=len(found.told)))
     if len(found.rows) > MOST_ROWS:
         said.append(
-            tr("The table has the first {shown} groups of {count}, the CSV all.").format(
+            tr("The table shows the first {shown} groups of {count}. The CSV has all groups.").format(
                 shown=MOST_ROWS, count=len(found.rows)
             )
         )

@@ -23,7 +23,7 @@ def groups_table(found: GroupAnswer, *, is_narrow: bool) -> tuple[list[TableColu
         (tr("SD"), True),
         (tr("95 % interval"), False),
         (tr("Measurement error"), True),
-        (tr("Left out"), False),
+        (tr("Excluded"), False),
     )
     columns = [TableColumn(_head(grouping_word(found.question.grouping), is_first=True), share=1)]
     columns += [TableColumn(_head(head), is_hidden=is_narrow and is_extra) for head, is_extra in heads]
@@ -41,11 +41,11 @@ def _row(found: GroupAnswer, row: GroupRow, words: MeasureWords, longest: int) -
         (tr("SD"), figure(row.sd, decimals)),
         (tr("95 % interval"), interval_in_words(row, decimals)),
         (tr("Measurement error"), figure(row.value_error, decimals)),
-        (tr("Left out"), str(out)),
+        (tr("Excluded"), str(out)),
     )
     told = tr(
-        "{group}: left out {withheld} withheld, {care} with care, {missing} not measured; sessions without a value: "
-        "{sessions}."
+        "{group}: excluded {withheld} not reported, {care} caution, {missing} not measured; sessions "
+        "without a value: {sessions}."
     )
     hint = told.format(
         group=name,

@@ -24,7 +24,7 @@ def grouping_word(grouping: Grouping) -> str:
         Grouping.SPEED: tr("Walking speed"),
         Grouping.SIDE: tr("Side"),
         Grouping.LEG: tr("Prosthetic or affected leg"),
-        Grouping.ALL: tr("All together"),
+        Grouping.ALL: tr("No grouping"),
     }[grouping]
 
 
@@ -34,9 +34,9 @@ def group_name(grouping: Grouping, group: str) -> str:
         case Grouping.ALL:
             return tr("All sessions")
         case Grouping.SPEED if not group:
-            return tr("speed not readable")
+            return tr("speed not reported")
     if not group:
-        return tr("not stated")
+        return tr("not recorded")
     match grouping:
         case Grouping.AGE:
             return _age_band(int(group))
@@ -48,7 +48,7 @@ def group_name(grouping: Grouping, group: str) -> str:
             return {
                 "prosthetic": tr("prosthetic leg"),
                 "affected": tr("affected leg"),
-                "other": tr("the other leg"),
+                "other": tr("sound leg"),
                 "neither": tr("no leg affected"),
             }.get(group, group)
     return group
@@ -58,7 +58,7 @@ def sentence(found: GroupAnswer) -> str:
     """What is shown, in one sentence; nothing of what it means."""
     measure = measure_words(found.question.measure).name
     if not found.told:
-        return tr("No session has a value of this that counts.")
+        return tr("No session has an included value of this measure.")
     if found.question.grouping is Grouping.ALL:
         said = tr_n("{measure}: {count} session.", "{measure}: mean of {count} sessions.", found.sessions)
         return said.format(measure=measure, count=found.sessions)
@@ -80,8 +80,8 @@ def notes(found: GroupAnswer) -> list[str]:
         said.append(told.format(count=found.simulated))
     if 0 < found.patients < found.sessions:
         told = tr_n(
-            "All are of {count} person, so the intervals are narrower than they should be.",
-            "They are of {count} people, and each session counts, so the intervals are narrower than they should be.",
+            "All sessions are from {count} person. The intervals are therefore too narrow.",
+            "The sessions are from {count} people, and each session counts. The intervals are therefore too narrow.",
             found.patients,
         )
         said.append(told.format(count=found.patients))
@@ -90,8 +90,8 @@ def notes(found: GroupAnswer) -> list[str]:
     few = sum(row.sessions < LEAST_SESSIONS for row in found.told)
     if few:
         told = tr_n(
-            "{count} group has fewer than {least} sessions, so no interval.",
-            "{count} groups have fewer than {least} sessions, so no interval.",
+            "{count} group has fewer than {least} sessions: no interval.",
+            "{count} groups have fewer than {least} sessions: no interval.",
             few,
         )
         said.append(told.format(count=few, least=LEAST_SESSIONS))
@@ -106,14 +106,14 @@ def left_out(found: GroupAnswer) -> str:
         sum(getattr(row, name) for row in found.rows) for name in ("withheld", "with_care", "not_measured")
     )
     parts = [
-        (withheld, tr("{count} withheld")),
-        (care, tr("{count} to be read with care")),
+        (withheld, tr("{count} not reported")),
+        (care, tr("{count} rated caution")),
         (missing, tr("{count} not measured")),
     ]
     told = [words.format(count=count) for count, words in parts if count]
-    said = [tr("Left out, each a walk of one leg: {what}.").format(what=joined(told))] if told else []
+    said = [tr("Excluded (each one leg in one walk): {what}.").format(what=joined(told))] if told else []
     if count := found.simulated_left_out:
-        simulated = tr_n("{count} simulated session is left out.", "{count} simulated sessions are left out.", count)
+        simulated = tr_n("{count} simulated session is excluded.", "{count} simulated sessions are excluded.", count)
         said.append(simulated.format(count=count))
     return " ".join(said)
 

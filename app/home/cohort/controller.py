@@ -89,9 +89,9 @@ class Questions(QObject):
         self._background.start(_reading(path))
 
     def choose_table(self) -> None:
-        self._dialog = QFileDialog(self.page.window(), tr("Choose the table of a batch"))
+        self._dialog = QFileDialog(self.page.window(), tr("Choose a batch table"))
         self._dialog.setFileMode(QFileDialog.FileMode.ExistingFile)
-        self._dialog.setNameFilters([tr("Tables of a batch") + f" ({PARQUET})", tr("Parquet") + " (*.parquet)"])
+        self._dialog.setNameFilters([tr("Batch tables") + f" ({PARQUET})", tr("Parquet") + " (*.parquet)"])
         self._dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self._dialog.fileSelected.connect(self._on_table_selected)
         self._dialog.open()
@@ -156,18 +156,18 @@ class Questions(QObject):
             self.page.show_refused(f"{Path(error.where).name}: {what}.", f"{remedy}. {where}")
         else:
             _log.error("a question was not answered", exc_info=error)
-            self.page.show_refused(tr("The table cannot be asked."), tr("The log holds the details."))
+            self.page.show_refused(tr("The table cannot be evaluated."), tr("See the log for details."))
         self.changed.emit()
 
     def _on_written(self, written: object) -> None:
         assert isinstance(written, _Written)
-        self.told.emit(tr("The groups are saved."), str(written.path))
+        self.told.emit(tr("Groups saved."), str(written.path))
 
     def _on_write_failed(self, error: Exception) -> None:
         if not isinstance(error, OSError):
             _log.error("groups were not written", exc_info=error)
         why = getattr(error, "strerror", None) or type(error).__name__
-        self.told.emit(tr("The groups cannot be saved ({why}).").format(why=why), tr("Choose another folder."))
+        self.told.emit(tr("The groups could not be saved ({why}).").format(why=why), tr("Choose another folder."))
 
 
 def _reading(path: Path) -> Work:

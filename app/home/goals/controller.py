@@ -58,7 +58,7 @@ class GoalsOfPatient(QObject):
 
     @property
     def bar(self) -> BarState:
-        return BarState(BarAction(tr("Agree on this goal"), tr("Enter"), Icon.CHECK))
+        return BarState(BarAction(tr("Add this goal"), tr("Enter"), Icon.CHECK))
 
     def begin(self, patient: "StoredPatient") -> None:
         """Show what was agreed with a patient."""
@@ -124,9 +124,9 @@ class GoalsOfPatient(QObject):
         if edited.contests:
             contest = edited.contests[0]
             now = datetime.datetime.now().astimezone()
-            what = tr("{goal} was changed meanwhile by {who}, and stays as it was changed.")
+            what = tr("{goal} was changed meanwhile ({who}). That change is kept.")
             said = what.format(goal=field_word(contest.field), who=by_words(contest.by, contest.at, now))
-            self.told.emit(said, tr("Look at what holds now. Yours is in the history."))
+            self.told.emit(said, tr("Check the current value. Yours is in the history."))
         else:
             self.page.show_agreed()
         self.kept.emit()

@@ -60,8 +60,9 @@ class GoalsPage(TallPage):
         self._lead = Text(
             look,
             tr(
-                "A goal is agreed with the patient and typed here; the day and who typed it are kept. It stands "
-                "wherever the measure is shown, and chooses what is told of visits after today."
+                "Agree on a goal with the patient and enter it here. Date and user are recorded. The goal "
+                "appears wherever the measure is shown. At later visits, it also guides which results are "
+                "shown."
             ),
             tone="ink2",
             wraps=True,
@@ -69,14 +70,14 @@ class GoalsPage(TallPage):
         self.measure = Choice(look, tr("Measure"))
         for column in GOAL_COLUMNS:
             self.measure.addItem(measure_name(column), column)
-        names = {GoalOf.LEFT: tr("Left"), GoalOf.RIGHT: tr("Right"), GoalOf.BETWEEN: tr("Between the legs")}
-        self.whose = Segmented(look, tr("Whose"), [(of.value, word, "") for of, word in names.items()])
+        names = {GoalOf.LEFT: tr("Left"), GoalOf.RIGHT: tr("Right"), GoalOf.BETWEEN: tr("Left vs right")}
+        self.whose = Segmented(look, tr("Side"), [(of.value, word, "") for of, word in names.items()])
         self.sense = Segmented(look, tr("Limit"), [(AT_LEAST, tr("At least"), ""), (AT_MOST, tr("At most"), "")])
-        self.apart = Text(look, tr("The legs are to differ by at most this much, whichever has more."), wraps=True)
+        self.apart = Text(look, tr("The legs should differ by no more than this, in either direction."), wraps=True)
         self.value = NumberField(look, tr("Value"), low=LEAST, high=1.0, decimals=2)
         self.weeks = NumberField(look, tr("Within"), low=1, high=LONGEST_WEEKS, unit=tr("weeks"), is_optional=True)
         self.note = Field(look, tr("Note"), is_optional=True, most=MOST_NOTE)
-        self.none_yet = Text(look, tr("Nothing is agreed yet."), tone="ink2", wraps=True)
+        self.none_yet = Text(look, tr("No goals agreed yet."), tone="ink2", wraps=True)
         self._build()
         self._connect()
         self._on_measure_chosen()
@@ -127,7 +128,7 @@ class GoalsPage(TallPage):
         """Tell what was typed, or say at its field what is missing."""
         if self.value.value is None:
             if not self.value.text.strip():
-                self.value.set_wrong(tr("Type the value that is to be reached."))
+                self.value.set_wrong(tr("Enter the target value."))
             self.value.setFocus()
             return
         if self.weeks.text.strip() and self.weeks.value is None:
@@ -154,7 +155,7 @@ class GoalsPage(TallPage):
 
     def _build(self) -> None:
         form = self._form = Card(self._look, spacing=12)
-        form.column.addWidget(Text(self._look, tr("Agree on a goal"), size=16, weight=SEMIBOLD))
+        form.column.addWidget(Text(self._look, tr("Add a goal"), size=16, weight=SEMIBOLD))
         form.column.addWidget(Text(self._look, tr("Measure"), weight=MEDIUM))
         form.column.addWidget(self.measure)
         for one in (self.whose, self.sense, self.apart):
@@ -232,8 +233,8 @@ class _GoalRow(Themed):
         self._row.setContentsMargins(0, 0, 0, 0)
         self._row.addLayout(column, 1)
         if goal.is_held:
-            self.take_back = Button(look, tr("Take back"), ButtonKind.QUIET, height=36)
-            self.take_back.setAccessibleName(tr("Take back: {goal}").format(goal=goal_in_words(goal)))
+            self.take_back = Button(look, tr("Withdraw"), ButtonKind.QUIET, height=36)
+            self.take_back.setAccessibleName(tr("Withdraw: {goal}").format(goal=goal_in_words(goal)))
             self.take_back.clicked.connect(self._on_take_back)
             self._row.addWidget(self.take_back, 0, Qt.AlignmentFlag.AlignTop)
 

@@ -101,7 +101,7 @@ class Importing(QObject):
         code = self.page.code.text.strip()
         words = tr("Import for {code}").format(code=code) if code else tr("Import")
         is_ready = bool(code) and (not self._is_draft or self._is_draft_ready)
-        others = (BarAction(tr("Leave this out")),) if self._waiting else ()
+        others = (BarAction(tr("Skip this one")),) if self._waiting else ()
         return BarState(BarAction(words, tr("Enter"), Icon.IMPORT, is_enabled=is_ready), quiet=others)
 
     def begin(self) -> None:
@@ -151,11 +151,11 @@ class Importing(QObject):
         if not self._is_importing:  # something was being read, and no more
             self._controller.stop_long()
             self.left.emit()
-            self.told.emit(tr("This was stopped."), tr("Nothing was added to the library."))
+            self.told.emit(tr("Stopped."), tr("Nothing was added to the library."))
         else:
             self._controller.stop_long(self._on_stopped)
             self.asked.emit()
-            self.told.emit(tr("The import is being stopped."), tr("What was added of it is taken back."))
+            self.told.emit(tr("The import is being stopped."), tr("Data already added are removed."))
 
     def forget(self) -> None:
         """Import nothing of what was read."""
@@ -195,7 +195,7 @@ class Importing(QObject):
         sentences = [str(refusal) for refusal in read.refused]
         more = len(sentences) - MOST_SENTENCES
         if more > 0:
-            said = tr_n("And {count} file more.", "And {count} files more.", more)
+            said = tr_n("And {count} more file.", "And {count} more files.", more)
             sentences = [*sentences[:MOST_SENTENCES], said.format(count=more)]
         self.page.show_unread(sentences, can_try_again=bool(read.again))
         self._waiting.extend(read.found)
@@ -237,13 +237,13 @@ class Importing(QObject):
     def _on_placed(self, chains: "Chains | None") -> None:
         if chains is None:
             self.told.emit(
-                tr("The motion does not tell where the sensors were."),
-                tr("It needs a recording in which all of them move; else say it yourself."),
+                tr("Sensor positions could not be detected."),
+                tr("Use a recording in which all sensors move, or enter the positions."),
             )
         elif not self.page.draft.show_chains(chains):
             self.told.emit(
-                tr("The motion does not fit what is said of the sensors."),
-                tr("It takes two or four of them for thighs and shanks. Look through the sites."),
+                tr("The movement does not fit the entered sensor positions."),
+                tr("Two or four sensors on thighs and shanks are needed. Check the sensor positions."),
             )
 
     def _on_placing_refused(self, what: str, remedy: str) -> None:
@@ -258,10 +258,10 @@ class Importing(QObject):
         self._show_next()
         if imported.differing:
             self.told.emit(
-                tr("{code} is told of otherwise in the folder: {what}.").format(
+                tr("{code}: the folder has other details ({what}).").format(
                     code=imported.patient.details.code, what=", ".join(_named(name) for name in imported.differing)
                 ),
-                tr("The library keeps what it says."),
+                tr("The library's details are kept."),
             )
         self.imported.emit(imported.patient.id)
 
@@ -274,7 +274,7 @@ class Importing(QObject):
         self._is_importing = False
         if is_done:
             self._show_next()
-            self.told.emit(tr("The import was done before it could be stopped."), tr("The session is in the library."))
+            self.told.emit(tr("The import finished before it could be stopped."), tr("The session is in the library."))
         else:
             self.told.emit(tr("The import was stopped."), tr("No session was added to the library."))
         self.imported.emit(None)
@@ -319,7 +319,7 @@ def _named(name: str) -> str:
         "birth_year": tr("birth year"),
         "sex": tr("sex"),
         "height_m": tr("height"),
-        "mass_kg": tr("mass"),
+        "mass_kg": tr("weight"),
         "device": tr("device"),
         "aids": tr("aids"),
         "affected_side": tr("affected side"),

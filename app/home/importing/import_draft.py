@@ -55,9 +55,9 @@ class DraftCards(QWidget):
         self._of_recordings, self._of_sensors = Card(look, padding=20, spacing=12), Card(look, padding=20, spacing=8)
         self._recordings_title = Text(look, size=16, weight=SEMIBOLD, wraps=True)
         self._recording_rows = QVBoxLayout()
-        self._sensors_title = Text(look, tr("Where was each sensor worn?"), size=16, weight=SEMIBOLD, wraps=True)
+        self._sensors_title = Text(look, tr("Sensor positions"), size=16, weight=SEMIBOLD, wraps=True)
         self._sensor_rows = QGridLayout()
-        self.place = Button(look, tr("Find from the motion"), ButtonKind.SECONDARY, Icon.WAVE, height=40)
+        self.place = Button(look, tr("Detect from movement"), ButtonKind.SECONDARY, Icon.WAVE, height=40)
         self._question = Text(look, wraps=True)
         self.is_left = Button(look, tr("Left leg"), ButtonKind.SECONDARY, height=40)
         self.is_right = Button(look, tr("Right leg"), ButtonKind.SECONDARY, height=40)
@@ -87,11 +87,11 @@ class DraftCards(QWidget):
         placed = [site for site in self.sites.values() if site is not None]
         twice = [site for site in LEG_SITES if placed.count(site) > 1]
         if twice:
-            return tr("{site} is chosen twice.").format(site=tr(SITE_WORDS[twice[0]]))
+            return tr("{site} is assigned twice.").format(site=tr(SITE_WORDS[twice[0]]))
         if not placed:
-            return tr("Say of at least one sensor where it was worn.")
+            return tr("Enter the position of at least one sensor.")
         if not any(self.kinds):
-            return tr("All recordings are left out.")
+            return tr("All recordings are excluded.")
         return ""
 
     @property
@@ -197,8 +197,8 @@ class DraftCards(QWidget):
         if self._chains is not None:
             names = {row.sensor.key: sensor_name(row.sensor) for row in self._sensors}
             first = joined([names[key] for key in self._chains.legs[0].sensors])
-            asked = tr("The motion puts {sensors} on one leg, from the thigh down. Which leg is it?")
-            doubt = "" if self._chains.is_certain else tr("It is not sure: compare it with your notes.")
+            asked = tr("By movement, {sensors} are on one leg, from the thigh down. Which leg is it?")
+            doubt = "" if self._chains.is_certain else tr("This is uncertain. Compare it with your notes.")
             self._question.setText(" ".join(filter(None, [asked.format(sensors=first), doubt])))
 
     def _on_place(self) -> None:
@@ -225,13 +225,13 @@ class _RecordingRow:
         grid = QGridLayout(self._part)
         grid.setContentsMargins(0, 0, 0, 0)
         grid.setColumnStretch(0, 1)
-        self.kind = Choice(look, tr("What is {name}?").format(name=recording.title))
+        self.kind = Choice(look, tr("Type of {name}").format(name=recording.title))
         for kind, words in KIND_WORDS.items():
             self.kind.addItem(tr(words), kind)
-        self.kind.addItem(tr("Left out"), OPEN)
+        self.kind.addItem(tr("Excluded"), OPEN)
         self.kind.setCurrentIndex(self.kind.findData(recording.kind))
         self.kind.setMinimumHeight(self.kind.sizeHint().height())
-        curve = SmallCurve(look, tr("How fast a sensor turned"))
+        curve = SmallCurve(look, tr("Angular rate of a sensor"))
         curve.show_curve(*liveliness([sensor.block for sensor in recording.trial.sensors]))
         grid.addWidget(Text(look, breakable(recording.title), weight=SEMIBOLD, wraps=True), 0, 0)
         grid.addWidget(curve, 0, 1)
@@ -254,14 +254,14 @@ class _SensorRow:
         self.sensor = sensor
         self._origin, self._proposed = sensor.origin, sensor.site
         name = sensor_name(sensor)
-        self.site = Choice(look, tr("Where was {name} worn?").format(name=name))
-        self.site.addItem(tr("Not said"), OPEN)
+        self.site = Choice(look, tr("Position of {name}").format(name=name))
+        self.site.addItem(tr("Not recorded"), OPEN)
         for site, words in SITE_WORDS.items():
             self.site.addItem(tr(words), site)
         self.site.addItem(tr("Not on a leg"), ELSEWHERE)
         self.site.setCurrentIndex(self.site.findData(sensor.site) if sensor.site is not None else 0)
         self.site.setMinimumHeight(self.site.sizeHint().height())  # the rows of a grid give way before they scroll
-        self._curve = SmallCurve(look, tr("How fast a sensor turned"))
+        self._curve = SmallCurve(look, tr("Angular rate of a sensor"))
         self._curve.show_curve(*liveliness([one.block for one in shown.trial.sensors if key_of(one) == sensor.key]))
         self._words = Text(look, breakable(name), wraps=True)
         self._from = Text(look, size=12, tone="ink2")

@@ -54,9 +54,9 @@ class ImportPage(Themed):
         self._formats = Text(look, tone="ink2", wraps=True)
         self._recordings_title = Text(look, size=16, weight=SEMIBOLD, wraps=True)
         self._recordings = Text(look, tone="ink2", wraps=True)
-        self.code = Field(look, tr("Patient's code"), is_code=True)
+        self.code = Field(look, tr("Patient code"), is_code=True)
         self._hint = Text(look, tone="ink2", wraps=True)
-        self.day_field = Field(look, tr("Day of the session"), is_optional=True, placeholder=tr("year-month-day"))
+        self.day_field = Field(look, tr("Session date"), is_optional=True, placeholder=tr("year-month-day"))
         self.findings = FindingsList(look)
         self._card = Card(look, padding=20, spacing=12)
         self.draft = DraftCards(look, self._card)
@@ -64,7 +64,7 @@ class ImportPage(Themed):
         self._unread_words = Text(look, tone="ink2", wraps=True)
         self.rate = NumberField(
             look,
-            tr("Samples per second, where a file does not tell"),
+            tr("Sampling rate, if not given in the file"),
             low=RATE_HZ[0],
             high=RATE_HZ[1],
             decimals=1,
@@ -99,7 +99,7 @@ class ImportPage(Themed):
     def show_nothing(self, formats: Sequence[str]) -> None:
         """Show how to begin. `formats`: the programs whose files can be read."""
         self._formats.setText(tr("Files of {programs}, and session folders.").format(programs=", ".join(formats)))
-        self._folder.setText(tr("Drop files or folders onto this window, or choose them."))
+        self._folder.setText(tr("Drop files or folders here, or choose them."))
         self._show_parts(self._begin)
 
     def show_session(
@@ -162,9 +162,9 @@ class ImportPage(Themed):
 
     def _show_code(self, code: str, *, is_simulated: bool) -> None:
         self._hint.setText(
-            tr("These are simulated. They belong to a patient whose code starts with DEMO.")
+            tr("These recordings are simulated. Use a patient code that starts with DEMO.")
             if is_simulated
-            else tr("A patient who has this code gets the session; else a new patient is added.")
+            else tr("The session is added to the patient with this code. If there is none, a new patient is created.")
         )
         self.code.set_text(code)
         self.code.set_wrong("")
@@ -175,7 +175,7 @@ class ImportPage(Themed):
         self.findings.hide()
 
     def _on_day_edited(self, _text: str) -> None:
-        self.day_field.set_wrong("" if self.day is not None else tr("Write it as year-month-day, as 2026-03-09."))
+        self.day_field.set_wrong("" if self.day is not None else tr("Enter it as year-month-day, such as 2026-03-09."))
         self.changed.emit()
 
     def _on_read_again(self) -> None:

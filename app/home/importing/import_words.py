@@ -31,8 +31,8 @@ SITE_WORDS = {
     Site.RIGHT_FOOT: later("Right foot"),
 }
 GRAVITY_WORDS = {  # by the finding that says so
-    "gravity_from_orientation": later("gravity added by the orientation"),
-    "gravity_for_acceleration": later("no acceleration: gravity stands in for it"),
+    "gravity_from_orientation": later("gravity added from orientation"),
+    "gravity_for_acceleration": later("no acceleration: gravity used instead"),
 }
 FEWEST_COLUMNS = 80  # of a small curve
 
@@ -53,7 +53,7 @@ def facts(trial: "ImportedTrial") -> str:
         *(tr(words) for key, words in GRAVITY_WORDS.items() if key in keys),
         _gaps(filled),
         _clock(trial),
-        tr("rates derived from the orientation") if any(block.is_rate_derived for block in blocks) else "",
+        tr("angular rates derived from orientation") if any(block.is_rate_derived for block in blocks) else "",
     ]
     return " · ".join(filter(None, parts))
 
@@ -71,15 +71,15 @@ def breakable(name: str) -> str:
 
 def origin_words(origin: "Origin") -> str:
     """Where a site that was proposed comes from."""
-    return {"name": tr("from its name"), "motion": tr("from the motion"), "nothing": ""}[origin.value]
+    return {"name": tr("from its name"), "motion": tr("from movement"), "nothing": ""}[origin.value]
 
 
 def kind_origin_words(origin: "Origin") -> str:
     """Where the kind of a recording comes from."""
     return {
         "name": tr("by its name"),
-        "motion": tr("by its motion: nearly none"),
-        "nothing": tr("taken for a walk: its name does not say what it is"),
+        "motion": tr("by movement: almost none"),
+        "nothing": tr("assumed to be a walk: unclear from its name"),
     }[origin.value]
 
 
@@ -105,7 +105,7 @@ def _gaps(blocks: Sequence[ImuBlock]) -> str:
     count, lost_s = sum(map(len, gaps_s)), float(sum(gap.sum() for gap in gaps_s))
     if not count:
         return tr("no gaps")
-    said = tr_n("{count} gap of {lost} s", "{count} gaps of {lost} s together", count)
+    said = tr_n("{count} gap of {lost} s", "{count} gaps of {lost} s in total", count)
     return said.format(count=count, lost=figure_text(lost_s, ".1f"))
 
 
@@ -118,4 +118,4 @@ def _gravity(blocks: Sequence[ImuBlock]) -> str:
 
 def _clock(trial: "ImportedTrial") -> str:
     clocks = {sensor.info.clock for sensor in trial.sensors}
-    return tr("each sensor has a clock of its own") if len(clocks) > 1 else ""
+    return tr("each sensor has its own clock") if len(clocks) > 1 else ""

@@ -180,7 +180,7 @@ class Entry(QObject):
     def _on_look_wished(self) -> None:
         self.look_again()
         if self.first_start.is_missing:
-            self.tell(tr("The library is still missing."), tr("Connect its disk, or put its folder back."))
+            self.tell(tr("The library is still missing."), tr("Connect its disk, or restore its folder."))
 
     def _on_join_wished(self) -> None:
         self.join.ask()
@@ -202,7 +202,7 @@ class Entry(QObject):
 
     def _join_by_itself(self) -> None:
         """Become a station of the library on the server that the environment names."""
-        self.waiting.begin(tr("Looking for the clinic's library"))
+        self.waiting.begin(tr("Searching for the clinic's library"))
         self._show(self.waiting)
         self._controller.join(
             self._folder, os.environ[DATABASE_VARIABLE], "", "", self._on_joined_by_itself, self._on_unreached, self
@@ -391,7 +391,7 @@ def _library_in_words(server: str | None) -> str:
 
 
 def _too_many() -> str:
-    return tr("Wrong passphrases were typed before. Wait until the next try, or use the recovery key.")
+    return tr("Too many wrong passphrases were entered. Wait for the next attempt, or use the recovery key.")
 
 
 def _is_same_key(typed: str, shown: str) -> bool:

@@ -45,29 +45,29 @@ class FirstStartPage(EntryPage):
         self._is_asking = False
         self._missing_title = Text(look, tr("Your library is missing"), size=26, weight=SEMIBOLD, wraps=True)
         self.missing_lead = Text(look, tone="ink2", wraps=True)
-        self.look_again = Button(look, tr("Look again"), ButtonKind.PRIMARY, None, tr("Enter"))
-        self.make_another = Button(look, tr("Make a new, empty library instead"), ButtonKind.QUIET, height=44)
+        self.look_again = Button(look, tr("Search again"), ButtonKind.PRIMARY, None, tr("Enter"))
+        self.make_another = Button(look, tr("Create a new, empty library instead"), ButtonKind.QUIET, height=44)
         self._title = Text(look, tr("Your library"), size=26, weight=SEMIBOLD, wraps=True)
         self._lead = Text(
             look,
-            tr("Patients and recordings are kept on this computer only, encrypted. What you choose here opens them."),
+            tr("Patients and recordings stay on this computer, encrypted. The passphrase you choose here opens them."),
             tone="ink2",
             wraps=True,
         )
         self.code = Field(look, tr("Your code, for example your initials"), is_code=True)
-        self.name = Field(look, tr("Your name, as it stands on reports"))
+        self.name = Field(look, tr("Your name, as shown on reports"))
         self.passphrase = Field(look, tr("Passphrase"), is_secret=True)
         self._strength = Text(look, tone="ink2", wraps=True)
-        self.again = Field(look, tr("Passphrase again"), is_secret=True)
-        self.make = Button(look, tr("Make the library"), ButtonKind.PRIMARY, None, tr("Enter"))
-        self.demonstration = Button(look, tr("Look at the demonstration first"), ButtonKind.QUIET, Icon.PLAY, height=44)
+        self.again = Field(look, tr("Repeat passphrase"), is_secret=True)
+        self.make = Button(look, tr("Create library"), ButtonKind.PRIMARY, None, tr("Enter"))
+        self.demonstration = Button(look, tr("View the demonstration first"), ButtonKind.QUIET, Icon.PLAY, height=44)
         self.join = Button(look, tr("Join the clinic's library"), ButtonKind.QUIET, Icon.NEXT, height=44)
         self._key_title = Text(look, tr("Your recovery key"), size=26, weight=SEMIBOLD, wraps=True)
         self._key_lead = Text(
             look,
             tr(
-                "It opens the library when the passphrase is forgotten; nothing else does, and nobody has a copy. It "
-                "is shown this once: print it or write it down, and keep it away from this computer."
+                "It is the only way to open the library if the passphrase is forgotten. Nobody has a copy. It "
+                "is shown only once: print it or write it down. Keep it away from this computer."
             ),
             tone="ink2",
             wraps=True,
@@ -75,9 +75,9 @@ class FirstStartPage(EntryPage):
         self._asking_lead = Text(
             look,
             tr(
-                "It was made, but nobody has typed it back, so perhaps nobody has it. It opens the library when the "
-                "passphrase is forgotten; nothing else does. Type it from the paper or the file. If it is not to be "
-                "found, make a new one: the old one then opens only older backups."
+                "This key was created but never confirmed, so it may be lost. It is the only way to open the "
+                "library if the passphrase is forgotten. Type it from the printout or the file. If you cannot "
+                "find it, create a new one. The old key then opens only older backups."
             ),
             tone="ink2",
             wraps=True,
@@ -85,10 +85,10 @@ class FirstStartPage(EntryPage):
         self._key_words = KeyGroups(look)
         self.print = Button(look, tr("Print"), ButtonKind.SECONDARY, Icon.PRINT)
         self.save = Button(look, tr("Save as a file"), ButtonKind.SECONDARY, Icon.IMPORT)
-        self.typed = Field(look, tr("Type it back from the paper or the file"), is_code=True)
-        self.go = Button(look, tr("Go on"), ButtonKind.PRIMARY, None, tr("Enter"))
-        self.renew = Button(look, tr("Make a new recovery key"))
-        self.later = Button(look, tr("Later: ask at the next log in"), ButtonKind.QUIET, height=44)
+        self.typed = Field(look, tr("Type it from the printout or the file"), is_code=True)
+        self.go = Button(look, tr("Continue"), ButtonKind.PRIMARY, None, tr("Enter"))
+        self.renew = Button(look, tr("Create a new recovery key"))
+        self.later = Button(look, tr("Later: ask at next login"), ButtonKind.QUIET, height=44)
         self._build()
         self._connect()
         self._show()
@@ -112,15 +112,15 @@ class FirstStartPage(EntryPage):
         `waiting` recordings are on this computer until their library is back.
         """
         self._missing, self.recovery_key, self._is_asking = folder, "", False
-        told = [tr("It was in {folder}, and is not there now.").format(folder=folder)]
+        told = [tr("It was in {folder} and is no longer there.").format(folder=folder)]
         if waiting:
             kept = tr_n(
-                "{count} recording is kept on this computer until its library is back.",
-                "{count} recordings are kept on this computer until their library is back.",
+                "{count} recording stays on this computer until its library is back.",
+                "{count} recordings stay on this computer until their library is back.",
                 waiting,
             )
             told.append(kept.format(count=waiting))
-        told.append(tr("Connect its disk, or put its folder back: it then opens by itself."))
+        told.append(tr("Connect its disk, or restore its folder. It then opens automatically."))
         self.missing_lead.setText(" ".join(told))
         self._show()
 
@@ -150,7 +150,7 @@ class FirstStartPage(EntryPage):
     def show_busy(self, is_busy: bool) -> None:
         """Say that the library is being made."""
         self.make.setEnabled(not is_busy)
-        self.make.setText(tr("Making the library") if is_busy else tr("Make the library"))
+        self.make.setText(tr("Creating the library") if is_busy else tr("Create library"))
         self.make.updateGeometry()
 
     def refuse(self, sentence: str) -> None:
@@ -258,14 +258,14 @@ class FirstStartPage(EntryPage):
         code = self.code.text.strip()
         wrong: list[tuple[Field, str]] = []
         if not code.isalnum() or len(code) > LONGEST_CODE:
-            wrong.append((self.code, tr("Type 1 to {most} letters and figures.").format(most=LONGEST_CODE)))
+            wrong.append((self.code, tr("Enter 1 to {most} letters and digits.").format(most=LONGEST_CODE)))
         if not self.name.text.strip():
-            wrong.append((self.name, tr("Type your name.")))
+            wrong.append((self.name, tr("Enter your name.")))
         if strength_of(self.passphrase.text or "-", self._shortest, self._known) in REFUSED:
             why = strength_in_words(self.passphrase.text or "-", self._shortest, self._known)
             wrong.append((self.passphrase, why))
         elif self.passphrase.text != self.again.text:
-            wrong.append((self.again, tr("The two are not the same. Type the second one again.")))
+            wrong.append((self.again, tr("The two passphrases do not match. Enter the second one again.")))
         for field, sentence in wrong:
             field.set_wrong(sentence)
         if wrong:
@@ -287,7 +287,7 @@ class FirstStartPage(EntryPage):
             self.typed_back.emit(self.typed.text)
             return
         if not self._is_same_key(self.typed.text, self.recovery_key):
-            self.typed.set_wrong(tr("This is not the key above. Compare it group by group."))
+            self.typed.set_wrong(tr("This does not match the key above. Compare it group by group."))
             self.typed.setFocus()
             return
         self.recovery_key = ""

@@ -28,13 +28,13 @@ class JoinPage(EntryPage):
         self._title = Text(look, size=26, weight=SEMIBOLD, wraps=True)
         self.lead = Text(look, tone="ink2", wraps=True)
         self.server = ServerFields(
-            look, tr("Place of the recordings, under its name here"), self, is_place_optional=True
+            look, tr("Shared storage, by its name on this computer"), self, is_place_optional=True
         )
         self._hint = Text(
             look,
             tr(
-                "The place only where this computer knows the shared folder under another name than the other "
-                "stations do. You log in with the passphrase that you have there."
+                "Enter the shared storage only if it has another name on this computer than on other "
+                "workstations. Log in with your passphrase for the clinic's library."
             ),
             tone="ink2",
             wraps=True,
@@ -42,7 +42,7 @@ class JoinPage(EntryPage):
         self.join = Button(look, tr("Join"), ButtonKind.PRIMARY, None, tr("Enter"))
         self.again = Button(look, tr("Try again"), ButtonKind.PRIMARY, None, tr("Enter"))
         self.back = Button(look, tr("Back"), ButtonKind.QUIET, Icon.BACK, height=44)
-        self.demonstration = Button(look, tr("Look at the demonstration first"), ButtonKind.QUIET, Icon.PLAY, height=44)
+        self.demonstration = Button(look, tr("View the demonstration first"), ButtonKind.QUIET, Icon.PLAY, height=44)
         self._build()
         self._connect()
         self.ask()
@@ -58,15 +58,15 @@ class JoinPage(EntryPage):
         self._title.setText(tr("Join the clinic's library"))
         self.lead.setText(
             tr(
-                "The stations of a clinic share one library. Patients and sessions are on the clinic's server; what "
-                "is recorded here is handed over to its shared place, encrypted."
+                "The workstations of a clinic share one library. Patients and sessions are on the clinic's "
+                "server. Recordings made here are transferred to the clinic's shared storage, encrypted."
             )
         )
         self._show(is_asking=True)
 
     def show_trouble(self, sentence: str) -> None:
         """Say why the library of the server that the environment names cannot be joined."""
-        self._title.setText(tr("The clinic's library is not reached"))
+        self._title.setText(tr("The clinic's library cannot be reached"))
         self.lead.setText(sentence)
         self._show(is_asking=False)
         QAccessible.updateAccessibility(QAccessibleAnnouncementEvent(self.lead, sentence))

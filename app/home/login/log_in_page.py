@@ -45,25 +45,25 @@ class LogInPage(EntryPage):
         self.library = Text(look, tone="ink2", wraps=True)
         self._why_own = Text(
             look,
-            tr("Somebody else chose your passphrase and knows it. Choose one that only you know."),
+            tr("Another person chose your passphrase and knows it. Choose one that only you know."),
             tone="ink2",
             wraps=True,
         )
         self._recording = QWidget()
-        self._recording_words = Text(look, tr("Recording goes on"), size=20, weight=SEMIBOLD, wraps=True)
-        self.operator_label = Text(look, tr("Operator"), weight=MEDIUM)
-        self.operator = Choice(look, tr("Operator"))
+        self._recording_words = Text(look, tr("Recording continues"), size=20, weight=SEMIBOLD, wraps=True)
+        self.operator_label = Text(look, tr("User"), weight=MEDIUM)
+        self.operator = Choice(look, tr("User"))
         self.recovery_key = Field(look, tr("Recovery key"), is_code=True)
         self.passphrase = Field(look, tr("Passphrase"), is_secret=True)
         self.new_passphrase = Field(look, tr("New passphrase"), is_secret=True)
-        self.again = Field(look, tr("New passphrase again"), is_secret=True)
+        self.again = Field(look, tr("Repeat new passphrase"), is_secret=True)
         self._strength = Text(look, tone="ink2", wraps=True)
         self.remember = Toggle(look, tr("Remember on this computer"), "", is_on=False)
         self.go = Button(look, tr("Open"), ButtonKind.PRIMARY, None, tr("Enter"))
         self.work_away = Button(look, tr("Work without the server"), ButtonKind.SECONDARY)
         self.use_remembered = Button(look, tr("Open with this computer's keyring"), ButtonKind.SECONDARY)
         self.use_recovery = Button(look, tr("Use the recovery key"), ButtonKind.QUIET, height=44)
-        self.leave = Button(look, tr("Another operator"), ButtonKind.QUIET, height=44)
+        self.leave = Button(look, tr("Another user"), ButtonKind.QUIET, height=44)
         self.demonstration = Button(look, tr("Open demonstration"), ButtonKind.QUIET, Icon.PLAY, height=44)
         self._second = QTimer(self)
         self._second.setInterval(SECOND_MS)
@@ -227,7 +227,7 @@ class LogInPage(EntryPage):
         if self._is_cover and self._is_asked_for:
             self._title.setText(tr("Locked by {user}").format(user=self.code))
         elif self._is_cover:
-            self._title.setText(tr("Locked, because nobody worked here for five minutes"))
+            self._title.setText(tr("Locked after five minutes without activity"))
         else:
             self._title.setText(tr("A new passphrase") if is_setting else tr("Log in"))
         self._recording.setVisible(self._is_cover and self._is_recording)
@@ -257,11 +257,11 @@ class LogInPage(EntryPage):
         self.go.setEnabled(not self._is_busy and not is_waiting)
         words = tr("Open")
         if self._is_cover:
-            words = tr("Go on")
+            words = tr("Continue")
         if self._is_recovering:
-            words = tr("Set it and open")
+            words = tr("Set and open")
         if self._must_choose_own:
-            words = tr("Set it and go on")
+            words = tr("Set passphrase")
         if self._is_busy:
             words = tr("Opening")
         if is_waiting:
@@ -276,7 +276,7 @@ class LogInPage(EntryPage):
             return
         if not self._is_recovering and not self._must_choose_own:
             if not self.passphrase.text:
-                self.passphrase.set_wrong(tr("Type the passphrase."))
+                self.passphrase.set_wrong(tr("Enter the passphrase."))
                 return
             self.opened.emit(
                 self.code, self.passphrase.text, not self.remember.isHidden() and self.remember.isChecked()
@@ -286,7 +286,7 @@ class LogInPage(EntryPage):
         if strength_of(new, self._shortest, known) in REFUSED:
             self.new_passphrase.set_wrong(strength_in_words(new, self._shortest, known))
         elif self.new_passphrase.text != self.again.text:
-            self.again.set_wrong(tr("The two are not the same. Type the second one again."))
+            self.again.set_wrong(tr("The two passphrases do not match. Enter the second one again."))
         elif self._must_choose_own:
             self.own_chosen.emit(self.new_passphrase.text)
         else:

@@ -67,7 +67,7 @@ def paint_sheet(device: QPrinter | QPdfWriter, words: str) -> None:
 
 def sheet(key: str, folder: Path, day: datetime.date) -> str:
     """The words of the sheet of a library's key: of two sheets, who looks for one knows which it is."""
-    lead = tr("Gaitwright: recovery key of the library. Whoever has it can read what all patients' recordings hold.")
+    lead = tr("Gaitwright: recovery key of the library. Anyone with this key can read all patients' recordings.")
     library = tr("Library: {folder}").format(folder=folder)
-    made = tr("Written on {day}. A recovery key that is made later takes the place of this one.")
+    made = tr("Created on {day}. A newer recovery key replaces this one.")
     return f"{lead}\n\n{key}\n\n{library}\n{made.format(day=date(day))}\n"

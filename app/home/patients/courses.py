@@ -45,13 +45,13 @@ class ComputingCourses(QObject):
             return compute_courses(opened, missing, report)
 
         self.is_working = True
-        self.working.emit(tr("Computing the visits"))
+        self.working.emit(tr("Calculating visits"))
         self._controller.run_long(work, self._on_computed, self._on_refused, self._on_progressed, self)
 
     def stop(self) -> None:
         self._controller.stop_long()
         self._leave()
-        self.told.emit(tr("This was stopped."), tr("The visits that were computed stay in the course."))
+        self.told.emit(tr("Stopped."), tr("Visits calculated so far stay in Progress."))
 
     def _on_progressed(self, share: float, what: str) -> None:
         self.progressed.emit(share, what)
@@ -63,8 +63,8 @@ class ComputingCourses(QObject):
     def _on_computed(self, unread: int) -> None:
         self._leave()
         if unread:
-            said = tr_n("{count} visit could not be computed.", "{count} visits could not be computed.", unread)
-            self.told.emit(said.format(count=unread), tr("Open it to see why."))
+            said = tr_n("{count} visit could not be calculated.", "{count} visits could not be calculated.", unread)
+            self.told.emit(said.format(count=unread), tr("Open the visit to see why."))
 
     def _on_refused(self, what: str, remedy: str) -> None:
         self._leave()

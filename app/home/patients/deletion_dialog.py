@@ -42,7 +42,7 @@ class DeletionDialog(QDialog):
         self.others = Notice(look, 16)
         self.others.setVisible(bool(words := _others(goes, now)))
         if words:
-            self.others.tell(Icon.WARNING, words, tr("Ask there before you delete."), is_caution=True)
+            self.others.tell(Icon.WARNING, words, tr("Ask them before you delete."), is_caution=True)
         self.delete = Button(look, tr("Delete patient"), ButtonKind.SECONDARY, Icon.DELETE)
         self.cancel = Button(look, tr("Cancel"), ButtonKind.PRIMARY, key=tr("Esc"))
         self._build(parent)
@@ -76,7 +76,7 @@ class DeletionDialog(QDialog):
 def _what_goes(goes: WhatGoes) -> str:
     sessions = tr_n("{count} session", "{count} sessions", goes.sessions).format(count=goes.sessions)
     recordings = tr_n("{count} recording", "{count} recordings", goes.recordings).format(count=goes.recordings)
-    return tr("With the patient go {sessions} and {recordings}.").format(sessions=sessions, recordings=recordings)
+    return tr("This also deletes {sessions} and {recordings}.").format(sessions=sessions, recordings=recordings)
 
 
 def _others(goes: WhatGoes, now: datetime.datetime) -> str:
@@ -84,5 +84,5 @@ def _others(goes: WhatGoes, now: datetime.datetime) -> str:
     if goes.is_being_recorded:
         return tr("A recording of this patient is running or was not stopped.")
     if goes.seen_by:
-        return tr("Opened by somebody else: {who}.").format(who=by_words(goes.seen_by, goes.seen_at, now))
+        return tr("Opened by another user: {who}.").format(who=by_words(goes.seen_by, goes.seen_at, now))
     return ""

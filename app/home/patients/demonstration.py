@@ -160,7 +160,9 @@ class FillingDemonstration(QObject):
         self.stop()
         if failed:
             said = tr_n("{count} visit could not be simulated.", "{count} visits could not be simulated.", failed)
-            self.told.emit(said.format(count=failed), tr("The others are there. Open the demonstration again for all."))
+            self.told.emit(
+                said.format(count=failed), tr("The others are available. Reopen the demonstration to get all.")
+            )
 
     def _show(self) -> None:
         words = tr("Simulated visits are being recorded and analysed: {ready} of {total} are ready.")

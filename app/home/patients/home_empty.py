@@ -35,16 +35,16 @@ class EmptyLibrary(Card):
         self.importing = Button(look, tr("Import recordings"), ButtonKind.SECONDARY, Icon.IMPORT, height=56)
         self.steps = StepsPreview(look)
         begin = tr(
-            "Begin with a code instead of a name. A first session takes about five minutes; "
-            "the demonstration walks you through one, without sensors."
+            "Start with a code instead of a name. A first session takes about five minutes. The "
+            "demonstration guides you through one, without sensors."
         )
         for button in self.buttons:
             self._ways.addWidget(button)
         self._ways.addStretch(1)
         self._need_parts = [
-            self._need(Icon.WAVE, tr("Six sensors"), tr("thigh, shank, foot; any way round")),
-            self._need(Icon.ARROW, tr("Eight metres of floor"), tr("ten strides of each leg")),
-            self._need(Icon.CHECK, tr("No poses, no tape"), tr("the patient swings the legs freely")),
+            self._need(Icon.WAVE, tr("Six sensors"), tr("thigh, shank, foot; any orientation")),
+            self._need(Icon.ARROW, tr("Eight-metre walkway"), tr("ten strides per leg")),
+            self._need(Icon.CHECK, tr("No poses, no tape measure"), tr("the patient moves the legs freely")),
         ]
         self.column.addStretch(2)
         self.column.addWidget(Text(look, tr("No patients yet"), size=38, weight=SEMIBOLD, wraps=True))
@@ -119,7 +119,7 @@ class StepsPreview(Themed):
             (tr("Report"), tr("at once")),
         )
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
-        self.setAccessibleName(tr("The steps of a session"))
+        self.setAccessibleName(tr("Steps of a session"))
         self.setAccessibleDescription(", ".join(f"{name} {time}" for name, time in self.steps))
 
     def set_room(self, width: int) -> None:

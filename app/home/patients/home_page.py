@@ -55,7 +55,7 @@ class HomePage(Themed):
         self._count = Text(look, tone="ink2")
         self.search = _Search(look)
         self.patients = LineList(look, tr("Patients"))
-        self.nobody = Text(look, tr("Nobody is found. Search for less, or add a new patient."), wraps=True)
+        self.nobody = Text(look, tr("No patient found. Shorten the search, or add a new patient."), wraps=True)
         self.empty = EmptyLibrary(look)
         self.panel = PatientPanel(look)
         self.view = Segmented(look, tr("View"), [(PATIENTS, tr("Patients"), ""), (PATIENT, tr("Patient"), "")])

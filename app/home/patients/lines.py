@@ -46,10 +46,10 @@ def session_line(
         amount = tr_n("{count} stride", "{count} strides", strides).format(count=strides)
     state, mark = (tr("simulated"), None) if line.is_simulated else ("", None)
     if is_undecided:
-        state = tr("keep or discard?")
+        state = tr("include or exclude?")
     elif is_reported:
-        state, mark = tr("report written"), Icon.CHECK
+        state, mark = tr("report saved"), Icon.CHECK
     elif has_walk:
-        state, mark = tr("report not written"), Icon.INFO
+        state, mark = tr("report not saved"), Icon.INFO
     conditions = "; ".join(line.conditions)  # which may hold commas
     return SessionLine(line.id, when(line.started, now), conditions, amount, state, is_undecided, mark)

@@ -51,12 +51,12 @@ class LibraryNotices(QObject):
         if rollback is None:
             return
         is_administrator = state.operator.role.value == ADMINISTRATOR
-        missing = tr("What was done from entry {first} to {last} of its audit is not all in it.")
-        then = tr("If a backup was restored, that is why: accept it. Else somebody put an older copy here.")
+        missing = tr("Audit entries {first} to {last} are not all present.")
+        then = tr("If a backup was restored, accept this state. Otherwise someone put an older copy here.")
         if not is_administrator:
-            then = tr("Tell an administrator, who can look into it and accept it where a backup was restored.")
+            then = tr("Inform an administrator, who can check this and accept it if a backup was restored.")
         self.rollback.tell(
-            tr("This library is older than when this computer saw it last."),
+            tr("This library is older than the one last opened on this computer."),
             f"{missing.format(first=rollback.first, last=rollback.last)} {then}",
             tr("Accept this state") if is_administrator else "",
         )
@@ -76,32 +76,32 @@ class LibraryNotices(QObject):
         self.away.hide()
         if state.is_away:
             self.away.tell(
-                tr("You work without the clinic's server."),
+                tr("You are working offline, without the clinic's server."),
                 tr(
-                    "Sessions that begin now are kept on this computer, and are on the server at the first log in once "
-                    "it answers. Patients of the clinic are not shown, and are known again by their codes."
+                    "New sessions stay on this computer. They move to the server at the first login after it "
+                    "responds again. Clinic patients are not shown. They are matched later by code."
                 ),
             )
         elif state.still_away is not None:
             self.away.tell(*still_away_words(state.still_away))
         elif state.brought_from_away:
             said = tr_n(
-                "{count} session that was made without the clinic's server is on it now.",
-                "{count} sessions that were made without the clinic's server are on it now.",
+                "{count} offline session is now on the clinic's server.",
+                "{count} offline sessions are now on the clinic's server.",
                 state.brought_from_away,
             )
             self.away.tell(said.format(count=state.brought_from_away))
 
     def _on_server_back(self) -> None:
         self.away.tell(
-            tr("The clinic's server answers again."),
-            tr("Log in to it: what was recorded here is then there for all stations."),
+            tr("The clinic's server responds again."),
+            tr("Log in to make recordings from here available to all workstations."),
             tr("Log in to the server"),
         )
 
 
 def still_away_words(why: Refusal) -> tuple[str, str]:
     """What is said of sessions that the clinic's server did not take; the reason and what to do about it come last."""
-    what = tr("Sessions that were made without the clinic's server are still on this computer alone.")
-    then = tr("Nothing of them is lost: each log in tries again to bring them to the server.")
+    what = tr("Offline sessions are still on this computer only.")
+    then = tr("No data are lost. Each login tries again to send them to the server.")
     return what, f"{then} {why.what} {why.remedy}"

@@ -66,7 +66,7 @@ class PatientPanel(Themed):
         self.delete_session = QAction(tr("Delete session"), self.menu)
         self.analyse_again = QAction(tr("Analyse sessions again"), self.menu)
         self.menu.addActions([self.analyse_again, self.delete_session, self.delete_patient])
-        self.shown = Segmented(look, tr("Course of"), [(WALKING, tr("Walking"), ""), (TESTS, tr("Timed tests"), "")])
+        self.shown = Segmented(look, tr("Progress of"), [(WALKING, tr("Walking"), ""), (TESTS, tr("Timed tests"), "")])
         self.condition = Choice(look, tr("Condition"))
         self.count = Text(look, tone="ink2", wraps=True)
         self.goals = Button(look, tr("Goals"), ButtonKind.SECONDARY, Icon.GOAL, height=44)
@@ -116,7 +116,9 @@ class PatientPanel(Themed):
     def say_none_yet(self, *, is_awaited: bool) -> None:
         """What stands where sessions would, where there are none; `is_awaited`: they come by themselves."""
         words = (
-            tr("This patient's visits are being recorded. They appear here.") if is_awaited else tr("No sessions yet.")
+            tr("Visits of this patient are being recorded and will appear here.")
+            if is_awaited
+            else tr("No sessions yet.")
         )
         self.none_yet.setText(words)
 

@@ -117,9 +117,7 @@ class Recovering(QObject):
             self._banner.tell(*self._waiting.pop(0))
 
     def _choose_folder(self) -> None:
-        self._dialog = ask_for_folder(
-            self._window, tr("Export recordings that belong to no session"), self._on_folder_selected
-        )
+        self._dialog = ask_for_folder(self._window, tr("Export recordings without a session"), self._on_folder_selected)
 
     def _on_folder_selected(self, folder: str) -> None:
         self.export(Path(folder))
@@ -148,12 +146,12 @@ class Recovering(QObject):
         for what, remedy in dict.fromkeys(outcome.refused):
             messages.append(_Message(f"{capitalised(tr(what))}.", f"{tr(remedy)}."))
         if self._lost:
-            one = tr("{time} of a recording belong to no session.")
-            many = tr("{count} recordings, {time} in all, belong to no session.")
+            one = tr("{time} of a recording are not assigned to a session.")
+            many = tr("{count} recordings, {time} in total, are not assigned to a session.")
             what = (one if len(self._lost) == 1 else many).format(
                 count=len(self._lost), time=length(sum(one.recorded_s for one in self._lost))
             )
-            then = tr("Export the samples as files, to import them where they belong. Nothing is taken away here.")
+            then = tr("Export the data as files, then import them where they belong. Nothing is deleted here.")
             messages.append(_Message(what, then, tr("Export")))
         self._say(messages)
 
@@ -163,7 +161,7 @@ class Recovering(QObject):
 
     def _on_exported(self, folder: str) -> None:
         what = tr_n("{count} recording was exported.", "{count} recordings were exported.", len(self._lost))
-        then = tr("Each sensor is a file in {folder}.").format(folder=folder)
+        then = tr("Each sensor has its own file in {folder}.").format(folder=folder)
         self._banner.tell(what.format(count=len(self._lost)), then)
 
 
@@ -218,16 +216,16 @@ def _heard_messages(heard: "Sequence[Recovered]", names: Mapping[UUID, str] = NO
         return []
     is_whole = all(report.is_whole for one in heard for report in one.reports)
     if len(heard) == 1:
-        what = tr("The program was closed while recording. {time} of {name} was recovered.").format(
+        what = tr("The program closed during recording. {time} of {name} was recovered.").format(
             time=length(heard[0].recorded_s), name=_name(heard[0].stored, names)
         )
-        whole, cut = tr("It is whole."), tr("It is kept up to the last record on the disk.")
-        look = tr("Look at it, then keep or discard.")
+        whole, cut = tr("It is complete."), tr("It is complete up to the last record on disk.")
+        look = tr("Review it, then include or exclude it.")
     else:
-        several = tr("The program was closed while recording. {count} recordings, {time} in all, were recovered.")
+        several = tr("The program closed during recording. {count} recordings, {time} in total, were recovered.")
         what = several.format(count=len(heard), time=length(sum(one.recorded_s for one in heard)))
-        whole, cut = tr("They are whole."), tr("They are kept up to the last record on the disk.")
-        look = tr("Look at them, then keep or discard.")
+        whole, cut = tr("They are complete."), tr("They are complete up to the last record on disk.")
+        look = tr("Review them, then include or exclude them.")
     kept = [whole, look] if is_whole else [cut, _missing(heard), look, recovery_costs()]
     return [_Message(what, " ".join(filter(None, kept)))]
 
@@ -238,8 +236,8 @@ def _missing(heard: "Sequence[Recovered]") -> str:
     missing = sum(report.missing_records for report in reports)
     if missing:
         said = tr_n(
-            "{count} record before it is missing and stays a gap.",
-            "{count} records before it are missing and stay gaps.",
+            "{count} record before it is missing and leaves a gap.",
+            "{count} records before it are missing and leave gaps.",
             missing,
         )
         return said.format(count=missing)
@@ -250,23 +248,23 @@ def _adopted_messages(adopted: "Sequence[Recovered]", names: Mapping[UUID, str])
     if not adopted:
         return []
     if len(adopted) == 1:
-        what = tr("{time} of {name} was recorded while the library did not answer.").format(
+        what = tr("{time} of {name} was recorded while the library did not respond.").format(
             time=length(adopted[0].recorded_s), name=_name(adopted[0].stored, names)
         )
-        return [_Message(what, tr("It is in its session now."))]
-    what = tr("{count} recordings were made while the library did not answer.").format(count=len(adopted))
-    return [_Message(what, tr("They are in their sessions now."))]
+        return [_Message(what, tr("It is now in its session."))]
+    what = tr("{count} recordings were made while the library did not respond.").format(count=len(adopted))
+    return [_Message(what, tr("They are now in their sessions."))]
 
 
 def _home_messages(home: "Sequence[Recovered]") -> list[_Message]:
     if not home:
         return []
     what = tr_n(
-        "{count} recording was made while the library was gone. It is in its session now.",
-        "{count} recordings were made while the library was gone. They are in their sessions now.",
+        "{count} recording was made while the library was missing. It is now in its session.",
+        "{count} recordings were made while the library was missing. They are now in their sessions.",
         len(home),
     ).format(count=len(home))
-    return [_Message(what, tr("What was kept on this computer meanwhile was removed there."))]
+    return [_Message(what, tr("The temporary copy on this computer was removed."))]
 
 
 def _undecided_messages(walks: "Sequence[UndecidedWalk]", names: Mapping[UUID, str]) -> list[_Message]:
@@ -276,14 +274,14 @@ def _undecided_messages(walks: "Sequence[UndecidedWalk]", names: Mapping[UUID, s
         *_asked_messages(
             recovered,
             names,
-            tr("{name} of {code} was recovered earlier, and nobody has said yet whether it is kept."),
-            tr("{count} walks were recovered earlier, and nobody has said yet whether they are kept."),
+            tr("{name} of {code} was recovered earlier and still awaits a decision."),
+            tr("{count} walks were recovered earlier and still await a decision."),
         ),
         *_asked_messages(
             closed,
             names,
-            tr("The program was closed before {name} of {code} was kept or discarded."),
-            tr("The program was closed before {count} walks were kept or discarded."),
+            tr("The program was closed before {name} of {code} was included or excluded."),
+            tr("The program was closed before {count} walks were included or excluded."),
         ),
     ]
 
@@ -294,6 +292,6 @@ def _asked_messages(
     if not walks:
         return []
     if len(walks) > 1:
-        return [_Message(of_many.format(count=len(walks)), tr("Look at them, then keep or discard."))]
+        return [_Message(of_many.format(count=len(walks)), tr("Review them, then include or exclude them."))]
     what = of_one.format(name=_name(walks[0].recording, names), code=walks[0].patient_code)
-    return [_Message(what, tr("Look at it, then keep or discard."))]
+    return [_Message(what, tr("Review it, then include or exclude it."))]

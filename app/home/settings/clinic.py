@@ -79,14 +79,14 @@ class ClinicSettings(QObject):
         """That the server does not answer is said already."""
 
     def _on_copy_wished(self) -> None:
-        ask_for_folder(self._page, tr("Choose where the copy goes"), self.copy_into)
+        ask_for_folder(self._page, tr("Choose where to save the copy"), self.copy_into)
 
     def _on_copy_progressed(self, share: float, _what: str) -> None:
         sentence = tr("Copying, {percent} %").format(percent=round(share * 100))
         self._page.station.show_copy(sentence, is_running=True)
 
     def _on_copied(self, moved: "Moved") -> None:
-        said = tr("{what} are in {folder}, opened by the same passphrases.")
+        said = tr("{what} are copied to {folder}. The same passphrases open the copy.")
         self._page.station.show_copy(said.format(what=_counted(moved), folder=self._copied_to))
 
     def _on_copy_refused(self, what: str, remedy: str) -> None:
@@ -97,12 +97,12 @@ class ClinicSettings(QObject):
         self._controller.stop_long(self._on_stopped)
 
     def _on_stopped(self, is_done: bool) -> None:
-        stopped, done = tr("Stopped. There is no copy."), tr("The copy was done before it could be stopped.")
+        stopped, done = tr("Stopped. There is no copy."), tr("The copy finished before it could be stopped.")
         self._page.station.show_copy(done if is_done else stopped)
 
     def _on_move_wished(self, address: str, password: str, place: str) -> None:
         if "://" not in place and not Path(place).is_absolute():
-            sentence = tr("Name the folder from its beginning, or s3://bucket/folder.")
+            sentence = tr("Enter the full folder path, or s3://bucket/folder.")
             self._page.more_stations.server.refuse(sentence, is_place=True)
             return
         self._page.more_stations.show_move(tr("Moving"), is_running=True)
@@ -111,7 +111,9 @@ class ClinicSettings(QObject):
         )
 
     def _on_place_wished(self) -> None:
-        ask_for_folder(self._page, tr("Choose the folder that all stations reach"), self._page.more_stations.show_place)
+        ask_for_folder(
+            self._page, tr("Choose a folder that all workstations reach"), self._page.more_stations.show_place
+        )
 
     def _on_move_progressed(self, share: float, _what: str) -> None:
         sentence = tr("Moving, {percent} %").format(percent=round(share * 100))
@@ -120,8 +122,8 @@ class ClinicSettings(QObject):
     def _on_moved(self, moved: "Moved") -> None:
         self._tell_moved()
         said = tr(
-            "{what} are on the clinic's server, compared row by row. The other stations can join now. The library as "
-            "it was stays beside it as {file}: remove it once you are sure."
+            "{what} are on the clinic's server, checked row by row. Other workstations can join now. The "
+            "previous library is kept as {file}. Remove it once you are sure."
         )
         self._page.station.show_copy(said.format(what=_counted(moved), file=BEFORE))
 
@@ -129,18 +131,18 @@ class ClinicSettings(QObject):
         self._page.more_stations.refuse(f"{what} {remedy}")
 
     def _on_back_wished(self) -> None:
-        self._page.station.show_back(tr("Bringing it back"), is_running=True)
+        self._page.station.show_back(tr("Moving back"), is_running=True)
         self._controller.bring_back(self._on_back, self._on_back_refused, self._on_back_progressed, self)
 
     def _on_back_progressed(self, share: float, _what: str) -> None:
-        sentence = tr("Bringing it back, {percent} %").format(percent=round(share * 100))
+        sentence = tr("Moving back, {percent} %").format(percent=round(share * 100))
         self._page.station.show_back(sentence, is_running=True)
 
     def _on_back(self, moved: "Moved") -> None:
         self._tell_moved()
         said = tr(
-            "{what} are on this computer again. The library on the server is closed to all stations: have its "
-            "database and recordings removed there once you are sure."
+            "{what} are on this computer again. The server library is closed to all workstations. Have "
+            "its database and recordings removed once you are sure."
         )
         self._page.more_stations.show_move(said.format(what=_counted(moved)))
 

@@ -43,27 +43,27 @@ class StationCard(SettingsCard):
         self._copy_hint = Text(
             look,
             tr(
-                "Whoever keeps the server backs it up with the server's own tools: the database with pg_dump, and the "
-                "place of the recordings as a copy, the recordings after the database. A copy in a folder is a library "
-                "that opens by itself, without the server."
+                "The server's administrator backs it up with the server's own tools. First the database with "
+                "pg_dump, then the shared storage of the recordings as a copy. A copy in a folder is a "
+                "library that opens without the server."
             ),
             tone="ink2",
             wraps=True,
         )
         self.copy_said = Text(look, weight=MEDIUM, wraps=True)
-        self.copy = Button(look, tr("Copy into a folder"))
+        self.copy = Button(look, tr("Copy to a folder"))
         self._back_hint = Text(
             look,
             tr(
-                "The library can also leave the server. It is then on this computer alone, as it was, and no other "
-                "station opens it any more."
+                "The library can also leave the server. It is then on this computer only, as before. No other "
+                "workstation can open it."
             ),
             tone="ink2",
             wraps=True,
         )
         self.back_said = Text(look, weight=MEDIUM, wraps=True)
-        self.back = Button(look, tr("Bring back into a folder"))
-        self.sure = Button(look, tr("Bring it back, and close it to all others"))
+        self.back = Button(look, tr("Move back to a folder"))
+        self.sure = Button(look, tr("Move back and close it to all others"))
         self.keep = Button(look, tr("Cancel"), ButtonKind.QUIET)
         self.fill(self.server, self.place, self.waiting, self._copy_hint, self.copy_said)
         self.add_left(self.copy)
@@ -88,24 +88,24 @@ class StationCard(SettingsCard):
         self._ask(is_asking=False)
 
     def show_station(self, view: StationView) -> None:
-        self.server.setText(tr("This computer is a station of {server}.").format(server=view.server))
-        self.place.setText(tr("Recordings are kept in {place}.").format(place=view.place))
+        self.server.setText(tr("This computer is a workstation of {server}.").format(server=view.server))
+        self.place.setText(tr("Recordings are stored in {place}.").format(place=view.place))
         self.waiting.setVisible(view.waiting is not None)
         if view.waiting:
             waits = tr_n(
-                "{count} recording waits here to be handed over.",
-                "{count} recordings wait here to be handed over.",
+                "{count} recording here is waiting to be transferred.",
+                "{count} recordings here are waiting to be transferred.",
                 view.waiting,
             )
             self.waiting.setText(waits.format(count=view.waiting))
         else:
-            self.waiting.setText(tr("All recordings were handed over."))
+            self.waiting.setText(tr("All recordings were transferred."))
 
     def show_copy(self, sentence: str, *, is_running: bool = False) -> None:
         """Say how far the copy is, or how it went."""
         self._is_copying = is_running
         _say(self.copy_said, sentence)
-        self.copy.setText(tr("Stop") if is_running else tr("Copy into a folder"))
+        self.copy.setText(tr("Stop") if is_running else tr("Copy to a folder"))
         self.copy.updateGeometry()
         self.back.setEnabled(not is_running)
 
@@ -142,18 +142,19 @@ class MoreStationsCard(SettingsCard):
     place_wished = Signal()
 
     def __init__(self, look: ThemeNotifier) -> None:
-        super().__init__(look, tr("More than one station"))
+        super().__init__(look, tr("Several workstations"))
         self._hint = Text(
             look,
             tr(
-                "Several computers can share this library on a PostgreSQL server of your clinic. Whoever keeps the "
-                "server can read patients' codes, names of operators and what was typed; recordings stay encrypted. "
-                "Every station then needs the server to save, and records on when it does not answer."
+                "Several computers can share this library on your clinic's PostgreSQL server. The server's "
+                "administrator can read patient codes, user names and typed text. Recordings stay encrypted. "
+                "Every workstation then needs the server to save. It keeps recording if the server does not "
+                "respond."
             ),
             tone="ink2",
             wraps=True,
         )
-        place = tr("Place of the recordings that all stations reach")
+        place = tr("Shared storage that all workstations can reach")
         self.server = ServerFields(look, place, self, is_place_optional=False)
         self.choose = Button(look, tr("Choose the folder"), ButtonKind.QUIET, Icon.FOLDER)
         self.said = Text(look, weight=MEDIUM, wraps=True)

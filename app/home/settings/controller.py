@@ -231,10 +231,10 @@ class SettingsController(QObject):
         end = backup.checkpoint
         if backup.faults:
             count = len(backup.faults)
-            sentence = tr("Backed up. {count} recordings were missing or damaged in the library already.").format(
+            sentence = tr("Backed up. {count} recordings were already missing or damaged in the library.").format(
                 count=count
             )
-        kept = tr("Its audit ends with entry {number}, {hash}: note it down to tell later whether anything is missing.")
+        kept = tr("Its audit ends with entry {number}, {hash}. Note this to check later whether anything is missing.")
         sentence = f"{sentence} {kept.format(number=end.number, hash=end.hash[:HASH_LETTERS])}"
         self.page.show_backup(sentence, self._backup_folder)
 
@@ -246,7 +246,7 @@ class SettingsController(QObject):
         self.page.show_backup(tr("Stopping"), self._backup_folder)
 
     def _on_backup_stopped(self, is_done: bool) -> None:
-        stopped, done = tr("Stopped. There is no new backup."), tr("The backup was done before it could be stopped.")
+        stopped, done = tr("Stopped. There is no new backup."), tr("The backup finished before it could be stopped.")
         self.page.show_backup(done if is_done else stopped, self._backup_folder)
 
     def _on_clinic_named(self, name: str) -> None:
@@ -310,15 +310,15 @@ class SettingsController(QObject):
         self.page.operators.show_key_change(sentence, is_running=True)
 
     def _on_key_changed(self, changed: "ChangedKey") -> None:
-        said = [tr("The library has a new key. Backups made before keep the old one: make a new one now.")]
+        said = [tr("The library has a new key. Earlier backups keep the old key. Make a new backup now.")]
         if changed.left_out:
             said.append(
-                tr("These have not logged in for long and need a new passphrase, add them below: {codes}.").format(
-                    codes=", ".join(changed.left_out)
-                )
+                tr(
+                    "These users have not logged in for long and need a new passphrase. Add them below: {codes}."
+                ).format(codes=", ".join(changed.left_out))
             )
         if changed.recovery_key:
-            said.append(tr("The recovery key is a new one, shown above."))
+            said.append(tr("The recovery key is new and shown above."))
             self.page.show_recovery_key(changed.recovery_key)
         self.page.operators.show_key_change(" ".join(said), is_running=False)
         self._read_operators()
@@ -394,7 +394,7 @@ def _slots(opened: "OpenedLibrary") -> KeySlots:
 
 def _roles() -> dict[str, str]:
     return {
-        CLINICIAN: tr("clinician: records and reads"),
-        VIEWER: tr("viewer: reads only"),
-        ADMINISTRATOR: tr("administrator: does all, and says who works here"),
+        CLINICIAN: tr("clinician: record and view"),
+        VIEWER: tr("viewer: view only"),
+        ADMINISTRATOR: tr("administrator: full access, manage users"),
     }

@@ -43,14 +43,14 @@ class OperatorsCard(SettingsCard):
         self.leaving_words = Text(look, wraps=True)
         self.remove = Button(look, tr("Remove and change the key"))
         self.keep = Button(look, tr("Cancel"), ButtonKind.QUIET)
-        self.code = Field(look, tr("Code of a new operator"), is_code=True)
+        self.code = Field(look, tr("Code of a new user"), is_code=True)
         self.name = Field(look, tr("Name"))
         self.role = Choice(look, tr("Role"))
         for key, words in roles:
             self.role.addItem(words, key)
-        self.first = Field(look, tr("First passphrase, to be changed by its owner"), is_secret=True)
-        self.add = Button(look, tr("Add the operator"), ButtonKind.SECONDARY, Icon.ADD)
-        super().__init__(look, tr("Who works with this library"))
+        self.first = Field(look, tr("Initial passphrase, to be changed by the user"), is_secret=True)
+        self.add = Button(look, tr("Add user"), ButtonKind.SECONDARY, Icon.ADD)
+        super().__init__(look, tr("Users of this library"))
         self.column.addLayout(self.rows)
         self.fill(self.leaving_words)
         self.add_left(self.remove, self.keep)
@@ -102,10 +102,10 @@ class OperatorsCard(SettingsCard):
         self._leaving = code
         self.show_key_change(
             tr(
-                "{code} then opens this library no longer, and it gets a new key: an old copy of its key file, with "
-                "the passphrase of {code}, opens nothing that is on this computer from then on. All others keep "
-                "their passphrases. Backups that were made before keep their old key: with the old passphrase, who "
-                "has one can still read it. Nothing can be recorded until the change is done."
+                "{code} can then no longer open this library, and it gets a new key. An old copy of its key "
+                "file, with the passphrase of {code}, then opens nothing on this computer. All other users "
+                "keep their passphrases. Earlier backups keep their old key: anyone who has one can still "
+                "read it with the old passphrase. Nothing can be recorded until the change is complete."
             ).format(code=code)
             if code
             else "",
@@ -122,7 +122,7 @@ class OperatorsCard(SettingsCard):
         self.code.set_text(operator.code)
         self.name.set_text(operator.name)
         self.role.setCurrentIndex(max(self.role.findText(operator.role), 0))
-        self.first.set_wrong(tr("Type a first passphrase: the old one opens nothing any more."))
+        self.first.set_wrong(tr("Enter a first passphrase. The old one is no longer valid."))
         self.first.setFocus()
 
     def _on_remove(self) -> None:
@@ -138,9 +138,9 @@ class OperatorsCard(SettingsCard):
     def _on_add(self) -> None:
         first, known = self.first.text or "-", (self.code.text, self.name.text, self._clinic.text)
         if not self.code.text.strip():
-            self.code.set_wrong(tr("Type a code."))
+            self.code.set_wrong(tr("Enter a code."))
         elif not self.name.text.strip():
-            self.name.set_wrong(tr("Type a name."))
+            self.name.set_wrong(tr("Enter a name."))
         elif strength_of(first, self._shortest, known) in REFUSED:
             self.first.set_wrong(strength_in_words(first, self._shortest, known))
         else:
@@ -164,11 +164,11 @@ class _OperatorRow(QWidget):
         row.addWidget(Text(look, words, size=15, wraps=True), 1)
         self.button = Button(
             look,
-            tr("Works here no longer")
+            tr("Remove user")
             if operator.is_active
             else tr("Change the key now")
             if operator.has_key
-            else tr("Works here again"),
+            else tr("Reactivate user"),
             height=44,
         )
         self.button.setAccessibleName(f"{self.button.text()}, {operator.code}")

@@ -149,7 +149,7 @@ class SettingsPage(TallPage):
 
     def show_passphrase_changed(self) -> None:
         self.forget_typed()
-        self._said.setText(tr("The passphrase is changed. Only backups made before still open with the old one."))
+        self._said.setText(tr("Passphrase changed. The old passphrase opens only earlier backups."))
 
     def refuse_passphrase(self, sentence: str) -> None:
         self.old.set_wrong(sentence)
@@ -182,28 +182,28 @@ class SettingsPage(TallPage):
         self.language = Segmented(look, tr("Language"), [(key, LANGUAGES[key], "") for key in languages()])
         self.scheme = Segmented(
             look,
-            tr("Light or dark"),
-            [("system", tr("As the system"), ""), ("light", tr("Light"), ""), ("dark", tr("Dark"), "")],
+            tr("Appearance"),
+            [("system", tr("System setting"), ""), ("light", tr("Light"), ""), ("dark", tr("Dark"), "")],
         )
-        self.scale = Choice(look, tr("Size of everything"))
+        self.scale = Choice(look, tr("Display size"))
         for scale in SCALES:
             self.scale.addItem(tr("{percent} %").format(percent=round(scale * 100)), scale)
         self.side = Segmented(
-            look, tr("The patient is seen"), [(FRONT, tr("From the front"), ""), (BEHIND, tr("From behind"), "")]
+            look, tr("Patient view"), [(FRONT, tr("From the front"), ""), (BEHIND, tr("From behind"), "")]
         )
         self.motion = Segmented(
             look,
-            tr("Motion on the screen"),
-            [(AS_SYSTEM, tr("As the system"), ""), (LESS_MOTION, tr("Less motion"), "")],
+            tr("Screen animation"),
+            [(AS_SYSTEM, tr("System setting"), ""), (LESS_MOTION, tr("Reduced"), "")],
         )
         self.sound = Toggle(look, tr("Sounds"), "", is_on=True)
         self._screen = self._card(tr("Screen and sound"))
         for label, control in (
             (tr("Language"), self.language),
-            (tr("Light or dark"), self.scheme),
-            (tr("Size of everything"), self.scale),
-            (tr("The patient is seen"), self.side),
-            (tr("Motion on the screen"), self.motion),
+            (tr("Appearance"), self.scheme),
+            (tr("Display size"), self.scale),
+            (tr("Patient view"), self.side),
+            (tr("Screen animation"), self.motion),
         ):
             self._screen.fill(Text(look, label, weight=MEDIUM))
             self._screen.add_left(control)
@@ -211,20 +211,20 @@ class SettingsPage(TallPage):
 
     def _build_access(self) -> None:
         look = self._look
-        self.access_card = self._card(tr("Your passphrase and the recovery key"))
-        self.old = Field(look, tr("Passphrase until now"), is_secret=True)
+        self.access_card = self._card(tr("Passphrase and recovery key"))
+        self.old = Field(look, tr("Current passphrase"), is_secret=True)
         self.new = Field(look, tr("New passphrase"), is_secret=True)
         self._strength = Text(look, strength_in_words("", self._shortest), tone="ink2", wraps=True)
-        self.again = Field(look, tr("New passphrase again"), is_secret=True)
-        self.change = Button(look, tr("Change the passphrase"))
+        self.again = Field(look, tr("Repeat new passphrase"), is_secret=True)
+        self.change = Button(look, tr("Change passphrase"))
         self._said = Text(look, tone="ink2", wraps=True)
-        self.renew = Button(look, tr("Make a new recovery key"))
+        self.renew = Button(look, tr("Create a new recovery key"))
         self._key_words = Text(look, size=20, weight=SEMIBOLD, is_code=True, wraps=True)
         self._key_hint = Text(
             look,
             tr(
-                "The old recovery key opens only backups made before. Print this one or write it down; it is not shown "
-                "again. You are asked to type it back at your next log in."
+                "The old recovery key opens only earlier backups. Print the new key or write it down; it is "
+                "not shown again. At your next login you enter it once to confirm."
             ),
             tone="ink2",
             wraps=True,
@@ -248,8 +248,8 @@ class SettingsPage(TallPage):
         self._is_backing_up = False
         self.backup_card = self._card(tr("Backup"))
         hint = tr(
-            "A second copy of all patients and recordings, encrypted, best on another disk. What is deleted here is "
-            "in older copies for up to 90 days."
+            "An encrypted second copy of all patients and recordings, best kept on another disk. Deleted "
+            "data stay in older copies for up to 90 days."
         )
         self.backup_folder = Text(look, tone="ink2", wraps=True)
         self.backup_said = Text(look, weight=MEDIUM, wraps=True)
@@ -266,23 +266,23 @@ class SettingsPage(TallPage):
         self.deleted_card = self._card(tr("Deleted in the last 30 days"))
         self.deleted_rows = QVBoxLayout()
         self.none_deleted = Text(
-            look, tr("Nothing. What is deleted can be had back from here."), tone="ink2", wraps=True
+            look, tr("Nothing deleted. Deleted items can be restored here."), tone="ink2", wraps=True
         )
         self.deleted_card.column.addLayout(self.deleted_rows)
         self.deleted_card.fill(self.none_deleted)
 
     def _build_clinic(self) -> None:
-        self._clinic = self._card(tr("Your clinic"))
-        self.clinic = Field(self._look, tr("Name, as reports print it"), is_optional=True)
+        self._clinic = self._card(tr("Clinic"))
+        self.clinic = Field(self._look, tr("Clinic name on reports"), is_optional=True)
         self._clinic.fill(self.clinic)
 
     def _build_trouble(self) -> None:
         look = self._look
-        self.trouble_card = self._card(tr("If something went wrong"))
+        self.trouble_card = self._card(tr("Error report"))
         hint = tr(
-            "An error report says which versions run here, on which kind of computer, and the end of the log: no "
-            "codes, names or paths, and nothing typed. It is saved as a text that you can read; sending it is "
-            "up to you."
+            "An error report contains software versions, the type of computer and the end of the log. It "
+            "contains no codes, names, paths or typed text. It is saved as a readable text file; you "
+            "decide whether to send it."
         )
         self.trouble_card.fill(Text(look, hint, tone="ink2", wraps=True))
         self.report_error = Button(look, tr("Save an error report"), ButtonKind.SECONDARY, Icon.IMPORT)
@@ -323,9 +323,7 @@ class SettingsPage(TallPage):
         self.backup_said.setText(sentence)
         self.backup_said.setVisible(bool(sentence))
         self.backup_folder.setText(
-            tr("Backups go to {folder}.").format(folder=folder)
-            if folder
-            else tr("No folder is chosen for backups yet.")
+            tr("Backup folder: {folder}.").format(folder=folder) if folder else tr("No backup folder chosen yet.")
         )
         self.back_up.setText(tr("Stop") if is_running else tr("Back up now"))
         self.back_up.updateGeometry()
@@ -357,7 +355,7 @@ class SettingsPage(TallPage):
         if strength_of(new, self._shortest, self._known) in REFUSED:
             self.new.set_wrong(strength_in_words(new, self._shortest, self._known))
         elif self.new.text != self.again.text:
-            self.again.set_wrong(tr("The two are not the same. Type the second one again."))
+            self.again.set_wrong(tr("The two passphrases do not match. Enter the second one again."))
         else:
             self.passphrase_wished.emit(self.old.text, self.new.text)
 

@@ -79,7 +79,9 @@ def _data(study: AgreementStudy, session: Session, pictures: Mapping[str, Pictur
         "paper": "a4",
         "language": spoken_language(),
         "title": tr("Agreement with a reference"),
-        "subject": tr("Joint angles of inertial sensors beside an optical system. Research use. Not a medical device."),
+        "subject": tr(
+            "Joint angles from inertial sensors, compared with an optical system. Research use. Not a medical device."
+        ),
         "head": {
             "brand": "Gaitwright",
             "kind": tr("Agreement"),
@@ -102,10 +104,10 @@ def _pages(study: AgreementStudy, patient: Patient, pictures: Mapping[str, Pictu
     if study.with_angles:
         for mark, title, of_walk, of_all in figures_of_table_1():
             first += [heading(f"{mark}: {title}", 2), _table_1(study, patient, of_walk, of_all)]
-        first += [heading(tr("Over all walks"), 2), _over_walks(study, patient)]
+        first += [heading(tr("All walks together"), 2), _over_walks(study, patient)]
         first += [note(" ".join([*other_angles_words(study), *used_words(study)]))]
         if any(walk.recording.gait for walk in study.with_angles):
-            first += [heading(tr("Errors by phase, degrees RMSE with the walk's mean removed"), 2)]
+            first += [heading(tr("Error by gait phase: RMSE in degrees, mean of each walk removed"), 2)]
             first += [_phases(study, patient)]
     if events_together(study) or len(lengths_together(study)):
         first += [heading(tr("Events and strides"), 2), bullets(_of_events(study))]
@@ -113,7 +115,7 @@ def _pages(study: AgreementStudy, patient: Patient, pictures: Mapping[str, Pictu
         first += [bullets([typed(said, SENTENCE_LENGTH) for said in withheld])]
     if study.with_angles:
         clocks = [typed(clock_words(walk), SENTENCE_LENGTH) for walk in study.with_angles]
-        first += [heading(tr("Clocks and signs"), 2), bullets(clocks)]
+        first += [heading(tr("Time offsets and signs"), 2), bullets(clocks)]
         first += [paragraph(optical_words()), note(f"{dagger_words()} {_what_is_not_shown()}")]
     drawn = [(name, kind) for kind, name in FIGURES.items() if name in pictures]
     more: list[list[Block]] = [
@@ -129,13 +131,13 @@ def _pages(study: AgreementStudy, patient: Patient, pictures: Mapping[str, Pictu
 
 def _what_was_compared(study: AgreementStudy) -> str:
     names = dict.fromkeys(walk.reference.file for walk in study.walks if walk.reference is not None)
-    said = tr("Measured less reference. Reference: {files}. Walks, by their numbers below: {walks}.").format(
+    said = tr("Measured minus reference. Reference: {files}. Walks, numbered as below: {walks}.").format(
         files=", ".join(typed(name, NAME_LENGTH) for name in names),
         walks=", ".join(f"{k} {typed(w.recording.name, NAME_LENGTH)}" for k, w in enumerate(study.walks, 1)),
     )
     if study.left_over:
         left = ", ".join(typed(name, NAME_LENGTH) for name in study.left_over)
-        said += " " + tr("Not compared, as nothing fits them: {names}.").format(names=left)
+        said += " " + tr("Not compared, no matching recording: {names}.").format(names=left)
     return said
 
 
@@ -162,9 +164,9 @@ def _table_1(study: AgreementStudy, patient: Patient, of_walk: Any, of_all: Any)
 
 
 def _over_walks(study: AgreementStudy, patient: Patient) -> Block:
-    heads = (tr("Bias, °"), tr("SD, °"), tr("Limits of agreement, °"), tr("r"), tr("Range error, °"), tr("Inside 1 SD"))
+    heads = (tr("Bias, °"), tr("SD, °"), tr("Limits of agreement, °"), tr("r"), tr("ROM error, °"), tr("Within 1 SD"))
     columns = [Column("", is_number=False), Column("", "1fr", is_number=False)]
-    columns += [*map(Column, heads), Column(tr("Inside 2 SD"))]
+    columns += [*map(Column, heads), Column(tr("Within 2 SD"))]
     rows: list[Row] = []
     for joint, role in rows_of_table_1(study, patient):
         over = study.over_walks(joint)
@@ -217,7 +219,7 @@ def _phases(study: AgreementStudy, patient: Patient) -> Block:
 
 def _of_events(study: AgreementStudy) -> list[str]:
     said = [
-        tr("{event}: {found} of {count} found, {more} more; {bias} ms late, SD {sd} ms.").format(
+        tr("{event}: {found} of {count} found, {more} extra; {bias} ms late, SD {sd} ms.").format(
             event=capitalised(kind.replace("_", " ")),
             found=found.found,
             count=found.count,
@@ -241,8 +243,10 @@ def _of_events(study: AgreementStudy) -> list[str]:
 
 def _what_is_not_shown() -> str:
     return tr(
-        "Z is the RMSE as measured, so it holds what both zeros differ by; M has the mean removed. SD in both tables "
-        "is that between walks (n − 1), as in Table 1 of Seel, Raisch and Schauer 2014, doi 10.3390/s140406891. "
-        "Limits: bias ± 1.96 SD within and between walks. The stated SD is of the shape, not of the zero. Clock and "
-        "sign were found from the rates of the same angles, so a delay common to all joints is not in these errors."
+        "Z is the RMSE as measured. It includes the difference between the two zeros. M has the mean "
+        "removed. SD in both tables is between walks (n − 1), as in Table 1 of Seel, Raisch and "
+        "Schauer 2014, doi 10.3390/s140406891. Limits: bias ± 1.96 SD within and between walks. The "
+        "stated SD applies to the curve shape, not to the zero. Time offset and sign were found from "
+        "the rates of the same angles. A delay common to all joints is therefore not included in "
+        "these errors."
     )

@@ -77,7 +77,7 @@ def _figure(walk: ComparedWalk, patient: Patient, kind: JointKind, *, is_simulat
     top, alts = 0.0, []
     for joint in joints:
         m_deg = math.degrees(walk.figures[joint, AngleKind.RESULT].m_rad)
-        title = tr("{joint}, {side}: {m:.2f}° RMSE with its mean removed").format(
+        title = tr("{joint}, {side}: {m:.2f}° RMSE, mean removed").format(
             joint=tr(ANGLES[kind]),
             side=side_role(joint.side, patient),
             m=m_deg,
@@ -163,12 +163,13 @@ def caption(study: AgreementStudy, kind: JointKind) -> str:
     name = "" if walk is None else walk.recording.name
     if kind is JointKind.HIP:
         return tr(
-            "{walk}, the walk of median error. Coloured: this program's angle. Long dashes: the reference, brought to "
-            "its clock and sign. Below: the first less the reference, its mean removed. The strip: loading (black), "
-            "foot flat, pre-swing, swing (white)."
+            "{walk}, the walk with the median error. Colour: angle from this program. Long dashes: "
+            "reference, matched in time and sign. Below: program minus reference, mean removed. Strip: "
+            "loading (black), foot flat, pre-swing, swing (white)."
         ).format(walk=capitalised(name))
     return tr(
-        "{walk}, the walk of median error. Coloured: this program's angle. Long dashes: the reference, brought to its "
-        "clock and sign. Dots: the published fusion (eq 15) on the same axes. Below: the first less the reference, its "
-        "mean removed. The strip: loading (black), foot flat, pre-swing, swing (white)."
+        "{walk}, the walk with the median error. Colour: angle from this program. Long dashes: "
+        "reference, matched in time and sign. Dots: published fusion (eq 15), same axes. Below: "
+        "program minus reference, mean removed. Strip: loading (black), foot flat, pre-swing, swing "
+        "(white)."
     ).format(walk=capitalised(name))

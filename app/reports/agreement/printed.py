@@ -21,15 +21,15 @@ KINDS = {JointKind.KNEE: later("knee"), JointKind.ANKLE: later("ankle"), JointKi
 def optical_words() -> str:
     """What two optical systems would differ by, and where that is from."""
     return tr(
-        "Optical models of one walk disagree among themselves by {low} to {high}° at the knee, and by 6 to 8° in "
-        "standing (measured by the makers on recordings of people, not published). Between two sessions of one system "
-        "most reports have under 5° (McGinley et al. 2009, Gait & Posture 29:360, a review †). A smaller difference "
-        "says nothing of which is right."
+        "Optical models applied to one walk differ by {low} to {high}° at the knee, and by 6 to 8° in "
+        "standing (measured by the developers on recordings of people, not published). Between two "
+        "sessions with one system, most reports give less than 5° (McGinley et al. 2009, Gait & "
+        "Posture 29:360, a review †). A smaller difference does not show which system is right."
     ).format(low=OPTICAL_DEG[0], high=OPTICAL_DEG[1])
 
 
 def dagger_words() -> str:
-    return tr("† From its abstract; the full text could not be had.")
+    return tr("† From the abstract; the full text was not available.")
 
 
 def side_role(side: Side, patient: Patient) -> str:
@@ -54,7 +54,7 @@ Figure = tuple[str, str, Callable[[Agreement], float], Callable[[AgreementOverWa
 def figures_of_table_1() -> tuple[Figure, ...]:
     """The two tables: their titles, marks, and the figure of a walk and the spread over walks."""
     return (
-        ("M", tr("RMSE with its mean removed, degrees"), lambda found: found.m_rad, lambda over: over.m_sd_rad),
+        ("M", tr("RMSE, mean removed, degrees"), lambda found: found.m_rad, lambda over: over.m_sd_rad),
         ("Z", tr("RMSE as measured, degrees"), lambda found: found.z_rad, lambda over: over.z_sd_rad),
     )
 
@@ -121,9 +121,9 @@ def used_words(study: AgreementStudy) -> list[str]:
     for joint in study.joints:
         walks = [walk.used[joint] for walk in study.with_angles if (joint, AngleKind.RESULT) in walk.figures]
         where = {
-            tr("{count} outside of the reference"): sum(one.outside for one in walks),
+            tr("{count} beyond the reference"): sum(one.outside for one in walks),
             tr("{count} in gaps"): sum(one.in_gaps for one in walks),
-            tr("{count} after a strap slipped"): sum(one.after_slip for one in walks),
+            tr("{count} after a strap moved"): sum(one.after_slip for one in walks),
         }
         others = joined([words.format(count=count) for words, count in where.items() if count])
         used, recorded = sum(one.used for one in walks), sum(one.recorded for one in walks)
@@ -140,7 +140,7 @@ def verdict_words(study: AgreementStudy) -> list[str]:
     said = []
     if exchanged:
         said.append(
-            tr("Left and right look exchanged in the reference of {walks}: the other way round it fits better.").format(
+            tr("Left and right look swapped in the reference of {walks}: swapping them gives a better fit.").format(
                 walks=joined(exchanged)
             )
         )
@@ -153,7 +153,7 @@ def verdict_words(study: AgreementStudy) -> list[str]:
         ]
         if names:
             said.append(
-                tr("{joint}: withheld in {walks}. Its figures stand here as evidence.").format(
+                tr("{joint}: not reported in {walks}. Its values are shown here as evidence.").format(
                     joint=capitalised(name_of(joint)), walks=joined(names)
                 )
             )
@@ -163,8 +163,8 @@ def verdict_words(study: AgreementStudy) -> list[str]:
 def other_angles_words(study: AgreementStudy) -> list[str]:
     """M of the angles that are not the result, on the same axes: the paper found its two to differ little."""
     names = {
-        AngleKind.PUBLISHED: tr("The published fusion (eq 15) on the same axes, M: {figures}."),
-        AngleKind.ORIENTATION: tr("Orientations of the sensors (eq 10) on the same axes, M: {figures}."),
+        AngleKind.PUBLISHED: tr("Published fusion (eq 15), same axes, M: {figures}."),
+        AngleKind.ORIENTATION: tr("Sensor orientations (eq 10), same axes, M: {figures}."),
     }
     said = []
     for kind, sentence in names.items():

@@ -149,7 +149,7 @@ def study_of(analysis: Analysis, files: Sequence[tuple[str, ReferenceFile]]) -> 
     trials = [NamedTrial(name, file.source, trial) for name, file in files for trial in file.trials]
     walks = [one for one in analysis.recordings if one.kind is RecordingKind.WALKING] or list(analysis.recordings)
     if not walks:
-        raise FileRefusedError("SESSION", "it holds no walk that could be compared", "Record a walk first")
+        raise FileRefusedError("SESSION", "it contains no walk to compare", "Record a walk first")
     with_angles = [one for one in trials if one.trial.angles]
     pairs, misfits = _paired(walks, with_angles)
     order = sorted(pairs, key=lambda pair: (pair[0], -pairs[pair].score))
@@ -381,7 +381,9 @@ def _refusal(
     ours = sorted({str(joint) for walk in walks for joint in walk.measured})
     if Misfit.NOT_ALIKE in misfits:
         what = "its angles move unlike those of any walk of the session"
-        return FileRefusedError(where, what, "Give the reference of this session, and see that left is left in it")
+        return FileRefusedError(
+            where, what, "Give the reference of this session, and check that left and right are not swapped in it"
+        )
     if Misfit.TOO_LITTLE_MOTION in misfits:
         what = "the joints hardly move in it, so its clock cannot be found"
         return FileRefusedError(where, what, "Give the reference of a walk, not of standing, in degrees")
@@ -390,8 +392,8 @@ def _refusal(
         return FileRefusedError(where, what, "Give the reference of a whole walk, at 20 or more samples a second")
     return FileRefusedError(
         where,
-        "it tells of {theirs}, the session of {ours}, and there is nothing to compare",
-        "Give a reference of a joint whose two sensors were worn",
+        "it contains {theirs} and the session contains {ours}, so there is nothing to compare",
+        "Give a reference of a joint with both sensors worn",
         theirs=", ".join(theirs) or "no joint",
         ours=", ".join(ours) or "no joint",
     )

@@ -76,10 +76,10 @@ def not_compared_page(request: ReportRequest) -> list[Block]:
     if earlier is None or comparison_of(request) is not None:
         return []
     before = list(by_condition(earlier.analysis, earlier.session.recordings))
-    said = tr("The visit of {day} has no walk that can be compared.")
+    said = tr("The visit on {day} has no walk that can be compared.")
     if before:
         said = tr(
-            "The visit of {day} has no walk of this condition ({condition}), so it is not compared; it has {others}."
+            "The visit on {day} has no walk in this condition ({condition}), so it is not compared. It has: {others}."
         )
     words = said.format(
         day=_day_of(earlier.session.started),
@@ -94,7 +94,7 @@ def _condition_typed(condition: str) -> str:
 
 
 def _day_of(started: str) -> str:
-    return day(started) if started else tr("date not stated")
+    return day(started) if started else tr("date not recorded")
 
 
 def comparison_page(comparison: Comparison, shown: Facts) -> list[Block]:
@@ -130,7 +130,7 @@ def _parts_table(comparison: Comparison) -> Block:
         Column(tr("Visit") if is_visits else tr("Condition"), "1fr", is_number=False),
         Column(tr("Strides")),
         Column(tr("Speed, m/s")),
-        *(Column(head, "25mm", is_number=False) for head in (tr("Shape, range"), tr("Height"), tr("Timing"))),
+        *(Column(head, "25mm", is_number=False) for head in (tr("ROM, shape"), tr("Absolute angle"), tr("Timing"))),
     ]
     rows: list[Row] = []
     for k, part in enumerate(comparison.parts):
@@ -162,7 +162,7 @@ def _changes(comparison: Comparison) -> list[Block]:
     columns = [
         Column("", is_number=False),
         Column(tr("Changed from"), "35mm", is_number=False),
-        Column(tr("What was changed at the prosthesis"), "1fr", is_number=False),
+        Column(tr("Changes to the prosthesis"), "1fr", is_number=False),
     ]
     rows: list[Row] = []
     for part in comparison.parts:
@@ -217,7 +217,7 @@ def _alt(part: Part, side: Side, kind: str) -> str:
             numbers.append(f"{panels.peak_name(column)} {fixed(value.mean, 0)}°")
     found, off = part.value(side, f"{kind}_range_deg"), part.value(side, "stance_percent")
     if is_mean_enough(found.n):
-        numbers.append(tr("range {value}°").format(value=fixed(found.mean, 0)))
+        numbers.append(tr("range of motion {value}°").format(value=fixed(found.mean, 0)))
     if is_mean_enough(off.n):
         numbers.append(tr("toe\u2011off at {percent} %").format(percent=fixed(off.mean, 0)))
     return f"{part.letter}: {', '.join(numbers)}."
@@ -235,7 +235,7 @@ def _table(comparison: Comparison, shown: Facts, sides: Sequence[Side]) -> Block
             columns += [Column(tr("Change 2 − 1")), Column(tr("Error")), Column(tr("In words"), is_number=False)]
         else:
             base = comparison.base_of(part)
-            against = tr("{this} against {first}").format(this=part.letter, first=base.letter)
+            against = tr("{this} vs {first}").format(this=part.letter, first=base.letter)
             columns += [Column(f"{part.letter} − {base.letter}"), Column(against, is_number=False)]
     rows: list[Row] = []
     for side in sides:
@@ -280,7 +280,7 @@ def _compared(comparison: Comparison, measure: Measure, side: Side, part: Part) 
 
 def _measure(column: str) -> str:
     of_leg = {
-        "stance_percent": tr("Stance, % of stride"),
+        "stance_percent": tr("Stance (% gait cycle)"),
         "stride_length_m": tr("Stride length, m"),
         "speed_m_s": tr("Speed, m/s"),
         "cadence_steps_min": tr("Cadence, steps/min"),
@@ -292,33 +292,35 @@ def _measure(column: str) -> str:
     kind = tr("Knee") if column.startswith("knee") else tr("Ankle")
     if column in EXCURSIONS_BY_COLUMN:
         return f"{kind}: {panels.excursion_name(column)}"
-    name = tr("range over the stride") if column.endswith("_range_deg") else panels.peak_name(column)
+    name = tr("range of motion") if column.endswith("_range_deg") else panels.peak_name(column)
     return f"{kind}: {name}"
 
 
 def _what_else_changed(comparison: Comparison) -> str:
     """Open with what besides the condition may make a difference: the straps, the zero, the speed."""
     if comparison.kind is Contrast.VISITS:
-        said = [tr("Two visits, sensors put on anew.")]
+        said = [tr("Two visits, sensors reattached.")]
     elif comparison.is_one_attachment:
-        said = [tr("One session, sensors not moved between walks.")]
+        said = [tr("One session, sensors left in place between walks.")]
     else:
-        said = [tr("One session, sensors strapped on anew between walks.")]
+        said = [tr("One session, sensors reattached between walks.")]
     if comparison.has_one_zero_throughout:
-        said.append(tr("The same kind of zero at each."))
+        said.append(tr("Same kind of standing reference in each."))
     else:
-        said.append(tr("Zero is missing or differs in kind: only range and timing are compared."))
+        said.append(
+            tr("The standing reference is missing or of another kind: only range of motion and timing are compared.")
+        )
     speeds = {part.letter: part.of_both("speed_m_s") for part in comparison.parts}
     if all(map(math.isfinite, speeds.values())):
         each = ", ".join(f"{letter}: {fixed(speed, 2)}" for letter, speed in speeds.items())
-        said.append(tr("Speed {speeds} m/s: part of a difference can come from speed.").format(speeds=each))
+        said.append(tr("Speed {speeds} m/s: part of a difference may be due to speed.").format(speeds=each))
     else:
-        said.append(tr("The speed of each is not known, and part of a difference can come from it."))
+        said.append(tr("Not all walking speeds are known: part of a difference may be due to speed."))
     return " ".join(said)
 
 
 def _why_not(compared: Compared) -> Cell | str:
-    return tr("withheld") if compared.reservation in (Reservation.WITHHELD, Reservation.OTHER_ZERO) else NOTHING
+    return tr("not reported") if compared.reservation in (Reservation.WITHHELD, Reservation.OTHER_ZERO) else NOTHING
 
 
 def _how_judged(comparison: Comparison) -> str:
@@ -329,14 +331,15 @@ def _how_judged(comparison: Comparison) -> str:
     rows = [_compared(comparison, row.measure, row.side, row.part) for row in comparison.rows]
     told = [row.difference for row in rows if row.is_told and row.difference.error > 0]
     said = tr(
-        "Measurement error: 1.96 times the standard deviation of the difference. It holds {sources}; what lies between "
-        "the walks alone makes {knee}° of knee range and {stance} points of stance."
+        "Measurement error: 1.96 times the standard deviation of the difference. It includes "
+        "{sources}. Differences between walks alone account for {knee}° of knee range of motion and "
+        "{stance} percentage points of stance."
     )
-    lines = tr("Vertical lines: toe\u2011off of each. {letters} sit on the lines; the first is thin and pale.")
+    lines = tr("Vertical lines: toe\u2011off of each. {letters} mark the curves; the first is thin and pale.")
     parts = [
         *([said.format(sources=sources_in_words(told), knee=knee, stance=stance)] if told else []),
         *([dagger_note()] if any(found.is_unverified for found in told) else []),
-        *([tr("{mark}: read with care.").format(mark=CARE)] if _has_care(comparison) else []),
+        *([tr("{mark}: caution.").format(mark=CARE)] if _has_care(comparison) else []),
         lines.format(letters=joined([p.letter for p in comparison.parts])),
     ]
     return " ".join(parts)

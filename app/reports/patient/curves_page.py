@@ -19,7 +19,10 @@ def curves_page(facts: Facts) -> list[Block]:
     missing = [panels.why_no_joint(facts, kind) for kind in facts.kinds if kind not in kinds]
     said = " ".join(
         [
-            tr("As measured, heights included; each leg on its own stride. Axes are the same in every report."),
+            tr(
+                "As measured, with absolute angles; each leg over its own gait cycle. Axes are the same in "
+                "every report."
+            ),
             panels.band_in_words(facts, is_at_height=False),
             *(words for kind in kinds for words in panels.not_drawn(facts, kind)),
         ]
@@ -58,5 +61,5 @@ def _withheld(facts: Facts, kind: JointKind, sides: list[Side]) -> str:
 
 def _where_measured(kinds: list[JointKind]) -> list[Block]:
     """The table's movements are seen, not only read; where the page has room. A hip has none but its range."""
-    title = heading(tr("What is measured where"), level=2)
+    title = heading(tr("Where values are measured"), level=2)
     return [if_room([title, figures([definitions(kind) for kind in kinds if kind in KINDS], columns=2)])]

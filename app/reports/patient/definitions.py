@@ -62,11 +62,11 @@ def definitions(kind: str) -> Picture:
     names = []
     for column, place in PLACES.items():
         if column.startswith(kind):
-            name = tr("range") if column.endswith("_range_deg") else excursion_name(column)
+            name = tr("ROM") if column.endswith("_range_deg") else excursion_name(column)
             names.append(name)
             ends = [(x(percent), y(value)) for percent, value in _ends(column, angle_deg)]
             parts += _bracket(x(place.percent), ends, name, place)
-    alt = tr("Schematic curve over 100 % of the stride with brackets: {names}.").format(names=", ".join(names))
+    alt = tr("Schematic curve over 100 % of the gait cycle with brackets: {names}.").format(names=", ".join(names))
     return picture(parts, WIDTH, HEIGHT, alt)
 
 

@@ -173,9 +173,9 @@ def facts_of(request: ReportRequest) -> Facts:
 
 def _subject(facts: Facts) -> str:
     said = (
-        tr("Hip, knee and ankle angles in walking, from inertial sensors. Research use. Not a medical device.")
+        tr("Hip, knee and ankle angles during walking, from inertial sensors. Research use. Not a medical device.")
         if facts.has_joint(JointKind.HIP)
-        else tr("Knee and ankle angles in walking, from inertial sensors. Research use. Not a medical device.")
+        else tr("Knee and ankle angles during walking, from inertial sensors. Research use. Not a medical device.")
     )
     return " ".join([tr("SIMULATED DATA, not a person.")] * facts.is_simulated + [said])
 

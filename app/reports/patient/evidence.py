@@ -43,9 +43,9 @@ def evidence_table(facts: Facts) -> list[Block]:
     if not joints:
         return []
     columns = [
-        Column(tr("Evidence"), "1fr", is_number=False),
+        Column(tr("Criterion"), "1fr", is_number=False),
         *(Column(capitalised(name_of(joint)), JOINT_WIDTH) for joint in joints),
-        Column(tr("Needed for “{word}”").format(word=tr("can be read")), "46mm", is_number=False),
+        Column(tr("Required for “{word}”").format(word=tr("good")), "46mm", is_number=False),
     ]
     care, most = LIMITS.axis_sd_deg
     knee, ankle = LIMITS.knee_range_deg, LIMITS.ankle_range_deg
@@ -54,17 +54,17 @@ def evidence_table(facts: Facts) -> list[Block]:
             "axis",
             tr("Joint axis, 1 SD"),
             _axis,
-            tr("at most {care}°, with care {most}°").format(care=fixed(care, 1), most=fixed(most, 0)),
+            tr("at most {care}°, caution up to {most}°").format(care=fixed(care, 1), most=fixed(most, 0)),
         ),
         (
             "pairing",
-            tr("Sensors are neighbours, margin"),
+            tr("Adjacent segments, margin"),
             _pairing,
             tr("at least {limit}").format(limit=fixed(LIMITS.pairing_margin, 1)),
         ),
         (
             "disagreement",
-            tr("Disagreement about the joint"),
+            tr("Disagreement at the joint"),
             lambda _, found: NOTHING if found.disagreement is None else fixed(found.disagreement, 2),
             tr("under {limit} to {most}, by margin").format(
                 limit=fixed(DOUBTFUL_DISAGREEMENT, 2), most=fixed(MAX_DISAGREEMENT, 2)
@@ -72,19 +72,19 @@ def evidence_table(facts: Facts) -> list[Block]:
         ),
         (
             "sign",
-            tr("Bent or straight, margin"),
+            tr("Flexion or extension, margin"),
             _sign,
             tr("at least {limit}, or by hand").format(limit=fixed(MIN_MARGIN, 1)),
         ),
         (
             "lag",
-            tr("Lag between the sensors"),
+            tr("Clock lag between sensors"),
             _lag,
             tr("SD at most {limit} ms").format(limit=fixed(LIMITS.lag_sd_ms[0], 0)),
         ),
         (
             "plausible",
-            tr("Range in walking, median"),
+            tr("ROM in walking, median"),
             lambda joint, _: _degrees(float(np.median(found)) if len(found := _ranges_deg(facts, joint)) else math.nan),
             tr("knee {knee}°, ankle {ankle}°").format(
                 knee=f"{knee[0]:.0f}–{knee[1]:.0f}", ankle=f"{ankle[0]:.0f}–{ankle[1]:.0f}"
@@ -92,18 +92,18 @@ def evidence_table(facts: Facts) -> list[Block]:
         ),
         (
             "halves",
-            tr("Range, second half less first"),
+            tr("ROM, second half minus first"),
             lambda joint, _: _degrees(_farthest(halves_apart, facts, joint), is_signed=True),
             tr("at most {limit}°").format(limit=fixed(LIMITS.halves_deg, 0)),
         ),
         (
             "drift",
-            tr("Range, last third less first"),
+            tr("ROM, last third minus first"),
             lambda joint, _: _degrees(_farthest(thirds_apart, facts, joint), is_signed=True),
             tr("at most {limit}°").format(limit=fixed(LIMITS.thirds_deg, 0)),
         ),
-        ("strap", tr("Strap"), lambda joint, _: _strap(facts, joint), tr("no slip")),
-        ("zero", tr("Zero"), lambda _, found: _zero(found), tr("standing, or goniometer")),
+        ("strap", tr("Strap"), lambda joint, _: _strap(facts, joint), tr("not moved")),
+        ("zero", tr("Standing reference"), lambda _, found: _zero(found), tr("standing, or goniometer")),
     ]
     rows: list[Row] = [
         [
@@ -116,10 +116,10 @@ def evidence_table(facts: Facts) -> list[Block]:
         ]
         for gate, label, said, limit in gates
     ]
-    for label, part in ((tr("Shape, range"), "shape"), (tr("Height"), "height")):
+    for label, part in ((tr("ROM, shape"), "shape"), (tr("Absolute angle"), "height")):
         words = [verdict_word(getattr(facts.verdicts.joint(joint), part).verdict) for joint in joints]
         rows.append([Cell(label, is_bold=True), *(Cell(word, is_bold=True) for word in words), ""])
-    return [heading(tr("What each verdict rests on")), table(columns, rows, is_dense=True)]
+    return [heading(tr("Basis of each rating")), table(columns, rows, is_dense=True)]
 
 
 def hips_table(facts: Facts) -> list[Block]:
@@ -128,33 +128,33 @@ def hips_table(facts: Facts) -> list[Block]:
     if not hips:
         return []
     columns = [
-        Column(tr("Evidence, hips"), "1fr", is_number=False),
+        Column(tr("Criterion, hips"), "1fr", is_number=False),
         *(Column(capitalised(name_of(joint))) for joint in hips),
-        Column(tr("Needed for “{word}”").format(word=tr("can be read")), "58mm", is_number=False),
+        Column(tr("Required for “{word}”").format(word=tr("good")), "58mm", is_number=False),
     ]
     centre, apart, of_range = LIMITS.hip_centre_m, LIMITS.hips_apart_m, LIMITS.hip_range_deg
     gates: list[tuple[str, str, Callable[[Joint, HipIdentification], str], str]] = [
         (
             "pairing",
-            tr("Sensors are neighbours, margin"),
+            tr("Adjacent segments, margin"),
             lambda _, found: _margin(found.margin),
             tr("at least {limit}").format(limit=fixed(LIMITS.pairing_margin, 1)),
         ),
         (
             "hip_disagreement",
-            tr("Disagreement about the hip"),
+            tr("Pelvis–thigh disagreement"),
             lambda _, found: fixed(found.disagreement, 2),
             tr("under {limit}").format(limit=fixed(LIMITS.hip_disagreement, 1)),
         ),
         (
             "hip_centre",
-            tr("Centre from pelvis, thigh sensor"),
+            tr("Hip centre to pelvis, thigh sensor"),
             lambda _, found: _cm(found.centre_proximal_m) + ", " + _cm(found.centre_distal_m),
             tr("{least} to {most} cm").format(least=fixed(100 * centre[0], 0), most=fixed(100 * centre[1], 0)),
         ),
         (
             "hips_apart",
-            tr("Left hip to the left of the right"),
+            tr("Left hip centre, left of the right by"),
             lambda _, found: (
                 NOTHING if found.centres_apart_m is None else f"{fixed(100 * found.centres_apart_m, 0)} cm"
             ),
@@ -162,19 +162,19 @@ def hips_table(facts: Facts) -> list[Block]:
         ),
         (
             "hip_heading",
-            tr("Heading of pelvis and thigh, 1 SD"),
+            tr("Pelvis–thigh heading, 1 SD"),
             lambda _, found: _degrees(math.degrees(found.heading_sd_rad)),
-            tr("at most {limit}°, of abduction alone").format(limit=fixed(LIMITS.hip_heading_sd_deg, 0)),
+            tr("at most {limit}°, for abduction only").format(limit=fixed(LIMITS.hip_heading_sd_deg, 0)),
         ),
         (
             "plausible",
-            tr("Range in walking, median"),
+            tr("ROM in walking, median"),
             lambda joint, _: _degrees(float(np.median(found)) if len(found := _ranges_deg(facts, joint)) else math.nan),
             f"{of_range[0]:.0f}–{of_range[1]:.0f}°",
         ),
         (
             "halves",
-            tr("Range, second half less first"),
+            tr("ROM, second half minus first"),
             lambda joint, _: _degrees(_farthest(halves_apart, facts, joint), is_signed=True),
             tr("at most {limit}°").format(limit=fixed(LIMITS.halves_deg, 0)),
         ),
@@ -192,8 +192,8 @@ def hips_table(facts: Facts) -> list[Block]:
     ]
     said = facts.verdicts
     verdicts = [
-        (tr("Shape, range"), [said.joint(joint).shape for joint in hips]),
-        (tr("Height"), [said.joint(joint).height for joint in hips]),
+        (tr("ROM, shape"), [said.joint(joint).shape for joint in hips]),
+        (tr("Absolute angle"), [said.joint(joint).height for joint in hips]),
         (tr("Abduction"), [assessment_of(said, joint.side, "hip_abduction_peak_deg") for joint in hips]),
     ]
     for label, found in verdicts:
@@ -209,14 +209,19 @@ def clocks_in_words(facts: Facts) -> str:
     if clock is None:
         return ""
     if clock.status is ClockStatus.PROVEN:
-        return tr("Clocks of both legs: proven to be one.")
+        return tr("Left and right sensors: synchronised, confirmed.")
     if clock.status is ClockStatus.WITHHELD:
-        return tr("Clocks of both legs: not told by the hips.")
+        return tr("Left and right sensors: hip movement does not show their time offset.")
     side = Side.RIGHT if clock.offset_s > 0 else Side.LEFT
     pattern = (
-        tr("Clocks of both legs: found through the hips, the {side} leg's {late} ms late, 1 SD {sd} ms, taken out.")
+        tr(
+            "Left and right sensors: offset found from hip movement. The {side} leg was {late} ms late, 1 "
+            "SD {sd} ms; corrected."
+        )
         if clock.applied_s
-        else tr("Clocks of both legs: found through the hips, the {side} leg's {late} ms late, 1 SD {sd} ms.")
+        else tr(
+            "Left and right sensors: offset found from hip movement. The {side} leg was {late} ms late, 1 SD {sd} ms."
+        )
     )
     late, sd = fixed(1000 * abs(clock.offset_s), 0), fixed(1000 * clock.sd_s, 0)
     return pattern.format(side=side_name(side), late=late, sd=sd)
@@ -226,16 +231,20 @@ def error_table() -> list[Block]:
     """What has to be exceeded at least, by what lies between two means, and what each comparison contains."""
     columns = [
         Column(tr("Comparison"), "46mm", is_number=False),
-        Column(tr("What makes it uncertain"), "1fr", is_number=False),
-        Column(tr("Knee range, °")),
-        Column(tr("Ankle range, °")),
-        Column(tr("Stance, % of stride"), "31mm"),
+        Column(tr("Sources of error"), "1fr", is_number=False),
+        Column(tr("Knee ROM, °")),
+        Column(tr("Ankle ROM, °")),
+        Column(tr("Stance (% gait cycle)"), "31mm"),
     ]
     told = (
-        (ComparisonKind.ATTACHED, tr("Two walks, sensors left on"), tr("strides, drift, clocks; walk to walk")),
-        (ComparisonKind.LEGS, tr("Left against right"), tr("the same; each leg's straps, bias of the events")),
-        (ComparisonKind.STRAPPINGS, tr("Sensors strapped on anew"), tr("the same; straps")),
-        (ComparisonKind.VISITS, tr("Two visits"), tr("the same; straps, another day")),
+        (
+            ComparisonKind.ATTACHED,
+            tr("Two walks, same attachment"),
+            tr("strides, drift, synchronisation; walk to walk"),
+        ),
+        (ComparisonKind.LEGS, tr("Left vs right"), tr("the same; attachment of each leg, event bias")),
+        (ComparisonKind.STRAPPINGS, tr("Sensors reattached"), tr("the same; attachment")),
+        (ComparisonKind.VISITS, tr("Two visits"), tr("the same; attachment, another day")),
     )
     rows: list[Row] = []
     for kind, name, contains in told:
@@ -245,11 +254,12 @@ def error_table() -> list[Block]:
             cells.append(signed_error(sigma) + (DAGGER if sigma is not None and not sigma.is_verified else ""))
         rows.append([name, contains, *cells])
     said = tr(
-        "At least so much, before what chance between strides adds (1.96 standard deviations of the difference). A "
-        "sentence on page 1 needs 1.5 times as much where the error is no published upper end."
+        "Minimum values: variation between strides is added (1.96 standard deviations of the "
+        "difference). A sentence on page 1 needs 1.5 times as much, unless the error is a published "
+        "upper limit."
     )
     return [
-        heading(tr("How large a difference must be")),
+        heading(tr("Measurement error by comparison")),
         table(columns, rows, is_dense=True),
         note(f"{said} {dagger_note()}"),
     ]
@@ -327,7 +337,7 @@ def _sign(_: Joint, found: JointCalibration) -> str:
 
 def _lag(_: Joint, found: JointCalibration) -> str:
     if found.is_clock_shared:
-        return tr("one clock")
+        return tr("same clock")
     if found.lag_sd_s is None:
         return tr("not resolvable")
     return f"{fixed(1000 * found.lag_s, 1)} ± {fixed(1000 * found.lag_sd_s, 1)} ms"
@@ -335,7 +345,7 @@ def _lag(_: Joint, found: JointCalibration) -> str:
 
 def _strap(facts: Facts, joint: Joint) -> str:
     slipped = {joint.proximal, joint.distal}.intersection(slipped_straps(facts))
-    return tr("slipped") if slipped else tr("no slip")
+    return tr("moved") if slipped else tr("not moved")
 
 
 def _zero(found: JointCalibration) -> str:

@@ -41,7 +41,7 @@ def first_page(request: ReportRequest, facts: Facts, comparison: Comparison | No
         "readable": readable(facts),
         "curves": curves(facts, comparison),
         "key_numbers": key_numbers(facts, comparison),
-        "quality": {"title": tr("What this rests on"), "cells": [list(cell) for cell in quality.cells(facts)]},
+        "quality": {"title": tr("Data used"), "cells": [list(cell) for cell in quality.cells(facts)]},
     }
 
 
@@ -57,7 +57,7 @@ def who(request: ReportRequest) -> str:
         f"{fixed(patient.mass_kg, 0)}\u00a0kg" if patient.mass_kg is not None else "",
         _side_in_words(side, is_prosthetic=is_prosthetic),
         patient.device,
-        tr("no aids") if patient.aids == "none" else patient.aids,
+        tr("no walking aids") if patient.aids == "none" else patient.aids,
         session.surface,
     ]
     return " · ".join(typed(one) for one in known if one)
@@ -83,7 +83,7 @@ def what(request: ReportRequest, facts: Facts, comparison: Comparison | None) ->
     said = [" · ".join(filter(None, parts))]
     if comparison is not None:
         names = " · ".join(f"{part.letter}\u00a0{typed(part.name, CONDITION_LENGTH)}" for part in comparison.parts)
-        said.append(tr("Compared, {last} shown here: {parts}").format(parts=names, last=comparison.parts[-1].letter))
+        said.append(tr("Compared ({last} shown here): {parts}").format(parts=names, last=comparison.parts[-1].letter))
     return ". ".join(said)
 
 
@@ -112,13 +112,13 @@ def answer(facts: Facts, comparison: Comparison | None) -> dict[str, object]:
         sentences = [["", first, " ".join(others)]]
     goals = [said for one in facts.told_goals if (said := goal_sentence(one))][:1]  # as on the screen
     grey = " ".join([*caveat(facts, comparison), *goals])
-    return {"heading": tr("In short"), "sentences": sentences, "caveats": [grey] if grey else []}
+    return {"heading": tr("Summary"), "sentences": sentences, "caveats": [grey] if grey else []}
 
 
 def readable(facts: Facts) -> dict[str, object]:
     """What may be read, joint by joint, and the gravest reason why something may not."""
     joints = [joint_of(kind, side) for kind in facts.kinds for side in Side if facts.is_measured(joint_of(kind, side))]
-    head = ["", tr("Shape, range"), tr("Height"), tr("Timing")]
+    head = ["", tr("ROM, shape"), tr("Absolute angle"), tr("Timing")]
     rows = [
         [
             {"said": capitalised(name_of(joint))},
@@ -137,12 +137,12 @@ def readable(facts: Facts) -> dict[str, object]:
             for side in facts.gait
         ]
     wide: list[tuple[str, Verdict]] = (
-        [(tr("Between the legs"), facts.verdicts.between.verdict)] if len(facts.gait) == len(Side) else []
+        [(tr("Left vs right"), facts.verdicts.between.verdict)] if len(facts.gait) == len(Side) else []
     )
     if facts.gait:
         wide.append((tr("Distance"), worst(facts.verdicts.leg(side).distance.verdict for side in facts.gait)))
     return {
-        "heading": tr("What may be read"),
+        "heading": tr("Data quality"),
         "head": head,
         "rows": rows,
         "wide": [[label, *_dot_and_word(verdict)] for label, verdict in wide],
@@ -163,7 +163,7 @@ def curves(facts: Facts, comparison: Comparison | None) -> dict[str, object]:
     """A panel for each joint that was measured, the band laid at the height of its curve, with its figures beside."""
     counts = {side[0].upper(): facts.strides(side) for side in facts.gait}
     said = [
-        tr("Mean over strides, {counts}; each leg on its own stride, 0 and 100 % initial contact.").format(
+        tr("Mean of strides, {counts}; each leg over its own gait cycle, 0 and 100 % initial contact.").format(
             counts=", ".join(f"{letter} n = {n}" for letter, n in counts.items())
         )
         if counts
@@ -187,7 +187,9 @@ def curves(facts: Facts, comparison: Comparison | None) -> dict[str, object]:
             elif len(legs) > 1 or not any(one.kind is kind for one in shown):
                 drawn += [{"said": panels.why_missing(facts, joint)}] if side in facts.gait or len(legs) > 1 else []
     return {
-        "heading": tr("Hip, knee and ankle over the stride") if has_hips else tr("Knee and ankle over the stride"),
+        "heading": tr("Hip, knee and ankle over the gait cycle")
+        if has_hips
+        else tr("Knee and ankle over the gait cycle"),
         "note": " ".join(filter(None, said)),
         "columns": 2 if len(legs) > 1 else 1,
         "panels": drawn,
@@ -206,19 +208,19 @@ def _beside(facts: Facts, joint: Joint) -> list[dict[str, object]]:
     found = facts.value(side, column)
     if not verdicts.shape.is_told or not is_mean_enough(found.n):
         return [_line(said) for said in quality.to_do(facts, joint)]
-    name = capitalised(panels.excursion_name(column)) if column in EXCURSIONS_BY_COLUMN else tr("Range")
+    name = capitalised(panels.excursion_name(column)) if column in EXCURSIONS_BY_COLUMN else tr("Range of motion")
     lines = [_line(name, "label"), _line(f"{fixed(found.mean, 1)}°", "value")]
     if is_spread_enough(found.n):
         lines.append(_line(tr("SD {sd}°").format(sd=fixed(found.sd, 1)), "grey"))
     lines.append(_line(verdict_word(verdicts.shape.verdict), "small", dot(verdicts.shape.verdict)))
     lines += [_line(said) for said in _against_band(facts, joint)]
-    lines.append(_line(tr("Height"), "label"))
+    lines.append(_line(tr("Absolute angle"), "label"))
     offset_deg = facts.offset_deg(side, kind)
     if math.isfinite(offset_deg):
         lines += [
             _line("", "picture", height_scale(offset_deg, side)),
-            _line(tr("{offset}° from band").format(offset=signed(offset_deg, 1))),
-            _line(tr("laboratories ±7°"), "grey"),
+            _line(tr("{offset}° vs reference").format(offset=signed(offset_deg, 1))),
+            _line(tr("between labs ±7°"), "grey"),
         ]
     lines.append(_line(verdict_word(verdicts.height.verdict), "small", dot(verdicts.height.verdict)))
     return lines
@@ -241,7 +243,7 @@ def _against_band(facts: Facts, joint: Joint) -> list[str]:
         for column, sd in judged.items()
         if abs(sd) > MAX_AWAY_SD
     ]
-    return beyond or ([tr("peaks inside 2\u00a0SD")] if judged else [])
+    return beyond or ([tr("peaks within 2\N{NO-BREAK SPACE}SD")] if judged else [])
 
 
 def _sensors(request: ReportRequest, facts: Facts) -> str:

@@ -39,9 +39,9 @@ def how_measured(facts: Facts, software_version: str) -> tuple[list[Titled], lis
         (tr("Events and strides"), _strides(facts)),
     ]
     said = [
-        (tr("How accurate, and on whom"), _accuracy()),
+        (tr("Accuracy"), _accuracy()),
         *([(tr("Hips and pelvis"), _hips())] if facts.has_joint(JointKind.HIP) else []),
-        (tr("Words"), _words()),
+        (tr("Terms"), _words()),
         (tr("Software"), _software(facts, software_version)),
     ]
     return done, said
@@ -64,15 +64,15 @@ def _sensors(facts: Facts) -> str:
     worn = _worn(facts)
     told = [facts.visit.session.sensors.get(site, SensorInfo()) for site in worn]
     said = tr(
-        "{models}, {rates}, on {segments}, strapped in any direction. Their measuring range is not in the "
-        "recording; {end}."
+        "{models}, {rates}, on {segments}, strapped in any orientation. The measuring range is not in "
+        "the recording; {end}."
     )
     is_reached = bool(_findings(facts, "clipped"))
     return said.format(
         models=_models(told),
         rates=_rates(told, list(worn.values())),
         segments=_segments(set(worn)),
-        end=tr("samples lie at its end, see the remarks") if is_reached else tr("no samples lie at its end"),
+        end=tr("some samples reach its limit (see findings)") if is_reached else tr("no samples reach its limit"),
     )
 
 
@@ -83,7 +83,7 @@ def _models(told: list[SensorInfo]) -> str:
         return tr("{count} sensors of {kinds} models").format(count=len(told), kinds=len(named))
     each = []
     for (model, firmware), count in named.most_common():
-        said = model or tr("sensor whose model is not told")
+        said = model or tr("sensor of unknown model")
         said = tr("{model}, firmware {firmware}").format(model=said, firmware=firmware) if firmware else said
         each.append(f"{count} × {said}")
     return joined(each)
@@ -97,7 +97,7 @@ def _foreign(text: str) -> str:
 def _rates(told: list[SensorInfo], blocks: list[ImuBlock]) -> str:
     """At which rate, as the sensors or their files tell it, and as the stamps show it."""
     found = [1.0 / nominal_step_s(block.time_s) for block in blocks if len(block) > 1]
-    shown = tr("{rate} Hz by their stamps").format(rate=_span(found, 1)) if found else tr("rate not known")
+    shown = tr("{rate} Hz by time stamps").format(rate=_span(found, 1)) if found else tr("rate not known")
     set_to = [one.rate_hz for one in told if one.rate_hz]
     return ", ".join([tr("set to {rate} Hz").format(rate=_span(set_to, 0)), shown]) if set_to else shown
 
@@ -121,37 +121,41 @@ def _segments(worn: set[Site]) -> str:
 def _calibration(facts: Facts) -> str:
     from_walks = any(found.axis_source is AxisSource.WALKING for found in facts.calibrated.values())
     motion = (
-        tr("the walks themselves, as no free movement was recorded")
+        tr("the walks, as no free motion was recorded")
         if from_walks
-        else tr("the patient's own free movement, the ankle's axis from the walks too")
+        else tr("the patient's own free motion, for the ankle also from the walks")
     )
     calibrated = facts.calibrated.values()
     is_rest_unknown = any(
         bias is None for one in calibrated for bias in (one.gyro_bias_proximal_rad_s, one.gyro_bias_distal_rad_s)
     )
-    rest = tr("unknown, as a sensor was never still") if is_rest_unknown else tr("from standing or other still moments")
+    rest = (
+        tr("unknown, as a sensor was never still") if is_rest_unknown else tr("from standing or other moments at rest")
+    )
     return tr(
-        "Rates at rest: {rest}. Each joint's axis, as both of its sensors see it, from {motion}: no posture, no "
-        "magnetic field, no tape. Zero: the standing posture of this patient on this day, or the goniometer value "
-        "typed in for it; an error in it moves a whole curve and leaves its range and shape."
+        "Gyroscope offsets: {rest}. Joint axes, as both sensors of a joint measure them, come from "
+        "{motion}. No set posture, magnetic field or tape measure is used. Standing reference: this "
+        "patient's posture on this day, or the goniometer value entered for it. An error in it shifts "
+        "the whole curve but not its range of motion or shape."
     ).format(rest=rest, motion=motion)
 
 
 def _angles(facts: Facts) -> str:
     kinds = {
-        RateKind.INSTANTANEOUS: tr("rates of instants"),
-        RateKind.AVERAGED: tr("rates averaged by the sensors"),
-        None: tr("rates of a kind that is not told"),
+        RateKind.INSTANTANEOUS: tr("instantaneous angular rates"),
+        RateKind.AVERAGED: tr("angular rates averaged by the sensors"),
+        None: tr("angular rates of unknown kind"),
     }
     angle = (
-        tr("An angle is the turn of the lower segment against the upper one about the joint's own axis")
+        tr("A joint angle is the rotation of the lower segment relative to the upper one about the joint's own axis")
         if facts.visit.analysis.method is Method.ROBUST
-        else tr("An angle is that of equation 15 of the published method, about the joint's own axis")
+        else tr("A joint angle is that of equation 15 of the published method, about the joint's own axis")
     )
     return tr(
-        "Each sensor's orientation by VQF (Laidig, Seel 2023) forward and back, without magnetometer, time constant "
-        "{tau} s, from {kind}. {angle}: one of its three, no Cardan angle of bony landmarks. Flexion and dorsiflexion "
-        "are positive. Angles are not filtered; gaps up to {gap} s are bridged."
+        "Sensor orientation: VQF (Laidig, Seel 2023), forward and backward, without magnetometer, "
+        "time constant {tau} s, from {kind}. {angle}. It is one of three rotations, not a Cardan "
+        "angle from bony landmarks. Flexion and dorsiflexion are positive. Angles are not filtered; "
+        "gaps up to {gap} s are bridged."
     ).format(
         tau=fixed(accelerometer_time_constant_s(), 0),
         kind=kinds[_kind(facts)],
@@ -162,9 +166,10 @@ def _angles(facts: Facts) -> str:
 
 def _hips() -> str:
     return tr(
-        "A sensor on the sacrum and those of the thighs tell how each thigh turns in the pelvis, from standing. "
-        "Beside optical markers walking hips were 1 to 4° off after removing the mean, deep squats 6° (four "
-        "people, on whom the constants were set); heights read some 5° high. Abduction: 2.5° (1 SD)."
+        "The sacrum and thigh sensors show how each thigh turns relative to the pelvis, starting from "
+        "standing. In four people, hip angles were compared with optical markers. With the mean "
+        "removed, they were off by 1 to 4° in walking and by 6° in deep squats. The constants were "
+        "set on the same four people. Absolute angles were about 5° too high. Abduction: 2.5° (1 SD)."
     )
 
 
@@ -178,38 +183,41 @@ def _kind(facts: Facts) -> RateKind | None:
 
 def _strides(facts: Facts) -> str:
     source = (
-        tr("from the pitch of the feet, or from the shank where a foot has no sensor")
+        tr("from foot pitch, or from the shank where a foot has no sensor")
         if _findings(facts, "events_from_shank")
-        else tr("from the pitch of the feet, of feet that hardly roll from how the sole travels")
+        else tr("from foot pitch; for feet that hardly roll, from the path of the sole")
     )
     return tr(
-        "Contact and toe\u2011off: {source}. Speed and stride length: integrated from stance to stance. Used: steady "
-        "straight walking. Left out: slow or short strides at either end, turns, pauses, missing samples, doubtful "
-        "landings, strides unlike the others and after a strap slipped; each with its reason in the file of strides. "
-        "A peak at the edge of its window is printed as “no peak”."
+        "Initial contact and toe\u2011off: {source}. Speed and stride length: integrated from stance "
+        "to stance. Used: steady straight walking. Excluded: slow or short strides at either end, "
+        "turns, pauses, missing samples, uncertain contacts, strides unlike the others and strides "
+        "after a strap moved. Reasons are in the stride file. A peak at the edge of its window is "
+        "shown as “no peak”."
     ).format(source=source)
 
 
 def _accuracy() -> str:
     # the figures stand in resources/help/accuracy.md and README.md; a test holds them together
     return tr(
-        "Beside optical systems, root mean square, mean removed: two mechanical hinges 0.31° and 0.25°; one person's "
-        "walk 4.3° and 3.1° at the knees, 2.1° at the ankles; heights included, knees about 5°, ankles 7 to 9° "
-        "(recordings that are not published). 57 contacts and toe\u2011offs of a healthy person: SD 7.7 and 7.2 ms, "
-        "contacts 25 ms after the optics'; stride length 0.25 % short, SD 1.5 cm. It has not been tested on patients, "
-        "nor after knee replacement or on real prostheses."
+        "Compared with optical systems (root mean square, mean removed): two mechanical hinges 0.31° "
+        "and 0.25°; walking of one person 4.3° and 3.1° at the knees, 2.1° at the ankles. Absolute "
+        "angles: knees about 5°, ankles 7 to 9° (unpublished recordings). 57 initial contacts and "
+        "toe\u2011offs of a healthy person: SD 7.7 and 7.2 ms, contacts 25 ms later than optical; "
+        "stride length 0.25 % too short, SD 1.5 cm. Not tested on patients, after knee replacement or "
+        "on real prostheses."
     )
 
 
 def _words() -> str:
     return tr(
-        "Band: mean ± 1 and 2 SD of other, healthy people, measured with optical markers; not a target. "
-        "Error: a smaller difference happens by measuring alone in 95 of 100 repeats; of knee range between "
-        "legs and visits at least {knee_error}° (upper end of 3.4–9.2° published, 15 volunteers; for the ankle "
-        "borrowed). Exceeds: larger than that; it says how large a difference is, not whether it is good. "
-        "Certainty of a joint axis is never told below {floor}°, from walking alone below {walking}°. "
-        "Knees are read 9 ± 4 % too flexed, so they are judged as measured and divided by {overread}. "
-        "Withheld: measured, but not fit to be read; the cause is named."
+        "Reference: mean ± 1 and 2 SD of other, healthy people, measured with optical markers; not a "
+        "target. Error: measurement alone gives a smaller difference in 95 of 100 repeats. For knee "
+        "range of motion between legs and visits it is at least {knee_error}° (upper end of 3.4–9.2° "
+        "published, 15 volunteers; also used for the ankle). Beyond: larger than the error. This "
+        "shows how large a difference is, not whether it is good. Certainty of a joint axis is never "
+        "given below {floor}°, from walking alone never below {walking}°. Knees are measured 9 ± 4 % "
+        "too flexed; they are judged as measured and divided by {overread}. Not reported: measured, "
+        "but not reliable; the cause is named."
     ).format(
         knee_error=signed_error(sigma_of(KNEE_RANGE, ComparisonKind.VISITS)),
         floor=fixed(math.degrees(AXIS_FLOOR_HUMAN_RAD), 0),

@@ -38,17 +38,17 @@ def key_numbers(facts: Facts, comparison: Comparison | None) -> list[Block]:
         *(Column(facts.counted(side)) for side in Side),
         Column(f"{one[0].upper()} − {other[0].upper()}"),
         Column(tr("Error")),
-        Column(tr("Band")),
+        Column(tr("Reference")),
         Column(tr("L above, R below, ± half the error"), "48mm", is_number=False),
     ]
     cells: list[Row] = [_cells(row) for row in rows]
     said = []
     if any(row.is_judged for row in rows):
-        said.append(tr("Bold: larger than the error of a comparison between the legs (95 %)."))
+        said.append(tr("Bold: difference between the legs beyond measurement error (95 %)."))
     if any(row.is_judged and row.difference.is_unverified for row in rows):
         said.append(dagger_note())
     notes = [note(" ".join(said))] if said else []
-    return [heading(tr("Key numbers")), table(columns, cells), *notes]
+    return [heading(tr("Key values")), table(columns, cells), *notes]
 
 
 def key_rows(facts: Facts, comparison: Comparison | None) -> list[LegsRow]:
@@ -84,7 +84,7 @@ def _value(row: LegsRow, side: Side) -> Cell | str:
 
 def _band(row: LegsRow) -> str:
     if row.band is None:
-        return tr("no band")
+        return tr("no reference")
     low, high = row.band
     quarter = (high - low) / 4
     return band_in_figures((low + quarter, high - quarter), row.decimals)

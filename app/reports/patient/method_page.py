@@ -36,15 +36,15 @@ def words_page(request: ReportRequest, facts: Facts) -> list[Block]:
     """How sure, how measured, and what the clinician says, whose box takes what is left of the page."""
     comment = plain_lines(request.comment)
     return [
-        heading(tr("How sure, how measured")),
+        heading(tr("Method and accuracy")),
         *([] if is_evidence_beside_time(facts) else evidence(facts)),
         *_remarks(request, facts),
         {"kind": "two_columns", "columns": list(how_measured(facts, request.software_version))},
         note(" ".join([*_sources(facts), _made(request.made_at)])),
-        heading(tr("Clinician's words")),
+        heading(tr("Clinical comment")),
         {
             "kind": "comment",
-            "lines": comment or [tr("No words were entered.")],
+            "lines": comment or [tr("No comment was entered.")],
             "is_empty": not comment,
             "is_long": len(comment) > LONG,
         },
@@ -65,7 +65,7 @@ def _remarks(request: ReportRequest, facts: Facts) -> list[Block]:
     names = request.visit.shown_names
     noticed = [plain(sentence(with_shown_names(finding, names))) for finding in _joined(told)]
     said = [*(causes if len(causes) > 1 else []), *noticed]
-    return [heading(tr("Remarks on this recording")), bullets(said)] if said else []
+    return [heading(tr("Data quality findings")), bullets(said)] if said else []
 
 
 def _joined(findings: Sequence[Finding]) -> list[Finding]:
@@ -84,8 +84,8 @@ def _sources(facts: Facts) -> list[str]:
     said = []
     if curves is not None:
         pattern = tr(
-            "[1] Curves, peaks, GVS: {n} {group}, {speed} m/s, optical markers. {source}. "
-            "Values and SD are read from the mean curve, which has no SD of range."
+            "[1] Curves, peaks, GVS: {n} {group}, {speed} m/s, optical markers. {source}. Values and SD "
+            "are taken from the mean curve, which has no SD of the range of motion."
         )
         speed = fixed(curves.speed_m_s, 2)
         said.append(pattern.format(n=curves.n, group=tr(curves.group), speed=speed, source=_derived(curves.derivation)))
@@ -112,4 +112,4 @@ def _derived(derivation: str) -> str:
 
 
 def _made(made_at: datetime) -> str:
-    return tr("This report was made on {moment}.").format(moment=f"{made_at:%Y-%m-%d %H:%M %z}".strip())
+    return tr("Report created {moment}.").format(moment=f"{made_at:%Y-%m-%d %H:%M %z}".strip())

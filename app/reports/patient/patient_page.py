@@ -40,17 +40,17 @@ LEFT_NOW = later("Your left knee now bends {now} degrees. At your first visit it
 RIGHT_NOW = later("Your right knee now bends {now} degrees. At your first visit it was {first}.")
 LEFT_ALONE = later("Your left knee bends {now} degrees.")
 RIGHT_ALONE = later("Your right knee bends {now} degrees.")
-UNREADABLE = later("Today's measurement was not good enough for a number. This says nothing about your walking.")
+UNREADABLE = later("Today's measurement was not good enough for a number. It does not reflect how you walk.")
 MEANING = later("When you swing your leg, the knee must bend so that your foot clears the floor.")
 OFF_BY = later("Our measurement can be off by about {error} degrees.")
 MORE = later("Your knee now bends {change}° more than at the first visit.")
 LESS = later("Your knee now bends {change}° less than at the first visit.")
 SAME = later("At the first visit it was the same.")
-REAL = later("{change}° is clearly more than that, so this is a real change.")
+REAL = later("{change}° is clearly more than that: this is a real change.")
 UNSURE = later("So we cannot say that it has changed.")
 LEFT_OTHER = later("Your left knee bends {other} degrees.")
 RIGHT_OTHER = later("Your right knee bends {other} degrees.")
-APART = later("That is {change}° apart. Our measurement can be off by about {error} degrees.")
+APART = later("The difference is {change}°. Our measurement can be off by about {error} degrees.")
 DIFFERENT = later("So your knees clearly differ.")
 ALIKE = later("So we cannot say that your knees differ.")
 SPEED_NOW = later("You now walk {now} metres in a second. At the first visit it was {first}.")
@@ -66,8 +66,8 @@ AT_MOST = later("{what}: at most {value}. We agreed this on {day}.")
 DEGREES, METRES = later("{value} degrees"), later("{value} metres in a second")
 REACHED = later("You have reached it.")
 LIMITS = later(
-    "The sensors do not see pain or strength, and they cannot say how you will walk in a month. Your therapist puts "
-    "this together with everything else."
+    "The sensors do not measure pain or strength. They cannot show how you will walk in a month. "
+    "Your therapist looks at this together with everything else."
 )
 
 

@@ -36,14 +36,14 @@ from core.verdicts.quantities import ABDUCTION, EXCURSIONS_BY_COLUMN, WINDOWS
 
 TIMES = {"hip": (), "knee": ("knee_swing_peak_percent",), "ankle": ()}
 HOW_FAR = {
-    JointKind.HIP: later("Hip: how far it moves"),
-    JointKind.KNEE: later("Knee: how far it moves"),
-    JointKind.ANKLE: later("Ankle: how far it moves"),
+    JointKind.HIP: later("Hip: movement ranges"),
+    JointKind.KNEE: later("Knee: movement ranges"),
+    JointKind.ANKLE: later("Ankle: movement ranges"),
 }
 ANGLES = {
-    JointKind.HIP: later("Hip: angles from standing"),
-    JointKind.KNEE: later("Knee: angles (flexion +)"),
-    JointKind.ANKLE: later("Ankle: angles (dorsiflexion +)"),
+    JointKind.HIP: later("Hip: absolute angles from standing"),
+    JointKind.KNEE: later("Knee: absolute angles (flexion +)"),
+    JointKind.ANKLE: later("Ankle: absolute angles (dorsiflexion +)"),
 }
 
 
@@ -59,8 +59,8 @@ def peaks_table(facts: Facts) -> list[Block]:
         Column(f"{one[0].upper()} − {other[0].upper()}"),
         Column(tr("Error")),
         Column(tr("{one} − {other} is").format(one=one[0].upper(), other=other[0].upper()), is_number=False),
-        Column(tr("Band [1]")),
-        Column(tr("Against the band"), "27mm", is_number=False),
+        Column(tr("Ref. [1]")),
+        Column(tr("Against reference"), "27mm", is_number=False),
     ]
     rows: list[Row] = []
     for kind in kinds:
@@ -83,35 +83,35 @@ def _head_of_heights(facts: Facts, kind: JointKind) -> str:
     ]
     if not offsets:
         return title
-    said = tr("{title}; whole curve against the band: {offsets}; laboratories differ by 7°")
+    said = tr("{title}; whole curve vs reference: {offsets}; laboratories differ by 7°")
     return said.format(title=title, offsets=", ".join(offsets))
 
 
 def hips_note() -> str:
     """What hips and pelvis cannot say."""
     return tr(
-        "Of hips and pelvis no error of a difference is known: differences are told and not judged. Rotation of the "
-        "hip is not readable and not given."
+        "For hips and pelvis the measurement error of a difference is not known: differences are "
+        "given but not judged. Hip rotation is not reported."
     )
 
 
 def _notes(facts: Facts, kinds: Sequence[JointKind]) -> list[str]:
     said = [
-        tr("Mean ± SD over strides; each is found stride by stride. Windows in brackets are % of the stride."),
+        tr("Mean ± SD of strides; each value is found stride by stride. Windows in brackets are % of the gait cycle."),
         _movements(kinds),
         *quality.caveats(facts, (Verdict.WITHHELD,), is_of_joints=True)[: quality.MAX_SENTENCES],
     ]
     if len(facts.gait) == len(Side):
-        judged = tr("Exceeds, inside: the measurement error between legs, at least {error}°.")
+        judged = tr("Beyond, within: the measurement error between legs, at least {error}°.")
         said.append(judged.format(error=signed_error(sigma_of(KNEE_RANGE, ComparisonKind.LEGS))))
-        said.append(tr("For the ankle the knee's figure is borrowed.") + " " + dagger_note())
+        said.append(tr("The ankle uses the knee's error figure.") + " " + dagger_note())
     if JointKind.HIP in kinds:
         said.append(hips_note())
     shown = [
         (side, column) for side in facts.gait for kind in facts.kinds for column in (*MOVEMENTS[kind], *HEIGHTS[kind])
     ]
     if any(math.isfinite(facts.away_sd(side, column)) for side, column in shown):
-        judged = tr("Against the band: after laying it at each curve's height; knees as measured and divided by {by}.")
+        judged = tr("Against reference: shifted to the level of each curve; knees as measured and divided by {by}.")
         said.append(judged.format(by=fixed(KNEE_OVERREAD, 2)))
     if any(_verdict(facts, side, column) is Verdict.CARE for side, column in shown):
         said.append(care_note())
@@ -127,15 +127,15 @@ def _side_column(facts: Facts, side: Side) -> Column:
 def measure(column: str) -> str:
     """Name a row, with the window its peak is looked for in."""
     if column == "hip_abduction_range_deg":
-        return tr("Abduction, range over the stride")
+        return tr("Abduction, range of motion")
     if column.startswith("hip") and column.endswith("_peak_deg"):
         return capitalised(peak_name(column))
     if column.endswith("_at_initial_contact_deg"):
         return tr("At initial contact")
     if column.endswith("_range_deg"):
-        return tr("Range over the stride")
+        return tr("Range of motion")
     if column.endswith("_percent"):
-        return tr("Time of most flexion in swing, %")
+        return tr("Time of peak flexion, swing, %")
     if column in EXCURSIONS_BY_COLUMN:
         return capitalised(excursion_name(column))
     window = WINDOWS[column]
@@ -149,11 +149,9 @@ def _movements(kinds: Sequence[JointKind]) -> str:
         excursion = EXCURSIONS_BY_COLUMN[column]
         ends = [f"{end.first}–{end.last}" if end is not None else "0" for end in (excursion.high, excursion.low)]
         each.append(
-            tr("{movement} {high} less {low}").format(movement=excursion_name(column), high=ends[0], low=ends[1])
+            tr("{movement} ({high} minus {low})").format(movement=excursion_name(column), high=ends[0], low=ends[1])
         )
-    said = tr(
-        "How far a joint moves is the highest angle of one part of the stride less the lowest of another, in %: {each}."
-    )
+    said = tr("Movement range: highest angle in one part of the gait cycle minus the lowest in another, in %: {each}.")
     return said.format(each=", ".join(each))
 
 
@@ -181,8 +179,8 @@ def _row(facts: Facts, column: str) -> list[Cell | str]:
         away = {side: facts.away_sd(side, column) for side in Side}
         against = each_side({side: away_in_words(sd) for side, sd in away.items() if math.isfinite(sd)})
     else:
-        in_band = fixed(group_range, 1) if group_range is not None else tr("no band")
-        against = tr("band has no SD") if group_range is not None else NOTHING
+        in_band = fixed(group_range, 1) if group_range is not None else tr("no reference")
+        against = tr("no reference SD") if group_range is not None else NOTHING
     return [*cells, *_difference_cells(facts, column), in_band, against]
 
 

@@ -20,11 +20,11 @@ def pelvis_table(facts: Facts) -> list[Block]:
     ]
     rows: list[Row] = [[tr(name), *(value_cell(facts, side, column) for side in Side)] for column, name in PELVIS_ROWS]
     said = [
-        tr("Drop: how far the side of the swinging leg sinks below the other. Each over the strides of one leg."),
+        tr("Drop: how far the side of the swinging leg drops below the other. Values over the strides of one leg."),
         *pelvis_in_words(facts.part),
     ]
     if any(facts.assessment(side, column).verdict is Verdict.CARE for side in facts.gait for column, _ in PELVIS_ROWS):
-        said.append(tr("{mark}: read with care.").format(mark=CARE))
+        said.append(tr("{mark}: caution.").format(mark=CARE))
     return [heading(tr("Pelvis"), level=2), table(columns, rows, is_dense=True), note(" ".join(said))]
 
 

@@ -78,7 +78,7 @@ def phase_bars(phases: Mapping[Side, Phases]) -> Picture:
                     parts.append(box(middle - len(words) * 1.9, y + 3, len(words) * 3.8, BAR - 6, PAPER.paper))
                 parts.append(text(middle, y + BAR / 2 + 2.4, words, 6.8, anchor="middle", weight=600))
             at += lasts
-        pattern = tr("{side}: foot flat at {flat} %, heel rise at {rise} %, toe\u2011off at {off} % of the stride.")
+        pattern = tr("{side}: foot flat at {flat} %, heel rise at {rise} %, toe\u2011off at {off} % of the gait cycle.")
         said.append(
             pattern.format(
                 side=capitalised(side_name(side)),

@@ -64,7 +64,9 @@ def chosen_walks(visit: AnalysedVisit, wanted: list[str], session: str) -> tuple
             raise FileRefusedError(session, what, f"Choose of: {', '.join(names) or 'none'}")
     walks = tuple(wanted) or default_walks(visit)
     if not walks:
-        raise FileRefusedError(session, "this holds no kept walk, so there is nothing to report", "Record a walk first")
+        raise FileRefusedError(
+            session, "this contains no included walk, so there is nothing to report", "Record a walk first"
+        )
     return walks
 
 
@@ -93,12 +95,12 @@ def check_report_place(out: Path) -> None:
         Something else than a PDF is there.
     """
     if out.is_dir():
-        raise FileRefusedError(str(out), "this is a folder", "Give the report a file's name, such as report.pdf")
+        raise FileRefusedError(str(out), "this is a folder", "Give the report a file name, such as report.pdf")
     if out.exists():
         with out.open("rb") as file:
             is_pdf = file.read(len(PDF)) == PDF
         if not is_pdf:
-            raise FileRefusedError(str(out), "this is there already and is no PDF", "Choose another --out")
+            raise FileRefusedError(str(out), "this already exists and is not a PDF", "Choose another --out")
 
 
 def replace_report(pdf: bytes, out: Path) -> None:

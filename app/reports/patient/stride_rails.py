@@ -38,7 +38,7 @@ def reasons_in_words(facts: Facts) -> str:
     if not found:
         return ""
     each = ", ".join(f"{LETTERS[one]} {tr(NAMES['reason'][one])}" for one in LETTERS if one in found)
-    return tr("Strides left out stand on the rail “out”: {each}.").format(each=each)
+    return tr("Excluded strides are on the line “excl.”: {each}.").format(each=each)
 
 
 def stride_rail(facts: Facts, kind: str) -> Picture:
@@ -63,16 +63,16 @@ def stride_rail(facts: Facts, kind: str) -> Picture:
         return bottom - (bottom - TOP) * (value - low) / (high - low)
 
     titles = {
-        "hip": tr("Hip range of each stride, °"),
-        "knee": tr("Knee range of each stride, °"),
-        "ankle": tr("Ankle range of each stride, °"),
+        "hip": tr("Hip range of motion per stride, °"),
+        "knee": tr("Knee range of motion per stride, °"),
+        "ankle": tr("Ankle range of motion per stride, °"),
     }
     title = titles[kind]
     parts = [text(0, 8, title, 7.6, weight=600)]
     for value in np.arange(low, high + 1, TICK_DEG):
         parts.append(line(LEFT_EDGE, y(value), right, y(value), PAPER.ink if value == low else PAPER.grid, 0.5))
         parts.append(text(LEFT_EDGE - 5, y(value) + 2.4, fixed(float(value), 0), 6.8, anchor="end"))
-    parts.append(text(LEFT_EDGE - 5, bottom + 10.5, tr("out"), 6.6, anchor="end", fill=PAPER.note))
+    parts.append(text(LEFT_EDGE - 5, bottom + 10.5, tr("excl."), 6.6, anchor="end", fill=PAPER.note))
     parts.append(text(right, bottom + 19, f"{fixed(last_s - first_s, 0)} s", 6.6, anchor="end", fill=PAPER.note))
     said, ends = [], []
     for side, each in values.items():
@@ -118,7 +118,7 @@ def stride_rail(facts: Facts, kind: str) -> Picture:
         parts.append(text(right + 18, height + 2.4, words, 6.8))
     if facts.is_simulated:
         parts.append(text(right, 8, tr("SIMULATED"), 6.6, anchor="end", weight=600))
-    alt = " ".join([tr("SIMULATED.")] * facts.is_simulated + [f"{title}.", *(said or [tr("No stride was used: 0.")])])
+    alt = " ".join([tr("SIMULATED.")] * facts.is_simulated + [f"{title}.", *(said or [tr("No strides used.")])])
     return picture(parts, WIDTH, HEIGHT, alt)
 
 

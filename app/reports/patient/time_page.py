@@ -68,42 +68,44 @@ def time_distance_table(facts: Facts) -> list[Block]:
         *(Column(facts.counted(side)) for side in Side),
         Column(f"{one[0].upper()} − {other[0].upper()}"),
         Column(tr("Error")),
-        Column(tr("Band [2]")),
-        Column(tr("Against the band"), "37mm", is_number=False),
+        Column(tr("Ref. [2]")),
+        Column(tr("Against reference"), "37mm", is_number=False),
     ]
     rows: list[Row] = [
         _both_row(facts, "speed_m_s", tr("Walking speed, m/s")),
         _both_row(facts, "cadence_steps_min", tr("Cadence, steps/min")),
         _side_row(facts, "stride_time_s", tr("Stride time, s"), 2),
         _side_row(facts, "stride_length_m", tr("Stride length, m"), 2),
-        _side_row(facts, "stance_percent", tr("Stance, % of stride"), 1),
+        _side_row(facts, "stance_percent", tr("Stance (% gait cycle)"), 1),
         _single_support_row(facts),
-        _both_row(facts, DOUBLE_SUPPORT, tr("Double support, % of stride")),
+        _both_row(facts, DOUBLE_SUPPORT, tr("Double support (% gait cycle)")),
         _side_row(facts, "step_time_s", tr("Step time, s"), 2),
         _lift_row(facts),
         _variation_row(facts),
     ]
     group = facts.values_group
     band = (
-        tr("Mean ± SD over strides; band: mean ± SD between people, class “{speed_class}” of speed.").format(
+        tr("Mean ± SD of strides; reference: mean ± SD between people, speed class “{speed_class}”.").format(
             speed_class=speed_class_in_words(group.speed_class)
         )
         if group is not None
-        else " ".join([tr("Mean ± SD over strides."), panels.why_no_band(facts, facts.bands.why_no_values)])
+        else " ".join([tr("Mean ± SD of strides."), panels.why_no_band(facts, facts.bands.why_no_values)])
     )
     said = [band]
     if group is not None or facts.curves_group is not None:
-        said.append(tr("Whose bands these are: last page."))
+        said.append(tr("Reference groups: see last page."))
     if facts.time_distance[DOUBLE_SUPPORT].unknown_both:
-        said.append(tr("Single and double support need both legs' timing beyond doubt."))
+        said.append(tr("Single and double support need reliable timing of both legs."))
     if len(facts.gait) == len(Side):
-        said.append(tr("Bold: larger than the error of a comparison between the legs."))
-        said.append(tr("Step time needs one clock for both legs; where the feet stand from one another is not known."))
-    said.append(tr("Foot lift is of the sensor, not of the toe."))
+        said.append(tr("Bold: difference between the legs beyond measurement error."))
+        said.append(
+            tr("Step time needs synchronised left and right sensors; the distance between the feet is not known.")
+        )
+    said.append(tr("Foot clearance is that of the sensor, not of the toes."))
     if any(DAGGER in cell for row in rows for cell in row if isinstance(cell, str)):
         said.append(dagger_note())
     if any(facts.assessment(side, column).verdict is Verdict.CARE for side in facts.gait for column in TOLD):
-        said.append(tr("{mark}: read with care.").format(mark=CARE))
+        said.append(tr("{mark}: caution.").format(mark=CARE))
     return [table(columns, rows, is_dense=True), note(" ".join(said))]
 
 
@@ -174,7 +176,7 @@ def _single_support_row(facts: Facts) -> list[Cell | str]:
         is_known = is_mean_enough(value.n) and len(facts.gait) == len(Side) and not is_withheld
         shown = verdict_word(Verdict.WITHHELD) if is_withheld else fixed(value.mean, 1) if is_known else NOTHING
         cells.append(Cell(shown, is_grey=not is_spread_enough(value.n)))
-    return [tr("Single support, % of stride"), *cells, NOTHING, NOTHING, NOTHING, NOTHING]
+    return [tr("Single support (% gait cycle)"), *cells, NOTHING, NOTHING, NOTHING, NOTHING]
 
 
 def _lift_row(facts: Facts) -> list[Cell | str]:
@@ -183,7 +185,7 @@ def _lift_row(facts: Facts) -> list[Cell | str]:
         found = facts.value(side, "clearance_m")
         in_cm = MeanAndSd(100 * found.mean, 100 * found.sd, found.n)
         cells.append(_mean_cell(facts, side, "clearance_m", in_cm, 1))
-    return [tr("Foot lift in swing, cm"), *cells, NOTHING, NOTHING, NOTHING, NOTHING]
+    return [tr("Foot clearance (sensor), cm"), *cells, NOTHING, NOTHING, NOTHING, NOTHING]
 
 
 def _variation_row(facts: Facts) -> list[Cell | str]:
@@ -192,7 +194,7 @@ def _variation_row(facts: Facts) -> list[Cell | str]:
         value = facts.value(side, "stride_time_s")
         share = 100 * value.sd / value.mean if is_spread_enough(value.n) else math.nan
         cells.append(marked(fixed(share, 1), facts.assessment(side, "stride_time_s").verdict))
-    return [tr("Variation of stride time (CV), %"), *cells, NOTHING, NOTHING, NOTHING, NOTHING]
+    return [tr("Stride time variability (CV), %"), *cells, NOTHING, NOTHING, NOTHING, NOTHING]
 
 
 def speed_class_in_words(name: str) -> str:
@@ -206,8 +208,8 @@ def _phases(facts: Facts) -> list[Block]:
         return []
     columns = [
         Column(tr("Rocker"), "1fr", is_number=False),
-        *(Column(tr("{letter}: lasts, %").format(letter=side[0].upper())) for side in phases),
-        *(Column(tr("{letter}: ankle turns, °").format(letter=side[0].upper())) for side in phases),
+        *(Column(tr("{letter}: duration, %").format(letter=side[0].upper())) for side in phases),
+        *(Column(tr("{letter}: ankle motion, °").format(letter=side[0].upper())) for side in phases),
     ]
     names = (
         tr("Heel: contact to foot flat"),

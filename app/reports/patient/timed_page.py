@@ -52,7 +52,7 @@ def timed_page(request: ReportRequest, facts: Facts) -> list[Block]:
         blocks.append(paragraph(f"{_name(request, walk)}: {told}"))
     longest = [test for _, test in tests if test.definition.duration_s is not None and test.thirds]
     if longest:
-        blocks += [heading(tr("Over the test: {test}").format(test=name_of_test(longest[-1].protocol)), 2)]
+        blocks += [heading(tr("During the test: {test}").format(test=name_of_test(longest[-1].protocol)), 2)]
         blocks += [_parts(longest[-1])]
     course, has_whiskers = _course(request, facts)
     blocks += course
@@ -70,13 +70,18 @@ def _course(request: ReportRequest, facts: Facts) -> tuple[list[Block], bool]:
     if not charts:
         return [], False
     stated = typed(condition, CONDITION_LENGTH) if condition else condition_in_words("")
-    said = [tr("Condition: {condition}. Of several attempts the mean.").format(condition=stated)]
+    said = [tr("Condition: {condition}. Several attempts: mean shown.").format(condition=stated)]
     error = error_between_visits(COLUMNS[TimedProtocol.TEN_METRES])
     if TimedProtocol.TEN_METRES in charts:
-        whisker = tr("Whisker: half of the error of a change of speed, {error} m/s {dagger}.")
+        whisker = tr("Whisker: half the error of a speed change, {error} m/s {dagger}.")
         said.append(whisker.format(error=fixed(error, 2), dagger=DAGGER))
     if set(charts) - {TimedProtocol.TEN_METRES}:
-        said.append(tr("Of distances in a set time and of times from a chair no error is known: they are not judged."))
+        said.append(
+            tr(
+                "For distances in a set time and for chair tests the measurement error is not known: they are "
+                "not judged."
+            )
+        )
     drawn = figures(list(charts.values()), columns=2)
     return [heading(tr("Over the visits"), 2), note(" ".join(said)), drawn], TimedProtocol.TEN_METRES in charts
 
@@ -90,7 +95,7 @@ def _figures(request: ReportRequest, tests: list[tuple[RecordingAnalysis, TimedT
         Column(tr("Walk"), "1fr", is_number=False),
         Column(tr("Test"), is_number=False),
         *(Column(title) for title in (tr("Time, s"), tr("Distance, m"), tr("Speed, m/s"), tr("Steps/min"))),
-        *(Column(title) for title in (tr("Laps"), tr("Turns"), tr("Pauses"), tr("Off the tape, m"))),
+        *(Column(title) for title in (tr("Laps"), tr("Turns"), tr("Pauses"), tr("Diff. to tape, m"))),
     ]
     rows: list[Row] = []
     for walk, test in tests:

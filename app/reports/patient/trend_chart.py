@@ -103,7 +103,7 @@ def _line(
     for one in values:
         at = x(one.visit) + aside
         if not math.isfinite(one.value):
-            parts.append(text(at, bottom - 4, tr("withheld"), 6.4, anchor="middle", fill=PAPER.note))
+            parts.append(text(at, bottom - 4, tr("not reported"), 6.4, anchor="middle", fill=PAPER.note))
             continue
         if math.isfinite(one.whisker):
             ends = y(one.value - one.whisker), y(one.value + one.whisker)

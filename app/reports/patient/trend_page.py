@@ -46,23 +46,23 @@ def trend_page(visits: Sequence[CourseVisit], condition: str, facts: Facts) -> l
     if not shown:
         return []
     days = [visit.day for visit in walked]
-    title = tr("Course over {count} visits, {first} to {last}").format(
+    title = tr("Progress over {count} visits, {first} to {last}").format(
         count=len(walked), first=date(days[0]), last=date(days[-1])
     )
     stated = typed(condition, CONDITION_LENGTH) if condition else condition_in_words("")
     said = [
-        tr("Condition: {condition}. Sensors put on anew at each visit.").format(condition=stated),
-        tr("Whisker: half of the error of a change, so that whiskers apart are a change larger than its error."),
-        tr("Dates to scale. A gap: withheld at that visit."),
+        tr("Condition: {condition}. Sensors reattached at each visit.").format(condition=stated),
+        tr("Whisker: half the error of a change. Whiskers that do not overlap show a change beyond error."),
+        tr("Dates to scale. Gap: not reported at that visit."),
     ]
     if without := len(visits) - len(walked):
-        said.append(tr("Visits without a walk of this condition, or not computed: {count}.").format(count=without))
+        said.append(tr("Visits without a walk in this condition, or not calculated: {count}.").format(count=without))
     return [
         heading(title),
         note(" ".join(said)),
         bullets([*_sentences(shown, facts, len(walked)), *_goals(walked, condition, facts)]),
         figures([_chart(column, shown, days, facts) for column in columns if _of(shown, column)], columns=2),
-        heading(tr("The numbers"), level=2),
+        heading(tr("Values"), level=2),
         _table(shown, len(walked)),
         note(_below(shown)),
     ]
@@ -118,9 +118,9 @@ def _agreed_in_words(goal: Goal) -> str:
 
 def _name(column: str) -> str:
     names = {
-        KNEE: tr("Knee, stance to swing, °"),
-        PUSH_OFF: tr("Ankle push\u2011off, °"),
-        STANCE: tr("Stance, % of stride"),
+        KNEE: tr("Knee flexion, stance to swing, °"),
+        PUSH_OFF: tr("Ankle plantarflexion, push\u2011off, °"),
+        STANCE: tr("Stance (% gait cycle)"),
         SPEED: tr("Walking speed, m/s"),
     }
     if column in names:
@@ -145,10 +145,11 @@ def _sentences(lines: Sequence[TrendLine], facts: Facts, visits: int) -> list[st
             return [tr("No change could be judged.")]
         if any(one.exceeds for one in judged):
             said = tr(
-                "No change is so much larger than its error that it is told here; the table marks what exceeds it."
+                "No change is far enough beyond measurement error to be listed here. The table marks every "
+                "change beyond error."
             )
             return [said]
-        return [tr("No change is larger than its error.")]
+        return [tr("All judged changes are within measurement error.")]
     ordered = sorted(worth, key=lambda line: -line.since_first.ratio if line.since_first is not None else 0.0)
     told = {_movement(line): line for line in reversed(ordered)}  # of each the largest
     return [_sentence(line, facts, visits) for line in ordered if told[_movement(line)] is line][:MOST_SENTENCES]
@@ -166,7 +167,9 @@ def _sentence(line: TrendLine, facts: Facts, visits: int) -> str:
     first = next(one for one in line.values if one.visit == line.first)
     name = measure_in_words(line.column)
     who = name if line.side is None else f"{role(facts, line.side)}, {name}"
-    said = tr("{who}: {a} at visit {first}, {b} at visit {last}; {change}, error between visits {error}.").format(
+    said = tr(
+        "{who}: {a} at visit {first}, {b} at visit {last}. Change {change} (error between visits {error})."
+    ).format(
         who=capitalised(who),
         a=fixed(first.value, decimals) + unit,
         b=fixed(last.value, decimals) + unit,
@@ -181,9 +184,9 @@ def _sentence(line: TrendLine, facts: Facts, visits: int) -> str:
     if not since.error > 0:
         return said
     words = (
-        tr("Since visit {number} {change}: larger than the error.")
+        tr("Since visit {number} {change}: beyond error.")
         if since.exceeds
-        else tr("Since visit {number} {change}: inside the error.")
+        else tr("Since visit {number} {change}: within error.")
     )
     return f"{said} {words.format(number=line.before + 1, change=signed(since.difference, decimals) + unit)}"
 
@@ -206,7 +209,7 @@ def _table(lines: Sequence[TrendLine], visits: int) -> Block:
         cells: list[Cell | str] = [_name(line.column), line.side[0].upper() if line.side is not None else ""]
         for visit in shown:
             is_withheld = visit in values and not math.isfinite(values[visit])
-            cells.append(tr("withheld") if is_withheld else fixed(values.get(visit, math.nan), decimals))
+            cells.append(tr("not reported") if is_withheld else fixed(values.get(visit, math.nan), decimals))
         found, since = line.since_first, line.since_last
         is_told = found is not None and found.is_told
         cells.append(signed(since.difference, decimals) if since is not None and line.before != line.first else NOTHING)
@@ -224,7 +227,12 @@ def _table(lines: Sequence[TrendLine], visits: int) -> Block:
 
 
 def _below(lines: Sequence[TrendLine]) -> str:
-    said = [tr("Heights are left out: each visit has a zero of its own. First: the first visit that can be read.")]
+    said = [
+        tr(
+            "Absolute angles are not included: each visit has its own standing reference. First: first "
+            "visit with a reported value."
+        )
+    ]
     if any(line.since_first is not None and line.since_first.is_unverified for line in lines):
         said.append(dagger_note())
     return " ".join(said)

@@ -151,7 +151,7 @@ def _remembered(folder: Path, code: str) -> Operator:
         return Operator(found["code"], found["name"], Role(found["role"]))
     except (OSError, ValueError, KeyError, TypeError, StopIteration):
         raise NotAllowedError(
-            "This station does not know the operator yet", "Log in once while the clinic's server answers"
+            "This workstation does not know this user yet", "Log in once while the clinic's server is available"
         ) from None
 
 

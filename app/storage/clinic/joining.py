@@ -49,8 +49,8 @@ def join(folder: Path, address: str, journals: str = "") -> Station:
     database = station.database_once()
     if not is_up_to_date(database):
         raise LibraryError(
-            "There is no library on the clinic's server",
-            "Move one there first: at the station that has it, in its settings",
+            "No library was found on the clinic's server",
+            "Move a library there first, from the settings of the workstation that has it",
         )
     with database.reading() as session:
         refuse_closed(session)

@@ -40,7 +40,7 @@ class PlaceUnconfirmedError(PlaceMissingError):
     """The server names a place that nobody at this station has confirmed."""
 
     def __init__(self, place: str) -> None:
-        what = tr("The server names this storage for the recordings: {place}").format(place=place)
+        what = tr("The server gives this storage for the recordings: {place}").format(place=place)
         super().__init__(what, "Enter the storage as this computer reaches it, to confirm it")
         self.place = place
 
@@ -60,10 +60,10 @@ class JournalStore:
             import fsspec
         except ImportError:
             raise LibraryError(
-                "What reads a clinic's shared journals is not installed", "Run: pip install .[clinic]"
+                "The component for the clinic's shared storage is not installed", "Run: pip install .[clinic]"
             ) from None
         if not (place.startswith(S3) or Path(place).is_absolute()):
-            raise LibraryError("Journals cannot be kept at this address", "Name a folder, or s3://bucket/folder")
+            raise LibraryError("Recordings cannot be stored at this address", "Enter a folder, or s3://bucket/folder")
         self._is_local = not place.startswith(S3)
         options: dict[str, Any] = {}
         if not self._is_local:
@@ -79,7 +79,7 @@ class JournalStore:
             self._files = fsspec.filesystem("file" if self._is_local else "s3", **options)
         except (ImportError, ValueError) as error:
             raise LibraryError(
-                "Journals cannot be kept at this address", "Name a folder, or s3://bucket/folder"
+                "Recordings cannot be stored at this address", "Enter a folder, or s3://bucket/folder"
             ) from error
         self._root = str(Path(place)) if self._is_local else place.removeprefix(S3).rstrip("/")
 
@@ -128,7 +128,10 @@ class JournalStore:
             if self._sha256_there(at) == sha256:
                 return name
             self._files.rm_file(at)
-        raise LibraryFaultError("A recording was not taken as it is by the clinic's shared place", "See to its disk")
+        raise LibraryFaultError(
+            "A recording copied to the clinic's shared storage does not match the original",
+            "Check the disk of the shared storage",
+        )
 
     def fetch(self, name: str, target: Path) -> None:
         """Bring a journal here, beside its place first; it is what its name says, or it is not there.
@@ -152,7 +155,7 @@ class JournalStore:
                 os.fsync(here.fileno())
             if digest.hexdigest() + SUFFIX != name:
                 raise LibraryFaultError(
-                    "A recording in the clinic's shared place is damaged", "Restore it there from a backup"
+                    "A recording in the clinic's shared storage is damaged", "Restore it there from a backup"
                 )
             Path(beside).replace(target)
             sync_folder(target.parent)
@@ -193,7 +196,9 @@ class JournalStore:
 
     def _at(self, name: str) -> str:
         if not NAME.fullmatch(name):  # a row may say anything
-            raise LibraryFaultError("The library names no journal here", "Restore it from a backup")
+            raise LibraryFaultError(
+                "The library refers to an invalid recording file", "Restore the library from a backup"
+            )
         return f"{self._root}/{name}"
 
     def _put_beside(self, here: BinaryIO, target: str) -> None:
@@ -237,22 +242,23 @@ def _told() -> Iterator[None]:
     except (LibraryError, FileNotFoundError) as error:
         if isinstance(error, FileNotFoundError):
             raise LibraryFaultError(
-                "A recording is missing in the clinic's shared place", "Restore it there from a backup"
+                "A recording is missing from the clinic's shared storage", "Restore it there from a backup"
             ) from error
         raise
     except PermissionError as error:
         raise LibraryFaultError(
-            "The clinic's shared place does not let this station in", "See to the rights of its folder or its keys"
+            "This workstation has no access to the clinic's shared storage",
+            "Check the permissions of its folder, or its access keys",
         ) from error
     except Exception as error:
         if isinstance(error, OSError) and error.errno in FULL:
             raise LibraryFaultError(
-                "The clinic's shared place of recordings is full", "Make room there: it is tried again by itself"
+                "The clinic's shared storage is full", "Free disk space there; Gaitwright then retries automatically"
             ) from error
         if isinstance(error, OSError) and error.errno == errno.EROFS:
             raise LibraryFaultError(
-                "The clinic's shared place of recordings can only be read", "See to its disk"
+                "The clinic's shared storage is read-only", "Check the disk of the shared storage"
             ) from error
         raise LibraryFaultError(
-            "The clinic's shared place of recordings does not answer", "It is tried again by itself"
+            "The clinic's shared storage does not respond", "Gaitwright retries automatically"
         ) from error

@@ -77,7 +77,7 @@ def move_to_server(opened: OpenedLibrary, station: Station, report: Report) -> M
     if opened.shared is not None or opened.data_key is None or opened.away_from is not None:
         raise LibraryError("Only a library in a folder can be moved to a server", "Open your own library")
     if any(not one.problem for one in find_interrupted(opened)):
-        raise LibraryError("A recording goes on or was left over", "End it or look at it, then move the library")
+        raise LibraryError("A recording is running or was not completed", "Stop or review it, then move the library")
     store, server = JournalStore(station.journals), station.database_kept()
     try:
         refuse_nul(library.database)
@@ -120,11 +120,9 @@ def give_up_moving(folder: Path) -> None:
         The mark cannot be removed.
     """
     if (folder / STATION).exists():
-        raise LibraryError("This library is on the clinic's server already", "Bring it back from there")
+        raise LibraryError("This library is already on the clinic's server", "Move it back from there")
     if (folder / MOVING).exists() and (folder / MOVING).read_bytes() == LAST_STEP:
-        raise LibraryError(
-            "Stations may be working with this library on the clinic's server already", "Go on with moving it"
-        )
+        raise LibraryError("Workstations may already be using this library on the clinic's server", "Continue the move")
     (folder / MOVING).unlink(missing_ok=True)
 
 
@@ -157,7 +155,7 @@ def bring_back(opened: OpenedLibrary, folder: Path, report: Report, *, is_copy: 
     """
     shared, library = opened.shared, opened.library
     if shared is None:
-        raise LibraryError("This library is in a folder already", "Use a backup to copy it")
+        raise LibraryError("This library is already in a folder", "Use a backup to copy it")
     server, own_id = library.database, library.station.id if library.station is not None else ""
     with server.reading() as session:
         is_open = state_of(session) is ServerState.OPEN
@@ -194,7 +192,7 @@ def bring_back_here(opened: OpenedLibrary, report: Report) -> Moved:
     """
     folder, server = opened.folder, opened.library.database
     if count_waiting(opened):
-        raise LibraryError("A recording waits here to be handed over", "Try again once it is")
+        raise LibraryError("A recording here has not been transferred yet", "Try again after the transfer")
     beside = folder.with_name(f"{folder.name}{BACK_FROM}")
     shutil.rmtree(beside, ignore_errors=True)  # of one that was broken off
     moved = bring_back(opened, beside, report)
@@ -246,11 +244,13 @@ def _state_for(server: Database, source: Database) -> ServerState | None:
     if row is None:
         return None
     if row.value != own:
-        raise LibraryError("There is another library on the clinic's server", "Give this one a database of its own")
+        raise LibraryError(
+            "The clinic's server already holds another library", "Use a separate database for this library"
+        )
     if state is ServerState.CLOSED:
         raise LibraryError(
-            "This library was on the clinic's server before, and what was left there is older",
-            "Empty the server's database, or give the library another one",
+            "The clinic's server still holds an older copy of this library",
+            "Empty the server's database, or use another database for the library",
         )
     return state
 
@@ -341,8 +341,8 @@ def _refuse_waiting(session: OrmSession) -> None:
     )
     if waiting:
         raise LibraryError(
-            tr("{count} recordings are being made, or wait at a station to be handed over").format(count=waiting),
-            "Start Gaitwright at each station, and try again once they are handed over",
+            tr("{count} recordings are running or not yet transferred from a workstation").format(count=waiting),
+            "Start Gaitwright on each workstation, and try again after the transfer",
         )
 
 
@@ -351,7 +351,7 @@ def _fetch_journals(kept: Mapping[str, str], store: JournalStore, folder: Path, 
     for number, (file, kept_as) in enumerate(sorted(kept.items())):
         path = folder / RECORDINGS / file
         if path.parent != folder / RECORDINGS or not file.endswith(SUFFIX):  # a row may say anything
-            raise LibraryError("The library names a file that no recording has", "Restore it from a backup")
+            raise LibraryError("The library refers to an invalid recording file", "Restore the library from a backup")
         store.fetch(kept_as, path)
         size += path.stat().st_size
         report(JOURNALS_SHARE * (number + 1) / len(kept), "")
@@ -367,7 +367,7 @@ def _refuse_difference(one: Database, other: Database, remedy: str) -> None:
         They do not.
     """
     if tables := differing_tables(one, other):
-        what = tr("What was copied is not what was there: {tables}").format(tables=", ".join(tables))
+        what = tr("The copy does not match the original: {tables}").format(tables=", ".join(tables))
         raise LibraryError(what, remedy)
 
 

@@ -63,7 +63,9 @@ def refuse_nul(database: Database) -> None:
                 if name := next((name for name, value in row.items() if isinstance(value, str) and "\0" in value), ""):
                     where = f"{table.name}.{name} {'/'.join(str(row[key.name]) for key in table.primary_key)}"
                     raise LibraryError(
-                        tr("A text has the character NUL, which no server takes: {where}").format(where=where),
+                        tr("A text contains the NUL character, which the server cannot store: {where}").format(
+                            where=where
+                        ),
                         "Remove it from the text, then move the library",
                     )
 

@@ -47,10 +47,10 @@ def close_for(session: OrmSession, target: str) -> None:
         session.add(SettingRow(name=TARGET_SETTING, value=target))
     elif state_of(session) is ServerState.CLOSED and row.value != target:
         raise LibraryError(
-            tr("The library was, or is being, brought back into another folder: {folder}").format(
+            tr("The library was or is being moved back to another folder: {folder}").format(
                 folder=str(row.value).partition(" ")[2]
             ),
-            "Work with that one; if nobody does, open the server again first: gaitwright clinic back --give-up",
+            "Use that folder. If nobody uses it, first reopen the server: gaitwright clinic back --give-up",
         )
     else:
         row.value = target
@@ -70,11 +70,13 @@ def refuse_closed(session: OrmSession) -> None:
         return
     if found is None:
         raise LibraryFaultError(
-            "There is no library on the clinic's server",
-            "Move one there first: at the station that has it, in its settings",
+            "No library was found on the clinic's server",
+            "Move a library there first, from the settings of the workstation that has it",
         )
     if found is ServerState.MOVING:
-        raise LibraryFaultError("The library is still being moved to the clinic's server", "Wait until that is done")
+        raise LibraryFaultError(
+            "The library is still being moved to the clinic's server", "Wait until the move is complete"
+        )
     raise LibraryFaultError(
-        "The library is no longer on the clinic's server", "Ask who brought it back where it is worked with now"
+        "The library is no longer on the clinic's server", "Ask the person who moved it back where it is now"
     )

@@ -89,7 +89,7 @@ def station_of(folder: Path) -> Station | None:
         return None
     except (ValueError, KeyError, TypeError):
         raise LibraryError(
-            "The file that names the clinic's server is damaged", "Join the clinic's library again"
+            "The file with the address of the clinic's server is damaged", "Connect to the clinic's library again"
         ) from None
     return replace(
         station,
@@ -144,4 +144,6 @@ def shown_address(address: str) -> str:
 
 
 def _no_address() -> LibraryError:
-    return LibraryError("This is no address of a PostgreSQL server", "Write it as postgresql://user@server/database")
+    return LibraryError(
+        "This is not the address of a PostgreSQL server", "Enter it as postgresql://user@server/database"
+    )

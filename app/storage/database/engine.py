@@ -140,7 +140,7 @@ class Database:
             yield session.connection()
             if self.engine.dialect.name == "sqlite" and (lost := _dangling(session)):
                 raise LibraryError(
-                    tr("The library cannot be updated: {why}").format(why=lost[0]), "Restore it from a backup"
+                    tr("The library cannot be updated: {why}").format(why=lost[0]), "Restore the library from a backup"
                 )
             session.commit()
 
@@ -244,7 +244,9 @@ def postgres_engine(url: str, try_s: float = TRY_S, *, is_kept: bool = True) -> 
             json_deserializer=from_finite_json,
         )
     except ImportError:
-        raise LibraryError("What speaks to a clinic's server is not installed", "Run: pip install .[clinic]") from None
+        raise LibraryError(
+            "The component for the clinic's server is not installed", "Run: pip install .[clinic]"
+        ) from None
 
     def begin(connection: Connection) -> None:
         if connection.get_execution_options().get("takes_write_lock"):
@@ -305,10 +307,10 @@ def refuse_old_sqlite(version: tuple[int, ...]) -> None:
     if version < OLDEST_SQLITE:
         found, needed = (".".join(map(str, numbers)) for numbers in (version, OLDEST_SQLITE))
         raise LibraryError(
-            tr(
-                "This installation has SQLite {found}, which can lose what was saved; {needed} or later is needed"
-            ).format(found=found, needed=needed),
-            "Run packaging/start.py again: it installs the right one",
+            tr("SQLite {found} is installed and can lose saved data; {needed} or later is required").format(
+                found=found, needed=needed
+            ),
+            "Run packaging/start.py again to install the required version",
         )
 
 
@@ -377,7 +379,7 @@ def _told() -> Iterator[None]:
         # whoever writes on a server may put anything into a row; what is said of it would quote it
         _log.warning("a row cannot be read: %s", "".join(traceback.format_tb(error.__traceback__)))
         raise LibraryFaultError(
-            "The library holds an entry that Gaitwright did not write", "Restore the library from a backup"
+            "The library has an entry that Gaitwright did not write", "Restore the library from a backup"
         ) from None
 
 
@@ -388,14 +390,16 @@ def _commit(session: OrmSession) -> None:
     except DBAPIError as error:
         if error.connection_invalidated:
             raise LibraryFaultError(
-                "The clinic's server went away while this was being saved",
-                "Look whether it was saved before you do it again",
+                "The connection to the clinic's server was lost while saving",
+                "Check whether it was saved before you repeat it",
             ) from None
         raise
 
 
 def changed_meanwhile() -> ChangedMeanwhileError:
-    return ChangedMeanwhileError("Somebody else changed this meanwhile", "Look at the new values, then change it again")
+    return ChangedMeanwhileError(
+        "Someone else has changed this in the meantime", "Check the new values, then make your change again"
+    )
 
 
 def _is_locked(error: Exception) -> bool:
@@ -409,23 +413,26 @@ def _sentence(error: DBAPIError | PoolTimeoutError | sqlite.Error) -> LibraryErr
     cause = error.orig if isinstance(error, DBAPIError) else error
     words = str(cause)
     if getattr(cause, "sqlstate", "") == PG_NOT_ALLOWED:
-        return LibraryError("The clinic's server does not allow this to this station", "Ask whoever keeps the server")
+        return LibraryError(
+            "The clinic's server does not permit this for this workstation", "Ask the administrator of the server"
+        )
     if isinstance(error, IntegrityError):
-        return LibraryError("This contradicts what the library holds already", "Reload what is shown, then try again")
+        return LibraryError("This conflicts with data already in the library", "Reload this view, then try again")
     if _is_locked(error):
-        return LibraryBusyError("Another program keeps the library busy", "Wait a moment, then try again")
+        return LibraryBusyError("Another program is using the library", "Wait a moment, then try again")
     if "NUL (0x00)" in words:
-        return LibraryError("The clinic's server takes no text with the character NUL", "Remove it from the text")
+        return LibraryError("The clinic's server cannot store text with the NUL character", "Remove it from the text")
     if "not a database" in words:
         return LibraryFaultError(
-            "The library does not open with this key, or its first page is damaged", "Restore it from a backup"
+            "This key does not open the library, or the start of its file is damaged",
+            "Restore the library from a backup",
         )
     if "malformed" in words:
-        return LibraryFaultError("The library's file is damaged", "Restore it from a backup")
+        return LibraryFaultError("The library file is damaged", "Restore the library from a backup")
     if "is full" in words:
-        return LibraryFaultError("The disk is full, so the library could not take this", "Make room, then try again")
+        return LibraryFaultError("The disk is full, so this was not saved", "Free disk space, then try again")
     if "readonly" in words or "unable to open" in words:
-        return LibraryFaultError("The library's file cannot be opened for writing", "See to the rights of its folder")
+        return LibraryFaultError("The library file cannot be opened for writing", "Check the permissions of its folder")
     if type(cause).__module__.startswith("psycopg"):  # while a connection is made the server says why, if it answers
         for said, (what, remedy) in PG_SENTENCES:
             if any(one in words for one in said):
@@ -437,7 +444,7 @@ def _sentence(error: DBAPIError | PoolTimeoutError | sqlite.Error) -> LibraryErr
     if (isinstance(error, DBAPIError) and error.connection_invalidated) or "connection" in words:
         return ServerSilentError("The clinic's server does not answer", "Try again when it is back")
     if "disk I/O" in words:
-        return LibraryFaultError("The library's file cannot be read or written", "Check the disk, then try again")
+        return LibraryFaultError("The library file cannot be read or written", "Check the disk, then try again")
     return LibraryFaultError(
-        "The library's database refused this", "Try again; if it stays so, restore it from a backup"
+        "The library database rejected this", "Try again. If the problem persists, restore the library from a backup"
     )

@@ -75,8 +75,8 @@ def _refuse_other_encodings(database: Database) -> None:
         )
     if encoding not in ("UTF8", b"UTF8"):
         raise LibraryError(
-            "The server's database does not hold all letters: it is not in UTF-8",
-            "Make it anew: CREATE DATABASE ... ENCODING 'UTF8' TEMPLATE template0",
+            "The server's database cannot store all characters: it does not use UTF-8",
+            "Create it again: CREATE DATABASE ... ENCODING 'UTF8' TEMPLATE template0",
         )
 
 
@@ -91,4 +91,4 @@ def _refuse_unknown(step: str | None) -> None:
 
     known = {script.revision for script in ScriptDirectory.from_config(alembic_config()).walk_revisions()}
     if step is not None and step not in known:
-        raise LibraryError("A later version of Gaitwright has written this library", "Install the latest version")
+        raise LibraryError("This library was written by a newer version of Gaitwright", "Install the latest version")

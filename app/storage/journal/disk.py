@@ -33,8 +33,8 @@ class Trouble(StrEnum):
 
 TOLD = {
     Trouble.LITTLE_ROOM: (
-        later("The disk has room for less than five more minutes"),
-        later("Stop soon, and delete or move files that are not needed"),
+        later("The disk has space for less than five more minutes"),
+        later("Stop soon, then delete or move files you do not need"),
     ),
     Trouble.NO_ROOM: (
         later("The disk is almost full, so the recording was stopped"),
@@ -45,22 +45,22 @@ TOLD = {
         later("Delete or move files, then try again"),
     ),
     Trouble.DISK_GONE: (
-        later("The recording can no longer be written, so it was stopped"),
+        later("The disk no longer accepts the recording, so it was stopped"),
         later("Check the disk, then try again"),
     ),
     Trouble.MOVED: (
-        later("The library can no longer be written where it was, and the recording goes on"),
+        later("The library folder is no longer available; recording continues"),
         later(
-            "It is kept on this computer in {shelter}, encrypted as always, and added to the library by itself once it "
-            "is back. Put the folder back, or connect its disk"
+            "The recording is stored encrypted on this computer in {shelter}. It is added to the library "
+            "automatically once the library is back. Put the folder back, or connect its disk"
         ),
     ),
     Trouble.DISK_SLOW: (
-        later("The disk answers late"),
-        later("Close programs that copy or download to it"),
+        later("The disk responds slowly"),
+        later("Close programs that copy or download to this disk"),
     ),
     Trouble.DROPPED: (
-        later("The disk has not answered for too long, and samples had to be dropped"),
+        later("The disk did not respond for too long, so samples were lost"),
         later("Check the disk before recording again"),
     ),
 }
@@ -97,13 +97,13 @@ class Room:
         try:
             free = shutil.disk_usage(folder).free
         except OSError as error:
-            what = tr("the folder of the recordings cannot be read ({why})").format(why=error.strerror)
+            what = tr("the recordings folder cannot be read ({why})").format(why=error.strerror)
             raise JournalRefusedError(str(folder), what, "Check that its disk is connected") from error
         if free < needed:
-            what = tr("a recording needs {needed_mb:.0f} MB of free disk, and {free_mb:.0f} MB are left").format(
+            what = tr("not enough disk space to record: {needed_mb:.0f} MB needed, {free_mb:.0f} MB free").format(
                 needed_mb=needed / 1e6, free_mb=free / 1e6
             )
-            raise JournalRefusedError(str(folder), what, "Delete or move files that are not needed")
+            raise JournalRefusedError(str(folder), what, "Delete or move files you do not need")
 
 
 ROOM = Room()

@@ -93,7 +93,7 @@ class JournalHeader:
             Not a journal, of a later format, or damaged.
         """
         if content[: len(MAGIC)] != MAGIC or len(content) < HEADER_BYTES:
-            raise JournalRefusedError(where, "this is not a recording of Gaitwright, or its beginning is lost", RESTORE)
+            raise JournalRefusedError(where, "this is not a Gaitwright recording, or its beginning is missing", RESTORE)
         _, version, flags, recording, segment, wall_ns, opened_ns = IDENTITY.unpack_from(content)
         found = content[IDENTITY.size : IDENTITY.size + WRAPPED_BYTES]
         own = found if wrapped_key is None else wrapped_key
@@ -101,7 +101,7 @@ class JournalHeader:
         is_whole = struct.unpack_from("<I", content, HEADER_BYTES - 4)[0] == crc32c(content[: HEADER_BYTES - 4])
         if version != FORMAT:
             what = tr(
-                "this recording is of format {found}, this version reads {known}, or its beginning is damaged"
+                "this recording has format {found}, but this version reads {known}; or its beginning is damaged"
             ).format(found=version, known=FORMAT)
             raise JournalRefusedError(where, what, "Install the latest version, or restore it from a backup")
         # with the row's key only the rest has to be right, and the key's own tag proves it
@@ -131,19 +131,23 @@ class JournalHeader:
             sealed though the library is: somebody put it there.
         """
         if not self.is_sealed and data_key is not None:
-            raise JournalRefusedError(where, "this recording is not encrypted, so it is not this library's", RESTORE)
+            raise JournalRefusedError(
+                where, "this recording is not encrypted, so it does not belong to this library", RESTORE
+            )
         if not self.is_sealed:
             return None
         if data_key is None:
             raise JournalRefusedError(where, "this recording is encrypted", "Log in to its library")
         if self.is_key_destroyed:
-            raise JournalRefusedError(where, "this recording was destroyed for good", "Only a backup may still hold it")
+            raise JournalRefusedError(
+                where, "this recording was permanently destroyed", "Only a backup may still contain it"
+            )
         nonce, wrapped = self.wrapped_key[:NONCE_BYTES], self.wrapped_key[NONCE_BYTES:]
         try:
             return AESGCM(_wrapping_key(data_key)).decrypt(nonce, wrapped, self.identity)
         except (InvalidTag, ValueError):
             raise JournalRefusedError(
-                where, "the key of this recording is damaged or another library's", RESTORE
+                where, "the key of this recording is damaged or belongs to another library", RESTORE
             ) from None
 
 

@@ -35,22 +35,22 @@ def hint_for(missing: Missing, prosthetic_sides: frozenset[Side] = frozenset()) 
         )
         return Hint(sentence, how, tr("The therapist moves the limb."), icon)
     if is_circle:
-        how = tr("Change direction. Seated or standing, held by the hand is fine.")
+        how = tr("Change direction. Seated or standing, moved by hand if needed.")
         return Hint(sentence, how, tr("Change direction. Seated is fine."), icon)
-    how = tr("To and fro, as far as is comfortable. Held by the hand is fine.")
-    return Hint(sentence, how, tr("To and fro. Held is fine."), icon)
+    how = tr("Back and forth, as far as comfortable. Moving it by hand is fine.")
+    return Hint(sentence, how, tr("Back and forth. Moving it by hand is fine."), icon)
 
 
 def first_hint() -> Hint:
     """Before anything moves, or while nobody knows who is where."""
-    how = tr("One leg, then the other. Seated, lying or standing, held by the hand is fine.")
-    return Hint(tr("Move any leg"), how, tr("One leg, then the other. Seated is fine."))
+    how = tr("One leg, then the other. Seated, lying or standing, moved by hand if needed.")
+    return Hint(tr("Move either leg"), how, tr("One leg, then the other. Seated is fine."))
 
 
 def unplaced_hint() -> Hint:
     """While the motion is to tell which sensor is where: the leg that moves first is the left one."""
-    how = tr("Then the right one: the motion tells which sensor is where.")
-    return Hint(tr("Move the left leg first"), how, tr("Then the right one."))
+    how = tr("Then the right leg. The movement identifies the sensor positions.")
+    return Hint(tr("Move the left leg first"), how, tr("Then the right leg."))
 
 
 def judged(motion: FreeMotionState, prosthetic_sides: frozenset[Side]) -> dict[Joint, GaugeState]:
@@ -68,7 +68,7 @@ def enough_for(motion: FreeMotionState, prosthetic_sides: frozenset[Side]) -> st
     """
     states = judged(motion, prosthetic_sides)
     if states and all(state in CLOSED for state in states.values()):
-        return tr("enough motion")
+        return tr("enough movement")
     knees = [state for joint, state in states.items() if joint.is_knee]
     ankles = [state for joint, state in states.items() if not joint.is_knee]
     of_knees = tr_n("{enough} of {count} knee", "{enough} of {count} knees", len(knees))
@@ -78,8 +78,8 @@ def enough_for(motion: FreeMotionState, prosthetic_sides: frozenset[Side]) -> st
         for words, of_kind in ((of_knees, knees), (of_ankles, ankles))
         if of_kind
     ]
-    said = tr("enough motion for {counts}").format(counts=", ".join(counts))
-    loose = tr("{joint}: no hinge")
+    said = tr("enough movement for {counts}").format(counts=", ".join(counts))
+    loose = tr("{joint}: not a hinge")
     named = [loose.format(joint=name_of(joint)) for joint, state in states.items() if state is GaugeState.LOOSE]
     return "; ".join([said, *named])
 
@@ -87,25 +87,25 @@ def enough_for(motion: FreeMotionState, prosthetic_sides: frozenset[Side]) -> st
 def last_hint(motion: FreeMotionState, prosthetic_sides: frozenset[Side] = frozenset()) -> Hint:
     """When nothing is left to do: enough motion, a joint that is no hinge, or some only as good as it gave."""
     states = judged(motion, prosthetic_sides)
-    then = tr("Walking comes next, by itself.")
+    then = tr("Walking follows automatically.")
     if all(state in CLOSED for state in states.values()):
         ankles = [joint for joint in states if not joint.is_knee]
-        finds = tr_n("It finds the ankle's axis.", "It finds the ankles' axes.", len(ankles)) if ankles else ""
+        finds = tr_n("It determines the ankle axis.", "It determines the ankle axes.", len(ankles)) if ankles else ""
         if open_hip(motion) is not None:
-            hips = tr("With a turn it shows the hips.")
-            with_axes = tr("It finds the ankles' axes and, with a turn, the hips.")
+            hips = tr("With a turn, it also calibrates the hips.")
+            with_axes = tr("It determines the ankle axes and, with a turn, calibrates the hips.")
             finds = with_axes if ankles else hips
         how = " ".join(filter(None, [then, finds]))
-        return Hint(tr("Enough motion"), how, tr("Walking comes next."), Icon.CHECK)
+        return Hint(tr("Enough movement"), how, tr("Walking is next."), Icon.CHECK)
     loose = [joint for joint, state in states.items() if state is GaugeState.LOOSE]
     if loose and all(state.is_closed for state in motion.joints.values()):
-        sentence = tr("{joint}: no hinge").format(joint=capitalised(name_of(loose[0])))
+        sentence = tr("{joint}: not a hinge").format(joint=capitalised(name_of(loose[0])))
         if len(loose) > 1:
-            sentence = tr("{count} joints: no hinges").format(count=len(loose))
-        angle = tr("The angle is the part about the main axis.")
-        return Hint(sentence, f"{angle} {then}", tr("Walking comes next."), Icon.WARNING)
-    how = tr("Go on to walking, or repeat one leg.")
-    return Hint(tr("As good as it gets"), how, how, Icon.INFO)
+            sentence = tr("{count} joints: not hinges").format(count=len(loose))
+        angle = tr("The angle is the rotation about the main axis.")
+        return Hint(sentence, f"{angle} {then}", tr("Walking is next."), Icon.WARNING)
+    how = tr("Continue to walking, or repeat one leg.")
+    return Hint(tr("Certainty no longer rises"), how, how, Icon.INFO)
 
 
 def open_hip(motion: FreeMotionState) -> Joint | None:
@@ -116,24 +116,24 @@ def open_hip(motion: FreeMotionState) -> Joint | None:
 
 def hip_hint() -> Hint:
     """Ask for what shows the hips: they accelerate little while one leg circles."""
-    how = tr("Or lunges, left and right. Circling legs do not show the hips; a walk does.")
+    how = tr("Or lunges, left and right. Circling the legs does not calibrate the hips; walking does.")
     return Hint(tr("Walk 15 s, with a turn"), how, tr("Or lunges, left and right."), Icon.NEXT)
 
 
 def played_hint(has_played: bool) -> Hint:
     """When a replayed patient moves no more, or never did."""
     if not has_played:
-        how = tr("Its joints are found from its walks, less surely. Go on to walking.")
-        return Hint(tr("Replay has no free motion"), how, tr("Go on to walking."), Icon.INFO)
-    how = tr("Record again to play it from its beginning, or go on with what there is.")
-    return Hint(tr("The replay has ended"), how, tr("Record again, or go on."), Icon.INFO)
+        how = tr("Joints are calibrated from the walks, with less certainty. Continue to walking.")
+        return Hint(tr("Replay has no free motion"), how, tr("Continue to walking."), Icon.INFO)
+    how = tr("Record again to replay from the start, or continue with the data so far.")
+    return Hint(tr("The replay has ended"), how, tr("Record again, or continue."), Icon.INFO)
 
 
 def recorded_hint(motion: FreeMotionState, prosthetic_sides: frozenset[Side] = frozenset()) -> Hint:
     """Once it is recorded: what came of it, as far as that is known; of an earlier day it is not."""
-    how = tr("Go on to walking, or repeat one leg.")
+    how = tr("Continue to walking, or repeat one leg.")
     if not motion.joints:
-        return Hint(tr("Free motion is recorded"), how, how, Icon.CHECK)
+        return Hint(tr("Free motion recorded"), how, how, Icon.CHECK)
     if motion.is_done:
         return replace(last_hint(motion, prosthetic_sides), how=how, how_short=how)
     return Hint(tr("Stopped early"), how, how, Icon.INFO)
@@ -143,11 +143,11 @@ def absent_note(joint: Joint, worn: Collection[Site], without_ankle: Collection[
     """Say why a joint has no gauge; empty where it has one."""
     is_ankle = not joint.is_knee and not joint.is_hip
     if is_ankle and joint.side in without_ankle and joint.proximal in worn and joint.distal in worn:
-        return tr("Foot without ankle joint: nothing to find. Its angle is called foot against shank.")
+        return tr("Foot without ankle joint: nothing to calibrate. The angle is called foot relative to shank.")
     missing = [site for site in (joint.proximal, joint.distal) if site not in worn]
     if not missing:
         return ""
-    told = tr("{sites} without sensor: no {joint} angle.")
+    told = tr("No sensor on {sites}: no {joint} angle.")
     sites = [name_of(site) for site in missing]
     both = tr("{first} and {last}").format(first=sites[0], last=sites[-1]) if len(sites) == 2 else sites[0]
     return told.format(sites=both, joint=name_of(joint))
@@ -236,22 +236,22 @@ def price_of_stopping(
 ) -> str:
     """Say what stopping now leaves undone; empty where nothing is."""
     if not motion.joints:
-        return tr("Nothing is known of the joints yet.")
+        return tr("No joint is calibrated yet.")
     is_open = [joint for joint, state in motion.joints.items() if not state.is_closed]
     unknown = [joint for joint in is_open if _is_unknown(joint, motion.joints[joint])]
     if unknown:
         names = _names(unknown)
-        return tr("Stopping now leaves {joints} without angles to rely on.").format(joints=names)
+        return tr("If you stop now, angles are unreliable for {joints}.").format(joints=names)
     if not is_open:
         return ""
     worst = max(is_open, key=lambda joint: motion.joints[joint].wanting)
     figure = _figure(worst, motion.joints[worst], wanted_of(worst, prosthetic_sides))
     if motion.joints[worst].is_plateau or len(is_open) > 1 or not can_move:
-        rest = tr("Go on and the report says so.")
+        rest = tr("If you continue, the report states this.")
     elif worst.side is Side.LEFT:
-        rest = tr("Go on and the report says so, or move the left leg for {seconds:.0f} more seconds.")
+        rest = tr("Move the left leg for {seconds:.0f} more seconds, or continue: the report then states this.")
     else:
-        rest = tr("Go on and the report says so, or move the right leg for {seconds:.0f} more seconds.")
+        rest = tr("Move the right leg for {seconds:.0f} more seconds, or continue: the report then states this.")
     return f"{figure} {rest.format(seconds=ASKED_FOR_S)}"
 
 
@@ -296,9 +296,9 @@ def _figure(joint: Joint, state: ExcitationState, wanted: Wanted) -> str:
     axis, centre = math.degrees(state.axis_sd_rad), 1000 * state.centre_sd_m
     axis_wanted, centre_wanted = math.degrees(wanted.axis_rad), 1000 * wanted.centre_m
     if joint.is_knee and axis / axis_wanted >= centre / centre_wanted:
-        said = tr("{joint}: {figure}°, {wanted:g}° wanted.")
+        said = tr("{joint}: {figure}°, limit {wanted:g}°.")
         return said.format(joint=name, figure=two_digits(axis, axis_wanted), wanted=axis_wanted)
-    said = tr("{joint}: {figure} mm, {wanted:g} mm wanted.")
+    said = tr("{joint}: {figure} mm, limit {wanted:g} mm.")
     return said.format(joint=name, figure=two_digits(centre, centre_wanted), wanted=centre_wanted)
 
 

@@ -27,7 +27,7 @@ def motion_bar(facts: BarFacts, repeatable: Sequence[Side]) -> BarState:
     """`repeatable`: the legs that may be repeated."""
     words = {Side.LEFT: (tr("Repeat left"), "L"), Side.RIGHT: (tr("Repeat right"), "R")}
     repeat = tuple(BarAction(*words[side], Icon.REPEAT) for side in repeatable)
-    go_on = BarAction(tr("Go on to walking"), tr("Enter"), Icon.NEXT)
+    go_on = BarAction(tr("Continue to walking"), tr("Enter"), Icon.NEXT)
     again = BarAction(tr("Record again"), tr("Space"), Icon.REPEAT, is_wished=False)
     stop = BarAction(tr("Stop early"), tr("Space"), Icon.STOP, is_wished=False)
     check = BarAction(tr("Check positions"), "P")
@@ -35,12 +35,12 @@ def motion_bar(facts: BarFacts, repeatable: Sequence[Side]) -> BarState:
         use = BarAction(tr("Use detected positions"), tr("Enter"), Icon.CHECK)
         return BarState(primary=use, others=(stop if facts.is_recording else again,), quiet=(check,))
     if not facts.is_recording and not facts.has_moved:
-        begin = BarAction(tr("Begin the free motion"), tr("Space"), Icon.PLAY)
+        begin = BarAction(tr("Start free motion"), tr("Space"), Icon.PLAY)
         return BarState(primary=begin, quiet=(check,) if facts.is_unplaced else ())
     if not facts.is_recording:
         return BarState(primary=go_on, others=(again,), quiet=repeat)
     if facts.is_done:
-        return BarState(primary=go_on, quiet=repeat, note=facts.price or tr("Goes on by itself."))
+        return BarState(primary=go_on, quiet=repeat, note=facts.price or tr("Continues automatically."))
     if facts.is_played and not facts.has_played:
         return BarState(primary=go_on)
     if facts.is_played:

@@ -33,16 +33,16 @@ class SideQuestion:
     def words(self) -> Words:
         """What stands on the screen: a question, what was understood, or nothing."""
         if self.asked is not None:
-            which = tr("Which leg wears {sensor} on its shank?")
+            which = tr("Which leg has {sensor} on the shank?")
             if self._contradicted is not None:
-                which = tr("Earlier {sensor} was worn on the {side} leg. Which leg wears it now?")
+                which = tr("{sensor} was on the {side} leg before. Which leg is it on now?")
             elif self._are_both:
-                which = tr("Both legs moved at once. Which one wears {sensor} on its shank?")
+                which = tr("Both legs moved at once. Which leg has {sensor} on the shank?")
             side = "" if self._contradicted is None else side_name(self._contradicted)
             return which.format(sensor=self.asked, side=side), "", (tr("Left"), tr("Right"))
         if self.told is not None:
             sensor, side = self.told
-            understood = tr("Understood: {sensor} is on the {side} leg.").format(sensor=sensor, side=side_name(side))
+            understood = tr("{sensor} set to the {side} leg.").format(sensor=sensor, side=side_name(side))
             return understood, "", (tr("Undo"),)
         return SILENT
 

@@ -118,7 +118,7 @@ class FreeMotionStep(Step):
         if not self._has_moved:
             return ""
         if not joints:
-            return tr("cut short") if self._is_cut_short else ""
+            return tr("stopped early") if self._is_cut_short else ""
         return enough_for(self._motion, self._visit.prosthetic_sides)
 
     @property
@@ -396,11 +396,13 @@ class FreeMotionStep(Step):
         joints = self._motion.joints
         is_kept = not joints or any(state.moved_s > 0 for state in joints.values())
         if not is_kept and self._replaced is not None:
-            self._left = tr("No leg moved: the free motion before this one stays in force."), ""
+            self._left = tr("No leg moved. The previous free motion still applies."), ""
             self._motion = self._replaced
         elif not is_kept:
-            then = tr("The joints are found from the walks, less surely; or go back to free motion to record it again.")
-            self._left = tr("No leg moved in the free motion, so it does not count."), then
+            then = tr(
+                "Joints are calibrated from the walks, with less certainty. To record free motion again, go back to it."
+            )
+            self._left = tr("No leg moved, so this free motion is not used."), then
         self._visit.recordings.stop(is_kept=is_kept)
         self.changed.emit()
 
@@ -413,12 +415,12 @@ class FreeMotionStep(Step):
         again = tr("Go back to free motion to record it again.")
         is_kept = self._replaced is None and any(state.moved_s > 0 for state in joints.values())
         if self._replaced is not None:
-            self._left = tr("Free motion was left before its end: the one before it stays in force."), again
+            self._left = tr("Free motion was left early. The previous one still applies."), again
             self._motion = self._replaced
         elif not is_kept:
-            self._left = tr("Free motion was left before a leg had moved, so it does not count."), again
+            self._left = tr("Free motion was left before a leg moved, so it is not used."), again
         else:
-            what = tr("Free motion was left before its end and is kept: {enough}.")
+            what = tr("Free motion was left early and is used: {enough}.")
             self._left = what.format(enough=enough_for(self._motion, self._visit.prosthetic_sides)), again
         self._visit.recordings.stop(is_kept=is_kept)
 

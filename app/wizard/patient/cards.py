@@ -41,7 +41,7 @@ class BandCard(Card):
         self._words = Text(look, size=14, wraps=True)
         self._advice.addWidget(self._mark, 0, Qt.AlignmentFlag.AlignTop)
         self._advice.addWidget(self._words, 1)
-        self.column.addWidget(Text(look, tr("Reference band"), size=16, weight=SEMIBOLD))
+        self.column.addWidget(Text(look, tr("Reference"), size=16, weight=SEMIBOLD))
         self.column.addWidget(Text(look, group, size=14, wraps=True))
         self.column.addWidget(_BandDrawing(look, curves))
         self.column.addLayout(self._advice)
@@ -50,13 +50,15 @@ class BandCard(Card):
         """Say whether a patient of `age` years is of the group's age."""
         youngest, oldest = self._ages_years
         if age is None:
-            words = tr("Type the birth year to hear whether the band fits the age.")
+            words = tr("Enter the birth year to check whether the reference fits the age.")
         elif age > oldest:
-            words = tr("Of other ages than {age}: drawn, but nothing is said of a distance from it.").format(age=age)
+            words = tr(
+                "The reference does not cover age {age}. It is shown, but differences from it are not reported."
+            ).format(age=age)
         elif age < youngest:
-            words = tr("Adults: children of {age} walk otherwise, so no band is drawn.").format(age=age)
+            words = tr("The reference is for adults. Gait differs at age {age}, so it is not shown.").format(age=age)
         else:
-            words = tr("Of the patient's age. The speed still has to fit, for which the height is needed.")
+            words = tr("The reference fits the patient's age. The speed must also fit, which requires the body height.")
         self._words.setText(words)
 
     def _on_look_changed(self) -> None:
@@ -74,7 +76,7 @@ class _BandDrawing(QWidget):
         self.setAccessibleName(self._title())
         peak = int(curves.knee_mean_deg.argmax())
         self.setAccessibleDescription(
-            tr("Peak {angle}° at {percent} % of the stride").format(
+            tr("Peak {angle}° at {percent} % of the gait cycle").format(
                 angle=f"{curves.knee_mean_deg[peak]:.0f}", percent=peak
             )
         )
@@ -139,7 +141,7 @@ class LastVisitCard(Card):
         self._facts = QGridLayout()
         super().__init__(look, padding=20, spacing=10)
         self._title = Text(look, size=16, weight=SEMIBOLD, wraps=True)
-        self.same = Button(look, tr("Same set-up as last visit"), ButtonKind.SECONDARY, Icon.REPEAT)
+        self.same = Button(look, tr("Use last visit's set-up"), ButtonKind.SECONDARY, Icon.REPEAT)
         self._facts.setColumnStretch(1, 1)
         self._shown: list[Text] = []
         self.column.addWidget(self._title)

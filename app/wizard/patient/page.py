@@ -74,10 +74,10 @@ class PatientPage(Themed):
         self._shown = PatientDraft()
         self._taken_code = ""
         self._is_compact = False
-        self._title = Text(look, tr("Who is walking today?"), size=26, weight=SEMIBOLD, wraps=True)
+        self._title = Text(look, tr("Patient details"), size=26, weight=SEMIBOLD, wraps=True)
         self._subtitle = Text(
             look,
-            tr("Only the code is needed. The rest chooses the reference band and is printed."),
+            tr("Only the code is required. The rest selects the reference and is printed."),
             size=15,
             tone="ink2",
             wraps=True,
@@ -85,16 +85,14 @@ class PatientPage(Themed):
         self._saved = Text(look, size=14, tone="ink2")
         self.code = Field(look, tr("Patient code"), is_code=True, most=MOST_OF_CODE)
         self.sex = Segmented(
-            look, tr("Sex"), [("female", tr("Female"), ""), ("male", tr("Male"), ""), ("", tr("Not told"), "")]
+            look, tr("Sex"), [("female", tr("Female"), ""), ("male", tr("Male"), ""), ("", tr("Not recorded"), "")]
         )
         self.birth_year = NumberField(look, tr("Birth year"), low=1900, high=self._year, is_optional=True)
-        self.height_cm = NumberField(
-            look, tr("Body height"), low=30, high=280, decimals=1, unit=tr("cm"), is_optional=True
-        )
-        self.mass_kg = NumberField(look, tr("Mass"), low=1, high=500, decimals=1, unit=tr("kg"), is_optional=True)
+        self.height_cm = NumberField(look, tr("Height"), low=30, high=280, decimals=1, unit=tr("cm"), is_optional=True)
+        self.mass_kg = NumberField(look, tr("Weight"), low=1, high=500, decimals=1, unit=tr("kg"), is_optional=True)
         self.side = Segmented(
             look,
-            tr("Which side is it about?"),
+            tr("Affected or prosthetic side"),
             [
                 ("none", tr("Neither"), ""),
                 ("left", tr("Left"), ""),
@@ -103,7 +101,7 @@ class PatientPage(Themed):
             ],
         )
         self.limb = Segmented(
-            look, tr("What is it?"), [("affected", tr("Affected"), ""), ("prosthetic", tr("Prosthetic"), "")]
+            look, tr("This side is"), [("affected", tr("Affected"), ""), ("prosthetic", tr("Prosthetic"), "")]
         )
         self.device = Field(look, tr("Device"), is_optional=True, most=MOST_OF_DEVICE)
         self.ankles = {
@@ -211,7 +209,9 @@ class PatientPage(Themed):
     def show_code_taken(self, code: str) -> None:
         """Say that `code` is another patient's, and offer to take that one; an empty code takes it back."""
         self._taken_code = code
-        self.code.set_wrong(tr("{code} exists. Open it, or choose another code.").format(code=code) if code else "")
+        self.code.set_wrong(
+            tr("{code} already exists. Open it, or choose another code.").format(code=code) if code else ""
+        )
         self._taken.show_code(code)
         self._taken.setVisible(bool(code))
         self._fit()
@@ -224,18 +224,18 @@ class PatientPage(Themed):
         self._fit()
 
     def _build(self) -> None:
-        self._limb_box = _Captioned(self._look, self.limb, tr("What is it?"))
+        self._limb_box = _Captioned(self._look, self.limb, tr("This side is"))
         ankles = QWidget()
         self._ankle_row = QBoxLayout(_ACROSS, ankles)
         self._ankle_row.setContentsMargins(0, 0, 0, 0)
         for chips in self.ankles.values():
             self._ankle_row.addWidget(chips, 1)
         self._ankle_box = _Captioned(
-            self._look, ankles, tr("Prosthetic foot"), tr("its angle is then called foot against shank")
+            self._look, ankles, tr("Prosthetic foot"), tr("its angle is then called foot relative to shank")
         )
         sex = _Captioned(self._look, self.sex, tr("Sex"))
-        side = _Captioned(self._look, self.side, tr("Which side is it about?"))
-        aids = _Captioned(self._look, self.aids, tr("Aids and footwear"), tr("as many as apply"))
+        side = _Captioned(self._look, self.side, tr("Affected or prosthetic side"))
+        aids = _Captioned(self._look, self.aids, tr("Aids and footwear"), tr("all that apply"))
         self._form = Card(self._look, padding=24, spacing=16)
         self._rows = [
             self._row(self.code, sex),

@@ -83,13 +83,13 @@ class PatientStep(Step):
 
     def bar(self) -> BarState:
         has_code = bool(self._visit.patient.details.code)
-        note = tr("Type the patient's code to go on.")
+        note = tr("Enter the patient's code to continue.")
         if has_code:
             note = tr("Saved as you type.") if self._visit.patient.is_saved else tr("Not saved yet.")
         if self._taken_code:
             note = tr("Not saved: {code} is another patient's code.").format(code=self._taken_code)
         can_go_on = has_code and not self._taken_code
-        return BarState(primary=BarAction(tr("Put on sensors"), tr("Enter"), is_enabled=can_go_on), note=note)
+        return BarState(primary=BarAction(tr("Attach sensors"), tr("Enter"), is_enabled=can_go_on), note=note)
 
     def on_primary(self) -> None:
         patient = self._visit.patient
@@ -189,7 +189,7 @@ class PatientStep(Step):
             told = self._visit.session.details.patient.code
             self.told.emit(
                 tr("This session belongs to {code}.").format(code=told),
-                tr("Go back to all patients to begin one with another."),
+                tr("Go back to all patients to start a session for another patient."),
             )
             return
 
@@ -235,8 +235,8 @@ def _last_visit(session: "StoredSession") -> LastVisit:
         day = told.started
     walks = [one for one in told.recordings if one.kind is RecordingKind.WALKING and one.is_kept]
     facts = [
-        (tr("Walks"), ", ".join(dict.fromkeys(walk.condition or walk.name for walk in walks)) or tr("none kept")),
-        (tr("Zero"), _zero_in_words(told)),
+        (tr("Walks"), ", ".join(dict.fromkeys(walk.condition or walk.name for walk in walks)) or tr("none included")),
+        (tr("Standing reference"), _zero_in_words(told)),
     ]
     if session.placements:
         sensors = session.placements[-1].site_of

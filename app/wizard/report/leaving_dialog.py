@@ -25,23 +25,21 @@ class LeavingDialog(QDialog):
     def __init__(self, look: ThemeNotifier, previews: Mapping[frozenset[str], Rows], parent: QWidget) -> None:
         super().__init__(parent)
         self._look, self._previews = look, previews
-        self.setWindowTitle(tr("What leaves without the name"))
+        self.setWindowTitle(tr("Export without the name"))
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        self._title = Text(look, tr("What leaves without the name"), size=20, weight=SEMIBOLD, wraps=True)
+        self._title = Text(look, tr("Export without the name"), size=20, weight=SEMIBOLD, wraps=True)
         self._lead = Text(
             look,
             tr(
-                "The XLSX, C3D, OpenSim and FHIR files say this beside their figures, and nothing more. The report "
-                "that is saved with them names the code: it is for the patient's file. Dates are moved, "
-                "by as much for every visit of the patient."
+                "Besides measured values, the XLSX, C3D, OpenSim and FHIR files contain only what is listed "
+                "here. The report saved with them shows the patient code and belongs in the patient's file. "
+                "Dates are shifted by the same amount for every visit of the patient."
             ),
             tone="ink2",
             wraps=True,
         )
-        self._also = Text(
-            look, tr("Typed freely, and may say a name: leaves only if ticked"), weight=MEDIUM, wraps=True
-        )
-        self.typed = Chips(look, tr("Leaves as it was typed"), self._options())
+        self._also = Text(look, tr("Free text may contain a name: exported only if ticked"), weight=MEDIUM, wraps=True)
+        self.typed = Chips(look, tr("Export as typed"), self._options())
         self._table = QWidget()
         self._grid = QGridLayout(self._table)
         self._grid.setColumnStretch(1, 1)
@@ -66,14 +64,14 @@ class LeavingDialog(QDialog):
             ("aids", tr("Aids and footwear")),
             ("surface", tr("Surface")),
             ("conditions", tr("Conditions")),
-            ("changes", tr("Changes at a prosthesis")),
+            ("changes", tr("Prosthesis changes")),
         ]
 
     def _build(self) -> None:
         scroll = ReadingArea()
         scroll.setWidgetResizable(True)
         scroll.setFrameShape(QFrame.Shape.NoFrame)
-        scroll.setAccessibleName(tr("All that leaves beside the figures"))
+        scroll.setAccessibleName(tr("Everything exported besides measured values"))
         scroll.setWidget(self._table)
         buttons = QHBoxLayout()
         buttons.addStretch(1)

@@ -51,9 +51,9 @@ class ReportPage(Themed):
         self.reading.setFrameShape(QFrame.Shape.NoFrame)
         self.reading.setWidgetResizable(True)
         self.reading.setWidget(self.sheets)
-        self.reading.setAccessibleName(tr("The report's pages"))
+        self.reading.setAccessibleName(tr("Report pages"))
         self.comment = QPlainTextEdit()
-        self.comment.setAccessibleName(tr("Your words, optional, printed"))
+        self.comment.setAccessibleName(tr("Clinical comment, optional, printed"))
         self.comment.setTabChangesFocus(True)
         self.comment.setPlaceholderText(tr("Printed above the signature."))
         self.comment.installEventFilter(self)
@@ -73,21 +73,21 @@ class ReportPage(Themed):
         self.paper = Segmented(look, tr("Paper"), [("a4", tr("A4"), ""), ("letter", tr("Letter"), "")])
         self.earlier = Choice(look, tr("Compare with"))
         self._earlier_title = Text(look, tr("Compare with"), size=16, weight=SEMIBOLD)
-        self._title = Text(look, tr("Your words"), size=20, weight=SEMIBOLD)
+        self._title = Text(look, tr("Clinical comment"), size=20, weight=SEMIBOLD)
         self._also = Text(look, tr("Also save"), size=16, weight=SEMIBOLD)
         self._sheet = Text(look, tr("Paper"), size=16, weight=SEMIBOLD)
         self.added = Chips(
             look,
-            tr("Pages added"),
+            tr("Extra pages"),
             [
-                ("course", tr("Course")),
+                ("course", tr("Progress so far")),
                 ("en", tr("Patient, English")),
                 ("de", tr("Patient, German")),
             ],
             rivals=("en", "de"),
         )
         self.added.choose(("course",))
-        self._added_title = Text(look, tr("Pages added"), size=16, weight=SEMIBOLD)
+        self._added_title = Text(look, tr("Extra pages"), size=16, weight=SEMIBOLD)
         self._card = Card(look, padding=20, spacing=12)
         for parts in (
             (self._title, self.comment, self._added_title, self.added, self._earlier_title, self.earlier),

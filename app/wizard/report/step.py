@@ -120,8 +120,8 @@ class ReportStep(Step):
         save = BarAction(tr("Save the report"), tr("Ctrl S"), Icon.FOLDER, is_enabled=self.can_save())
         put = BarAction(tr("Print"), tr("Ctrl P"), Icon.PRINT, is_wished=False, is_enabled=self.can_save())
         if self.saved is None:
-            return BarState(primary=save, others=(put,), note=tr("Only the code stands in it, no name."))
-        note = tr("Saved as {folder}. Saving again asks where.").format(folder=self.saved.name)
+            return BarState(primary=save, others=(put,), note=tr("Shows the patient code only, no name."))
+        note = tr("Saved as {folder}. Saving again asks for the folder.").format(folder=self.saved.name)
         show = BarAction(tr("Open the folder"), is_wished=False)
         return BarState(primary=replace(save, is_wished=False), others=(put, show), note=note)
 
@@ -147,7 +147,7 @@ class ReportStep(Step):
         self._ask_where()
 
     def _ask_where(self) -> None:
-        title = tr("Save the report and the results into a new folder")
+        title = tr("Save the report and the results in a new folder")
         self.dialog = ask_for_new_folder(self.page, title, self._proposed_in, self.save_in)
 
     def _proposed_in(self, place: Path) -> str:
@@ -195,7 +195,7 @@ class ReportStep(Step):
 
     def _on_printable(self, pages: list[bytes]) -> None:
         if not self.printer.put(pages):
-            self.told.emit(tr("The printer did not take the report."), tr("Save it, and print the file."))
+            self.told.emit(tr("The printer did not accept the report."), tr("Save it, then print the file."))
 
     def can_save(self) -> bool:
         return self._has_results() and not self._lacks_earlier
@@ -272,7 +272,7 @@ class ReportStep(Step):
         _log.error("the report could not be set", exc_info=error)
         self._has_failed = True
         self.page.report.show_pages([])
-        self.told.emit(tr("The report cannot be shown."), tr("The log holds the details."))
+        self.told.emit(tr("The report cannot be shown."), tr("See the log for details."))
 
     def _on_comment_edited(self, comment: str) -> None:
         shown, self._shown_comment = self._shown_comment, comment
@@ -397,8 +397,8 @@ class ReportStep(Step):
                 what, remedy = (filled(said, refusal.values) for said in (refusal.what, refusal.remedy))
                 raise LibraryError(capitalised(what), remedy) from refusal
             except OSError as problem:
-                what = tr("{folder} cannot be written").format(folder=out.name)
-                raise LibraryError(what, tr("Choose another folder; the recordings are untouched")) from problem
+                what = tr("{folder} is not writable").format(folder=out.name)
+                raise LibraryError(what, tr("Choose another folder; the recordings are unchanged")) from problem
             return out, lines
 
         self._controller.run_long(save, self._on_saved, self._on_refused, None, self)

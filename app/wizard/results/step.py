@@ -88,7 +88,7 @@ class ResultsStep(Step):
     @property
     def note(self) -> str:
         kept = sum(one.details.is_kept and one.is_decided for one in self._visit.recordings.walks)
-        return tr("{count} kept").format(count=kept) if kept else ""  # of those that somebody kept
+        return tr("{count} included").format(count=kept) if kept else ""  # of those that somebody kept
 
     @property
     def state(self) -> StepState:
@@ -168,7 +168,7 @@ class ResultsStep(Step):
             page.setCurrentWidget(page.working)
         elif evaluation.analysis is None or not evaluation.analysis.recordings:
             page.sentence.show_sentence(
-                tr("No walk is kept yet."), tr("Record one, or keep one that was discarded."), tr("Go to Walking")
+                tr("No walk is included yet."), tr("Record a walk, or include an excluded one."), tr("Go to Walking")
             )
             page.setCurrentWidget(page.sentence)
         else:
@@ -254,7 +254,7 @@ class ResultsStep(Step):
         for recording in visit.recordings.walks:
             strides = visit.evaluation.strides(recording.details.name)
             counted = ", ".join(f"{side[0].upper()} {count}" for side, count in strides.items())
-            told = tr("strides {counts}").format(counts=counted) if counted else tr("not evaluated")
+            told = tr("strides {counts}").format(counts=counted) if counted else tr("not analysed")
             walks.append(
                 WalkLine(
                     str(recording.id),
@@ -269,13 +269,13 @@ class ResultsStep(Step):
         joints = []
         for joint in (joint for joint in LEG_JOINTS if joint in found):
             turned = visit.details.turned_sign.get(joint)
-            note = tr("turned by hand") if turned == -1 else tr("confirmed by hand") if turned == 1 else ""
+            note = tr("reversed by hand") if turned == -1 else tr("confirmed by hand") if turned == 1 else ""
             if not note:
-                note = tr("as found") if found[joint].is_sign_certain else tr("as found, unsure")
+                note = tr("as detected") if found[joint].is_sign_certain else tr("as detected, uncertain")
             joints.append(JointLine(joint, turned == -1, note))
         page.show_joints(joints)
         is_live = visit.sensors.acquisition is not None
-        page.show_sides(tr("While sensors are heard, sides are swapped on the page Sensors.") if is_live else "")
+        page.show_sides(tr("While sensors are connected, swap the sides on the Sensors page.") if is_live else "")
         self.page.setCurrentWidget(page)
 
     def _correct_page(self) -> CorrectPage:
@@ -299,7 +299,7 @@ class ResultsStep(Step):
         before, walk = recording.details.condition, self._visit.recordings.shown_names[recording.details.name]
         self._change_condition(key, condition)
         self._offer(
-            tr("{walk} is {condition} now.").format(walk=walk, condition=condition or tr("without condition")),
+            tr("{walk}: condition now {condition}.").format(walk=walk, condition=condition or tr("not recorded")),
             lambda: self._change_condition(key, before),
         )
 
@@ -314,7 +314,7 @@ class ResultsStep(Step):
         name, told = recording.details.name, self._visit.recordings.told
         counting = [replace(one, is_kept=True) if one.name == name else one for one in told]  # else it has no letter
         self._keep(key, is_kept)
-        said = tr("{walk} counts.") if is_kept else tr("{walk} is left out.")
+        said = tr("{walk} is included.") if is_kept else tr("{walk} is excluded.")
         walk = capitalised(str(shown_names(counting)[name]))
         self._offer(said.format(walk=walk), lambda: self._keep(key, not is_kept))
 
@@ -326,7 +326,7 @@ class ResultsStep(Step):
         joint = Joint(name)
         before = self._visit.details.turned_sign.get(joint)
         self._visit.record.set_turned(joint, -1 if is_turned else None)
-        said = tr("{joint}: the sign is turned.") if is_turned else tr("{joint}: the sign is as found.")
+        said = tr("{joint}: sign reversed.") if is_turned else tr("{joint}: sign as detected.")
         words = said.format(joint=capitalised(name_of(joint)))
         self._offer(words, lambda: self._visit.record.set_turned(joint, before))
 

@@ -36,14 +36,14 @@ class StrideChoice(QObject):
         others = tuple(time_s for time_s in before.get(line.side, ()) if not line.start_s <= time_s < line.end_s)
         middle_s = (line.start_s + line.end_s) / 2
         times_s = tuple(sorted((*others, middle_s))) if is_left_out else others
-        told = tr("{stride} of {walk} is left out.") if is_left_out else tr("{stride} of {walk} counts again.")
+        told = tr("{stride} of {walk} is excluded.") if is_left_out else tr("{stride} of {walk} is included again.")
         said = told.format(stride=line.name, walk=self._called(walk))
         self._change(recording, {**before, line.side: times_s}, said)
 
     def take_all_in(self, walk: str) -> None:
         """Let all strides of a walk count that were left out by hand."""
         if (recording := self._recording(walk)) is not None:
-            said = tr("All strides of {walk} count that can be used.").format(walk=self._called(walk))
+            said = tr("All usable strides of {walk} are included.").format(walk=self._called(walk))
             self._change(recording, {}, said)
 
     def _change(self, recording: "SessionRecording", left_out_s: LeftOut, told: str) -> None:

@@ -70,14 +70,14 @@ class ColumnsForm(Themed):
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look = look
-        self._title = Text(look, tr("What do the numbers mean?"), 20, SEMIBOLD, wraps=True)
+        self._title = Text(look, tr("Meaning of the columns"), 20, SEMIBOLD, wraps=True)
         self._where = Text(look, size=14, tone="ink2", wraps=True)
         self._room = 0
         self.meanings: list[Choice] = []
         self._numbers: list[Text] = []
         self._values: list[Text] = []
         self.time = self._choice(
-            tr("Time counts"),
+            tr("Time unit"),
             {
                 "s": tr("seconds"),
                 "ms": tr("milliseconds"),
@@ -85,7 +85,7 @@ class ColumnsForm(Themed):
             },
         )
         self.wraps = self._choice(
-            tr("Time begins anew"),
+            tr("Time restarts"),
             {
                 "0": tr("never"),
                 "16": tr("after 16 bits"),
@@ -122,7 +122,7 @@ class ColumnsForm(Themed):
 
     def show_places(self, places: Sequence[str]) -> None:
         """Say at which ports these lines are heard."""
-        self._where.setText(tr("Lines of numbers at {places}").format(places=", ".join(places)))
+        self._where.setText(tr("Text lines (CSV) at {places}").format(places=", ".join(places)))
 
     def show_told(self, told: ColumnsTold) -> None:
         """Show what is known or guessed; the user's changes follow as `changed`."""
@@ -242,5 +242,5 @@ def _meanings() -> dict[str, str]:
         Meaning.FORCE_Y: tr("acceleration y"),
         Meaning.FORCE_Z: tr("acceleration z"),
     }
-    turned = {f"-{meaning}": tr("{quantity}, turned round").format(quantity=word) for meaning, word in words.items()}
+    turned = {f"-{meaning}": tr("{quantity}, reversed").format(quantity=word) for meaning, word in words.items()}
     return {Meaning.UNUSED: tr("not needed"), Meaning.TIME: tr("time"), **words, **turned}

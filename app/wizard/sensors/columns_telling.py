@@ -128,8 +128,8 @@ def _told_of(columns: Columns | None, count: int) -> ColumnsTold:
 
 
 def _missing() -> tuple[str, str, bool]:
-    what = tr("Time, three angular rates and three accelerations are needed, each once.")
-    return what, tr("Set columns that are something else to “not needed”."), False
+    what = tr("Assign time, three angular rates and three accelerations, each once.")
+    return what, tr("Set all other columns to “not needed”."), False
 
 
 def _said_of(columns: Columns, table: FloatArray) -> tuple[str, str, bool]:
@@ -139,15 +139,15 @@ def _said_of(columns: Columns, table: FloatArray) -> tuple[str, str, bool]:
     rates = table[:, columns.rate] * RATE_UNITS[columns.rate_unit]
     force = float(np.median(np.linalg.norm(table[:, columns.force] * FORCE_UNITS[columns.force_unit], axis=1)))
     if not SLOWEST_HZ <= rate_hz <= FASTEST_HZ:
-        what = tr("By this time, {rate} samples come in a second.").format(rate=figure_text(rate_hz, ".3g"))
-        return what, tr("Choose another column or unit of the time."), False
+        what = tr("This time column gives {rate} samples per second.").format(rate=figure_text(rate_hz, ".3g"))
+        return what, tr("Choose another column or unit for the time."), False
     if not STILL[0] * G < force < STILL[1] * G:
-        what = tr("The acceleration reads {force} m/s²; at rest it must be 9.8.")
+        what = tr("The acceleration is {force} m/s²; at rest it must be 9.8.")
         what = what.format(force=figure_text(force, ".3g"))
         return what, tr("Hold the sensor still, or choose other columns or another unit."), False
     if float(np.abs(rates).max()) > FASTEST_RAD_S:
-        return tr("The angular rate is faster than a leg turns."), tr("Choose other columns or another unit."), False
-    what = tr("{rate} samples a second, {force} m/s²: this can be so.").format(
+        return tr("The angular rate is too high for a leg."), tr("Choose other columns or another unit."), False
+    what = tr("{rate} samples per second, {force} m/s²: plausible.").format(
         rate=figure_text(rate_hz, ".3g"), force=figure_text(force, ".2g")
     )
-    return what, tr("Turn the sensor by hand: the three angular rates must follow, and rest near 0."), True
+    return what, tr("Turn the sensor by hand: the three angular rates must follow, and be near 0 at rest."), True

@@ -135,14 +135,14 @@ class DotForm(Themed):
         self._lines: tuple[DotLine, ...] = ()
         self._title = Text(look, size=20, weight=SEMIBOLD, wraps=True)
         self._lead = Text(look, size=14, tone="ink2", wraps=True)
-        self.list = DotList(look, tr("Sensors that were heard"), row=ROW, head=HEAD, padding=PADDING, is_list=True)
-        self.list.setAccessibleDescription(tr("Space turns the tick of a sensor, I lets its light blink."))
+        self.list = DotList(look, tr("Sensors found"), row=ROW, head=HEAD, padding=PADDING, is_list=True)
+        self.list.setAccessibleDescription(tr("Press Space to tick or untick a sensor, I to make its LED blink."))
         self.identify = Button(look, tr("Identify"), ButtonKind.SECONDARY, Icon.LIGHT, key="I", height=44)
         self.walks = self._choice(
             tr("Walks"),
             {
-                120: tr("in the sensors, 120 Hz"),
-                60: tr("in the sensors, 60 Hz"),
+                120: tr("in sensor memory, 120 Hz"),
+                60: tr("in sensor memory, 60 Hz"),
                 0: tr("sent live"),
             },
         )
@@ -192,10 +192,13 @@ class DotForm(Themed):
         self.list.choose(min(max(row, 0), len(lines) - 1))
         self._fit()
         count = len(lines)
-        title = tr_n("{count} Movella DOT is heard", "{count} Movella DOTs are heard", count)
+        title = tr_n("{count} Movella DOT found", "{count} Movella DOTs found", count)
         self._title.setText(title.format(count=count))
         self._lead.setText(
-            tr("Tick those that are worn. Lay them side by side near this computer until they are synchronised.")
+            tr(
+                "Tick the sensors that are worn. Place them side by side near this computer until they are "
+                "synchronised."
+            )
         )
 
     def tell(self, what: str, then: str = "") -> None:
@@ -291,16 +294,15 @@ class DotForm(Themed):
         record_hz = self.choice.record_hz
         if record_hz == 120:
             said = tr(
-                "Nothing of a walk is lost over the air, however far the patient goes. Its curves come once it is "
-                "fetched. Before the first walk the sensors are synchronised once more."
+                "No walk data are lost in radio transmission, at any distance. Curves appear once the walk is "
+                "fetched. The sensors are synchronised again before the first walk."
             )
         elif record_hz:
             said = tr(
-                "Nothing of a walk is lost over the air, however far the patient goes. Its curves come once it is "
-                "fetched."
+                "No walk data are lost in radio transmission, at any distance. Curves appear once the walk is fetched."
             )
         else:
-            said = tr("Curves are shown while the patient walks. What is lost over the air is missing.")
+            said = tr("Curves are shown during walking. Data lost in radio transmission are missing.")
         self._consequence.setText(said)
 
     def _on_clicked(self, index: QModelIndex) -> None:

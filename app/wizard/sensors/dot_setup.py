@@ -94,7 +94,7 @@ class DotSetup(QObject):
         """Why the step cannot be left now; empty where it can."""
         if not self.is_synchronising:
             return ""
-        return tr("The sensors are being synchronised. Wait until they are, or cancel it.")
+        return tr("The sensors are being synchronised. Wait, or cancel.")
 
     def show_on(self, form: "DotForm", progress: "SensorsProgress") -> None:
         """Have these show what is asked and done, from now on."""
@@ -156,10 +156,10 @@ class DotSetup(QObject):
         count = len(self._worn)
         if self._recording:
             stop = BarAction(tr("Stop these recordings"), tr("Enter"), Icon.STOP, is_enabled=not self._is_stopping)
-            return BarState(primary=stop, note=tr("What they recorded stays in their memories."))
+            return BarState(primary=stop, note=tr("Their recordings stay in the sensor memory."))
         if self._failed and len(self._failed) < count:
             again = BarAction(tr("Try again"), tr("Enter"), Icon.REPEAT)
-            without = tr("Leave out {sensors}").format(sensors=", ".join(self._failed))
+            without = tr("Continue without {sensors}").format(sensors=", ".join(self._failed))
             return BarState(primary=again, others=(BarAction(without, is_wished=False),))
         words = tr("Use this sensor")
         if count != 1:
@@ -230,7 +230,7 @@ class DotSetup(QObject):
         except SourceRefusedError as problem:
             self._refusal = f"{filled(problem.what, problem.values)}.", f"{filled(problem.remedy, problem.values)}."
         except SourceLostError:
-            self._refusal = tr("A sensor is out of reach."), tr("Bring it nearer, then try again.")
+            self._refusal = tr("A sensor is out of range."), tr("Bring it closer, then try again.")
         else:
             self._refusal = ("", "")
         for number in recording:
@@ -299,7 +299,10 @@ class DotSetup(QObject):
     def _on_asking_failed(self, _error: Exception) -> None:
         if self.is_on:
             self._is_stopping = False
-            self._refusal = tr("The sensors could not be asked."), tr("Choose the source again; the log has more.")
+            self._refusal = (
+                tr("The sensors could not be queried."),
+                tr("Choose the source again. See the log for details."),
+            )
             self._show()
 
     def _on_sync_changed(self) -> None:
@@ -332,10 +335,10 @@ def _identify(fleet: DotFleet, number: int) -> None:
 def _note_of(asked: DotAsked) -> str:
     match asked:
         case DotAsked.SILENT:
-            return tr("does not answer: press its button")
+            return tr("does not respond: press its button")
         case DotAsked.RECORDING:
-            return tr("records in its memory")
+            return tr("recording to memory")
         case DotAsked.TOO_OLD:
-            return tr("firmware too old to be synchronised")
+            return tr("firmware too old to synchronise")
         case DotAsked.ANSWERED:
             return ""

@@ -78,7 +78,7 @@ class MemoriesControl(QObject):
         """Why the step cannot be left now; empty where it can."""
         if self._is_fetching and (fetched := self._fetch.cannot_leave):
             return fetched
-        return tr("The sensors are being asked. Wait until they have answered, or cancel it.") if self.is_busy else ""
+        return tr("The sensors are being queried. Wait, or cancel.") if self.is_busy else ""
 
     def show_on(self, form: "MemoriesForm", progress: "SensorsProgress") -> None:
         """Have these show what is found and done, from now on."""
@@ -118,13 +118,13 @@ class MemoriesControl(QObject):
             return BarState(primary=again, quiet=(BarAction(tr("Back to the sensors")),))
         if not self._held:
             return BarState(primary=BarAction(tr("Back to the sensors"), tr("Enter")))
-        words = tr("Erase the memories")
+        words = tr("Erase sensor memory")
         if self._is_warned:
-            words = tr("Erase now, and lose what is not kept") if self._unkept else tr("Erase now")
+            words = tr("Erase now, losing unsaved data") if self._unkept else tr("Erase now")
         back, erase = tr("Back to the sensors"), (BarAction(words, is_wished=False),)
         if self._chosen is None:
             return BarState(primary=BarAction(back, tr("Enter"), is_wished=False), others=erase)
-        return BarState(primary=BarAction(tr("Fetch it"), tr("Enter")), others=erase, quiet=(BarAction(back),))
+        return BarState(primary=BarAction(tr("Fetch walk"), tr("Enter")), others=erase, quiet=(BarAction(back),))
 
     def on_primary(self) -> None:
         if self._is_fetching:
@@ -197,16 +197,16 @@ class MemoriesControl(QObject):
         if found.kept:
             missing = sorted(held.files.keys() - found.kept)
             if missing:
-                return tr("Kept, but not of {sensors}.").format(sensors=", ".join(missing))
+                return tr("Saved, except from {sensors}.").format(sensors=", ".join(missing))
             if found.lacking:
                 names = ", ".join(sorted(found.lacking & held.files.keys()))
-                return tr("Kept. Samples of {sensors} could not be fetched.").format(sensors=names)
+                return tr("Saved. Samples of {sensors} could not be fetched.").format(sensors=names)
             counted = [row for row in own if row.details.is_kept] or own  # one that was left was fetched into another
-            return tr("Kept: {recording}.").format(recording=self._called(counted[0])) if own else tr("Kept.")
+            return tr("Saved: {recording}.").format(recording=self._called(counted[0])) if own else tr("Saved.")
         if own:
             return tr("Not fetched: {recording}.").format(recording=self._called(own[0]))
         if found.rows:
-            return tr("Not fetched. It is of another session: fetch it there.")
+            return tr("Not fetched. It belongs to another session: fetch it there.")
         return tr("Not recorded with this library.")
 
     def _called(self, row: "StoredRecording") -> str:
@@ -216,7 +216,7 @@ class MemoriesControl(QObject):
     # what is done
 
     def _look(self) -> None:
-        self._ask(tr("The sensors are asked what they hold"), lambda memories, tell, tick: memories.held(tell, tick))
+        self._ask(tr("Checking what the sensors recorded"), lambda memories, tell, tick: memories.held(tell, tick))
 
     def _erase(self) -> None:
         held = self._held
@@ -228,7 +228,7 @@ class MemoriesControl(QObject):
             memories.erase(gone, utc_s, tell, tick)
             return memories.held(tell, tick)
 
-        self._ask(tr("The memories are being erased"), work)
+        self._ask(tr("The sensor memory is being erased"), work)
 
     def _ask(self, title: str, asked: Asked) -> None:
         memories = self._memories
@@ -302,13 +302,13 @@ class MemoriesControl(QObject):
         if not self.is_on or self._form is None:
             return
         self._error = error
-        what, then = tr("The sensors could not be asked."), tr("Try again; the log has more.")
+        what, then = tr("The sensors could not be queried."), tr("Try again. See the log for details.")
         if isinstance(error, SourceRefusedError):
             what, then = f"{filled(error.what, error.values)}.", f"{filled(error.remedy, error.values)}."
         elif isinstance(error, SourceLostError):
             what, then = (
-                tr("A sensor is out of reach."),
-                tr("Bring all sensors nearer to this computer, then try again."),
+                tr("A sensor is out of range."),
+                tr("Bring all sensors closer to this computer, then try again."),
             )
         self._form.show_unknown(what, then)
         self._show()
@@ -357,21 +357,21 @@ def _warning(
     held: Sequence[HeldRecording], unkept: Sequence[HeldRecording], lacking: Sequence[HeldRecording]
 ) -> tuple[str, str]:
     """What is lost by erasing, and what to do."""
-    then = tr("Press once more to erase. It cannot be undone.")
+    then = tr("Press again to erase. This cannot be undone.")
     if unkept:
         count = len(unkept)
         what = tr_n(
-            "{count} recording is not kept in this library, and would be lost.",
-            "{count} recordings are not kept in this library, and would be lost.",
+            "{count} recording is not saved in this library and would be lost.",
+            "{count} recordings are not saved in this library and would be lost.",
             count,
         )
         return what.format(count=count), then
     if lacking:
-        return tr("All is kept but for samples that could not be fetched: those would be lost."), then
+        return tr("Everything is saved except samples that could not be fetched. Those would be lost."), then
     count = len(held)
     what = tr_n(
-        "{count} recording is in the memories, and kept in this library, every sample of it.",
-        "{count} recordings are in the memories, and kept in this library, every sample of them.",
+        "{count} recording in the sensor memory is saved completely in this library.",
+        "{count} recordings in the sensor memory are saved completely in this library.",
         count,
     )
     return what.format(count=count), then

@@ -82,30 +82,30 @@ class MemoriesForm(Themed):
     def show_lines(self, lines: Sequence[HeldLine]) -> None:
         """Show these, oldest first; the first that can be fetched is chosen."""
         self._lines = tuple(lines)
-        heads = [tr("Begun"), tr("Sensors")]
+        heads = [tr("Started"), tr("Sensors")]
         columns = [TableColumn(TextCell(head, size=12, tone="ink2")) for head in heads]
-        columns.append(TableColumn(TextCell(tr("What is known of it"), size=12, tone="ink2", wraps=True), share=1))
+        columns.append(TableColumn(TextCell(tr("Status"), size=12, tone="ink2", wraps=True), share=1))
         self.list.show_rows(columns, [_row(number, line) for number, line in enumerate(lines)])
         self.list.setVisible(bool(lines))
         wanted = [number for number, line in enumerate(lines) if line.can_fetch]
         if lines:
             self.list.choose(wanted[0] if wanted else 0)
         count = len(lines)
-        title = tr("The sensors' memories are empty")
+        title = tr("The sensor memory is empty")
         if count:
             title = tr_n(
-                "{count} recording is in the sensors' memories",
-                "{count} recordings are in the sensors' memories",
+                "{count} recording in the sensor memory",
+                "{count} recordings in the sensor memory",
                 count,
             ).format(count=count)
         self._title.setText(title)
-        self._lead.setText(tr("A memory is erased as a whole, with all that it holds.") if count else "")
+        self._lead.setText(tr("Erasing clears the whole memory of a sensor.") if count else "")
         self._lead.setVisible(bool(count))
 
     def show_unknown(self, what: str, then: str) -> None:
         """Say why it is not known what they hold, and what to do."""
         self.show_lines(())
-        self._title.setText(tr("It is not known what the sensors hold"))
+        self._title.setText(tr("The content of the sensor memory is unknown"))
         self.tell(what, then)
 
     def tell(self, what: str, then: str = "") -> None:

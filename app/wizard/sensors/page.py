@@ -93,16 +93,16 @@ class SensorsPage(Themed):
         self.title = Text(look, size=26, weight=SEMIBOLD, wraps=True)
         self.subtitle = Text(look, "", 15, tone="ink2", wraps=True)
         self._name(has_pelvis=False)
-        self.sources = Choice(look, tr("Source of the sensors"))
+        self.sources = Choice(look, tr("Sensor source"))
         self.sources.setPlaceholderText(tr("Choose a source"))
         self.places = SensorPlaces(look)
         self.ways = Segmented(
             look,
-            tr("How it is told which sensor is where"),
+            tr("Sensor positions"),
             [
                 (Way.DRAG, tr("Drag"), tr("onto the figure")),
                 (Way.SHAKE, tr("Shake"), tr("each sensor in turn")),
-                (Way.MOTION, tr("Movement decides"), tr("found in the free motion")),
+                (Way.MOTION, tr("Detect from movement"), tr("during free motion")),
             ],
         )
         self.list = SensorList(look)
@@ -414,11 +414,11 @@ class SensorsPage(Themed):
             mark = None if self.way is Way.MOTION else SensorMark.GAP
             return PlaceShown("", note, mark, is_next, is_flashing)
         if sensor.silent_s > 0:
-            return PlaceShown(sensor.name, tr("silent"), SensorMark.SILENT, is_next, is_flashing)
+            return PlaceShown(sensor.name, tr("no signal"), SensorMark.SILENT, is_next, is_flashing)
         if sensor.is_low:
             return PlaceShown(sensor.name, tr("charge"), SensorMark.LOOK, is_next, is_flashing)
         if sensor.is_lossy:
-            return PlaceShown(sensor.name, tr("losses"), SensorMark.LOOK, is_next, is_flashing)
+            return PlaceShown(sensor.name, tr("data loss"), SensorMark.LOOK, is_next, is_flashing)
         return PlaceShown(sensor.name, "", SensorMark.WORN, is_next, is_flashing)
 
     def _sentence(self, worn: Mapping[Site, SensorRow]) -> Said:
@@ -430,16 +430,16 @@ class SensorsPage(Themed):
         if self._shaken_together:
             return said_of_shaken_together(self._shaken_together)
         if self._doubt:
-            return Icon.WARNING, self._doubt, tr("Change their positions, or go on to keep them."), True
+            return Icon.WARNING, self._doubt, tr("Change their positions, or continue with these."), True
         next_place = self.next_place if self.way is Way.SHAKE else None
         is_left_to_motion = self.way is Way.MOTION
         return said_of_sensors(self._sensors, worn, self._bared, next_place, is_left_to_motion, self.offered_places)
 
     def _name(self, has_pelvis: bool) -> None:
         """Say how many sensors there are, and where they go."""
-        six, seven = tr("Six sensors, any way round"), tr("Seven sensors, any way round")
-        legs = tr("Strap them on thigh, shank and foot. Direction does not matter.")
-        pelvis = tr("On thigh, shank and foot, and on the sacrum, not on a waistband. Direction does not matter.")
+        six, seven = tr("Six sensors, any orientation"), tr("Seven sensors, any orientation")
+        legs = tr("Strap them to thigh, shank and foot. Orientation does not matter.")
+        pelvis = tr("On thigh, shank and foot, and on the sacrum, not on a waistband. Orientation does not matter.")
         self.title.setText(seven if has_pelvis else six)
         self.subtitle.setText(pelvis if has_pelvis else legs)
 

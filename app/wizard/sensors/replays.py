@@ -43,8 +43,8 @@ def replay_of(session: "Session", name: str) -> SourceChoice:
         if recording.is_kept and any(len(block) for block in recording.imu.values())
     )
     if not recordings:
-        what = tr("Nothing was recorded in this session that can be replayed")
-        raise LibraryError(what, tr("Choose another one"))
+        what = tr("This session has no recording that can be replayed")
+        raise LibraryError(what, tr("Choose another session"))
     played = replace(session, recordings=recordings)
 
     def make() -> Acquisition:

@@ -137,7 +137,7 @@ class SensorList(Themed):
                 widest(theme.font(12), [tr("Battery")]),
             ),
             "worn": px(CHIP + 6 + CHEVRON + 6)
-            + max(widest(text, [tr("nowhere"), *(segment_name(site.segment) for site in self._places)]), px(50)),
+            + max(widest(text, [tr("none"), *(segment_name(site.segment) for site in self._places)]), px(50)),
             "identify": max(px(IDENTIFY), widest(theme.font(12), [tr("Identify")])),
         }
         if self._is_narrow:
@@ -157,7 +157,7 @@ class SensorList(Themed):
         """What may be said of any sensor: there is room for it from the first, so that no column moves later."""
         figures = [tr("{rate} Hz").format(rate=100), tr("{percent} %").format(percent=100)] if self._is_narrow else []
         lost = tr("{share} % lost").format(share=figure_text(10.0, ".1f"))
-        return [tr("charge soon"), tr("not heard"), lost, " · ".join(figures)]
+        return [tr("charge soon"), tr("no signal"), lost, " · ".join(figures)]
 
     def second_line(self, sensor: SensorRow) -> str:
         """Under the name: what is the matter, or the model; in a narrow list rate and battery as well."""
@@ -228,7 +228,7 @@ class _Heading(QWidget):
             "trace": movement if has_room else tr("Last 5 s"),
             "rate": tr("Rate"),
             "battery": tr("Battery"),
-            "worn": tr("Worn on"),
+            "worn": tr("Position"),
             "identify": tr("Identify"),
         }
         return [

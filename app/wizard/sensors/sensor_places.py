@@ -368,7 +368,7 @@ class _Tile(DraggedButton):
 
 def _notes() -> tuple[str, ...]:
     """What may be said of a sensor that is worn, the longest first."""
-    return tuple(sorted((tr("silent"), tr("charge"), tr("losses")), key=len, reverse=True))
+    return tuple(sorted((tr("no signal"), tr("charge"), tr("data loss")), key=len, reverse=True))
 
 
 def number_of(site: Site) -> int:

@@ -77,14 +77,14 @@ class SensorRow:
     def second_line(self) -> str:
         """What is the matter with it, or else its model."""
         if self.silent_s > 0:
-            return tr("not heard")
+            return tr("no signal")
         if self.is_low:
             return tr("charge soon")
         if self.is_lossy:
             return tr("{share} % lost").format(share=figure_text(100 * self.lost_share, ".1f"))
         if self.quiet is not None:
             return quiet_words(self.quiet)
-        return tr(self.model) if self.is_loss_seen else tr("losses not seen")
+        return tr(self.model) if self.is_loss_seen else tr("losses unknown")
 
     @property
     def rate(self) -> str:
@@ -153,7 +153,7 @@ class SensorRowView(DraggedButton):
         if places == self._places_offered:
             return
         self._places_offered = places
-        described = tr("1 to {count} say where it is worn, Space opens a list of the places")
+        described = tr("1 to {count} set the position, Space opens a list of positions")
         self.setAccessibleDescription(described.format(count=len(places)))
 
     def takes_other_room(self, sensor: SensorRow) -> bool:
@@ -165,7 +165,7 @@ class SensorRowView(DraggedButton):
         if sensor == self.sensor and self.accessibleName():
             return
         self.sensor = sensor
-        worn = tr("worn on {site}").format(site=name_of(sensor.site)) if sensor.site else tr("worn nowhere")
+        worn = tr("position: {site}").format(site=name_of(sensor.site)) if sensor.site else tr("no position")
         battery = tr("battery {charge}").format(charge=sensor.charge)
         self.setAccessibleName(", ".join([sensor.name, sensor.second_line, sensor.rate, battery, worn]))
         self.trace.show_silence(sensor.silent_s)
@@ -348,7 +348,7 @@ class _WornOn(PaintedButton):
         left = px(CHIP + 6) if self._site is not None and self._site.side is not None else 0
         return [
             PaintedText(
-                segment_name(self._site.segment) if self._site is not None else tr("nowhere"),
+                segment_name(self._site.segment) if self._site is not None else tr("none"),
                 QRectF(left, 0, self.width() - left - px(CHEVRON + 6), self.height()),
                 theme.font(14, MEDIUM if self._site is not None else REGULAR),
                 "caution_ink" if self._row.sensor.wants_look else "ink",
@@ -365,7 +365,7 @@ class _Identify(PaintedButton):
 
     def show_sensor(self, sensor: SensorRow) -> None:
         is_silent = sensor.silent_s > 0
-        name = tr("Look for {sensor} again") if is_silent else tr("Light the LED of {sensor}")
+        name = tr("Reconnect {sensor}") if is_silent else tr("Light the LED of {sensor}")
         self.setAccessibleName(name.format(sensor=sensor.name))
         self.setToolTip(self.accessibleName())
         self.setVisible(is_silent or sensor.can_identify)
@@ -392,11 +392,11 @@ class _PlaceMenu(QMenu):
     def __init__(self, look: ThemeNotifier, site: Site | None, places: tuple[Site, ...], parent: QWidget) -> None:
         super().__init__(parent)
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        self.setAccessibleName(tr("Worn on"))
+        self.setAccessibleName(tr("Position"))
         self.setFont(look.theme.font(16, SEMIBOLD))  # what the width is reckoned from
         group = QActionGroup(self)
         for one in (*places, None):
-            words = tr("Nowhere") if one is None else f"&{number_of(one)}  {capitalised(name_of(one))}"
+            words = tr("None") if one is None else f"&{number_of(one)}  {capitalised(name_of(one))}"
             action = QAction(words, self)
             action.setCheckable(True)
             action.setChecked(one is site)

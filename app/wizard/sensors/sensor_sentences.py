@@ -17,7 +17,7 @@ def said_of_dragged(sensor: str, site: Site, worn: Mapping[Site, SensorRow]) -> 
     """What happens to a sensor that is dropped here."""
     other = worn.get(site)
     if other is not None and other.name != sensor:
-        what = tr("{site} is already worn by {sensor}.").format(site=name_of(site), sensor=other.name)
+        what = tr("{site} already has sensor {sensor}.").format(site=name_of(site), sensor=other.name)
         return Icon.INFO, capitalised(what), tr("Drop here to swap the two."), False
     return Icon.INFO, capitalised(name_of(site)), tr("Drop {sensor} here.").format(sensor=sensor), False
 
@@ -26,7 +26,7 @@ def said_of_shaken_together(sensors: Sequence[str]) -> Said:
     """Several were shaken at once, which tells nothing."""
     first, *_, last = sensors
     what = (
-        tr("Both {first} and {last} were shaken.").format(first=first, last=last)
+        tr("{first} and {last} were both shaken.").format(first=first, last=last)
         if len(sensors) == 2
         else tr("{count} sensors were shaken.").format(count=len(sensors))
     )
@@ -58,38 +58,40 @@ def said_of_sensors(
     if (foot := _missing_foot(sensors, worn, bared, is_left_to_motion)) is not None:
         return Icon.WARNING, *_said_of_missing_foot(foot), True
     if low := [sensor for sensor in sensors if sensor.is_low]:
-        what = tr("{name} has {charge} battery.").format(name=_called(low[0]), charge=low[0].charge)
+        what = tr("{name}: battery at {charge}.").format(name=_called(low[0]), charge=low[0].charge)
         ends_soon = low[0].battery is not None and low[0].battery <= NEARLY_EMPTY
-        soon, later = tr("It may fall silent during a walk: charge it first."), tr("Charge it after this patient.")
+        soon, later = tr("It may stop during a walk. Charge it first."), tr("Charge it after this patient.")
         return Icon.WARNING, what, soon if ends_soon else later, True
     if lossy := [sensor for sensor in sensors if sensor.is_lossy]:
         what = tr("{name}: {share} % of the samples were lost.").format(
             name=_called(lossy[0]), share=figure_text(100 * lossy[0].lost_share, ".1f")
         )
-        nearer = tr("Bring the receiver nearer to the patient.")
+        nearer = tr("Move the receiver closer to the patient.")
         if lossy[0].has_memory:
-            nearer = tr("Bring this computer nearer, or choose the source again: walks in the sensors, or 30 Hz.")
+            nearer = tr("Move this computer closer, or choose the source again: walks in the sensors, or 30 Hz.")
         return Icon.WARNING, what, nearer, True
     if is_left_to_motion and not worn:
-        what = tr("The free motion tells which sensor is where.")
-        legs = tr("Strap one on each thigh, shank and foot, in any order.")
-        pelvis = tr("Strap one on each thigh, shank and foot and one on the sacrum, in any order.")
+        what = tr("Sensor positions are detected in the free motion.")
+        legs = tr("Attach one to each thigh, shank and foot, in any order.")
+        pelvis = tr("Attach one to each thigh, shank and foot and one to the sacrum, in any order.")
         return Icon.INFO, what, pelvis if has_pelvis else legs, False
     if len(worn) == len(places):
-        all_worn = tr("All seven are worn and heard.") if has_pelvis else tr("All six are worn and heard.")
+        all_worn = (
+            tr("All seven are assigned and connected.") if has_pelvis else tr("All six are assigned and connected.")
+        )
         return Icon.CHECK, all_worn, "", False
     if Site.PELVIS in bared and has_pelvis and len(worn) == len(LEG_SITES):
         what = tr("No sensor on the pelvis: no hip angles.")
-        return Icon.INFO, what, tr("Knees, ankles and steps stay as they are."), False
+        return Icon.INFO, what, tr("Knees, ankles and steps are not affected."), False
     if sensors and len(worn) == len(sensors):
-        return Icon.INFO, tr("All sensors have their place."), "", False
+        return Icon.INFO, tr("All sensors have a position."), "", False
     if next_place is not None:
-        what = tr("Shake the sensor of the {site}.").format(site=_in_sentence(next_place))
-        return Icon.NEXT, what, tr("Its place goes dark when it is known."), False
+        what = tr("Shake the {site} sensor.").format(site=_in_sentence(next_place))
+        return Icon.NEXT, what, tr("Its position turns dark once detected."), False
     return (
         Icon.NEXT,
-        tr("Drag each sensor to its place."),
-        tr("Or choose one and press 1 to {count}.").format(count=len(places)),
+        tr("Drag each sensor to its position."),
+        tr("Or select a sensor and press 1 to {count}.").format(count=len(places)),
         False,
     )
 
@@ -127,7 +129,7 @@ def _in_sentence(site: Site) -> str:
 
 def _said_of_silent(sensor: SensorRow, has_hips: bool) -> tuple[str, str]:
     seconds = max(round(sensor.silent_s), 1)
-    what = tr("{name} has been silent for {seconds} s.").format(name=_called(sensor), seconds=seconds)
+    what = tr("{name}: no signal for {seconds} s.").format(name=_called(sensor), seconds=seconds)
     if sensor.site is None:
         return what, tr("Switch it off and on.")
     lost = {
@@ -137,14 +139,14 @@ def _said_of_silent(sensor: SensorRow, has_hips: bool) -> tuple[str, str]:
         Site.RIGHT_THIGH: tr("right knee angles"),
         Site.RIGHT_SHANK: tr("right knee and ankle angles"),
         Site.RIGHT_FOOT: tr("right ankle angles"),
-        Site.PELVIS: tr("hip angles; knees and ankles stay"),
+        Site.PELVIS: tr("hip angles; knees and ankles are not affected"),
     }
     if has_hips:
         lost |= {
             Site.LEFT_THIGH: tr("left knee and hip angles"),
             Site.RIGHT_THIGH: tr("right knee and hip angles"),
         }
-    return what, tr("Switch it off and on, or go on without {angles}.").format(angles=lost[sensor.site])
+    return what, tr("Switch it off and on, or continue without {angles}.").format(angles=lost[sensor.site])
 
 
 def _said_of_missing_foot(foot: Site) -> tuple[str, str]:
@@ -152,4 +154,4 @@ def _said_of_missing_foot(foot: Site) -> tuple[str, str]:
         what = tr("No left foot sensor: no left ankle angles.")
     else:
         what = tr("No right foot sensor: no right ankle angles.")
-    return what, tr("Steps come from the shank. It will be printed.")
+    return what, tr("Steps are detected from the shank. The report states this.")

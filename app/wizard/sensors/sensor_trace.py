@@ -43,7 +43,7 @@ class Trace(QWidget):
             self.update()
 
     def show_silence(self, silent_s: float) -> None:
-        words = tr("silent {seconds} s").format(seconds=max(round(silent_s), 1)) if silent_s > 0 else ""
+        words = tr("no signal {seconds} s").format(seconds=max(round(silent_s), 1)) if silent_s > 0 else ""
         if words != self._silence:
             self._silence = words
             self.update()

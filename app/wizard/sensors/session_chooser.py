@@ -42,10 +42,10 @@ class SessionChooser(Themed):
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look = look
-        self._title = Text(look, tr("Which session should be replayed?"), 20, SEMIBOLD, wraps=True)
+        self._title = Text(look, tr("Choose a session to replay"), 20, SEMIBOLD, wraps=True)
         self._why = Text(
             look,
-            tr("It plays as if it were measured now. It was not: all that is made of it is marked SIMULATED."),
+            tr("It plays as if it were measured now. It is not: all results from it are marked SIMULATED."),
             14,
             tone="ink2",
             wraps=True,
@@ -53,7 +53,7 @@ class SessionChooser(Themed):
         self.notice = Notice(look, size=16)
         self.sessions = LineList(look, tr("Stored sessions"))
         self.sessions.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Ignored)  # it scrolls by itself
-        self._none = Text(look, tr("No other session with recordings is stored in this library."), 15, wraps=True)
+        self._none = Text(look, tr("This library contains no other session with recordings."), 15, wraps=True)
         self.folder = Button(look, tr("Choose a session folder"), ButtonKind.SECONDARY, Icon.FOLDER)
         self.back = Button(look, tr("Other sources"), ButtonKind.QUIET)
         self._lists = QStackedWidget()

@@ -39,7 +39,7 @@ class NoSource(Themed):
         self._look = look
         self.buttons: list[Button] = []
         self._options: list[SourceOption] = []
-        self._sentence = Text(look, tr("No sensors yet. Where should they be looked for?"), 20, SEMIBOLD, wraps=True)
+        self._sentence = Text(look, tr("No sensors yet. Choose where to search."), 20, SEMIBOLD, wraps=True)
         self._sentence.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self.notice = Notice(look, size=16)
         self._left_out = Text(look, size=14, tone="ink2", wraps=True)

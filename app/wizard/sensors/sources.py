@@ -122,7 +122,7 @@ class Sources(Sequence[SourceChoice]):
 
     def _of_lines(self) -> list[SourceChoice]:
         lines = self._found.lines if self._found is not None else ()
-        name = tr("Lines of numbers")
+        name = tr("Text lines (CSV)")
         return [SourceChoice(COLUMNS, name, self._open_all, lines=lines)] if lines else []
 
     def _choice(self, key: str, name: str, sensors: "Sequence[FoundSensor]") -> SourceChoice:
@@ -147,26 +147,26 @@ class Sources(Sequence[SourceChoice]):
             return _opening(others)
         if found.lines:
             raise SourceRefusedError(
-                later("Lines of numbers are heard, and nobody said what they mean"), later("Choose them as the source")
+                later("Text lines (CSV) arrive, but their columns are not defined"), later("Choose them as the source")
             )
         if len(found.passed) == 1:  # then it is this one that is meant
             raise found.passed[0].refusal
-        raise SourceRefusedError(later("No sensor was found"), _remedy(found.deaf))
+        raise SourceRefusedError(later("No sensor found"), _remedy(found.deaf))
 
 
 def _remedy(deaf: SourceRefusedError | None) -> str:
     """What to do where no sensor was found, and Bluetooth LE was `deaf`."""
     if isinstance(deaf, BluetoothMissingError):
         return later(
-            "Plug in the receiver or switch the sensors on, then search again; sensors with Bluetooth LE need "
-            "Gaitwright's extra bluetooth"
+            "Plug in the receiver or switch on the sensors, then search again. Bluetooth LE sensors need "
+            "gaitwright[bluetooth]"
         )
     if deaf is not None:
         return later(
-            "Plug in the receiver or switch the sensors on, then search again; sensors with Bluetooth LE are heard "
-            "once Bluetooth is switched on"
+            "Plug in the receiver or switch on the sensors, then search again. Bluetooth LE sensors "
+            "connect once Bluetooth is switched on"
         )
-    return later("Plug in the receiver or switch the sensors on, then search again")
+    return later("Plug in the receiver or switch on the sensors, then search again")
 
 
 def _demonstration(settings: "WalkerSettings" = DEMONSTRATION_SESSION) -> Acquisition:
@@ -186,13 +186,13 @@ def _of_streams(address: str) -> SourceChoice:
     """The streams where this computer has this address. Whom that asks is told before."""
     make = partial(_open_streams, address)
     if address == THIS_COMPUTER:
-        return SourceChoice(STREAMS + address, tr("Streams of this computer's programs"), make)
+        return SourceChoice(STREAMS + address, tr("Streams from programs on this computer"), make)
     what = tr(
-        "This asks every computer in the network of {address} whether it streams sensors: by UDP to {group}, "
-        "port {port}, then those that answer. Nothing about the patient is sent."
+        "This asks every computer on the network of {address} for sensor streams, by UDP to {group}, "
+        "port {port}. It then contacts those that answer. No patient data are sent."
     ).format(address=address, group=GROUP, port=PORT)
-    name = tr("Streams in the network of {address}").format(address=address)
-    return SourceChoice(STREAMS + address, name, make, asks=(what, tr("Choose it once more to ask.")))
+    name = tr("Streams on the network of {address}").format(address=address)
+    return SourceChoice(STREAMS + address, name, make, asks=(what, tr("Choose it again to ask.")))
 
 
 def _open_streams(address: str) -> Acquisition:
@@ -202,9 +202,7 @@ def _open_streams(address: str) -> Acquisition:
         return _opening(found.sensors)
     if len(found.passed) == 1:
         raise found.passed[0].refusal
-    raise SourceRefusedError(
-        later("No stream of motion was found"), later("Start it in the program that sends it, then ask again")
-    )
+    raise SourceRefusedError(later("No motion stream found"), later("Start the stream in its program, then ask again"))
 
 
 def fleet_of(sensors: "Sequence[FoundSensor]") -> "DotFleet":

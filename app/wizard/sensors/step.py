@@ -93,10 +93,10 @@ class SensorsStep(Step):
         if self._visit.cannot_record:
             return tr("not for this patient")
         if sensors.is_left_to_motion and not sensors.site_of:
-            return tr("left to the motion")
+            return tr("from free motion")
         if sensors.detected:
             return tr("positions look swapped")
-        return tr("{count} of {most} worn").format(count=len(sensors.site_of), most=len(sensors.places))
+        return tr("{count} of {most} assigned").format(count=len(sensors.site_of), most=len(sensors.places))
 
     @property
     def state(self) -> StepState:
@@ -115,7 +115,7 @@ class SensorsStep(Step):
         return (
             tr("Press Enter to save the patient first.")
             if patient.details.code
-            else tr("Type the patient's code first.")
+            else tr("Enter the patient's code first.")
         )
 
     @property
@@ -163,8 +163,8 @@ class SensorsStep(Step):
             visit.place_sensors()
             if any(known_at.get(site, name) != name for name, site in worn.items()):
                 visit.recordings.say_restrapped()
-                what = tr("Another sensor is worn. Standing reference and calibration no longer hold.")
-                self.told.emit(what, tr("Record the standing and the free motion again."))
+                what = tr("Another sensor is worn. Standing reference and calibration are no longer valid.")
+                self.told.emit(what, tr("Record standing and free motion again."))
 
     def tick(self) -> None:
         self._ticks += 1
@@ -187,7 +187,7 @@ class SensorsStep(Step):
 
     def bar(self) -> BarState:
         bar = self._bar()
-        return replace(bar, quiet=(BarAction(tr("Sensors' memories")),)) if self._may_ask_memories else bar
+        return replace(bar, quiet=(BarAction(tr("Sensor memory")),)) if self._may_ask_memories else bar
 
     @property
     def _is_asking(self) -> bool:
@@ -311,10 +311,10 @@ class SensorsStep(Step):
         asks = next((choice.asks for choice in visit.choices if choice.key == self._told_of), ("", ""))
         if not self.setup.is_on and sensors.sync.failure[0]:
             asks = sensors.sync.failure
-        page.tell(*asks if options else (tr("No source of sensors is at hand for this patient."), ""))
+        page.tell(*asks if options else (tr("No sensor source is available for this patient."), ""))
         apart = tr(
-            "Simulated and replayed sensors are offered only for codes that begin with DEMO, "
-            "so that they never pass for a real patient's."
+            "Simulated and replayed sensors are offered only for codes that begin with DEMO. This keeps "
+            "them apart from real patients."
         )
         page.nothing.show_left_out("" if visit.may_simulate else apart)
 
@@ -454,7 +454,7 @@ class SensorsStep(Step):
         try:
             self.telling.keep()
         except OSError as problem:
-            self.told.emit(tr("What the columns mean cannot be kept."), str(problem))
+            self.told.emit(tr("The column settings could not be saved."), str(problem))
             return
         self._on_source_chosen(SEARCH)
 
@@ -473,7 +473,7 @@ class SensorsStep(Step):
         acquisition = self._visit.sensors.acquisition
         if acquisition is not None and not acquisition.identify(sensor):
             self._without_light.add(sensor)
-            self.told.emit(tr("{sensor} has no light that can be lit.").format(sensor=sensor), tr("Shake it instead."))
+            self.told.emit(tr("{sensor} has no LED that can be lit.").format(sensor=sensor), tr("Shake it instead."))
             self._show_rows()
 
     def _on_reconnect_pressed(self, _sensor: str) -> None:

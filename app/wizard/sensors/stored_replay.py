@@ -84,7 +84,7 @@ class StoredReplay(QObject):
         if self.reading:
             return BarState()
         is_any = self._form is not None and self._form.session is not None
-        return BarState(primary=BarAction(tr("Replay it"), tr("Enter"), Icon.PLAY, is_enabled=is_any))
+        return BarState(primary=BarAction(tr("Replay"), tr("Enter"), Icon.PLAY, is_enabled=is_any))
 
     def on_primary(self) -> None:
         if self._form is not None and not self.reading and (session := self._form.session) is not None:

@@ -231,8 +231,8 @@ class _ZeroCard(Card):
         self._view = StandStillView()
         self._worn: frozenset[Joint] = frozenset(LEG_JOINTS)
         self.fields: dict[Joint, NumberField] = {}
-        self._column.addWidget(Text(look, tr("Zero angle"), size=20, weight=SEMIBOLD))
-        explained = tr("0° if the joint is straight now. Type the goniometer value for a contracture.")
+        self._column.addWidget(Text(look, tr("Standing angle"), size=20, weight=SEMIBOLD))
+        explained = tr("0° if the joint is straight now. With a contracture, enter the goniometer value.")
         self._column.addWidget(Text(look, explained, size=14, tone="ink2", wraps=True))
         self._add_joint(tr("Knee"), tr("flexion is +"), tr("Knee flexion"), KNEE_DEG, is_knee=True)
         self._add_joint(tr("Ankle"), tr("dorsiflexion is +"), tr("Ankle dorsiflexion"), ANKLE_DEG, is_knee=False)
@@ -292,14 +292,14 @@ class _ZeroCard(Card):
         for joint, one in self.fields.items():
             one.setEnabled(joint in self._worn and not is_skipped)
         missing = [joint for joint in READING if joint not in self._worn]
-        why = tr("Without standing there is no zero to set.") if is_skipped else _no_field(missing)
+        why = tr("Without standing there is no standing reference.") if is_skipped else _no_field(missing)
         self._why.setText(why)
         self._why.setVisible(bool(why))
         cannot = tr("Patient cannot stand still")
         self.button.setText(
-            tr("Stand still after all") if is_skipped else tr("Cannot stand still") if self._is_compact else cannot
+            tr("Patient can stand still") if is_skipped else tr("Cannot stand still") if self._is_compact else cannot
         )
-        self.button.setAccessibleName(tr("Stand still after all") if is_skipped else cannot)
+        self.button.setAccessibleName(tr("Patient can stand still") if is_skipped else cannot)
         self.button.updateGeometry()
         icon, what, then, is_caution = way_round(self._view, self._is_compact)
         self.note.tell(icon, what, then, is_caution)
@@ -354,17 +354,17 @@ class _ZeroField(NumberField):
 
 def title(view: StandStillView) -> str:
     """Say in two words what is asked for."""
-    return tr("Range only") if view.phase is StandPhase.SKIPPED else tr("Stand still")
+    return tr("ROM only") if view.phase is StandPhase.SKIPPED else tr("Stand still")
 
 
 def instruction(view: StandStillView) -> str:
     """Say how, or what came of it."""
     if view.phase is StandPhase.SKIPPED:
-        return tr("The patient cannot stand: angles will be given as range only, without absolute values.")
+        return tr("The patient cannot stand. Range of motion is reported, absolute angles are not.")
     if view.phase is StandPhase.DONE:
-        said = tr("{still:.1f} s still. Bias and zero are known.")
+        said = tr("{still:.1f} s still. Gyroscope offset and standing reference are set.")
         if not view.is_read_back:
-            said = tr("{still:.1f} s still. The recording is being read back.")
+            said = tr("{still:.1f} s still. The recording is being loaded.")
         return said.format(still=view.still_s)
     return tr("Both feet flat, looking ahead. Holding a rail is fine.")
 
@@ -388,19 +388,17 @@ def verdict(view: StandStillView, is_short: bool = False) -> tuple[Icon | None, 
         return None, "", "", False
     if view.phase is StandPhase.DONE:
         is_still = view.is_known and not view.moving
-        what = _all_still(len(view.movement_deg_s)) if is_still else tr("The standing is recorded")
-        return Icon.CHECK, what, tr("Goes on by itself."), False
+        what = _all_still(len(view.movement_deg_s)) if is_still else tr("Standing is recorded")
+        return Icon.CHECK, what, tr("Continues automatically."), False
     if view.silent == (Site.PELVIS,):
-        goes_on = tr("The count goes on; hip angles will be missing.")
-        return Icon.SILENT, tr("The pelvis is silent"), tr("No hip angles.") if is_short else goes_on, True
+        goes_on = tr("The count continues; hip angles will be missing.")
+        return Icon.SILENT, tr("Pelvis: no signal"), tr("No hip angles.") if is_short else goes_on, True
     if view.silent:
-        is_one = len(view.silent) == 1
-        what = (tr("{sites} is silent") if is_one else tr("{sites} are silent")).format(sites=_names(view.silent))
-        waits = tr("The count waits.")
+        what = tr("{sites}: no signal").format(sites=_names(view.silent))
+        waits = tr("The count is paused.")
         return Icon.SILENT, what, waits if is_short else f"{waits} {tr('Switch the sensor off and on.')}", True
     if view.moving:
-        is_one = len(view.moving) == 1
-        what = (tr("{sites} moves") if is_one else tr("{sites} move")).format(sites=_names(view.moving))
+        what = tr("{sites} moving").format(sites=_names(view.moving))
         return Icon.WAVE, what, _moved(view, is_short), True
     if not view.is_known:
         return None, "", "", False
@@ -411,15 +409,17 @@ def verdict(view: StandStillView, is_short: bool = False) -> tuple[Icon | None, 
 def way_round(view: StandStillView, is_short: bool = False) -> tuple[Icon | None, str, str, bool]:
     """Say what follows without the standing; after some restarts offer to go on so."""
     if view.phase is StandPhase.SKIPPED:
-        return Icon.INFO, "", tr("The report prints that no zero was set."), False
+        return Icon.INFO, "", tr("The report states that there is no standing reference."), False
     if view.restarts >= OFFERED_AFTER and view.phase is not StandPhase.DONE:
-        what = tr("The count began again {count} times.").format(count=view.restarts)
+        what = tr("The count restarted {count} times.").format(count=view.restarts)
         if is_short:
-            return Icon.WARNING, what, tr("Without it angles are given as range only."), True
-        then = tr("If the patient cannot stand, angles will be given as range only, without absolute values.")
+            return Icon.WARNING, what, tr("Without it there are no absolute angles."), True
+        then = tr("If the patient cannot stand, range of motion is reported, absolute angles are not.")
         return Icon.WARNING, what, then, True
-    range_only = tr("Without this step angles are given as range only.")
-    then = range_only if is_short else " ".join([tr("The report prints how zero was set."), range_only])
+    range_only = tr("Without this step there are no absolute angles.")
+    then = (
+        range_only if is_short else " ".join([tr("The report states how the standing reference was set."), range_only])
+    )
     return Icon.INFO, "", then, False
 
 
@@ -429,7 +429,7 @@ def _moved(view: StandStillView, is_short: bool) -> str:
     what = tr("Both legs moved.") if len(legs) > 1 else "".join(legs)
     if sides == {None}:
         what = tr("The pelvis moved.")
-    again = tr("The count starts again by itself.") if view.phase is StandPhase.COUNTING else ""
+    again = tr("The count restarts automatically.") if view.phase is StandPhase.COUNTING else ""
     return again or what if is_short else " ".join(filter(None, [what, again]))
 
 
@@ -438,7 +438,7 @@ def _leg_moved(side: Side) -> str:
 
 
 def _all_still(count: int) -> str:
-    few = (tr("It is still"), tr("Both are still"), tr("All three are still"), tr("All four are still"))
+    few = (tr("Sensor is still"), tr("Both are still"), tr("All three are still"), tr("All four are still"))
     words = (*few, tr("All five are still"), tr("All six are still"), tr("All seven are still"))
     return words[count - 1] if count <= len(words) else tr("All are still")
 
@@ -455,4 +455,4 @@ def _no_field(joints: Sequence[Joint]) -> str:
     if not joints:
         return ""
     names = ", ".join(name_of(joint) for joint in joints)
-    return tr("Not worn on both sides of the joint: {joints}.").format(joints=names)
+    return tr("Sensor missing above or below: {joints}.").format(joints=names)

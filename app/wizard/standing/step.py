@@ -68,10 +68,14 @@ class StandStillStep(Step):
     @property
     def note(self) -> str:
         if self._visit.has_skipped_standing:
-            return tr("skipped, printed")
+            return tr("skipped, in report")
         if not self._has_stood:
             return ""
-        said = tr("{seconds:.1f} s, zero set") if self._visit.recordings.standing is not None else tr("being read back")
+        said = (
+            tr("{seconds:.1f} s, standing reference")
+            if self._visit.recordings.standing is not None
+            else tr("being loaded")
+        )
         return said.format(seconds=self._stood_s)
 
     @property
@@ -123,15 +127,15 @@ class StandStillStep(Step):
 
     def bar(self) -> BarState:
         space, enter = tr("Space"), tr("Enter")
-        again = BarAction(tr("Start count again"), space, Icon.REPEAT, is_wished=False)
-        go_on = BarAction(tr("Go on to free motion"), enter, Icon.NEXT)
+        again = BarAction(tr("Restart count"), space, Icon.REPEAT, is_wished=False)
+        go_on = BarAction(tr("Continue to free motion"), enter, Icon.NEXT)
         if self._phase is StandPhase.COUNTING:
-            return BarState(primary=again, note=tr("Goes on by itself when it is done."))
+            return BarState(primary=again, note=tr("Continues automatically when done."))
         if self._phase is StandPhase.DONE:
             return BarState(primary=go_on, others=(again,))
         if self._phase is StandPhase.SKIPPED:
             return BarState(primary=go_on)
-        return BarState(primary=BarAction(tr("Start the count"), space, Icon.PLAY))
+        return BarState(primary=BarAction(tr("Start count"), space, Icon.PLAY))
 
     def on_primary(self) -> None:
         if self._phase in (StandPhase.DONE, StandPhase.SKIPPED):

@@ -68,7 +68,7 @@ class AlignmentCard(Card):
         self.next_title = Text(look, size=14, weight=SEMIBOLD, wraps=True)
         self.parts = Choice(look, tr("Part"))
         self.steppers = {name: Stepper(look) for name in FIGURES}
-        self.words = Field(look, tr("In words"), has_label=False, placeholder=tr("In words, optional"), most=MOST_TEXT)
+        self.words = Field(look, tr("In words"), has_label=False, placeholder=tr("Free text, optional"), most=MOST_TEXT)
         self.written = Text(look, size=12, tone="ink2", wraps=True)
         self._grid = QGridLayout()
         self.chip = Chip(look, Side.LEFT)  # until rows are shown
@@ -153,7 +153,7 @@ class AlignmentCard(Card):
             stepper.show_value(caption, said)
         self.words.set_text(entry.text)
         line = change_in_words(entry.parts)
-        self.written.setText(tr("Written as: {change}").format(change=line) if line else tr("Nothing changed yet."))
+        self.written.setText(tr("Recorded as: {change}").format(change=line) if line else tr("No change recorded."))
 
     def _build(self) -> None:
         self._head.addWidget(Text(self._look, tr("Alignments"), size=16, weight=SEMIBOLD))
@@ -214,7 +214,7 @@ class _AlignmentRow(Themed):
     def show_row(self, told: AlignmentRow) -> None:
         self.told = told
         lines = "; ".join(f"{name}: {words}" for name, words in told.lines)
-        role = {RowRole.SHOWN: tr("shown"), RowRole.BESIDE: tr("beside"), RowRole.NONE: ""}[told.role]
+        role = {RowRole.SHOWN: tr("shown"), RowRole.BESIDE: tr("compared"), RowRole.NONE: ""}[told.role]
         said = [f"{told.letter} {told.title}", told.note, lines, role]
         self.setAccessibleName(", ".join(filter(None, said)))
         self.setAccessibleDescription(tr("Key {key}").format(key=str(self._number + 1)))
@@ -232,7 +232,7 @@ class _AlignmentRow(Themed):
         theme, px = self._look.theme, self._look.theme.px
         left, width = px(PADDING + BADGE + GAP), self.width()
         badge_tone = "inv_ink" if self.told.role is RowRole.SHOWN else "ink"
-        role = {RowRole.SHOWN: tr("shown"), RowRole.BESIDE: tr("beside"), RowRole.NONE: ""}[self.told.role]
+        role = {RowRole.SHOWN: tr("shown"), RowRole.BESIDE: tr("compared"), RowRole.NONE: ""}[self.told.role]
         aside = QFontMetrics(theme.font(12, MEDIUM)).horizontalAdvance(role) + px(PADDING) + 2
         right = QRectF(width - aside, px(PADDING), aside - px(PADDING), px(LINE))
         texts = [

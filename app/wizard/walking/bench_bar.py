@@ -14,7 +14,7 @@ def bench_bar(bench: Bench, asked: str | None, test: str, note: str, can_start: 
     chain = bench.chain
     is_new = bool(bench.entry.parts)
     letter = chain.next_letter if is_new else chain.letters.get(chain.base, "")
-    walk = tr("Walk with {letter}") if is_new else tr("{letter} again")
+    walk = tr("Walk with {letter}") if is_new else tr("Repeat {letter}")
     words = test or walk.format(letter=letter)
     start = BarAction(words, tr("Space"), Icon.PLAY, is_wished=False, is_enabled=can_start)
     others: tuple[BarAction, ...] = (start,)
@@ -24,5 +24,5 @@ def bench_bar(bench: Bench, asked: str | None, test: str, note: str, can_start: 
     if asked is None:
         results = BarAction(tr("Results"), "", Icon.NEXT)
         return BarState(primary=results, others=others, note=note)
-    keep = BarAction(tr("Keep {letter}").format(letter=asked), tr("Enter"), Icon.CHECK)
+    keep = BarAction(tr("Include {letter}").format(letter=asked), tr("Enter"), Icon.CHECK)
     return BarState(primary=keep, others=others, note=note)

@@ -176,7 +176,7 @@ class Bench(QObject):
         if self.entry.parts:
             return tr("{letter}: changed from {base}").format(letter=chain.next_letter, base=base)
         if self._to_undo:
-            said = tr("Next change, from {base}. To undo first: {changes}")
+            said = tr("Next change, from {base}. Undo first: {changes}")
             return said.format(base=base, changes=self._to_undo)
         return tr("Next change, from {base}").format(base=base)
 
@@ -204,20 +204,20 @@ class Bench(QObject):
         if shown is None:
             return Answer(
                 Outcome.OPEN,
-                tr("There is no walk to compare yet."),
-                tr("Walk without a timed test, and without a target on the patient's screen."),
+                tr("No walk to compare yet."),
+                tr("Record a walk without a timed test or a target on the patient screen."),
             )
         if found is not None:
             return bench_answer(found, side)
-        first = tr("{letter} is the starting point. Change one thing, write it down, then walk.")
-        return Answer(Outcome.OPEN, first.format(letter=shown.letter), tr("The change is written before its walk."))
+        first = tr("{letter} is the starting point. Change one thing, record it, then walk.")
+        return Answer(Outcome.OPEN, first.format(letter=shown.letter), tr("Record the change before its walk."))
 
     def _rows(self, every: Comparison, shown: Part | None, beside: Part | None) -> list[AlignmentRow]:
         side, parts, rows = self.side, every.parts, []
         for part in parts:
             since, base = "", every.base_of(part)
             if part.is_again(base):
-                since = tr("{letter} again").format(letter=base.letter)
+                since = tr("Repeat {letter}").format(letter=base.letter)
             elif part.alignment is not None:
                 of_since = base.letter if base.name == part.alignment.since else part.alignment.since
                 since = tr("{base}, changed").format(base=of_since)

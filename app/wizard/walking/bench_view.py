@@ -69,7 +69,7 @@ class BenchView(Themed):
         self.then = Text(look, tone="ink2", wraps=True)
         self.tabs = Segmented(
             look,
-            tr("What is shown"),
+            tr("View"),
             [(ALIGNMENTS, tr("Alignments"), ""), (CURVES, tr("Curves"), ""), (CHANGES, tr("Differences"), "")],
         )
         self.alignments = AlignmentCard(look, entry)
@@ -149,7 +149,7 @@ class BenchView(Themed):
     def _build(self) -> None:
         self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.setProperty(NO_RING, True)
-        self.setAccessibleName(tr("Bench"))
+        self.setAccessibleName(tr("Alignment"))
         self._curves_column = QBoxLayout(DOWN, self._curves)
         self._curves_column.setContentsMargins(0, 0, 0, 0)
         words = QVBoxLayout()

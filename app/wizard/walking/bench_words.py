@@ -21,20 +21,22 @@ def bench_answer(found: Comparison, prosthetic: Side) -> Answer:
     few = [part for part in (shown, other) if part.strides(prosthetic) < MIN_STRIDES_FOR_SD]
     if few:
         counts = tr("{letter} has {count}").format(letter=few[0].letter, count=few[0].strides(prosthetic))
-        first = tr("{one} beside {other}: too few strides to judge a change.").format(
+        first = tr("{one} and {other}: too few strides to assess a change.").format(
             one=shown.letter, other=other.letter
         )
-        wanted = tr("Provisional: {counts} strides of the prosthetic side, {wanted} give an error.")
+        wanted = tr(
+            "Provisional: {counts} strides on the prosthetic side; {wanted} are needed for a measurement error."
+        )
         return Answer(Outcome.OPEN, first, wanted.format(counts=counts, wanted=MIN_STRIDES_FOR_SD))
     own = [row for row in found.rows if _is_told_of(row) and row.side is prosthetic]
     if not own:
-        first = tr("Nothing of the prosthetic side can be compared between {one} and {other}.")
+        first = tr("Prosthetic side: nothing can be compared between {one} and {other}.")
         return Answer(Outcome.OPEN, first.format(one=shown.letter, other=other.letter), _beside(found, prosthetic))
     worth = [row for row in own if row.difference.is_worth_a_sentence]
     beyond = [row for row in own if row.exceeds]  # as the table marks them
     most = max(_without_family(worth or beyond or own), key=lambda row: row.difference.ratio)
     if beyond:
-        error = tr("Larger than its error ({error}).") if worth else tr("Just larger than its error ({error}).")
+        error = tr("Beyond measurement error (±{error}).") if worth else tr("Just beyond measurement error (±{error}).")
         error = error.format(error=error_in_sentence(most))
         return Answer(Outcome.DIFFERS, _sentence(most), f"{error} {_beside(found, prosthetic)}")
     return Answer(Outcome.NOTHING, _similar(most), f"{_what_fits(most)} {_beside(found, prosthetic)}")
@@ -44,8 +46,8 @@ def speeds_in_words(shown: Part, other: Part) -> str:
     """Both speeds, since speed explains much; that they are not known, where one is not."""
     values = [part.of_both(SPEED) for part in (other, shown)]
     if not all(map(math.isfinite, values)):
-        return tr("Their speeds are not known.")
-    return tr("Speed {first} and {second} m/s.").format(first=fixed(values[0], 2), second=fixed(values[1], 2))
+        return tr("Walking speeds are not known.")
+    return tr("Walking speed {first} and {second} m/s.").format(first=fixed(values[0], 2), second=fixed(values[1], 2))
 
 
 def _is_told_of(row: Compared) -> bool:
@@ -62,11 +64,9 @@ def _without_family(rows: list[Compared]) -> list[Compared]:
 def _sentence(row: Compared) -> str:
     name, unit, decimals = _name(row), _unit(row), _decimals(row)
     pattern = (
-        tr("With {letter} the prosthetic side has {size} less than with {other}: {measure}, {value} against {before}.")
+        tr("Prosthetic side, {measure}: {value} with {letter}, {size} less than with {other} ({before}).")
         if row.difference.difference < 0
-        else tr(
-            "With {letter} the prosthetic side has {size} more than with {other}: {measure}, {value} against {before}."
-        )
+        else tr("Prosthetic side, {measure}: {value} with {letter}, {size} more than with {other} ({before}).")
     )
     return pattern.format(
         letter=row.part.letter,
@@ -93,7 +93,7 @@ def _similar(row: Compared) -> str:
 
 def _what_fits(row: Compared) -> str:
     found, unit, decimals = row.difference, _unit(row), _decimals(row)
-    said = tr("The change of {size} may be measurement error: anything from {low} to {high} fits.")
+    said = tr("The change of {size} may be measurement error: likely between {low} and {high}.")
     edges = (found.difference, found.difference - found.error, found.difference + found.error)
     size, low, high = (signed(edge, decimals) + unit for edge in edges)
     return said.format(size=size, low=low, high=high)
@@ -123,8 +123,8 @@ def _beside(found: Comparison, prosthetic: Side) -> str:
     beyond = [row for row in sound if row.exceeds]
     said = tr("The sound side could not be compared.")
     if beyond:
-        said = tr("The sound side changes beyond error, too.")
+        said = tr("The sound side also changes beyond measurement error.")
     elif sound:
-        said = tr("The sound side does not change beyond error.")
-    straps = tr("Sensors stayed on.") if found.is_one_attachment else tr("Sensors were strapped on anew between.")
+        said = tr("The sound side does not change beyond measurement error.")
+    straps = tr("Sensors stayed on.") if found.is_one_attachment else tr("Sensors were reattached in between.")
     return " ".join([said, straps, speeds_in_words(found.parts[1], found.against)])

@@ -126,7 +126,7 @@ class StoppedCard(Card):
         self._title = Text(look, size=16, weight=SEMIBOLD, wraps=True)
         self._facts = Text(look, size=14, tone="ink2", wraps=True)
         self.keep = Button(look, "", ButtonKind.PRIMARY, key="K")
-        self.discard = Button(look, tr("Discard"), ButtonKind.SECONDARY, key="D")
+        self.discard = Button(look, tr("Exclude"), ButtonKind.SECONDARY, key="D")
         self._row, self._verbs = QBoxLayout(ACROSS), QHBoxLayout()
         super().__init__(look)
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
@@ -149,9 +149,9 @@ class StoppedCard(Card):
         self._title.setText(title.format(label=f"{walk.letter}  {walk.label}"))
         self._facts.setText(facts)
         self._facts.setVisible(bool(facts))
-        keep = tr("Keep walk")
+        keep = tr("Include walk")
         if walk.strides:
-            keep = tr_n("Keep {count} stride", "Keep {count} strides", walk.strides).format(count=walk.strides)
+            keep = tr_n("Include {count} stride", "Include {count} strides", walk.strides).format(count=walk.strides)
         self.keep.setText(keep)
         self.keep.setAccessibleName(keep)
         self.keep.updateGeometry()
@@ -172,10 +172,10 @@ class EmptyCard(Card):
     accessible_role = QAccessible.Role.Note
 
     def __init__(self, look: ThemeNotifier) -> None:
-        self._what = Text(look, tr("Choose a label, then press Space."), size=26, weight=SEMIBOLD, wraps=True)
+        self._what = Text(look, tr("Choose a condition, then press Space."), size=26, weight=SEMIBOLD, wraps=True)
         self._then = Text(
             look,
-            tr("Two seconds of standing first make the ankle's line right from the start."),
+            tr("Stand still for two seconds first: ankle angles are then correct from the start."),
             size=16,
             tone="ink2",
             wraps=True,

@@ -104,7 +104,7 @@ class WalkingCharts(Card):
             self._provisional.setText(said)
 
     def _say_of_hips(self, provisional: list[Side], are_known: bool) -> None:
-        words = tr("{sides} provisional") if self._is_compact else tr("{sides} provisional until the walk has shown it")
+        words = tr("{sides} provisional") if self._is_compact else tr("{sides} provisional until calibrated by walking")
         said = words.format(sides=", ".join(LETTERS[side] for side in provisional)) if provisional else ""
         if not are_known:
             said = tr("not known yet") if self._is_compact else tr("not known before the first strides")

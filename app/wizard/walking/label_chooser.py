@@ -30,7 +30,7 @@ class LabelChooser(Themed):
         self._look = look
         self._options: list[_Option] = []
         self._choice = ""
-        self.own = Field(look, tr("Other words for the next walk"), placeholder=tr("Other words"), has_label=False)
+        self.own = Field(look, tr("Other condition for the next walk"), placeholder=tr("Other"), has_label=False)
         self.own.setParent(self)
         # it was made before the labels: Tab would come to its box in its place
         self.own.setFocusProxy(None)  # type: ignore[arg-type]  # the stubs know no None, which takes the proxy away

@@ -152,7 +152,7 @@ class LiveLanes(Themed):
         c = theme.colours
         right = (picture.columns if end_s is None else picture.x_of(end_s)) / ratio
         left = max(left, 0.0)
-        said = tr("{side} foot silent").format(side=LETTERS[side])
+        said = tr("{side} foot: no signal").format(side=LETTERS[side])
         painter.setFont(theme.font(12, MEDIUM))
         wanted = painter.fontMetrics().horizontalAdvance(said) + theme.px(16)
         if end_s is None:

@@ -51,13 +51,13 @@ class MemoryControl(QObject):
             return tr("The sensors are being synchronised.")
         if self.fetch.is_fetching:
             return tr("The walk is being fetched.")
-        return tr("The sensors are to be made ready first.") if self._must_be_made_ready else ""
+        return tr("Prepare the sensors first.") if self._must_be_made_ready else ""
 
     @property
     def cannot_leave(self) -> str:
         """Why the step cannot be left now; empty where it can."""
         if self.is_synchronising:
-            return tr("The sensors are being synchronised. Wait until they are, or cancel it.")
+            return tr("The sensors are being synchronised. Wait, or cancel.")
         return self.fetch.cannot_leave
 
     @property
@@ -68,8 +68,8 @@ class MemoryControl(QObject):
             return progress_of(sensors.sync, sensors.acquisition.sensors if sensors.acquisition is not None else ())
         if recordings.is_recording and sensors.are_in_memory and not recordings.is_stopping:
             return ProgressShown(
-                tr("The sensors record in their memories"),
-                tr("The patient may walk out of reach. Stop near this computer: then the walk is fetched."),
+                tr("The sensors are recording to memory"),
+                tr("The patient may walk out of range. Stop the walk near this computer; its data are then fetched."),
                 is_running=False,
             )
         if (fetched := self.fetch.shown) is not None or not self._must_be_made_ready:
@@ -87,9 +87,9 @@ class MemoryControl(QObject):
         if (fetched := self.fetch.bar()) is not None or not self._must_be_made_ready:
             return fetched
         has_failed = bool(self._visit.sensors.sync.failure[0])
-        words = tr("Try again") if has_failed else tr("Make the sensors ready")
+        words = tr("Try again") if has_failed else tr("Prepare the sensors")
         ready = BarAction(words, tr("Enter"), Icon.REPEAT if has_failed else None)
-        others = [BarAction(tr("Send walks live"), is_wished=False)]
+        others = [BarAction(tr("Record walks live"), is_wished=False)]
         if any(recording.details.is_kept for recording in recordings.walks):
             others.append(BarAction(tr("Results"), is_wished=False, icon=Icon.NEXT))
         return BarState(primary=ready, others=tuple(others))
@@ -103,7 +103,7 @@ class MemoryControl(QObject):
             return later
         if sensors.dots is not None and sensors.dots.record_hz is None and sensors.are_loose:
             return BarAction(tr("Synchronise again"))
-        return BarAction(tr("Send walks live"), is_wished=False) if wants_live and sensors.are_in_memory else None
+        return BarAction(tr("Record walks live"), is_wished=False) if wants_live and sensors.are_in_memory else None
 
     def on_quiet(self) -> None:
         """The action of `quiet`."""
@@ -164,12 +164,12 @@ class MemoryControl(QObject):
     def _price(self) -> str:
         if self._visit.sensors.are_in_memory:
             return tr(
-                "Their clocks drift apart, so they are synchronised anew every half hour. It takes about a minute; the "
-                "patient stands near this computer meanwhile."
+                "The sensor clocks drift apart, so they are synchronised every half hour. This takes about a "
+                "minute. The patient stands near this computer meanwhile."
             )
         return tr(
-            "They are synchronised once more for that. It takes about a minute; the patient stands near this computer "
-            "meanwhile."
+            "For this they are synchronised once more. This takes about a minute. The patient stands near "
+            "this computer meanwhile."
         )
 
     def _synchronise(self, purpose: SyncPurpose) -> None:

@@ -86,7 +86,7 @@ class WalkingPage(Themed):
         self.notice = Notice(look, size=16)
         self._has_message = False
         self._message: tuple[str, str] | None = None
-        self.tabs = Segmented(look, tr("What is shown"), [("walks", tr("Walks"), ""), ("curves", tr("Curves"), "")])
+        self.tabs = Segmented(look, tr("View"), [("walks", tr("Walks"), ""), ("curves", tr("Curves"), "")])
         self.patient_controls = ControlsCard(look)  # in sight while the patient's screen is
         self.stopped = StoppedCard(look)
         self.empty = EmptyCard(look)
@@ -219,8 +219,8 @@ class WalkingPage(Themed):
         else:
             self.notice.tell(
                 Icon.INFO,
-                tr("Ten strides of each leg make a spread"),
-                tr("Starting, turning and stopping are left out by themselves."),
+                tr("A standard deviation needs ten strides per leg"),
+                tr("Starting, turning and stopping are excluded automatically."),
             )
         self._arrange()
 

@@ -215,19 +215,19 @@ def reasons_against(
         elif measure is TargetMeasure.KNEE_SWING_PEAK and side is not None:
             knee = knee_of(side)
             if not {knee.proximal, knee.distal} <= set(rested):
-                reasons[measure, side] = tr("Its sensors have not rested. Let the patient stand still first.")
+                reasons[measure, side] = tr("These sensors have not been still yet. Let the patient stand still first.")
     return reasons
 
 
 def _not_measured(measure: TargetMeasure, side: Side | None, worn: tuple[Site, ...]) -> str:
     feet = {site.side for site in worn if site.segment is Segment.FOOT}
     if measure in (TargetMeasure.CADENCE, TargetMeasure.STANCE_RATIO) and not feet:
-        return tr("No foot sensor is worn.")
+        return tr("There is no foot sensor.")
     if measure is TargetMeasure.STANCE_RATIO:
         return tr("Both feet need a sensor.")
     if side not in feet:
         return tr("This foot has no sensor.")
-    return tr("The knee's angle is not known yet: it needs both sensors and a free motion.")
+    return tr("The knee angle is not known yet. It needs both sensors and a free motion.")
 
 
 def _is_gated(target: Target, view: "WalkingReadout", worn: Collection[Site]) -> bool:

@@ -109,9 +109,9 @@ class WalkingStep(Step):
         if recordings.is_recording:
             return ""
         if self._asked is not None:
-            return tr("keep or discard?")
+            return tr("include or exclude?")
         kept = sum(one.details.is_kept and one.is_decided for one in recordings.walks)
-        return tr("{count} kept").format(count=kept) if kept else ""
+        return tr("{count} included").format(count=kept) if kept else ""
 
     @property
     def state(self) -> StepState:
@@ -122,7 +122,7 @@ class WalkingStep(Step):
     @property
     def cannot_enter(self) -> str:
         if self._visit.session is None:
-            return tr("Type the patient's code first.")
+            return tr("Enter the patient's code first.")
         if self._visit.recordings.walks:
             return ""  # they can be kept or discarded whatever is missing for the next
         return self._next.missing
@@ -134,7 +134,7 @@ class WalkingStep(Step):
         if self._ongoing is None:
             return ""
         if self._visit.recordings.is_stopping:
-            return tr("The walk is being read back.")
+            return tr("The walk is being loaded.")
         return tr("A walk is being recorded. Stop it first.")
 
     @property
@@ -237,7 +237,7 @@ class WalkingStep(Step):
         self.bench.settle_return()
         self._discarded, self._kept = None, recording.id
         self._keep(recording, is_kept=True)
-        self.offered.emit(tr("{walk} kept.").format(walk=self._visit.recordings.called(recording.details.name)))
+        self.offered.emit(tr("{walk} included.").format(walk=self._visit.recordings.called(recording.details.name)))
 
     def on_intent(self, intent: Intent) -> bool:
         feedback = self.feedback
@@ -333,7 +333,7 @@ class WalkingStep(Step):
             self.bench.discarded(recording.details)
             self._kept = None
             self._discarded = recording.id
-            self.offered.emit(tr("{walk} discarded.").format(walk=called))
+            self.offered.emit(tr("{walk} excluded.").format(walk=called))
         self._show()
 
     # what is to be said

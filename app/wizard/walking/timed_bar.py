@@ -18,20 +18,25 @@ def timed_bar(timed: TimedControl, elapsed_s: float) -> BarState:
     definition = DEFINITIONS[readout.planned.protocol]
     if math.isfinite(timed.end_s):
         verb = tr("Stop") if readout.planned.end_key_s is not None else tr("End at the tape")
-        note = tr("The test is over; the recording stops in a moment.")
+        note = tr("The test is over; recording stops shortly.")
         verb = verb if definition.length_m is not None else tr("Stop")
     elif not readout.has_begun:
-        verb, note = tr("Start the clock"), tr("The motion starts the clock. Space or a clicker starts it by hand.")
+        verb, note = (
+            tr("Start the clock"),
+            tr("The clock starts with the patient's movement. Space or a clicker starts it manually."),
+        )
     elif definition.length_m is not None:
         verb = tr("End at the tape")
-        note = tr("Space at the tape ends it there and counts as {length:.2f} m.").format(length=definition.length_m)
+        note = tr("Press Space at the end of the tape. The distance then counts as {length:.2f} m.").format(
+            length=definition.length_m
+        )
     else:
-        verb, note = tr("End the test"), tr("Space or a clicker ends it at once; else it ends by itself.")
+        verb, note = tr("End the test"), tr("Space or a clicker ends the test now. Otherwise it ends automatically.")
     return BarState(
         primary=BarAction(verb, tr("Space"), Icon.STOP),
-        others=(BarAction(tr("Break off"), tr("Esc"), is_wished=False),),
+        others=(BarAction(tr("Cancel"), tr("Esc"), is_wished=False),),
         recording=RecordingNote(
-            tr("Recording the whole test: {test}").format(test=name_of_test(readout.planned.protocol)),
+            tr("Recording the full test: {test}").format(test=name_of_test(readout.planned.protocol)),
             note,
             elapsed_s,
             sounds.is_on(),

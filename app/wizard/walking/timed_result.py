@@ -81,7 +81,7 @@ class TimedResultView(Themed):
         self.first = Text(look, size=20, weight=SEMIBOLD, wraps=True)
         self.then = Text(look, tone="ink2", wraps=True)
         self.attempts = CellTable(look, tr("Attempts"))
-        self.parts = CellTable(look, tr("Over the test"))
+        self.parts = CellTable(look, tr("Test sections"))
         self.course = CourseCard(look)
         self.errors = Text(look, size=12, tone="ink2", wraps=True)
         self._build()
@@ -123,7 +123,7 @@ class TimedResultView(Themed):
     def _build(self) -> None:
         self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.setProperty(NO_RING, True)
-        self.setAccessibleName(tr("What came of the test"))
+        self.setAccessibleName(tr("Test result"))
         head, words = QHBoxLayout(), QVBoxLayout()
         words.addWidget(self.first)
         words.addWidget(self.then)
@@ -136,7 +136,7 @@ class TimedResultView(Themed):
         attempts, self._parts_card = Card(self._look), Card(self._look)
         for card, title, table in (
             (attempts, tr("Attempts"), self.attempts),
-            (self._parts_card, tr("Over the test"), self.parts),
+            (self._parts_card, tr("Test sections"), self.parts),
         ):
             card.column.addWidget(Text(self._look, title, size=16, weight=SEMIBOLD))
             card.column.addWidget(table)
@@ -163,7 +163,7 @@ def number(value: float, digits: int) -> str:
 
 
 def _attempts(state: TimedResult) -> tuple[list[TableColumn], list[TableRow]]:
-    heads = (tr("time, s"), tr("distance, m"), tr("speed, m/s"), tr("steps/min"), tr("turns"), tr("off the tape, m"))
+    heads = (tr("time, s"), tr("distance, m"), tr("speed, m/s"), tr("steps/min"), tr("turns"), tr("Diff. to tape, m"))
     has_tape = any(one.found is not None and math.isfinite(one.found.tape_difference_m) for one in state.attempts)
     shown = len(heads) if has_tape else len(heads) - 1
     columns = [TableColumn(share=1), *(TableColumn(TextCell(head, align=RIGHT, tone="ink2")) for head in heads[:shown])]
@@ -172,7 +172,7 @@ def _attempts(state: TimedResult) -> tuple[list[TableColumn], list[TableRow]]:
         found = attempt.found
         figures = [""] * len(heads) if found is None else _texts(_values(found))
         tone = "ink" if attempt.is_kept else "ink3"
-        name = called if attempt.is_kept else tr("{walk}, discarded").format(walk=called)
+        name = called if attempt.is_kept else tr("{walk}, excluded").format(walk=called)
         cells = [TextCell(name, tone=tone), *(TextCell(one, align=RIGHT, tone=tone) for one in figures[:shown])]
         rows.append(TableRow(tuple(cells)))
     kept = [_values(one.found) for one in state.attempts if one.is_kept and one.found is not None]

@@ -76,7 +76,7 @@ def distance_words(state: TimedViewState) -> tuple[str, str]:
     if not found.has_begun:
         return figure_text(0.0, ".1f"), ""
     if found.silent:
-        return NO_FIGURE, tr("silent: {sites}").format(sites=joined([name_of(one) for one in found.silent]))
+        return NO_FIGURE, tr("no signal: {sites}").format(sites=joined([name_of(one) for one in found.silent]))
     if not math.isfinite(found.distance_m):
         reasons = [reason_words(one) for one in found.reasons]
         return NO_FIGURE, capitalised(joined(reasons)) if reasons else ""
@@ -119,9 +119,9 @@ class TimedView(Themed):
         self.why.setVisible(bool(why))
         self.course.show_state(state)
         words = (
-            (tr("Starts by itself"), start_words(protocol)),
-            (tr("Ends by itself"), end_words(protocol)),
-            (tr("Tones tell start and end"), tr("rising, then falling")),
+            (tr("Automatic start"), start_words(protocol)),
+            (tr("Automatic end"), end_words(protocol)),
+            (tr("Tones mark start and end"), tr("rising, then falling")),
         )
         for tile, (first, then) in zip(self._tiles, words, strict=True):
             tile.show_words(first, then)

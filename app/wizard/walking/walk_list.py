@@ -64,11 +64,11 @@ class WalkRow:
             strides = tr_n("{count} stride", "{count} strides", self.strides).format(count=self.strides)
         return {
             WalkState.RECORDING: tr("recording"),
-            WalkState.ASKING: tr("keep or discard?"),
+            WalkState.ASKING: tr("include or exclude?"),
             WalkState.KEPT: strides,
-            WalkState.DISCARDED: tr("discarded"),
+            WalkState.DISCARDED: tr("excluded"),
             WalkState.IN_SENSORS: tr("in the sensors"),
-            WalkState.RECOVERED: tr("recovered, look at it"),
+            WalkState.RECOVERED: tr("recovered, needs review"),
         }[self.state]
 
 
@@ -85,14 +85,14 @@ class WalkList(Card):
         self._rows: list[_ListedWalk] = []
         self._is_compact = False
         self._title = Text(look, tr("Walks"), size=14, weight=MEDIUM, tone="ink2")
-        self._none = Text(look, tr("No walk yet."), size=14, tone="ink2", wraps=True)
+        self._none = Text(look, tr("No walks yet."), size=14, tone="ink2", wraps=True)
         self._inside = QWidget()
         self._scroll = QScrollArea()
         self.restrapped = ActionRow(
             look,
             Icon.REPEAT,
-            tr("Sensors were re\N{NON-BREAKING HYPHEN}strapped"),
-            tr("Standing still and free motion come again first."),
+            tr("Sensors were reattached"),
+            tr("Standing still and free motion must then be repeated."),
         )
         self._list = QVBoxLayout(self._inside)
         super().__init__(look, spacing=4)
@@ -205,14 +205,14 @@ class _ListedWalk(Themed):
         self._note.setText(walk.note)
         self.edit.setAccessibleName(tr("Rename {label}").format(label=called))
         had_focus = self.undo.hasFocus()
-        self.undo.setAccessibleName(tr("Keep {label} after all").format(label=called))
+        self.undo.setAccessibleName(tr("Include {label} again").format(label=called))
         if had_focus and walk.state is not WalkState.DISCARDED:
             self._owner.setFocus()
         if (mark := MARKS.get(walk.state)) is not None:
             self._mark.set_icon(mark)
         self._show_parts()
         self._label.set_tone("ink2" if walk.state is WalkState.DISCARDED else "ink")
-        state = tr("kept") if walk.state is WalkState.KEPT else ""
+        state = tr("included") if walk.state is WalkState.KEPT else ""
         self.setAccessibleName(", ".join(filter(None, [walk.letter, walk.label, walk.note, state])))
         self.update()
 

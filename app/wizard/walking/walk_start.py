@@ -25,15 +25,15 @@ class WalkStart:
         """What is missing for walks at all; empty where nothing is."""
         sensors = self._visit.sensors
         if sensors.acquisition is None:
-            return tr("Choose the source of the sensors first.")
+            return tr("Choose the sensor source first.")
         if self._visit.cannot_record:
             return self._visit.cannot_record
         if not sensors.site_of:
-            return tr("Say first which sensor is worn where.")
+            return tr("Set the sensor positions first.")
         if sensors.are_silent:
-            return tr("No sensor is heard. Switch them on, or bring the receiver nearer.")
+            return tr("No signal from any sensor. Switch them on, or move the receiver closer.")
         if self._visit.recordings.must_move:
-            return tr("The sensors were re\N{NON-BREAKING HYPHEN}strapped. Stand still and move freely first.")
+            return tr("The sensors were reattached. Repeat standing still and free motion first.")
         return ""
 
     @property
@@ -41,5 +41,5 @@ class WalkStart:
         """As `missing`, and what the sensors' memories are missing still."""
         missing = self.missing or self._memory.cannot_start
         if not missing and self._visit.sensors.are_in_memory and self._timed.planned is not None:
-            return tr("Timed tests need what the sensors send live: choose no test, or send walks live.")
+            return tr("Timed tests need live data. Choose no test, or record walks live.")
         return missing

@@ -53,14 +53,14 @@ class WalkingBar:
         if is_between and self._bench.is_shown:
             offered[QuietAction.BENCH] = BarAction(tr("Walks"))
             if asked_walk(self._visit.recordings) is not None:
-                offered[QuietAction.DISCARD] = BarAction(tr("Discard"), "D")
+                offered[QuietAction.DISCARD] = BarAction(tr("Exclude"), "D")
         elif is_between:
             if self._bench.is_offered:
-                offered[QuietAction.BENCH] = BarAction(tr("Bench"))
+                offered[QuietAction.BENCH] = BarAction(tr("Alignment"))
             if (memory := self._memory.quiet(wants_live=self._timed.planned is not None)) is not None:
                 offered[QuietAction.MEMORY] = memory
         if not self._bench.is_shown and not self._timed.is_running:  # the bench has no room for it; the key is there
-            offered[QuietAction.PATIENT_SCREEN] = BarAction(tr("Patient's screen"), "F8")
+            offered[QuietAction.PATIENT_SCREEN] = BarAction(tr("Patient screen"), "F8")
         return offered
 
     @property
@@ -79,9 +79,9 @@ class WalkingBar:
         if self.has_memory:
             return self._memory.bar() or BarState()
         if walk is not None:
-            return BarState(primary=self._start_action, note=tr("The walk is being read back."))
+            return BarState(primary=self._start_action, note=tr("The walk is being loaded."))
         if recordings.ongoing is not None:  # of the step before
-            said = f"{capitalised(recordings.called(recordings.ongoing.details.name))}: {tr('being read back')}"
+            said = f"{capitalised(recordings.called(recordings.ongoing.details.name))}: {tr('being loaded')}"
             return BarState(primary=self._start_action, note=said)
         if self._bench.is_shown:
             asked = asked_walk(recordings)
@@ -110,9 +110,9 @@ class WalkingBar:
         """Where there is no bench."""
         recordings, start, missing = self._visit.recordings, self._start_action, self._start.missing_now
         if asked_walk(recordings) is not None:
-            words = tr("Keep, start next")
+            words = tr("Include, start next")
             if test := self._timed.planned:
-                words = tr("Keep, start {test}").format(test=within_sentence(name_of_test(test.protocol)))
+                words = tr("Include, start {test}").format(test=within_sentence(name_of_test(test.protocol)))
             both = replace(start, text=words, is_wished=False)
             return BarState(primary=both, note=missing or self._timed.next_words(label))
         if any(recording.details.is_kept for recording in recordings.walks):
@@ -121,7 +121,7 @@ class WalkingBar:
             return BarState(primary=results, others=(replace(start, is_wished=False),), note=note)
         note = self._timed.next_words(label)
         if not recordings.has_moved:
-            note = tr("Without a free motion, angles are poor or missing.")
+            note = tr("Without free motion, joint angles are uncertain or missing.")
         return BarState(primary=start, note=missing or note)
 
     @property
@@ -143,7 +143,7 @@ class WalkingBar:
         """Say that what comes in is saved, only while the journal has it so."""
         recordings = self._visit.recordings
         if not recordings.has_begun:
-            return tr("It begins in a moment.")
+            return tr("Recording starts in a moment.")
         if recordings.is_in_memory:
-            return tr("Kept in the sensors.")
-        return tr("Saved as it comes in.") if recordings.is_written else ""
+            return tr("Stored in the sensors.")
+        return tr("Saved continuously.") if recordings.is_written else ""

@@ -42,7 +42,9 @@ def read_c3d(path: Path) -> ReferenceFile:
     """
     if find_spec("ezc3d") is None:
         raise FileRefusedError(
-            path.name, "reading C3D needs a part that is not installed", "Install gaitwright[imports], or give a CSV"
+            path.name,
+            "reading C3D needs a component that is not installed",
+            "Install gaitwright[imports], or give a CSV file",
         )
     _refuse_cut(path)
     import ezc3d
@@ -56,9 +58,9 @@ def read_c3d(path: Path) -> ReferenceFile:
     except MemoryError:
         raise
     except Exception as error:  # the library raises whatever its C++ threw
-        raise FileRefusedError(path.name, "this C3D cannot be read ({why})", COPY_AGAIN, why=error) from error
+        raise FileRefusedError(path.name, "this C3D file cannot be read ({why})", COPY_AGAIN, why=error) from error
     if not rate_hz > 0 or points.shape[1] < len(labels):
-        raise FileRefusedError(path.name, "this C3D has no rate, or fewer points than names", COPY_AGAIN)
+        raise FileRefusedError(path.name, "this C3D file has no rate, or fewer points than names", COPY_AGAIN)
     first = int(c3d["header"]["points"]["first_frame"])
     time_s = (first + np.arange(points.shape[2])) / rate_hz
     values = {label: _seen(points[:3, k], residuals[k]) for k, label in enumerate(labels)}
@@ -73,8 +75,8 @@ def read_c3d(path: Path) -> ReferenceFile:
     if not angles:
         raise FileRefusedError(
             path.name,
-            "it holds no angles of hips, knees or ankles, and not the markers to make them of",
-            "Export LKneeAngles and so on with it, or name markers LHIP, LKNE, LANK, LHEE, LTOE and R...",
+            "it contains neither hip, knee or ankle angles nor the markers to compute them",
+            "Include LKneeAngles and so on in the export, or name markers LHIP, LKNE, LANK, LHEE, LTOE and R...",
         )
     return ReferenceFile(FORMAT, source, (ReferenceTrial(angles=angles, events=_events(c3d["parameters"])),))
 
@@ -89,7 +91,9 @@ def _refuse_cut(path: Path) -> None:
         header = file.read(BLOCK)
         file.seek(BLOCK * (header[0] - 1))
         parameters = file.read(4)
-    cut = FileRefusedError(path.name, "this C3D ends before its data do, it may have been cut", COPY_AGAIN)
+    cut = FileRefusedError(
+        path.name, "this C3D file ends before the end of its data; it may have been cut off", COPY_AGAIN
+    )
     if len(parameters) < 4 or size < BLOCK * (header[0] - 1 + parameters[2]):
         raise cut
     if parameters[3] != INTEL:

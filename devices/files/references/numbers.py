@@ -90,7 +90,7 @@ def check_ascending(time_s: FloatArray, where: str) -> None:
         k = int(np.argmax(steps <= 0))
         raise FileRefusedError(
             where,
-            "time goes from {one} s to {other} s in row {row}",
+            "in row {row} time goes from {one} s to {other} s",
             "Export it again with ascending times",
             one=f"{time_s[k]:g}",
             other=f"{time_s[k + 1]:g}",

@@ -47,15 +47,15 @@ def read_opensim(path: Path) -> ReferenceFile:
     if QUATERNION.search(header):
         raise FileRefusedError(
             path.name,
-            "this holds orientations of sensors, not joint angles",
-            "Run inverse kinematics and give its .mot",
+            "this file contains sensor orientations, not joint angles",
+            "Run inverse kinematics and give its .mot file",
         )
     names = lines[end + 1].split()
     found = {JOINTS[short]: k for k, name in enumerate(names) if (short := _coordinate(name)) in JOINTS}
     if not found or names[:1] != ["time"]:
         raise FileRefusedError(
             f"{path.name}, line {end + 2}",
-            "there is no column time, or none of {names}",
+            "column time is missing, or none of {names} is present",
             "Export coordinates of a model whose joints have these names",
             names=", ".join(JOINTS),
         )

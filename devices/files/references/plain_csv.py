@@ -116,7 +116,7 @@ def _words(table: Table, column: str, known: set[str] | set[Side], where: str) -
         if word not in known:
             raise FileRefusedError(
                 f"{where}, {table.place(row)}",
-                "{word} is no {column}",
+                "{word} is not a valid {column}",
                 CORRECT_IT,
                 word=quoted(word),
                 column=column,

@@ -55,13 +55,13 @@ def read_visual3d(path: Path) -> ReferenceFile:
     if not trials:
         raise FileRefusedError(
             f"{path.name}, line 2",
-            "no signal is the angle of a hip, a knee or an ankle",
-            "Export joint angles that are named so, such as LKneeAngle, with all components",
+            "no signal is a hip, knee or ankle angle",
+            "Export joint angles with such names, as in LKneeAngle, with all components",
         )
     shared = next((columns[TIME] for columns in wanted.values() if TIME in columns), None)
     if shared is None:
         raise FileRefusedError(
-            f"{path.name}, line 2", "there is no signal TIME, so the frames have no instants", "Export TIME with them"
+            f"{path.name}, line 2", "signal TIME is missing, so the frames have no times", "Include TIME in the export"
         )
     columns = sorted({k for found in trials.values() for k in found.values()} | {shared})
     values = dict(zip(columns, numbers_below(lines, HEADER_LINES, columns, count, path.name, "\t").T, strict=True))

@@ -85,17 +85,17 @@ def test_what_takes_the_focus_needs_a_role_and_a_chart_a_description(qtbot: QtBo
 
 
 def test_a_choice_says_what_is_chosen(qtbot: QtBot, page: QWidget, look: ThemeNotifier) -> None:
-    bare, told = QComboBox(), Choice(look, "Size of everything")
+    bare, told = QComboBox(), Choice(look, "Display size")
     for box in (bare, told):
         box.addItems(["80 %", "100 %"])
     assert [one.partition(" ")[0] for one in complaints(shown(qtbot, page, bare, told))] == ["QComboBox"]
     (heard,) = (one for one in elements(page) if one.kind == "Choice")
-    assert "Size of everything" in (heard.name, heard.description)
+    assert "Display size" in (heard.name, heard.description)
 
 
 def test_what_changes_on_the_screen_changes_in_the_tree(qtbot: QtBot, page: QWidget, look: ThemeNotifier) -> None:
     toggle, button = Toggle(look, "Legs", "G", is_on=False), Button(look, "Go")
-    ways = Segmented(look, "Motion", [("system", "As the system", ""), ("less", "Less motion", "")])
+    ways = Segmented(look, "Motion", [("system", "System setting", ""), ("less", "Reduced", "")])
     shown(qtbot, page, toggle, button, ways)
 
     def told() -> list[tuple[QAccessible.Role, bool, bool]]:

@@ -128,7 +128,7 @@ def test_the_setting_is_chosen_by_keys_and_said(qtbot: QtBot, look: ThemeNotifie
     with qtbot.waitSignal(page.motion_chosen) as told:
         QTest.keyClick(focused, Qt.Key.Key_Right)
     assert told.args == [True]
-    assert page.motion.segments[1].accessibleName() == "Less motion"
+    assert page.motion.segments[1].accessibleName() == "Reduced"
 
 
 def test_the_window_follows_the_setting_and_a_new_start_keeps_it(

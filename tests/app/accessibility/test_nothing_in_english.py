@@ -100,8 +100,8 @@ def test_nothing_on_a_page_is_in_english(qtbot: QtBot, look: ThemeNotifier) -> N
 
 
 def test_what_is_in_english_is_found() -> None:
-    assert english_in({"Knie links", "No walk yet.", "12 strides", "Is it so?", "Shoes", "12 Doppelschritte"}) == [
+    assert english_in({"Knie links", "No walks yet.", "12 strides", "Is it so?", "Shoes", "12 Doppelschritte"}) == [
         "12 strides",
         "Is it so?",
-        "No walk yet.",
+        "No walks yet.",
     ]

@@ -243,7 +243,7 @@ class Busy:
             while self.is_held and not self.refuses:
                 time.sleep(0.005)
             if self.is_held:
-                raise LibraryBusyError("Another program keeps the library busy", "Wait a moment")
+                raise LibraryBusyError("Another program is using the library", "Wait a moment")
             return call(*arguments, **named)
 
         return held

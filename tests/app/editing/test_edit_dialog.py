@@ -43,7 +43,7 @@ def test_each_line_says_both_values_and_whose_they_are(dialog: EditDialog) -> No
     (mine, theirs), (nothing, unknown) = dialog.cells
     assert (mine.value, mine.whose) == ("182 cm", "Yours")
     assert (theirs.value, theirs.whose) == ("180 cm", "Theirs: B. Berger, today 10:32")
-    assert nothing.value == "nothing said"
+    assert nothing.value == "not recorded"
     assert unknown.whose == "Theirs: somebody else"
     assert mine.accessibleName() == "Body height, Yours: 182 cm"
 

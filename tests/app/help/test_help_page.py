@@ -127,7 +127,7 @@ def test_enter_goes_on_to_the_next_topic_and_round_again(page: HelpPage) -> None
 
 def test_what_is_nowhere_is_said(page: HelpPage) -> None:
     search(page, "xylophone")
-    assert page.found.text() == "Nothing is found. Try another word."
+    assert page.found.text() == "No matches. Try another word."
     assert page.text.extraSelections() == []
     search(page, " ")
     assert not page.found.isVisible()

@@ -64,7 +64,9 @@ def make_course_library(folder: Path, *, visits: int = 5, missing: frozenset[int
     with Library.create(folder, data_key, Operator("hk", "H. Keller", Role.ADMINISTRATOR)) as library:
         for code, born, side in (("P-0147", 1968, "right"), ("P-0122", 1990, "right"), ("P-0107", 1962, "left")):
             library.patients.create(Patient(code=code, birth_year=born, affected_side=side))
-        told = Patient(code="P-0158", birth_year=1961, sex="female", affected_side="left", device="left knee replaced")
+        told = Patient(
+            code="P-0158", birth_year=1961, sex="female", affected_side="left", device="left knee replacement"
+        )
         patient = library.patients.create(told)
         for number in range(visits):
             found = None if number in missing else course_of_visit(number)

@@ -242,7 +242,7 @@ def test_stop_ends_a_reading_that_would_never_end(qtbot: QtBot, home: Home, tmp_
     assert process.poll() is None
     home.working.stop.click()
     assert home.page.isVisible()
-    assert home.banner.text.startswith("This was stopped.")
+    assert home.banner.text.startswith("Stopped.")
     qtbot.waitUntil(lambda: process.poll() is not None, timeout=WAIT_MS)
 
     def is_read() -> bool:
@@ -302,7 +302,7 @@ def test_what_was_being_recorded_is_recovered_and_marked(
     assert "of walk 3 was recovered" in home.banner.text
     qtbot.waitUntil(lambda: any(line.needs_look for line in sessions(home)), timeout=WAIT_MS)
     (marked,) = (line for line in sessions(home) if line.needs_look)
-    assert (marked.id, marked.state) == (session_id, "keep or discard?")
+    assert (marked.id, marked.state) == (session_id, "include or exclude?")
     qtbot.waitUntil(lambda: [one.needs_look for one in lines(home)] == [True, False], timeout=WAIT_MS)
 
 
@@ -412,7 +412,7 @@ def test_a_library_that_lost_its_end_says_so(qtbot: QtBot, controller: LibraryCo
     state = controller.state
     assert state is not None
     home.show_library(replace(state, is_end_lost=True))
-    assert "Look through the latest session." in home.banner.text
+    assert "Check the latest session." in home.banner.text
 
 
 def test_nothing_is_left_for_whoever_comes_next(home: Home) -> None:
@@ -467,7 +467,7 @@ def test_the_settings_of_one_library_name_no_folder_of_another(
     home.settings.set_backup_folder(str(tmp_path / "disk"))
     qtbot.waitUntil(lambda: "disk" in page.backup_folder.text(), timeout=WAIT_MS)
     home.settings.show_library(replace(state, library=replace(state.library, data_key=None)))
-    assert page.backup_folder.text() == "No folder is chosen for backups yet."
+    assert page.backup_folder.text() == "No backup folder chosen yet."
 
 
 @pytest.mark.parametrize(("first", "role"), [(5, Role.ADMINISTRATOR), (5, Role.CLINICIAN)])
@@ -497,7 +497,7 @@ def test_what_became_of_work_without_the_server_is_said_and_of_other_libraries_n
     home.show_library(state)
     assert not away.isVisible()
     for changed, begins, ends in (
-        ({"is_away": True}, "You work without the clinic's server.", "known again by their codes."),
+        ({"is_away": True}, "You are working offline, without the clinic's server.", "known again by their codes."),
         ({"brought_from_away": 1}, "1 session that was made without", "on it now."),
         ({"still_away": Refusal("It is full.", "Ask.")}, "Sessions that were made without", "It is full. Ask."),
     ):
@@ -540,7 +540,7 @@ def test_an_operator_is_removed_with_a_change_of_the_key_and_comes_back_with_a_n
     row()[0].click()
     page.operators.remove.click()
     assert not page.operators.isEnabled()
-    qtbot.waitUntil(lambda: row()[1] == "Works here again", timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: row()[1] == "Reactivate user", timeout=WAIT_MS)
     assert "has a new key" in page.operators.leaving_words.text()
     stolen = KeySlots(folder.parent / "old.json").open("ab", "first words for now")
     with pytest.raises(LibraryError):
@@ -550,7 +550,7 @@ def test_an_operator_is_removed_with_a_change_of_the_key_and_comes_back_with_a_n
     row()[0].click()
     assert page.operators.first.is_wrong
     add("other words for then")
-    qtbot.waitUntil(lambda: row()[1] == "Works here no longer", timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: row()[1] == "Remove user", timeout=WAIT_MS)
     assert KeySlots(folder / KEYS).open("ab", "other words for then") == controller.state.library.data_key
 
 
@@ -611,4 +611,4 @@ def test_a_walk_that_ended_with_the_program_is_asked_about_at_the_next_start(
     assert home.banner.text.replace("B Shoes", "A Shoes") == f"{asked} Look at it, then keep or discard."
     qtbot.waitUntil(lambda: [one.id for one in sessions(home) if one.needs_look] == [session_id], timeout=WAIT_MS)
     (marked,) = (line for line in sessions(home) if line.needs_look)
-    assert marked.state == "keep or discard?"
+    assert marked.state == "include or exclude?"

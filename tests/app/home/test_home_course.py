@@ -74,11 +74,11 @@ def test_the_course_of_the_patient_who_is_chosen_stands_beside_the_list(qtbot: Q
     assert "1 visit is not computed yet." in card.note.text()
     lines = [line for line in home.page.sessions.lines if isinstance(line, SessionLine)]
     assert [(line.amount, line.state) for line in lines] == [
-        ("24 strides", "report not written"),
-        ("24 strides", "report written"),
-        ("48 strides", "report written"),
-        ("2 recordings", "report written"),
-        ("48 strides", "report written"),
+        ("24 strides", "report not saved"),
+        ("24 strides", "report saved"),
+        ("48 strides", "report saved"),
+        ("2 recordings", "report saved"),
+        ("48 strides", "report saved"),
     ]
     assert home.page.panel.next.text() == "Next: write the report of 14 Nov."
     other = next(line.id for line in home.page.patients.lines if line.id != home.page.patient_id)

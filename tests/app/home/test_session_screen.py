@@ -351,7 +351,7 @@ def test_the_table_says_how_each_joint_was_found(results: ResultPage) -> None:
     assert rows == [
         ["", "left knee", "right knee", "left ankle", "right ankle"],
         ["Axis from", "free motion", "free motion", "free motion, walking", "free motion, walking"],
-        ["Axis certainty", "± 4.2°", "± 4.2°", "± 4.2°", "± 4.2°"],
+        ["Calibration certainty", "± 4.2°", "± 4.2°", "± 4.2°", "± 4.2°"],
         ["Margin", "3.4", "3.4", "1.1", "3.4"],
         ["Direction", "sure", "sure", "sure", "uncertain"],
         ["Clock lag", "\N{MINUS SIGN}12 ms", "\N{MINUS SIGN}12 ms", "none", "none"],
@@ -380,7 +380,7 @@ def test_a_session_without_joints_is_no_trouble(qtbot: QtBot, window: SessionScr
     qtbot.waitUntil(lambda: window.results is not None)
     assert window.results is not None
     assert window.results.recording is None
-    assert window.results.door.words == "Nothing stands out."
+    assert window.results.door.words == "No data quality findings."
 
 
 @pytest.mark.endurance
@@ -521,7 +521,7 @@ def test_tab_goes_in_the_order_of_reading(qtbot: QtBot, window: SessionScreen, r
         "Data: R foot",
         "Open a session folder",
         "Open the demonstration",
-        "How was this found?",
+        "Show calibration",
     ]
 
 

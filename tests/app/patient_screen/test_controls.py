@@ -96,7 +96,7 @@ def test_a_figure_that_makes_no_sense_sets_no_target(qtbot: QtBot, card: Control
 
 def test_what_is_gated_cannot_be_chosen_and_says_why(qtbot: QtBot, card: ControlsCard) -> None:
     typed(card, "55")
-    why = "No zero was set, so heights say nothing."
+    why = "There is no standing reference, so absolute angles are not reported."
     with qtbot.waitSignal(card.target_set) as told:
         card.show_reasons({(TargetMeasure.KNEE_SWING_PEAK, Side.LEFT): why})
     assert card.side.choice == Side.RIGHT  # which is not gated
@@ -115,8 +115,8 @@ def test_what_is_gated_cannot_be_chosen_and_says_why(qtbot: QtBot, card: Control
 
 
 def test_where_nothing_can_be_a_target_the_reason_stands_there(card: ControlsCard) -> None:
-    card.show_reasons(dict.fromkeys(choices(), "No foot sensor is worn."))
-    assert card.reason == "No foot sensor is worn."
+    card.show_reasons(dict.fromkeys(choices(), "There is no foot sensor."))
+    assert card.reason == "There is no foot sensor."
     assert not card.target.isEnabled()
     card.show_reasons({})
     assert card.reason == ""

@@ -63,12 +63,12 @@ def test_while_it_waits_no_value_is_shown_not_even_old_ones(window: PatientWindo
     image = picture(window)
     assert not any(is_leg(image, look, x, y) for x in range(80, 1200, 4) for y in (468, 712))
     window.show_view(PatientView(KNEE, TEN))
-    assert "Please wait" not in window.accessibleName()
+    assert "One moment" not in window.accessibleName()
 
 
 def test_before_the_first_step_nothing_is_counted() -> None:
     assert PatientView(KNEE).in_words == "Left knee: bend it as you swing. Target 55°."
-    assert PatientView().in_words == "Please wait"
+    assert PatientView().in_words == "One moment"
 
 
 def test_without_a_target_the_steps_of_a_walk_are_shown_and_nobody_is_to_wait(window: PatientWindow) -> None:
@@ -78,7 +78,7 @@ def test_without_a_target_the_steps_of_a_walk_are_shown_and_nobody_is_to_wait(wi
     window.show_view(PatientView(steps=14))
     assert picture(window) != shown
     window.show_view(PatientView(steps=None))
-    assert window.accessibleName() == "Please wait"
+    assert window.accessibleName() == "One moment"
 
 
 @pytest.mark.parametrize("side", Side)

@@ -33,7 +33,7 @@ def page(qtbot: QtBot, look: ThemeNotifier) -> HomePage:
     qtbot.addWidget(page)
     page.show_patients([patient(158), patient(147)])
     page.show_patient("P-0158", "1961, female · left affected · left knee replaced")
-    lines = [session(number, "Shoes; Shoes, stick", "report not written") for number in range(5)]
+    lines = [session(number, "Shoes; Shoes, stick", "report not saved") for number in range(5)]
     page.show_sessions(lines, VISITS, NextStep("write the report of 14 Nov.", "Open", UUID(int=4)))
     with qtbot.waitExposed(page):
         page.show()
@@ -187,9 +187,9 @@ def test_a_goal_stands_beside_its_lane_with_how_the_last_visit_stands_to_it(page
     page.panel.show_course(VISITS, [early])
     found = said(page.panel.course)
     assert f"{3 * chr(0xB7)} goal 1.05\N{NO-BREAK SPACE}m/s" in found
-    assert "reached, inside error" in found
+    assert "reached, within error" in found
     page.panel.show_course(VISITS, [late])  # agreed on the day of the last visit
-    assert "reached, inside error" not in said(page.panel.course)
+    assert "reached, within error" not in said(page.panel.course)
     page.panel.show_course(VISITS, [replace(early, ended=early.agreed)])
     assert not any("goal" in one for one in said(page.panel.course))
 
@@ -224,7 +224,7 @@ def test_timed_tests_have_a_course_of_their_own_where_there_are_some(qtbot: QtBo
     assert "Walking speed" in said(panel.course)
     panel.shown.focus()
     QTest.keyClick(panel.shown.segments[0], Qt.Key.Key_Right)
-    qtbot.waitUntil(lambda: "Timed up and go" in said(panel.course))
+    qtbot.waitUntil(lambda: "Timed Up and Go" in said(panel.course))
     found = said(panel.course)
     assert "24.0\N{NO-BREAK SPACE}s" in found
     assert "not judged" in found
@@ -236,7 +236,7 @@ def test_timed_tests_have_a_course_of_their_own_where_there_are_some(qtbot: QtBo
 
 def test_the_first_sessions_are_whole_however_many_rows_their_words_take(page: HomePage) -> None:
     long = "; ".join(f"Alignment {letter}, carbon foot" for letter in "ABCD")
-    page.show_sessions([session(number, long, "report not written") for number in range(5)], VISITS)
+    page.show_sessions([session(number, long, "report not saved") for number in range(5)], VISITS)
     heights = [page.panel.sessions.rowHeight(row) for row in range(2)]
     assert page.panel.sessions.minimumHeight() == sum(heights) > 2 * SESSION_ROW
 
@@ -245,4 +245,4 @@ def test_sessions_that_come_by_themselves_are_said_to(page: HomePage) -> None:
     page.show_sessions([])
     assert page.panel.none_yet.text() == "No sessions yet."
     page.panel.say_none_yet(is_awaited=True)
-    assert page.panel.none_yet.text() == "This patient's visits are being recorded. They appear here."
+    assert page.panel.none_yet.text() == "Visits of this patient are being recorded and will appear here."

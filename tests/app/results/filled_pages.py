@@ -96,7 +96,7 @@ def home(look: ThemeNotifier) -> QWidget:
     ]
     page.show_patients(lines)
     page.show_patient("P-0100", "1968, male · left prosthetic")
-    step = NextStep(tr("write the report of {day}.").format(day="14 Nov"), tr("Open"), UUID(int=4))
+    step = NextStep(tr("write the report for {day}.").format(day="14 Nov"), tr("Open"), UUID(int=4))
     missing = CourseVisit(UUID(int=9), datetime.date(2026, 11, 20), None)
     line = SessionLine(UUID(int=99), "today 14:20", "Alignment A, B, C", "3 recordings")
     page.show_sessions([line], [*VISITS, missing], step)
@@ -136,7 +136,7 @@ def importing_files(look: ThemeNotifier) -> QWidget:
     (draft,) = drafts_of([("walk_1", ImportedTrial("apdm", sensors))])
     page.show_draft("session_2026", "APDM Moveo, Mobility Lab or Motion Studio", draft)
     page.code.set_text("P-0300")
-    page.show_unread([tr("This was stopped.")], can_try_again=True)
+    page.show_unread([tr("Stopped.")], can_try_again=True)
     return page
 
 
@@ -164,7 +164,7 @@ def questions(look: ThemeNotifier) -> QWidget:
 
 def no_table(look: ThemeNotifier) -> QWidget:
     page = QuestionsPage(look)
-    page.show_refused(tr("The table cannot be asked."), tr("The log holds the details."))
+    page.show_refused(tr("The table cannot be evaluated."), tr("See the log for details."))
     return page
 
 
@@ -222,8 +222,8 @@ def no_sensors(look: ThemeNotifier) -> QWidget:
     page.show_no_source()
     page.nothing.show_left_out(
         tr(
-            "Simulated and replayed sensors are offered only for codes that begin with DEMO, "
-            "so that they never pass for a real patient's."
+            "Simulated and replayed sensors are offered only for codes that begin with DEMO. This keeps "
+            "them apart from real patients."
         )
     )
     return page

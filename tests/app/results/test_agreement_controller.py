@@ -60,7 +60,7 @@ def words(page: AgreementPage) -> str:
 
 def test_before_anything_is_chosen_it_says_what_can_be(page: AgreementPage, controller: AgreementController) -> None:
     assert words(page).startswith("What did the optical system measure? CSV with time_s and left_knee")
-    assert page.waiting.button.text() == "Choose the reference"
+    assert page.waiting.button.text() == "Choose reference file"
     assert not page.save.isVisible()
 
 
@@ -101,11 +101,11 @@ def test_what_is_no_reference_is_refused_in_its_place(
     strange = tmp_path / "notes.txt"
     strange.write_text("no angles\n", encoding="utf-8")
     controller.compare([strange])
-    qtbot.waitUntil(lambda: page.waiting.button.text() == "Choose another reference", timeout=30_000)
+    qtbot.waitUntil(lambda: page.waiting.button.text() == "Choose another file", timeout=30_000)
     assert words(page).startswith("notes.txt: ")
     assert page.sheets.count == 0
     controller.show(walked[0], walked[1])  # left, and asked for again
-    assert words(page).startswith("What did the optical system measure?")
+    assert words(page).startswith("Choose the optical system's file")
 
 
 @pytest.mark.endurance

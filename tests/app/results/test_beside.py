@@ -83,7 +83,7 @@ def words_beside(page: ResultPage) -> list[str]:
 
 def test_another_walk_is_offered_with_its_condition_and_the_shown_one_is_not(page: ResultPage) -> None:
     offered = [page.beside.itemText(row) for row in range(page.beside.count())]
-    assert offered == ["Beside the band", "The legs alone", "Beside B AFO", "Beside the last visit"]
+    assert offered == ["Versus reference", "Legs only", "Beside B AFO", "Versus last visit"]
     show(page, "walk 2")
     assert page.beside.itemText(2) == "Beside A shoes"
 
@@ -125,7 +125,7 @@ def test_the_table_and_the_key_figures_tell_the_change_with_its_verdict(
     assert told.words.endswith("beside B AFO.")
     first = page.differs.table.cells.rows[0]
     assert [cell.words for cell in first.cells[1:5:3]] == ["Walking speed, m/s", f"+{speed.difference.difference:.2f}"]
-    assert first.cells[-1].words == "exceeds error"
+    assert first.cells[-1].words == "beyond error"
     choose(page, Beside.BAND)
     (told,) = (figure for figure in page.key_figures.figures if figure.name == "Walking speed")
     assert "error" not in told.note
@@ -208,7 +208,7 @@ def test_the_last_visit_is_asked_for_once_and_judged_as_between_visits(
 ) -> None:
     with qtbot.waitSignal(page.compare.visits_wished):
         choose(page, Beside.LAST_VISIT)
-    assert words_beside(page) == ["The earlier visits are being read."] * 2
+    assert words_beside(page) == ["Reading earlier visits."] * 2
     with qtbot.assertNotEmitted(page.compare.visits_wished):
         choose(page, Beside.BAND)
         choose(page, Beside.LAST_VISIT)
@@ -235,7 +235,7 @@ def test_a_condition_that_no_earlier_visit_has_stands_beside_nothing(
     give_visits(
         page, [WalkedVisit("June", analysis, older.recordings), WalkedVisit("July", analysis, session.recordings)]
     )
-    assert words_beside(page) == ["No earlier visit was walked in this condition."] * 2
+    assert words_beside(page) == ["No earlier visit has a walk in this condition."] * 2
     assert page.cycles.charts.knee.chart.described.beside == ()
     show(page, "walk 2")
     assert words_beside(page) == ["Thin: June."] * 2

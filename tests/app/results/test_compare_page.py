@@ -154,7 +154,7 @@ def test_in_a_small_window_no_view_of_a_prosthetic_patient_scrolls_to_and_fro(
     page.all_figures.click()
     settle()
     shown.append(("figures", "", page.minimumSizeHint().width()))
-    assert "Prosthetic against sound side" in {words for _, words, _ in shown}
+    assert "Prosthetic vs sound side" in {words for _, words, _ in shown}
     assert [one for one in shown if one[2] > width - bar] == []
 
 
@@ -480,13 +480,13 @@ def test_between_legs_only_what_is_worth_a_sentence_is_said(
     page: ResultPage, analysis: Analysis, session: Session
 ) -> None:
     quiet = shown(page, analysis, session, Contrast.SIDES)
-    assert quiet == "No difference is larger than its error."
+    assert quiet == "All judged differences are within measurement error."
     loud = shown(page, bent_more(analysis, 20.0), session, Contrast.SIDES)
     assert "Knee range \N{MINUS SIGN}" in loud
     assert "L against R: larger than its error (" in loud
     ankle = shown(page, bent_more(analysis, 20.0, Joint.RIGHT_ANKLE), session, Contrast.SIDES)
-    assert "Ankle range" not in ankle  # its error is borrowed: the table marks it, no sentence says it
-    assert ankle == "No difference is so much larger than its error that it is said here; the table marks them."
+    assert "Ankle range of motion" not in ankle  # its error is borrowed: the table marks it, no sentence says it
+    assert ankle == "Some differences are beyond measurement error, none clearly. The table marks them."
 
 
 def test_between_walks_only_what_is_worth_a_sentence_is_said(
@@ -542,14 +542,19 @@ def test_an_error_that_could_not_be_verified_bears_a_dagger_in_the_table(
 ) -> None:
     shown(page, analysis, session, Contrast.SIDES)
     rows = {name: cells for _, name, *cells in table_words(page)}
-    assert rows["Ankle range"][2].endswith(" \N{DAGGER}")
+    assert rows["Ankle range of motion"][2].endswith(" \N{DAGGER}")
     assert "\N{DAGGER} rests on a figure" in page.compare.error.text()
-    assert "For the ankle the knee's figure is borrowed." in page.compare.error.text()
-    assert "strapping the sensors on" in page.compare.error.text()
+    assert "The ankle uses the knee's error figure." in page.compare.error.text()
+    assert "sensor attachment" in page.compare.error.text()
     shown(page, analysis, session, Contrast.CONDITIONS)
     assert "borrowed" not in page.compare.error.text()
     told = page.compare.error.text()
-    for words in ("chance between strides", "drift within a walk", "another walking speed", "what walks differ by"):
+    for words in (
+        "variation between strides",
+        "drift within a walk",
+        "different walking speed",
+        "variation between walks",
+    ):
         assert words in told
     assert "strapping" not in told
     stance = [cells[2] for _, name, *cells in table_words(page) if name.startswith("Stance")]
@@ -561,8 +566,8 @@ def test_what_is_withheld_stands_in_no_comparison(page: ResultPage, analysis: An
     doubtful = recalibrated(analysis, [Joint.RIGHT_ANKLE], is_same_joint=False, sign_margin=1.05)
     shown(page, doubtful, session, Contrast.SIDES)
     rows = {name: cells for _, name, *cells in table_words(page)}
-    assert rows["Ankle range"][1:3] == ["withheld", "\N{EN DASH}"]
-    assert rows["Ankle range"][0] not in ("withheld", "\N{EN DASH}")
+    assert rows["Ankle range of motion"][1:3] == ["withheld", "\N{EN DASH}"]
+    assert rows["Ankle range of motion"][0] not in ("withheld", "\N{EN DASH}")
     assert "withheld" not in rows["Knee range"]
     shown(page, doubtful, session, Contrast.CONDITIONS)
     frame = page.compare.frames[Side.RIGHT, JointKind.ANKLE]
@@ -586,7 +591,7 @@ def test_without_a_zero_curves_are_compared_about_their_mean(
     shown(page, recalibrated(analysis, [Joint.LEFT_KNEE], zero=ZeroKind.NONE), session, Contrast.CONDITIONS)
     frame = page.compare.frames[Side.LEFT, JointKind.KNEE]
     assert [float(np.mean(curve.angle_deg)) for curve in frame.chart.curves] == [pytest.approx(0.0, abs=1e-9)] * 2
-    assert "0° is the mean of the stride." in frame.note
+    assert "0° is the mean of the gait cycle." in frame.note
     assert frame.chart.described.band is None
     assert "mean of the stride" not in page.compare.frames[Side.RIGHT, JointKind.KNEE].note
 
@@ -676,7 +681,7 @@ def test_what_the_table_alone_marks_is_said_to_be_marked_there(
         "No change to visit 3 is so much larger than its error that it is said here; the table marks those that are "
         "larger."
     )
-    assert marked(page) == [(Side.RIGHT, "Ankle range")]
+    assert marked(page) == [(Side.RIGHT, "Ankle range of motion")]
     assert visits_shown(page, session, (analysis, ankle, analysis)) == NONE_LARGER
     assert marked(page) == []
 
@@ -706,7 +711,7 @@ def test_from_the_latest_visit_as_base_the_one_before_is_told(
 def test_the_conclusion_speaks_of_all_sentences_there_are(analysis: Analysis, session: Session) -> None:
     (visits,) = visits_by_condition([walked(day, analysis, session, walk_1="A") for day in ("May", "July")])
     row = next(row for row in Comparison(Contrast.VISITS, visits.parts).rows if row.is_told)
-    assert conclusion(["a", "b", "c", "d"], [row.difference]) == ["a", "b", "c", "The table has all of them."]
+    assert conclusion(["a", "b", "c", "d"], [row.difference]) == ["a", "b", "c", "The table shows all of them."]
     assert conclusion(["a", "b", "c"], [row.difference]) == ["a", "b", "c"]
 
 
@@ -721,12 +726,12 @@ def test_the_trend_of_a_row_says_its_values_and_where_there_is_none(
         for cell in row.cells
         if isinstance(cell, TrendCell)
     }
-    left = trends[Side.LEFT, "Knee, stance to swing"]
+    left = trends[Side.LEFT, "Knee flexion, stance to swing"]
     assert [math.isfinite(value) for value in left.values] == [True, False, True]
     assert left.places == pytest.approx((0.0, 0.5, 1.0))
     assert left.said.startswith("L Knee, stance to swing, trend; grey: error: 1 ")
     assert ", 2 –, 3 " in left.said
-    assert "–" not in trends[Side.RIGHT, "Knee, stance to swing"].said
+    assert "–" not in trends[Side.RIGHT, "Knee flexion, stance to swing"].said
     assert trends[None, "Walking speed, m/s"].band is not None
     shown(page, analysis, session, Contrast.CONDITIONS)
     rows = page.compare.card.table.cells.rows
@@ -740,17 +745,17 @@ def test_between_visits_the_table_is_brief_until_all_is_asked_for(
     page.compare.view.choose(TABLE)
     visits_shown(page, session, (analysis, analysis, analysis))
     assert card.all_measures.isVisible()
-    assert "Knee, stance to swing" in measures(page)
-    assert not {"Knee range", "Ankle range", "Knee swing peak"} & measures(page)
+    assert "Knee flexion, stance to swing" in measures(page)
+    assert not {"Knee range", "Ankle range of motion", "Knee peak flexion, swing"} & measures(page)
     card.all_measures.click()
-    assert {"Knee range", "Ankle range", "Knee swing peak"} <= measures(page)
+    assert {"Knee range", "Ankle range of motion", "Knee peak flexion, swing"} <= measures(page)
     card.all_measures.click()
     visits_shown(page, session, (analysis, analysis, bent_more(analysis, 30.0)))
     assert "Knee range" in measures(page)  # what is marked is never left out
-    assert "Ankle range" not in measures(page)
+    assert "Ankle range of motion" not in measures(page)
     shown(page, analysis, session, Contrast.CONDITIONS)
     assert not card.all_measures.isVisible()
-    assert "Ankle range" in measures(page)
+    assert "Ankle range of motion" in measures(page)
 
 
 @pytest.mark.parametrize("view", [PLOT, TABLE])

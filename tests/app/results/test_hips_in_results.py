@@ -97,7 +97,7 @@ def test_without_a_pelvis_nothing_of_hips_is_there(page: ResultPage) -> None:
     assert not page.whole.charts.hip.isVisible()
     page.view.choose(ANSWER)
     page.door.click()
-    assert page.quality.first.text() == "All four joints can be read."
+    assert page.quality.first.text() == "All four joints are reported."
     assert page.quality.hip_facts.isHidden()
     said = " ".join([page.quality.in_order.text(), page.cycles.hips.note.text()])
     assert "hip" not in said
@@ -171,7 +171,7 @@ def test_behind_q_stand_six_joints_the_pelvis_and_how_each_hip_was_found(page: R
     page.focus()
     QTest.keyClick(page, Qt.Key.Key_Q)
     quality = page.quality
-    assert quality.first.text() == "All six joints can be read."
+    assert quality.first.text() == "All six joints are reported."
     assert "the right leg's clock was 40 ms late, ± 5 ms" in quality.in_order.text()
     quality.engineering.click()
     assert quality.hip_facts.isVisible()
@@ -182,7 +182,7 @@ def test_behind_q_stand_six_joints_the_pelvis_and_how_each_hip_was_found(page: R
 def test_abduction_that_cannot_be_read_is_a_line_and_no_joint_is_withheld(page: ResultPage) -> None:
     show(page, with_hip(hip_analysis(), *HIPS, heading_sd_rad=math.radians(7.0), is_3d=False))
     page.door.click()
-    assert page.quality.first.text() == "All six joints can be read."
+    assert page.quality.first.text() == "All six joints are reported."
     (line,) = page.quality.lines
     assert line.where.startswith("Abduction of")
     assert line.verdict is Verdict.WITHHELD

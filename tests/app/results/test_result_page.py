@@ -160,12 +160,12 @@ def test_all_figures_take_the_curves_place_and_give_it_back(page: ResultPage) ->
 
 
 def test_the_door_leads_to_what_can_be_read_and_back(page: ResultPage, analysis: Analysis) -> None:
-    assert page.door.words.startswith("Everything that was measured can be read.")
+    assert page.door.words.startswith("Good data quality throughout.")
     page.focus()
     QTest.keyClick(page, Qt.Key.Key_Q)
     assert page.quality.isVisible()
     assert not page.cycles.isVisible()
-    assert page.quality.first.text() == "All four joints can be read."
+    assert page.quality.first.text() == "All four joints are reported."
     assert page.leave_behind()
     assert page.cycles.isVisible()
     assert not page.leave_behind()
@@ -299,14 +299,14 @@ def test_a_prosthetic_leg_has_no_band(page: ResultPage, analysis: Analysis) -> N
 def test_the_same_doubt_stands_in_chart_and_table(page: ResultPage, analysis: Analysis) -> None:
     show(page, recalibrated(analysis, [Joint.LEFT_KNEE], is_sign_certain=False))
     assert page.cycles.charts.knee.note.startswith("L: sign unsure.")
-    assert rows_of(page)["Swing peak"][0] == "sign unsure"
-    assert "sign unsure" not in rows_of(page)["Swing peak"][1]
+    assert rows_of(page)["Swing peak"][0] == "sign unclear"
+    assert "sign unclear" not in rows_of(page)["Swing peak"][1]
 
 
 def test_a_withheld_ankle_has_no_number_and_no_curve_and_says_what_to_do(page: ResultPage, analysis: Analysis) -> None:
     show(page, recalibrated(analysis, [Joint.RIGHT_ANKLE], is_same_joint=False, sign_margin=1.05))
     rows = rows_of(page)
-    for name in ("Stance dorsiflexion", "Push-off plantarflexion", "Swing dorsiflexion"):
+    for name in ("Peak dorsiflexion, stance", "Peak plantarflexion, push-off", "Peak dorsiflexion, swing"):
         assert rows[name][1] == "withheld"
         assert rows[name][0] != "withheld"
     assert rows["Double support %"][0] == "withheld"
@@ -333,7 +333,7 @@ def test_the_answer_stands_over_the_mean_cycle_and_nothing_scrolls_for_it(page: 
     in_wizard = (1064.0, 672.0)  # of a window of 1280 x 800 with its rail
     page.set_room(*in_wizard)
     show(page, analysis)
-    assert page.answer.text.startswith("No difference is larger than its error.")
+    assert page.answer.text.startswith("All judged differences are within measurement error.")
     show(page, with_more(analysis, Side.LEFT, "knee_range_rad", -20.0))
     assert page.answer.text.startswith("The left knee moves ")
     assert page.minimumSizeHint().height() <= in_wizard[1]

@@ -93,7 +93,7 @@ def test_a_stride_is_left_out_by_key_and_by_mouse_and_stays_where_it_was(
     assert strides.currentIndex().row() == row
     assert strides.line is not None
     assert strides.line.is_by_hand
-    assert page.strides.turn.text() == "Take this stride in again"
+    assert page.strides.turn.text() == "Include this stride"
     QTest.keyClick(strides, Qt.Key.Key_Space)
     assert turned[-1] == ("walk 1", strides.line, False)
 
@@ -172,7 +172,7 @@ def test_what_was_left_out_by_hand_is_said_wherever_figures_stand(
     assert page.cycles.by_hand.isVisible()
     assert page.cycles.by_hand.text() == said
     assert said in page.cycles.time_distance.note.text()
-    assert "left out by hand" in page.cycles.peaks.note.text()
+    assert "excluded by hand" in page.cycles.peaks.note.text()
     assert said in page.compare.conclusion.text()
     page.show_visit(AnalysedVisit(session, analysis), can_choose=True)
     assert page.cycles.by_hand.text() == ""

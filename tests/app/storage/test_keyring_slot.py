@@ -120,7 +120,7 @@ def test_it_goes_with_its_operator_and_with_no_other(slots: KeySlots, data_key: 
 
 
 def test_only_who_has_a_passphrase_is_remembered(slots: KeySlots, data_key: DataKey, keyring: Keyring) -> None:
-    with pytest.raises(KeyRefusedError, match="Add the operator first"):
+    with pytest.raises(KeyRefusedError, match="Add the user first"):
         remember(slots, data_key, "ab")
     assert keyring.held == {}
 

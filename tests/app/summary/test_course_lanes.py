@@ -112,7 +112,7 @@ def test_a_last_visit_that_cannot_be_read_has_no_difference() -> None:
     knee = lane(lanes(visits), KNEE_LANE)
     (change,) = knee.changes
     assert change.since_first is None
-    assert last_in_words(change, KNEE_LANE) == "not readable"
+    assert last_in_words(change, KNEE_LANE) == "not reported"
     assert "since" not in lane_in_words(knee, visits)
 
 
@@ -126,7 +126,7 @@ def test_a_visit_that_is_not_computed_is_no_point_and_is_counted() -> None:
 
 
 def test_one_visit_makes_no_trend_and_two_do() -> None:
-    assert nothing_between([visit(1, shoes())]) == "A second visit makes a trend."
+    assert nothing_between([visit(1, shoes())]) == "A trend needs a second visit."
     assert nothing_between([visit(1, shoes()), visit(2, shoes())]) == ""
     assert nothing_between([visit(1, Course(None, ()))]) == "No visit has a walk yet."
     (change,) = lane(lanes([visit(1, shoes())]), SPEED_LANE).changes
@@ -196,7 +196,7 @@ def test_what_is_drawn_is_explained_and_nothing_else() -> None:
     two = lanes([visit(1, shoes(40.0)), visit(2, shoes(60.0))])
     said = key_in_words(two)
     assert said.startswith("Whisker: half of the error of a change. Grey: first visit ± error. †")
-    assert key_in_words(lanes([visit(1, shoes())])) == "Whisker: half of the error of a change."
+    assert key_in_words(lanes([visit(1, shoes())])) == "Whisker: half the error of a change."
     assert key_in_words(lanes([visit(1, shoes(strides=5))])) == ""  # under ten strides nothing is judged
 
 
@@ -210,7 +210,7 @@ def test_what_is_next_is_the_first_that_holds() -> None:
     assert next_step(recovered, gated_and_unwritten, TODAY) == NextStep(
         "keep or discard the walk of 2 Nov.", "Look", UUID(int=7)
     )
-    assert undecided_step(UUID(int=7), None).sentence == "keep or discard the last walk."
+    assert undecided_step(UUID(int=7), None).sentence == "include or exclude the last walk."
     assert next_step(None, latest(1, Joint.LEFT_KNEE, Joint.LEFT_ANKLE, has_report=False), TODAY) == NextStep(
         "left knee and left ankle could not be read on 22 Nov: see why.", "Look", UUID(int=1)
     )

@@ -84,7 +84,7 @@ def test_the_band_of_a_peak_stands_where_the_groups_mean_curve_has_its_own(walk:
 def test_without_a_zero_only_what_needs_none_is_told(analysis: Analysis) -> None:
     walk = walk_of(recalibrated(analysis, [Joint.LEFT_KNEE], zero=ZeroKind.NONE))
     for figure in peak_figures(alone(walk), reference_curves())["knee"]:
-        holds = figure.name in ("Range", "Swing peak at, %")
+        holds = figure.name in ("Range", "Time of peak flexion, swing, %")
         assert (Side.LEFT in figure.sides) is holds, figure.name
         assert dict(figure.unknown) == ({} if holds else {Side.LEFT: NO_ZERO})
         assert Side.RIGHT in figure.sides

@@ -16,7 +16,7 @@ STOP = BarAction("Stop walk", "Space", Icon.STOP)
 
 
 def recording(elapsed_s: float = 0.0, has_sound: bool = True) -> BarState:
-    return BarState(STOP, recording=RecordingNote("Recording walk 3", "Saved as it comes in.", elapsed_s, has_sound))
+    return BarState(STOP, recording=RecordingNote("Recording walk 3", "Saved continuously.", elapsed_s, has_sound))
 
 
 @pytest.fixture
@@ -34,7 +34,7 @@ def ground(bar: ActionBar) -> QColor:
 
 
 def test_a_verb_is_filled_only_if_pressing_it_is_wished(bar: ActionBar) -> None:
-    bar.show_state(BarState(BarAction("Go on to walking", "Enter")))
+    bar.show_state(BarState(BarAction("Continue to walking", "Enter")))
     assert bar.primary.is_filled
     bar.show_state(BarState(BarAction("Stop early", "Space", is_wished=False)))
     assert not bar.primary.is_filled

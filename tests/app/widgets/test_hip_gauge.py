@@ -49,7 +49,7 @@ def test_an_open_hip_names_the_motion_and_a_closed_one_does_not(gauge: HipGauge)
     assert gauge.accessibleName() == "Left hip, heading 11°, under 6° needed, Walk 15 s with a turn, or lunge"
     gauge.show_face(hip_face(heading(4.0, is_sure=True), is_now=True))
     assert not gauge.face.is_now
-    assert gauge.said == "Enough motion"
+    assert gauge.said == "Enough movement"
 
 
 def test_a_hip_without_its_thigh_says_why(gauge: HipGauge) -> None:

@@ -21,7 +21,7 @@ from core.body import Side
 
 ERROR_DEG = 9.2
 COLUMNS = (
-    TableColumn(TextCell("What differs most", weight=SEMIBOLD), share=1),
+    TableColumn(TextCell("Largest differences", weight=SEMIBOLD), share=1),
     TableColumn(TextCell("L \N{MINUS SIGN} R", align=RIGHT, size=12, tone="ink2")),
     TableColumn(TextCell("grey: error", align=CENTRE, size=12, tone="ink2"), share=2),
 )
@@ -135,7 +135,7 @@ def test_a_text_of_two_lines_asks_for_their_height(look: ThemeNotifier) -> None:
 
 
 def test_a_table_is_as_high_as_its_rows_and_shares_all_of_its_width(qtbot: QtBot, look: ThemeNotifier) -> None:
-    table = table_of(qtbot, look, [row("Knee range", "+2.0"), row("Knee swing peak", "−12.1", is_marked=True)])
+    table = table_of(qtbot, look, [row("Knee range", "+2.0"), row("Knee peak flexion, swing", "−12.1", is_marked=True)])
     assert table.height() == 32 + 2 * 28
     widths = [table.columnWidth(column) for column in range(3)]
     needed = table.needed_widths

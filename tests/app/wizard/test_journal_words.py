@@ -49,11 +49,11 @@ def test_nothing_is_lost_yet_only_while_the_disk_is_late_and_every_counter_is_no
 
 def test_a_late_disk_that_answers_again_says_what_it_cost() -> None:
     assert trouble_message(Trouble.DISK_SLOW, AGAIN) == (
-        "The disk answered late, and answers again.",
-        "Nothing was lost by it.",
+        "The disk was slow and now responds again.",
+        "No data were lost because of this.",
     )
     _, then = trouble_message(Trouble.DISK_SLOW, AGAIN, lost=90)
-    assert then == "Nothing was dropped because of it."
+    assert then == "No data were discarded because of this."
 
 
 @pytest.mark.parametrize("trouble", [Trouble.DISK_SLOW, Trouble.DROPPED])
@@ -116,7 +116,7 @@ def test_no_sample_is_missing_only_where_all_sensors_are_heard_counted_and_whole
     assert none not in standstill(whole, are_heard=False)
     assert none not in standstill(whole, are_counted=False)
     assert none not in standstill(whole, now_s=71.5)  # what waited is still being read
-    assert standstill(whole, are_heard=False).endswith("What is missing of it is being counted.")
+    assert standstill(whole, are_heard=False).endswith("Missing samples are being counted.")
 
 
 def test_a_standstill_of_before_or_long_ago_is_not_told_and_sleep_is_called_so() -> None:

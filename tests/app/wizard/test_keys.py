@@ -215,7 +215,7 @@ def test_a_window_without_a_focus_hears_keys_too(window: Window) -> None:
 
 def test_a_list_of_choices_is_searched_by_letters_but_not_while_something_runs(qtbot: QtBot, window: Window) -> None:
     parts = QComboBox(window)
-    parts.addItems(["Foot, front screw", "Knee unit"])
+    parts.addItems(["Foot, anterior screw", "Knee unit"])
     parts.show()
     parts.setFocus()
     assert window.press(Key.Key_K) == []

@@ -174,7 +174,7 @@ def test_before_a_walk_was_kept_or_discarded(
     assert place_of(wizard) == WALKING
     step = wizard.current
     assert isinstance(step, WalkingStep)
-    assert (step.state, step.note) == (StepState.ATTENTION, "keep or discard?")
+    assert (step.state, step.note) == (StepState.ATTENTION, "include or exclude?")
     step.page.keep_pressed.emit(str(visit.recordings.walks[0].id))
     qtbot.waitUntil(lambda: visit.recordings.walks[0].stored.is_decided, timeout=WAIT_MS)
     wizard.show_session(UUID(told["session"]))

@@ -37,7 +37,7 @@ def test_its_return_is_told_with_how_long_it_was() -> None:
     losses.update({Site.RIGHT_FOOT: 0.02}, 10.1)
     assert losses.message(True, ALL, 11.0) == (
         "R foot is back after 3.1 s.",
-        "The strides in between are left out.",
+        "Strides in between are excluded.",
     )
     assert losses.message(True, ALL, 20.0) == NOTHING
 
@@ -56,13 +56,13 @@ def test_two_are_told_together() -> None:
         "L foot, R foot have been silent for 5 s.",
         "Recording goes on. Missing until they are back: left phases, right phases.",
     )
-    assert losses.message(False, [], 10.0)[1] == "Switch them off and on, or go on without them."
+    assert losses.message(False, [], 10.0)[1] == "Switch them off and on, or continue without them."
 
 
 def test_where_none_is_heard_the_receiver_is_told_of_and_their_return_is_told_together() -> None:
     losses = Losses()
     losses.update(dict.fromkeys(LEG_SITES, 3.0), 10.0)
-    then = "Check that the receiver is plugged in and near the patient, and the sensors are switched on."
+    then = "Check that the receiver is plugged in and near the patient, and that the sensors are switched on."
     assert losses.message(False, ALL, 10.0) == ("No sensor has been heard for 3 s.", then)
     assert losses.message(True, ALL, 10.0)[1] == f"Recording goes on. {then}"
     losses.update({**dict.fromkeys(LEG_SITES, 0.02), Site.LEFT_FOOT: 3.5}, 10.5)
@@ -81,13 +81,13 @@ def test_a_silent_pelvis_costs_the_hips_and_says_that_the_rest_goes_on() -> None
     assert losses.update({Site.PELVIS: 3.1, Site.LEFT_FOOT: 0.0}, 10.0) == (Site.PELVIS,)
     assert losses.message(True, [*ALL, *HIPS], 11.0) == (
         "The pelvis has been silent for 3 s.",
-        "Recording goes on, and so do knees and ankles. The hips are missing until it is back.",
+        "Recording continues, including knees and ankles. Hip angles are missing until the signal is back.",
     )
-    assert losses.message(False, [*ALL, *HIPS], 11.0)[1] == "Switch it off and on, or go on without hip angles."
+    assert losses.message(False, [*ALL, *HIPS], 11.0)[1] == "Switch it off and on, or continue without hip angles."
     losses.update({Site.PELVIS: 0.02, Site.LEFT_FOOT: 0.0}, 12.0)
     assert losses.message(True, [*ALL, *HIPS], 12.5) == (
         "Pelvis is back after 3.1 s.",
-        "Only the hips are missing in between.",
+        "Only hip angles are missing in between.",
     )
 
 

@@ -31,7 +31,7 @@ from core.samples import Patient, Recording, RecordingKind, Session
 from tests.app.library_answers import asked
 from tests.app.wizard.begun_visit import begin, record
 
-BUSY = LibraryBusyError("Another program keeps the library busy", "Wait a moment")
+BUSY = LibraryBusyError("Another program is using the library", "Wait a moment")
 WAIT_MS = 20_000
 
 
@@ -155,7 +155,10 @@ def test_what_is_said_of_a_late_disk_follows_its_counters(
     monkeypatch.setattr(Recorder, "status", property(lambda _recorder: now[0]))
     with qtbot.waitSignal(recordings.troubled, timeout=WAIT_MS) as told:
         recordings.meet(Trouble.DISK_SLOW)
-    assert told.args == ["The disk answers late.", "Nothing is lost yet. Close programs that copy or download to it."]
+    assert told.args == [
+        "The disk responds slowly.",
+        "Nothing is lost yet. Close programs that copy or download to it.",
+    ]
 
     def said() -> str:
         for _ in range(WATCH_TICKS):
@@ -175,7 +178,7 @@ def test_what_is_said_of_a_late_disk_follows_its_counters(
     assert said() == "The disk answered late, and answers again. Nothing was lost by it."
     recording = step.bar().recording
     assert recording is not None
-    assert "Saved as it comes in." in recording.note
+    assert "Saved continuously." in recording.note
     step.leave()
     with qtbot.waitSignal(recordings.ended, timeout=WAIT_MS):
         recordings.stop()
@@ -225,7 +228,7 @@ def test_a_free_motion_that_is_refused_waits_for_a_word(
     assert len(beginnings) == 1
     primary = step.bar().primary
     assert primary is not None
-    assert primary.text == "Begin the free motion"
+    assert primary.text == "Start free motion"
     with qtbot.waitSignal(looked_at.recordings.begun, timeout=WAIT_MS):
         step.on_intent(Intent(KeyAction.RUN))
     with qtbot.waitSignal(looked_at.recordings.ended, timeout=WAIT_MS):
@@ -292,7 +295,7 @@ def test_a_demonstration_that_was_left_gives_its_patient_to_no_other_session(
 
 def test_who_skips_the_free_motion_is_told_its_price(qtbot: QtBot, looked_at: Visit) -> None:
     step = WalkingStep(ThemeNotifier(), looked_at)
-    assert step.bar().note == "Without a free motion, angles are poor or missing."
+    assert step.bar().note == "Without free motion, joint angles are uncertain or missing."
     record(qtbot, looked_at, RecordingKind.FREE_MOTION, 0.5)
     assert step.bar().note.startswith("Next:")
 
@@ -309,7 +312,7 @@ def test_walks_are_judged_without_sensors(qtbot: QtBot, controller: LibraryContr
     assert step.cannot_enter == ""
     step.enter()
     assert not step.bar().others[0].is_enabled
-    assert step.bar().note == "Choose the source of the sensors first."
+    assert step.bar().note == "Choose the sensor source first."
     (walk,) = again.recordings.walks
     assert controller.state is not None
     sha256 = {journal.segment: journal.sha256 for journal in walk.stored.journals}

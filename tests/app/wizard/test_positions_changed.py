@@ -78,7 +78,7 @@ def test_another_sensor_at_a_place_asks_for_another_standing_and_free_motion(
     visit.sensors.assign(visit.sensors.sensor_at[Site.LEFT_FOOT], THIGH)
     told = QSignalSpy(calibrated.told)
     calibrated.leave()
-    assert told.at(0)[0] == "Another sensor is worn. Standing reference and calibration no longer hold."
+    assert told.at(0)[0] == "Another sensor is worn. Standing reference and calibration are no longer valid."
     assert visit.recordings.must_move
     assert Joint.LEFT_KNEE not in visit.calibration
     qtbot.waitUntil(lambda: not visit.record.is_busy)

@@ -20,7 +20,7 @@ from core.samples import RecordingKind
 from tests.app.wizard.begun_visit import begin, record
 
 WAIT_MS = 20_000
-FAULT = LibraryFaultError("The library's file cannot be read or written", "Check the disk")
+FAULT = LibraryFaultError("The library file cannot be read or written", "Check the disk")
 
 
 def hanging(until: Event) -> Callable[[OpenedLibrary], None]:
@@ -58,7 +58,7 @@ def test_no_call_of_the_library_holds_up_a_recording(
             qtbot.waitUntil(lambda: not recordings.is_recording, timeout=WAIT_MS)
             assert acquisition._writer is None
         assert ended == []
-        assert [what for what, _ in told] == ["The library does not answer.", "The recording is not read back yet."] * 2
+        assert [what for what, _ in told] == ["The library does not respond.", "The recording is not loaded yet."] * 2
         assert ["written to the disk all the same" in then for _, then in told] == [True, False] * 2
         assert ["safe on the disk" in then for _, then in told] == [False, True] * 2
     finally:
@@ -94,7 +94,7 @@ def test_a_database_that_fails_in_whatever_way_costs_no_recording(
         recordings.begin(acquisition, RecordingKind.WALKING)
     with qtbot.waitSignal(recordings.refused, timeout=WAIT_MS) as told:
         recordings.stop()
-    assert told.args == [f"{FAULT.what}.", "The recording is safe on the disk; it is read back as soon as that can be."]
+    assert told.args == [f"{FAULT.what}.", "The recording is safe on the disk. It is loaded as soon as possible."]
     assert not recordings.is_recording
     is_broken[0] = False
     with qtbot.waitSignal(recordings.ended, timeout=WAIT_MS) as ended:

@@ -13,11 +13,11 @@ DONE, NOW, TO_DO = LineState.DONE, LineState.NOW, LineState.TO_DO
 @pytest.mark.parametrize(
     ("stage", "sensor", "said"),
     [
-        (SyncStage.PREPARING, "", "The sensors are being reached."),
+        (SyncStage.PREPARING, "", "Connecting to the sensors."),
         (SyncStage.PREPARING, "DOT 0002", "DOT 0002 is being set up."),
-        (SyncStage.WAITING, "", "The sensors compare their clocks by themselves. Leave them where they are."),
+        (SyncStage.WAITING, "", "The sensors are comparing their clocks. Leave them where they are."),
         (SyncStage.CONNECTING, "DOT 0001", "DOT 0001 is asked how it went."),
-        (SyncStage.LISTENING, "", "Their clocks are held against one another."),
+        (SyncStage.LISTENING, "", "Comparing the sensor clocks."),
     ],
 )
 def test_each_stage_has_its_sentence(stage: SyncStage, sensor: str, said: str) -> None:
@@ -57,7 +57,7 @@ class _Shown(SensorSync):
     ("left_s", "attempt", "sentence", "title"),
     [
         (22.0, 1, "About 25 s are left.", "The sensors are being synchronised"),
-        (4.0, 2, "", "Some did not follow: the sensors are being synchronised once more"),
+        (4.0, 2, "", "Some sensors did not synchronise: all are being synchronised again"),
         (None, 1, "", "The sensors are being synchronised"),
     ],
 )

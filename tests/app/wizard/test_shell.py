@@ -71,7 +71,7 @@ def filled(look: ThemeNotifier) -> WizardShell:
     rows = [
         ("Patient", "Left prosthetic", StepState.DONE),
         ("Sensors", "6 of 6 assigned", StepState.DONE),
-        ("Stand still", "skipped, printed", StepState.SKIPPED),
+        ("Stand still", "skipped, in report", StepState.SKIPPED),
         (
             "Free motion",
             "enough motion for 1 of 2 knees, 2 of 2 ankle centres; left knee: no hinge",
@@ -169,7 +169,7 @@ def test_a_page_with_nothing_to_press_leaves_the_focus_to_the_bar(shell: WizardS
     page.show_sentence("The results are saved.")
     shell.show_page(7, page)
     assert shell.focusWidget() is shell.bar.primary
-    page.show_sentence("No walk is kept yet.", button="Go to Walking")
+    page.show_sentence("No walk is included yet.", button="Go to Walking")
     shell.show_page(7, page)
     assert shell.focusWidget() is page.button
 
@@ -283,7 +283,7 @@ def test_a_banner_that_comes_while_recording_pushes_nothing(shell: WizardShell) 
     shell.bar.show_state(recording())
     settle()
     before = page.mapTo(shell, page.rect().topLeft())
-    shell.banner.tell("R foot has been silent for 2 s", "Recording goes on.")
+    shell.banner.tell("R foot has been silent for 2 s", "Recording continues.")
     settle()
     assert page.mapTo(shell, page.rect().topLeft()) == before
     shell.banner.hide()

@@ -255,7 +255,7 @@ def test_a_sign_turned_here_and_confirmed_there_is_asked_about_and_other_joints_
     )
     ours.record.set_turned(Joint.LEFT_KNEE, -1)
     dialog = dialog_of(qtbot, wizard)
-    assert [cell.value for cell in dialog.cells[0]] == ["turned by hand", "confirmed by hand"]
+    assert [cell.value for cell in dialog.cells[0]] == ["reversed by hand", "confirmed by hand"]
     answer(dialog, Qt.Key.Key_Left, Qt.Key.Key_Return)
     sessions, session_id = other.library.sessions, other.session_id
     wanted = {Joint.LEFT_KNEE: -1, Joint.RIGHT_KNEE: -1}

@@ -139,7 +139,7 @@ def test_what_the_body_does_not_allow_is_stored_and_taken_up_again(
     step.enter()
     primary = step.bar().primary
     assert primary is not None
-    assert (step.state, primary.text) == (StepState.SKIPPED, "Go on to free motion")
+    assert (step.state, primary.text) == (StepState.SKIPPED, "Continue to free motion")
     step.leave()
     patient = PatientStep(ThemeNotifier(), again)
     qtbot.addWidget(patient.page)

@@ -26,7 +26,7 @@ B = AlignmentChange(
 
 def test_a_list_says_each_thing_that_was_done() -> None:
     assert change_lines(B) == [
-        ("Foot, front screw", "½ out, +2° plantar"),
+        ("Foot, anterior screw", "½ out, +2° plantar"),
         ("Foot, shift", "4 mm back"),
         ("Pylon, height", "+3 mm"),
         ("Pylon", "new clamp"),
@@ -71,6 +71,6 @@ def test_two_versions_of_a_change_are_said_as_the_pages_say_it() -> None:
     """When two stations changed it, both stand side by side."""
     field = "alignment"
     value = recording_fields(Recording("walk 1", RecordingKind.WALKING, "", {}, alignment=B))[field]
-    assert field_word(field) == "Changed at the prosthesis"
+    assert field_word(field) == "Alignment change"
     assert value_words(field, value) == since_in_words(B)
-    assert value_words(field, "") == "nothing said"
+    assert value_words(field, "") == "not recorded"

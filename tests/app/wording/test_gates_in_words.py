@@ -168,7 +168,7 @@ CASES: list[tuple[RecordingAnalysis, dict[str, Any], str]] = [
     (
         left(is_toe_off_biased=True),
         {},
-        "A prosthetic foot rolls on, so toe-off is found late: stance is not compared or judged.",
+        "A prosthetic foot rolls on, so toe-off is detected late. Stance is not compared or judged.",
     ),
     (left(length_m=1.4), {}, "The stride lengths of both feet differ by 7.4 % (5.0 % at most)."),
     (left(length_m=3.3), {}, "The walking speed found is 3.00 m/s (limit 2.50 m/s): the distance may be wrong."),
@@ -239,8 +239,8 @@ def test_a_gate_without_a_figure_says_that_it_is_unknown() -> None:
 
 def test_each_verdict_has_its_word() -> None:
     assert {str(one): verdict_word(one) for one in Verdict} == {
-        "read": "can be read",
-        "care": "read with care",
+        "read": "good",
+        "care": "caution",
         "withheld": "withheld",
         "not_measured": "not measured",
     }

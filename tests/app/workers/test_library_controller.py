@@ -384,7 +384,7 @@ def test_long_work_tells_progress_and_is_stopped(qtbot: QtBot, controller: Libra
     controller.run_long(work, asker.on_done, asker.on_failed, asker.on_progressed, asker)
     qtbot.waitUntil(lambda: asker.shares[:1] == [0.5], timeout=WAIT_MS)
     controller.run_long(work, asker.on_done, asker.on_failed, asker.on_progressed, asker)
-    assert asker.refusals == [("Something else is still being done.", "Wait for it, or stop it.")]
+    assert asker.refusals == [("Another task is still running.", "Wait until it has finished, or stop it.")]
     with qtbot.waitSignal(controller.closed, timeout=WAIT_MS):
         controller.close()  # stops it first
     assert ended.is_set()
@@ -433,7 +433,7 @@ def test_a_refusing_keyring_is_no_reason_not_to_open(
     qtbot: QtBot, controller: LibraryController, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def refuse(*_: object) -> None:
-        raise KeyRefusedError("The keyring takes no key", "Unlock it")
+        raise KeyRefusedError("The keyring does not accept the key", "Unlock it")
 
     monkeypatch.setattr("app.workers.library_opening.remember", refuse)
     with qtbot.waitSignal(controller.opened, timeout=WAIT_MS):

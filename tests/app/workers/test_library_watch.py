@@ -105,7 +105,7 @@ def test_it_is_missed_within_a_second_and_said_where_recordings_go(
     seen.append(controller.is_gone)
     with qtbot.waitSignal(controller.back, timeout=WAIT_MS) as said:
         elsewhere.rename(folder)
-    assert said.args == ["The library is back.", "Nothing had to be added to it."]
+    assert said.args == ["The library is available again.", "There was nothing to add."]
     assert [*seen, controller.is_gone] == [False, True, False]
     assert not opened.shelter.folder.exists()
 

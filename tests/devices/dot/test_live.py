@@ -165,7 +165,7 @@ def test_one_that_calls_a_stale_clock_synchronised_is_found_out(radio: VirtualRa
     wearing = WornDots(radio, [DotFaults(), DotFaults(), DotFaults(stale_s=3.0)])
     with pytest.raises(NotSynchronisedError) as refused:
         wearing.open()
-    assert refused.value.failed == {"DOT 0003": "its clock is another"}
+    assert refused.value.failed == {"DOT 0003": "its clock differs"}
 
 
 def test_one_that_stays_away_is_named(radio: VirtualRadio) -> None:

@@ -233,7 +233,7 @@ def test_files_are_told_by_their_table_of_channels_and_gathered(tmp_path: Path) 
     assert found.refused == ()
     sensors = bids_motion_trial(list(map(Path, found.trials[0].files))).sensors
     assert [one.name for one in sensors] == ["leftThigh (imuA)", "leftThigh (imuB)"]
-    with pytest.raises(FileRefusedError, match="they are of several recordings"):
+    with pytest.raises(FileRefusedError, match="they belong to several recordings"):
         bids_motion_trial(sorted(tmp_path.glob("*imuA*_motion.tsv")))
     only = tmp_path / "only"
     bids(only, channels("leftThigh", swinging_sensor()))
@@ -254,18 +254,18 @@ def test_what_does_not_fit_is_refused_where_it_is(tmp_path: Path) -> None:
     assert f"{IMU}_motion.tsv, line 1: it has 7 cells, and the table of channels 6 channels" in refusal(path)
     path.write_text("\t".join(row["name"] for row, _ in held) + "\n" + text)
     assert "line 1: it holds what is no number" in refusal(path)
-    assert "Remove its line of names: BIDS has none there" in refusal(path)
+    assert "Remove its header line: BIDS has none there" in refusal(path)
     path.unlink()
     assert f"{IMU}_motion.tsv: this file belongs to the recording and is not there" in refusal(
         tmp_path / f"{IMU}_channels.tsv"
     )
     assert '"leftThigh" has two channels "ACCEL" "x"' in refusal(bids(tmp_path, [*held, held[0]]))
-    assert "no tracked point has three channels ACCEL and three GYRO" in refusal(bids(tmp_path, held[:3]))
+    assert "no tracked point has three ACCEL and three GYRO channels" in refusal(bids(tmp_path, held[:3]))
     path = bids(tmp_path, held, heads=HEADS[:1] + HEADS[2:])
     assert "line 1: there is no column component" in refusal(path)
     path = bids(tmp_path, held)
     (tmp_path / f"{IMU}_motion.json").write_text("{" * 5000)
-    assert "this is no readable JSON" in refusal(path)
+    assert "this is not readable JSON" in refusal(path)
 
 
 def test_a_point_with_half_a_sensor_is_left_out_by_name(tmp_path: Path) -> None:

@@ -55,5 +55,5 @@ def test_what_is_not_known_is_refused(tmp_path: Path) -> None:
         recognised([put(tmp_path / "b.csv", "")])
     with pytest.raises(FileRefusedError, match=r"b.txt: it is of apdm, a.txt of xsens-mtmanager"):
         recognised([put(tmp_path / "a.txt", MT), put(tmp_path / "b.txt", APDM)])
-    with pytest.raises(FileRefusedError, match="there is no such file"):
+    with pytest.raises(FileRefusedError, match="this file does not exist"):
         recognised([tmp_path / "none.csv"])

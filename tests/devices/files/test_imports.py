@@ -106,7 +106,7 @@ def test_time_starts_with_the_first_sample_that_is_placed(tmp_path: Path) -> Non
 
 def test_a_file_that_is_not_there_is_refused(tmp_path: Path) -> None:
     for name in ("", "xsens-mtmanager"):
-        with pytest.raises(FileRefusedError, match="there is no such file"):
+        with pytest.raises(FileRefusedError, match="this file does not exist"):
             read_trial(name, [tmp_path / "none.txt"], None)
 
 

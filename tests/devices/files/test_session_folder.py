@@ -266,7 +266,7 @@ def test_delimiters_at_the_end_of_every_line_are_nothing(make_session: MakeSessi
     ("toml", "words"),
     [
         (TOML.replace("walk_1", "walk_9"), "folder of this recording is missing"),
-        (TOML.replace("walk_1", "w" * 5000), "cannot be read"),
+        (TOML.replace("walk_1", "w" * 5000), "not available"),
         (b"\xff\xfe", "not UTF-8"),
         ("x = ", "session.toml: this is not TOML"),
     ],

@@ -103,7 +103,7 @@ def test_every_key_of_the_format_is_read() -> None:
         ("format = ", "session.toml: this is not TOML"),
         ("x = " + "[" * 5000, "session.toml: this is not TOML"),
         ("x = " + "9" * 5000, "session.toml: this is not TOML"),
-        (TOML.replace('format = "gaitwright-session/1"', ""), "the format is not named"),
+        (TOML.replace('format = "gaitwright-session/1"', ""), "the format is missing"),
         (TOML.replace("gaitwright-session/1", "gaitwright-session/2"), "later version.*Update Gaitwright"),
         (TOML.replace("gaitwright-session/1", "other/1"), 'format "other/1" is not known'),
         (TOML.replace('"gaitwright-session/1"', "1"), 'format "1" is not known'),

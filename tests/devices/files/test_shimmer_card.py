@@ -132,14 +132,14 @@ def test_without_radio_each_keeps_its_own_clock(tmp_path: Path) -> None:
 
 
 def test_what_cannot_be_used_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(FileRefusedError, match="no gyroscope, or no accelerometer, was on"):
+    with pytest.raises(FileRefusedError, match="the gyroscope or the accelerometer was not switched on"):
         shimmer_trial([written(tmp_path / "a.bin", switches=GYRO)])
     with pytest.raises(FileRefusedError, match="no calibration is stored"):
         shimmer_trial([written(tmp_path / "b.bin", calibration=bytes(21))])
     empty = written(tmp_path / "c.bin")
     empty.write_bytes(empty.read_bytes()[:256])
     assert format_of(empty) == "shimmer"
-    with pytest.raises(FileRefusedError, match="it holds no sample"):
+    with pytest.raises(FileRefusedError, match="it contains no samples"):
         shimmer_trial([empty])
 
 

@@ -187,10 +187,10 @@ def test_a_folder_without_sessions_and_one_that_is_not_there_are_refused(
 ) -> None:
     (tmp_path / "in").mkdir()
     assert again(tmp_path) == 2
-    assert "there is no session folder here" in refusal(capsys)
+    assert "there is no session folder in it" in refusal(capsys)
     assert not (tmp_path / "out").exists()
     assert main(["batch", str(tmp_path / "none"), "--out", str(tmp_path / "out"), *BARE]) == 2
-    assert "this folder is not there" in refusal(capsys)
+    assert "this folder does not exist" in refusal(capsys)
 
 
 def test_two_programs_do_not_work_at_one_batch(place: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -54,5 +54,5 @@ def test_the_batch_itself_and_what_is_hidden_is_not_looked_into(tmp_path: Path) 
 
 
 def test_a_folder_without_a_session_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(FileRefusedError, match="there is no session folder here"):
+    with pytest.raises(FileRefusedError, match="there is no session folder in it"):
         find_sessions(tmp_path, tmp_path / "out")

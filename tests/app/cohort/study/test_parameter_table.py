@@ -188,7 +188,7 @@ def test_what_is_no_table_of_a_batch_is_refused(tmp_path: Path) -> None:
         (other, "there is no column side"),
         (broken, "this cannot be read as Parquet"),
         (empty, "parameters.parquet: this is not there"),
-        (tmp_path / "nothing.parquet", "this is not there"),
+        (tmp_path / "nothing.parquet", "not found"),
     ):
         with pytest.raises(FileRefusedError) as told, ParameterTable.opened(place):
             pass

@@ -132,7 +132,7 @@ def test_why_a_session_could_not_be_analysed_stands_in_its_line(qtbot: QtBot, lo
     page.show_lines([line(1, failure="this recording's file is missing"), line(2)], [])
     text = page.list.as_text().splitlines()
     assert "this recording's file is missing" in text[1]
-    assert "not by this version" in text[2]
+    assert "not with this version" in text[2]
 
 
 @pytest.mark.endurance

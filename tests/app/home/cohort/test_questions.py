@@ -89,7 +89,7 @@ def test_what_is_in_sight_is_saved_with_all_its_numbers(qtbot: QtBot, home: Home
     assert home.bar.primary.text() == "Save as CSV"
     out = tmp_path / "groups.csv"
     home.questions.write(out)
-    qtbot.waitUntil(lambda: "The groups are saved." in home.banner.text, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: "Groups saved." in home.banner.text, timeout=WAIT_MS)
     with out.open(newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     assert page.found is not None

@@ -74,7 +74,7 @@ def test_the_sentence_says_what_is_shown_and_how_many_stand_behind_it() -> None:
     assert sentence(found(WHOLE, FEW)) == "Knee range: means of 14 sessions, by condition."
     assert sentence(found(WHOLE, grouping=Grouping.ALL)) == "Knee range: mean of 12 sessions."
     none = replace(WHOLE, sessions=0, mean=math.nan, half_interval=math.nan)
-    assert sentence(found(none)) == "No session has a value of this that counts."
+    assert sentence(found(none)) == "No session has an included value of this measure."
 
 
 def test_nothing_is_judged_however_far_groups_lie_apart(page: QuestionsPage) -> None:
@@ -164,7 +164,7 @@ def test_without_a_table_it_is_said_how_one_comes_to_be(qtbot: QtBot, page: Ques
     [
         (Grouping.AGE, {"0": "under 18 years", "18": "18 to 39 years", "80": "80 years and over", "": "not stated"}),
         (Grouping.SPEED, {"0": "under 0.4 m/s", "0.8": "0.8 to 1.2 m/s", "1.6": "1.6 m/s and over"}),
-        (Grouping.LEG, {"prosthetic": "prosthetic leg", "other": "the other leg", "neither": "no leg affected"}),
+        (Grouping.LEG, {"prosthetic": "prosthetic leg", "other": "sound leg", "neither": "no leg affected"}),
         (Grouping.SIDE, {"left": "left leg", "both": "both legs"}),
         (Grouping.CONDITION, {"left": "left", "": "not stated"}),
     ],
@@ -184,7 +184,7 @@ def test_a_dot_lies_at_its_mean_is_hollow_without_interval_and_all_is_inside_the
     plot = GroupPlot(look)
     qtbot.addWidget(plot)
     lines = [GroupLine("a", 50.0, 5.0, "9 sessions"), GroupLine("b", 70.0, math.nan, "1 session")]
-    plot.show_groups(lines, "Knee range, °", "Means", "in words")
+    plot.show_groups(lines, "Knee ROM, °", "Means", "in words")
     plot.resize(600, plot.height())
     low, high, step = plot.axis
     assert low <= 45.0

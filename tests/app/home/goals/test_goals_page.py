@@ -65,7 +65,7 @@ def test_nothing_is_proposed_and_an_empty_value_is_asked_for(qtbot: QtBot, page:
     with qtbot.assertNotEmitted(page.agreed):
         page.submit()
     assert page.value.is_wrong
-    assert any(text.text() == "Type the value that is to be reached." for text in page.value.findChildren(Text))
+    assert any(text.text() == "Enter the target value." for text in page.value.findChildren(Text))
 
 
 @pytest.mark.parametrize(

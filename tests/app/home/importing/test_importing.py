@@ -104,7 +104,7 @@ def test_nothing_is_imported_as_long_as_something_is_wrong(qtbot: QtBot, home: H
     page = read(qtbot, home, monitors(tmp_path / "walk.csv", ("one", "two")))
     page.code.set_text("P-0300")
     page.code.edited.emit("P-0300")
-    assert "Say of at least one sensor where it was worn." in shown(page)
+    assert "Enter the position of at least one sensor." in shown(page)
     assert not home.bar.primary.isEnabled()
     one, two = (choices(page)[f"Where was {name} worn?"] for name in ("one (100)", "two (101)"))
     one.setCurrentIndex(1)
@@ -128,7 +128,7 @@ def test_one_session_after_the_other_is_asked_for(qtbot: QtBot, home: Home, tmp_
     second.write_text(monitors(second, ("Right Foot",)).read_text().replace(",100,", ",200,"))
     page = read(qtbot, home, first, second, tmp_path)
     assert "Session 1 of 2" in shown(page)
-    assert [button.text() for button in home.bar.quiet] == ["Leave this out"]
+    assert [button.text() for button in home.bar.quiet] == ["Skip this one"]
     home.importing.leave_out()
     assert "Session 2 of 2" in shown(page)
     home.importing.leave_out()
@@ -170,7 +170,7 @@ def test_the_motion_places_the_sensors_of_a_real_walk(qtbot: QtBot, home: Home, 
     page.draft.is_right.click()
     assert page.draft.sites["00B4227C"] is Site.RIGHT_THIGH
     assert page.draft.sites["00B421E6"] is Site.LEFT_FOOT
-    assert shown(page).count("from the motion") == 6
+    assert shown(page).count("from movement") == 6
 
 
 def test_a_site_that_was_said_tells_the_side(qtbot: QtBot, home: Home, test_data: FindData) -> None:

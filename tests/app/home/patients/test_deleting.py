@@ -91,7 +91,7 @@ def test_a_patient_in_sight_whom_another_deletes_is_missed_with_a_word(qtbot: Qt
         home.patients.read()  # as the watch has it done
     assert told.args == [
         "ab deleted P-0163 at another workstation.",
-        "Restore it in Settings within 30 days to go on with it.",
+        "To continue, restore it in Settings within 30 days.",
     ]
     assert codes(home) == ["P-0147"]
     with qtbot.assertNotEmitted(home.patients.refused):

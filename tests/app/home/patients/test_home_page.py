@@ -96,7 +96,7 @@ def test_a_line_says_all_of_itself_to_a_reader_of_screens(page: HomePage) -> Non
     page.show_patients([patient(147)])
     said = page.patients.cells.data(page.patients.cells.index(0, 0), Qt.ItemDataRole.AccessibleTextRole)
     assert said == "P-0147, 1968, male · left prosthetic, 24 Oct 2026, 5 sessions"
-    page.show_sessions([session(1, "Alignment A", "recovered, look at it")])
+    page.show_sessions([session(1, "Alignment A", "recovered, needs review")])
     said = page.sessions.cells.data(page.sessions.cells.index(0, 0), Qt.ItemDataRole.AccessibleTextRole)
     assert said == "24 Oct 2026, Alignment A, 3 recordings, recovered, look at it"
 
@@ -110,7 +110,7 @@ def test_no_word_of_a_line_is_cut_or_lies_on_another(
     page.resize(width, 728)
     page.show_patients([patient(1), patient(2, "1951, female · both sides affected, microprocessor knee")])
     page.show_patient("P-0001", "1968, male")
-    page.show_sessions([session(1, "AFO, barefoot, alignment A, alignment B, alignment C", "recovered, look at it")])
+    page.show_sessions([session(1, "AFO, barefoot, alignment A, alignment B, alignment C", "recovered, needs review")])
     for _ in range(3):
         qapp.processEvents()
     for view in (page.patients, page.sessions):

@@ -20,7 +20,7 @@ def station(qtbot: QtBot, look: ThemeNotifier) -> StationCard:
 @pytest.mark.parametrize(
     ("waiting", "words"),
     [
-        (0, "All recordings were handed over."),
+        (0, "All recordings were transferred."),
         (1, "1 recording waits here to be handed over."),
         (2, "2 recordings wait here to be handed over."),
     ],

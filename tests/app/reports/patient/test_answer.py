@@ -37,7 +37,7 @@ def test_where_nothing_exceeds_its_error_the_answer_is_that(
     request_of_demonstration: ReportRequest, analysis: Analysis
 ) -> None:
     found = answer(request_of_demonstration, analysis)
-    assert (found.outcome, found.first) == (Outcome.NOTHING, "No difference is larger than its error.")
+    assert (found.outcome, found.first) == (Outcome.NOTHING, "All judged differences are within measurement error.")
     assert "within 2\u00a0SD of the band" in found.then
 
 
@@ -91,7 +91,7 @@ def test_where_no_angle_can_be_compared_it_is_said_before_what_times_tell(
     assert found.outcome is Outcome.NOTHING
     has_pair = joints == (Joint.LEFT_KNEE,)  # the ankles
     assert found.first.startswith("No angle can be compared.") is not has_pair
-    assert found.first.startswith("No difference is larger than its error.") is has_pair
+    assert found.first.startswith("All judged differences are within measurement error.") is has_pair
 
 
 def test_a_goal_agreed_before_is_answered_and_one_agreed_on_the_day_is_not(

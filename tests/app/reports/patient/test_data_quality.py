@@ -32,10 +32,10 @@ def quality_of(visit: AnalysedVisit, analysis: Analysis) -> DataQuality:
 
 def test_where_all_can_be_read_nothing_stands_against_it(visit: AnalysedVisit) -> None:
     found = quality_of(visit, visit.analysis)
-    assert found.first == "All four joints can be read."
+    assert found.first == "All four joints are reported."
     assert found.lines == ()
-    assert "no strap slipped" in found.in_order
-    assert door_words(found).first == "Everything that was measured can be read."
+    assert "no strap moved" in found.in_order
+    assert door_words(found).first == "Good data quality throughout."
     assert not door_words(found).is_caution
 
 
@@ -59,8 +59,8 @@ def test_a_withheld_joint_comes_first_with_why_what_to_do_and_whose_motion_mends
 @pytest.mark.parametrize(
     ("care", "out", "words"),
     [
-        ((), (), "All four joints can be read."),
-        (LEG_JOINTS, (), "All joints: read with care."),
+        ((), (), "All four joints are reported."),
+        (LEG_JOINTS, (), "All joints: Caution."),
         ((Joint.LEFT_KNEE,), (), "3 of 4 joints can be read. Read with care: left knee."),
         (
             (Joint.LEFT_KNEE, Joint.RIGHT_KNEE),
@@ -68,7 +68,7 @@ def test_a_withheld_joint_comes_first_with_why_what_to_do_and_whose_motion_mends
             "Read with care: left knee and right knee. Withheld: left ankle and right ankle.",
         ),
         ((), (Joint.LEFT_ANKLE,), "3 of 4 joints can be read. Withheld: left ankle."),
-        ((), LEG_JOINTS, "No joint can be read in this walk."),
+        ((), LEG_JOINTS, "No joint is reported for this walk."),
     ],
 )
 def test_what_is_said_of_the_joints_follows_their_verdicts(
@@ -82,8 +82,8 @@ def test_what_is_said_of_the_joints_follows_their_verdicts(
 def test_without_a_zero_the_shape_is_read_and_the_heights_are_not(visit: AnalysedVisit) -> None:
     found = quality_of(visit, recalibrated(visit.analysis, zero=ZeroKind.NONE))
     assert (found.first, found.then) == (
-        "All four joints can be read.",
-        "Range and shape hold; heights are withheld.",
+        "All four joints are reported.",
+        "Range of motion and curve shape are valid. Absolute angles are not reported.",
     )
 
 
@@ -94,10 +94,10 @@ def test_legs_whose_clocks_are_not_known_to_agree_can_each_be_read(visit: Analys
     recordings = tuple(apart if one is walk else one for one in visit.analysis.recordings)
     found = data_quality(Facts(replace(visit, analysis=replace(visit.analysis, recordings=recordings)), apart))
     (line,) = found.lines
-    assert line.where == "Between the legs"
-    assert found.first == "All four joints can be read."
+    assert line.where == "Left vs right"
+    assert found.first == "All four joints are reported."
     assert not door_words(found).is_caution
-    assert "one time for both legs" not in found.in_order
+    assert "left and right sensors synchronised" not in found.in_order
     assert "ithheld" not in answer_of(Facts(visit, apart)).then
 
 
@@ -124,9 +124,9 @@ def test_what_was_noticed_is_said_where_no_verdict_says_it_already(visit: Analys
 
 
 def test_of_what_is_no_walk_only_what_was_noticed_is_said(visit: AnalysedVisit) -> None:
-    assert quality_without_walk(visit, "free motion").first == "Nothing stands out."
+    assert quality_without_walk(visit, "free motion").first == "No data quality findings."
     grave = Finding("no_joint", Severity.GRAVE, "")
     noticed = replace(visit, analysis=replace(visit.analysis, findings=(grave,)))
     found = quality_without_walk(noticed, "free motion")
-    assert found.first == "This was noticed."
+    assert found.first == "There are findings."
     assert found.lines[0].why == "No joint angle could be computed."

@@ -122,7 +122,7 @@ def test_the_pages_stand_in_their_order(report: bytes) -> None:
         "In short",
         "All curves and peaks",
         "Time, distance and strides",
-        "Clinician's words",
+        "Clinical comment",
         "Comparison of conditions",
     )
     pages = texts(report)
@@ -155,7 +155,7 @@ def test_nothing_of_a_page_is_left_for_the_next(
     for wanted in (replace(request_of_alignments, paper=paper), two_visits):
         pages = texts(make_report(wanted))
         assert len(pages) == 5
-        assert "What is measured where" in pages[1]
+        assert "Where values are measured" in pages[1]
         assert "the first is thin and pale" in pages[4]
 
 

@@ -64,7 +64,7 @@ def with_clock(offset_s: float, sd_s: float, status: ClockStatus, tie: ClockTie 
 @pytest.mark.endurance
 def test_six_joints_are_counted_and_the_late_clock_is_told() -> None:
     found = data_quality(hip_facts())
-    assert found.first == "All six joints can be read."
+    assert found.first == "All six joints are reported."
     assert "found through the hips: the right leg's clock was 40 ms late, ± 5 ms" in found.in_order
     assert found.lines == ()
 
@@ -80,7 +80,7 @@ def test_a_withheld_hip_is_told_once_with_what_to_do() -> None:
 def test_withheld_abduction_leaves_the_joints_to_be_read() -> None:
     facts = hip_facts(with_hip(hip_analysis(), *BOTH, heading_sd_rad=math.radians(7.0), is_3d=False))
     found = data_quality(facts)
-    assert found.first == "All six joints can be read."
+    assert found.first == "All six joints are reported."
     (line,) = caveats(facts)
     assert line.startswith("Abduction of ")
     assert "known to 7.0° only (6.0° wanted)" in line
@@ -92,7 +92,7 @@ def test_withheld_abduction_leaves_the_joints_to_be_read() -> None:
         (0.04, 0.005, ClockStatus.FOUND, ClockTie.PELVIS, "the right leg's clock was 40 ms late, ± 5 ms"),
         (-0.04, 0.002, ClockStatus.FOUND, ClockTie.PELVIS, "the left leg's clock was 40 ms late, ± 2 ms"),
         (0.004, 0.005, ClockStatus.FOUND, ClockTie.PELVIS, "found through the hips to ± 5 ms"),
-        (0.001, 0.005, ClockStatus.PROVEN, ClockTie.ONE_CLOCK, "one time for both legs"),
+        (0.001, 0.005, ClockStatus.PROVEN, ClockTie.ONE_CLOCK, "left and right sensors synchronised"),
     ],
 )
 def test_how_the_legs_have_one_time_is_said(
@@ -119,17 +119,17 @@ def test_page_four_says_how_both_clocks_are_tied(
 
 def test_the_gates_of_a_hip_stand_with_their_limits_and_what_failed_is_withheld() -> None:
     table = rows(hips_table(hip_facts(with_hip(hip_analysis(), Joint.LEFT_HIP, margin=1.21))))
-    assert table["Sensors are neighbours, margin"][0] == "1.21"
-    assert table["Sensors are neighbours, margin"][2] == "at least 1.5"
-    assert table["Shape, range"][:2] == ["withheld", "can be read"]
-    assert table["Abduction"][:2] == ["withheld", "can be read"]
-    assert table["Heading of pelvis and thigh, 1 SD"][2] == "at most 6°, of abduction alone"
+    assert table["Adjacent segments, margin"][0] == "1.21"
+    assert table["Adjacent segments, margin"][2] == "at least 1.5"
+    assert table["ROM, shape"][:2] == ["withheld", "good"]
+    assert table["Abduction"][:2] == ["withheld", "good"]
+    assert table["Pelvis–thigh heading, 1 SD"][2] == "at most 6°, of abduction alone"
 
 
 def test_no_difference_of_hips_is_judged_and_rotation_is_named_as_unreadable() -> None:
     facts = hip_facts()
     table = rows(peaks_table(facts))
-    left, right, difference, error, judged, *_ = table["Abduction, range over the stride"]
+    left, right, difference, error, judged, *_ = table["Abduction, range of motion"]
     assert left.endswith(tuple("0123456789"))
     assert right != left
     assert (difference != "–", error, judged) == (True, "–", "not judged")
@@ -146,7 +146,7 @@ def test_no_sentence_tells_how_hips_or_pelvis_differ_however_much() -> None:
         return replace(walk, gait={**walk.gait, Side.LEFT: replace(left, parameters=halved)})
 
     facts = hip_facts(rewalked(hip_analysis(), stiffened))
-    assert rows(peaks_table(facts))["Abduction, range over the stride"][4] == "not judged"
+    assert rows(peaks_table(facts))["Abduction, range of motion"][4] == "not judged"
     words = said(list(asdict(answer_of(facts)).values())).casefold()
     assert words
     assert not [word for word in ("hip", "pelvis") if word in words]
@@ -155,7 +155,7 @@ def test_no_sentence_tells_how_hips_or_pelvis_differ_however_much() -> None:
 def test_the_pelvis_has_its_table_and_the_tilt_its_reason() -> None:
     blocks = pelvis_table(hip_facts())
     table = rows(blocks)
-    assert set(table) == {"Obliquity, range", "Drop in swing", "Rotation, range", "Lean, forward +", "Tilt, range"}
+    assert set(table) == {"Obliquity, range", "Drop in swing", "Rotation, range", "Mean tilt, forward +", "Tilt, range"}
     assert table["Tilt, range"] == ["withheld", "withheld"]
     assert "up to 5.0° that is not told from measurement error" in said(blocks)
     assert "1 turn." in said(blocks)
@@ -172,7 +172,7 @@ def test_without_a_pelvis_nothing_of_it_is_printed(request_of_demonstration: Rep
 def test_the_first_page_has_six_panels_and_a_withheld_hip_says_why() -> None:
     request = hip_request(with_hip(hip_analysis(), Joint.LEFT_HIP, margin=1.2))
     page = first_page(request, hip_facts(request.visit.analysis), None)
-    assert "Hip, knee and ankle over the stride" in said(page)
+    assert "Hip, knee and ankle over the gait cycle" in said(page)
     pictures = [panel["picture"] for panel in page["curves"]["panels"]]  # type: ignore[index]  # a block is plain JSON
     assert len(pictures) == 6
     assert "Withheld" in pictures[0]["alt"]
@@ -181,7 +181,7 @@ def test_the_first_page_has_six_panels_and_a_withheld_hip_says_why() -> None:
 
 def test_page_two_has_no_band_at_the_hip() -> None:
     blocks = curves_page(hip_facts())
-    assert "At the hip it has another zero and is on page 1 alone." in said(blocks)
+    assert "For the hip it has a different zero and is shown on page 1 only." in said(blocks)
     assert hip_facts().has_joint(JointKind.HIP)
 
 

@@ -44,7 +44,7 @@ def test_the_page_of_the_method_says_how_it_was_measured(request_of_demonstratio
         "instants. An angle is the turn of the lower segment against the upper one about the joint's own axis: one of "
         "its three",
         "Events and strides": "Contact and toe\u2011off: from the pitch of the feet, of feet that hardly roll",
-        "How accurate, and on whom": "It has not been tested on patients",
+        "Accuracy": "It has not been tested on patients",
         "Software": "Gaitwright 9.8.7, the robust method",
     }.items():
         assert words in told[title], title
@@ -77,7 +77,7 @@ def test_what_was_noticed_changes_what_is_said(request_of_demonstration: ReportR
     request = with_sensors(request_of_demonstration, {})
     walk = request.shown
     plain = said(request)
-    assert "no samples lie at its end" in plain["Sensors"]
+    assert "no samples reach its limit" in plain["Sensors"]
     cases = [
         (
             Finding("clipped", Severity.WARNING, f"left_foot, {walk}", {"percent": 1.0}),
@@ -87,7 +87,7 @@ def test_what_was_noticed_changes_what_is_said(request_of_demonstration: ReportR
         (
             Finding("rate_kind_found", Severity.INFO, "session", {"kind": "averaged"}),
             "Angles",
-            "rates averaged by the sensors",
+            "angular rates averaged by the sensors",
         ),
         (
             Finding("events_from_shank", Severity.INFO, f"left_foot, {walk}", {}),
@@ -141,7 +141,7 @@ def test_only_what_was_worn_is_named(request_of_demonstration: ReportRequest) ->
 
 def test_the_accuracy_is_what_was_measured(request_of_demonstration: ReportRequest) -> None:
     """Each figure stands in the tables that the validation fills, or in the README beside its command."""
-    words = said(request_of_demonstration)["How accurate, and on whom"]
+    words = said(request_of_demonstration)["Accuracy"]
     table = (ROOT / "resources" / "help" / "accuracy.md").read_text(encoding="utf-8")
     hinges = re.findall(r"\| hinge 1D_0\d \| angle [^|]*\| ([\d.]+)° ", table)
     assert "two mechanical hinges {}° and {}°".format(*hinges) in words

@@ -60,7 +60,7 @@ def readable(request: ReportRequest) -> dict[str, list[str]]:
     return rows | {label: [said] for label, _, said in told["wide"]}
 
 
-READ, CARE, WITHHELD = "can be read", "read with care", "withheld"
+READ, CARE, WITHHELD = "good", "caution", "withheld"
 
 
 def beside(request: ReportRequest, joint: str) -> list[str]:
@@ -75,7 +75,7 @@ def test_without_a_zero_no_height_is_told(request_of_demonstration: ReportReques
     pages = shown(request)
     assert readable(request)["Left knee"] == [READ, WITHHELD, READ]
     assert "Height of all joints: No zero was set, so heights say nothing." in pages[0]
-    assert "none: heights are not shown" in pages[0]
+    assert "none: no absolute angles" in pages[0]
     assert "Knee range over the stride" in pages[0]
     assert "from band" not in pages[0]
     assert "Left knee, ° from its mean" in pages[0]
@@ -93,7 +93,7 @@ def test_one_leg_alone_is_not_compared(request_of_demonstration: ReportRequest) 
     assert "Right knee" not in pages[0]
     assert "Stride time, s 1.08 ± 0.01 not measured – – – –" in pages[2]
     assert "Range over the stride 61.7 ± 0.8 not measured – – – " in pages[1]
-    assert "against" not in pages[0].split("In short")[1].split("What may be read")[0]
+    assert "against" not in pages[0].split("In short")[1].split("Data quality")[0]
 
 
 def test_without_a_foot_sensor_a_line_stands_in_place_of_the_ankle(request_of_demonstration: ReportRequest) -> None:
@@ -110,7 +110,7 @@ def test_without_a_foot_sensor_a_line_stands_in_place_of_the_ankle(request_of_de
         replace(request, visit=AnalysedVisit(replace(session, recordings=recordings), request.visit.analysis))
     )
     assert "Ankle not measured: no sensor on the left and right foot." in pages[1]
-    assert "Ankle: how far it moves" not in pages[1]
+    assert "Ankle: movement ranges" not in pages[1]
     assert "Left ankle: not measured, no sensor on L foot." in pages[0]
 
 
@@ -119,7 +119,7 @@ def test_two_strides_make_no_mean_and_no_number(request_of_demonstration: Report
     pages = shown(request)
     assert readable(request)["Right knee"] == [WITHHELD] * 3
     assert "Both legs: Few strides (2 used, 3 wanted). Let the patient walk longer." in pages[0]
-    assert "±" not in pages[1].split("Range over the stride")[1].split("Windows in brackets")[0]
+    assert "±" not in pages[1].split("Range of motion")[1].split("Windows in brackets")[0]
     assert "Range over the stride withheld withheld – – – " in pages[1]
     assert "exceeds" not in pages[1].split("Windows in brackets")[0]
     assert beside(request, "Left knee") == ["Let the patient walk longer."]
@@ -157,7 +157,7 @@ def test_one_short_leg_does_not_hide_the_other(request_of_demonstration: ReportR
 def test_no_stride_at_all_still_makes_a_report_of_one_page(request_of_demonstration: ReportRequest) -> None:
     pages = shown(with_walk(request_of_demonstration, {}))
     assert len(pages) == 1
-    assert "No foot or shank sensor told a stride of this walk." in pages[0]
+    assert "No stride was found from a foot or shank sensor." in pages[0]
     assert "Nothing could be judged." in pages[0]
     assert "Signature" in pages[0]
 
@@ -197,13 +197,13 @@ def test_sensors_that_are_no_neighbours_leave_no_number_of_their_joint(
     assert told["Right knee"] == [READ, READ, CARE]  # its foot's sensor may not be on this foot
     assert told["Right ankle"] == [WITHHELD, WITHHELD, CARE]
     assert told["Left knee"] == told["Left ankle"] == [READ] * 3
-    assert (told["Between the legs"], told["Distance"]) == ([READ], [CARE])
+    assert (told["Left vs right"], told["Distance"]) == ([READ], [CARE])
     said = "Right ankle: The two sensors do not move as neighbours (margin 1.05, 1.50 wanted)."
-    assert said in pages[0].split("Key numbers")[0]
-    assert said in pages[0].split("In short")[1].split("What may be read")[0]  # the caveat
+    assert said in pages[0].split("Key values")[0]
+    assert said in pages[0].split("In short")[1].split("Data quality")[0]  # the caveat
     assert said in pages[1]
     assert re.search(r"Ankle push\u2011off, ° \d+\.\d ± \d\.\d withheld – – no band", pages[0])
-    ankle = pages[1].split("Ankle: how far it moves")[1].split("Windows in brackets")[0]
+    ankle = pages[1].split("Ankle: movement ranges")[1].split("Windows in brackets")[0]
     assert ankle.count("withheld") == 10  # four movements, the range, five angles
     assert "Not drawn: right ankle, withheld." in pages[1]
     assert "Double support, % of stride withheld" in pages[2]
@@ -217,7 +217,7 @@ def test_a_child_and_a_crawl_stand_beside_no_band(request_of_demonstration: Repo
     pages = shown(replace(request_of_demonstration, visit=visit))
     assert "no band" in pages[0]
     for page in pages:
-        assert "No band: the groups at hand are adults." in page
+        assert "No reference: the available groups are adults." in page
 
 
 def test_visits_with_different_zeros_are_compared_in_shape_and_range_only(
@@ -227,7 +227,9 @@ def test_visits_with_different_zeros_are_compared_in_shape_and_range_only(
     unset = without_zero(request_of_demonstration).visit
     pages = shown(replace(request_of_demonstration, earlier=unset))
     page = pages[4]
-    assert "Zero is missing or differs in kind: only range and timing are compared." in page
+    assert (
+        "The standing reference is missing or of another kind: only range of motion and timing are compared."
+    ) in page
     assert "Left: knee, degrees from the mean (flexion +)" in page
     assert "Band mean" not in page
     assert "Knee: most flexed, swing withheld 58.8 ± 0.9 – – withheld" in page
@@ -248,7 +250,7 @@ def test_gaps_and_slips_are_said(request_of_demonstration: ReportRequest) -> Non
     assert "4.2 % (L foot)" in pages[0]
     assert "slipped: R shank" in pages[0]
     assert readable(request)["Left ankle"][:2] == [CARE, CARE]
-    remarks = pages[3].split("Remarks on this recording")[1]
+    remarks = pages[3].split("Data quality findings")[1]
     assert "Gaps over 50 ms take 4.2 % of the strides used (1.0 % at most)." in remarks
     assert "Right leg: A strap slipped from 2.0 s on" in remarks
     assert "more remark on page 4." in pages[0] or "more remarks on page 4." in pages[0]

@@ -12,9 +12,9 @@ from core.results import Analysis
 from core.verdicts.gates import judged
 from tests.app.changed_analysis import recalibrated, walk_of
 
-MOVEMENTS = ["Stance to swing", "Bend while loading", "Straightening in stance", "Range over the stride"]
-TIME = "Time of most flexion in swing, %"
-MOVEMENTS_OF_ANKLE = ["Push\u2011off", "Ankle rocker", "Heel rocker", "Toes lifted", "Range over the stride"]
+MOVEMENTS = ["Stance to swing", "Bend while loading", "Straightening in stance", "Range of motion"]
+TIME = "Time of peak flexion, swing, %"
+MOVEMENTS_OF_ANKLE = ["Push\u2011off", "Ankle dorsiflexion, stance", "Heel rocker", "Toes lifted", "Range of motion"]
 
 
 def groups(request: ReportRequest, analysis: Analysis) -> dict[str, dict[str, list[str]]]:
@@ -39,10 +39,10 @@ def test_movements_stand_before_the_angles_of_each_joint(request_of_demonstratio
     found = groups(request_of_demonstration, analysis)
     heads = list(found)
     assert heads[1].startswith("Knee: angles (flexion +); whole curve against the band: L")
-    assert heads[::2] == ["Knee: how far it moves", "Ankle: how far it moves"]
-    assert list(found["Knee: how far it moves"]) == [*MOVEMENTS, TIME]
-    assert list(found["Ankle: how far it moves"]) == MOVEMENTS_OF_ANKLE
-    left, right, difference, error, judged_as, *_ = found["Ankle: how far it moves"]["Push\u2011off"]
+    assert heads[::2] == ["Knee: movement ranges", "Ankle: movement ranges"]
+    assert list(found["Knee: movement ranges"]) == [*MOVEMENTS, TIME]
+    assert list(found["Ankle: movement ranges"]) == MOVEMENTS_OF_ANKLE
+    left, right, difference, error, judged_as, *_ = found["Ankle: movement ranges"]["Push\u2011off"]
     gait = walk_of(analysis).gait
     means = [np.rad2deg(gait[s].parameters["ankle_push_off_rad"][gait[s].strides.is_used]).mean() for s in Side]
     assert [left.split(" ± ")[0], right.split(" ± ")[0]] == [f"{mean:.1f}" for mean in means]
@@ -65,16 +65,16 @@ def test_a_movement_without_extremes_is_a_dash_and_its_peak_is_named(request_of_
             gait[Side.LEFT] = replace(gait[Side.LEFT], parameters=flat)
         recordings.append(replace(one, gait=gait))
     found = groups(request_of_demonstration, judged(replace(analysis, recordings=tuple(recordings))))
-    knee = found["Knee: how far it moves"]
+    knee = found["Knee: movement ranges"]
     assert knee["Bend while loading"][0] == knee["Bend while loading"][2] == "–"
     assert knee["Stance to swing"][0] != "–"
-    heights = next(rows for head, rows in found.items() if head.startswith("Knee: angles (flexion +)"))
+    heights = next(rows for head, rows in found.items() if head.startswith("Knee: absolute angles (flexion +)"))
     assert heights["Most flexed, loading (5–30\u00a0%)"][0] == "no peak"
 
 
 def test_without_a_sign_the_range_alone_is_told(request_of_demonstration: ReportRequest) -> None:
     analysis = request_of_demonstration.visit.analysis
     unsure = recalibrated(analysis, [Joint.LEFT_KNEE], is_sign_certain=False, clinical_sign_margin=0.1)
-    knee = groups(request_of_demonstration, unsure)["Knee: how far it moves"]
+    knee = groups(request_of_demonstration, unsure)["Knee: movement ranges"]
     assert [knee[name][0] for name in MOVEMENTS[:3]] == ["withheld"] * 3
-    assert "±" in knee["Range over the stride"][0]
+    assert "±" in knee["Range of motion"][0]

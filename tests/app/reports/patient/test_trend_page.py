@@ -73,7 +73,7 @@ def test_a_change_beyond_the_error_is_a_sentence_with_both_values(request_of_dem
 
 def test_a_change_inside_the_error_is_none(request_of_demonstration: ReportRequest) -> None:
     found = sentences(page(request_of_demonstration, visits(walk(50), walk(54))))
-    assert found == ["No change is larger than its error."]
+    assert found == ["All judged changes are within measurement error."]
 
 
 def test_a_withheld_visit_is_a_gap_and_the_change_counts_from_the_first_that_can_be_read(
@@ -81,7 +81,7 @@ def test_a_withheld_visit_is_a_gap_and_the_change_counts_from_the_first_that_can
 ) -> None:
     seen = visits(walk(20, is_withheld=True), walk(31), walk(33), walk(35, is_withheld=True), walk(52))
     blocks = page(request_of_demonstration, seen)
-    knee = rows(blocks)["Knee, stance to swing, °", "L"]
+    knee = rows(blocks)["Knee flexion, stance to swing, °", "L"]
     assert knee[:5] == ["withheld", "31.0", "33.0", "withheld", "52.0"]
     assert knee[5:7] == ["+19.0", "+21.0"]
     assert "31.0° at visit 2" in sentences(blocks)[0]
@@ -89,7 +89,7 @@ def test_a_withheld_visit_is_a_gap_and_the_change_counts_from_the_first_that_can
 
 def test_where_the_last_visit_is_withheld_nothing_is_said_of_a_change(request_of_demonstration: ReportRequest) -> None:
     blocks = page(request_of_demonstration, visits(walk(31), walk(52), walk(52, is_withheld=True)))
-    assert rows(blocks)["Knee, stance to swing, °", "L"][3:] == ["–", "–", "–", "–"]
+    assert rows(blocks)["Knee flexion, stance to swing, °", "L"][3:] == ["–", "–", "–", "–"]
     assert not any("knee" in one for one in sentences(blocks))
 
 
@@ -203,5 +203,5 @@ def test_timed_tests_stand_in_the_table_and_speed_is_told_once(request_of_demons
     chair = visits(*(with_test(time_s, protocol=TimedProtocol.SIT_TO_STAND) for time_s in (30.0, 12.0)))
     blocks = page(request_of_demonstration, chair)
     assert rows(blocks)["Sit to stand, 5 ×, s", ""] == ["30.0", "12.0", "–", "-18.0", "–", "not judged"]
-    assert sentences(blocks) == ["No change is larger than its error."]
+    assert sentences(blocks) == ["All judged changes are within measurement error."]
     assert not any("10-metre" in name for name, _ in rows(page(request_of_demonstration, visits(walk(), walk()))))

@@ -30,7 +30,7 @@ from core.verdicts.measurement_error import Difference, Judgement
 from tests.app.changed_analysis import recalibrated, rewalked, walk_of, with_few_strides
 from tests.app.hip_visits import hip_facts
 
-NO_DIFFERENCE = "No difference is larger than its error."
+NO_DIFFERENCE = "All judged differences are within measurement error."
 ALL_INSIDE = "Every peak that could be judged lies within 2 SD of the band"
 ZERO = "Zero is the standing posture"
 
@@ -194,7 +194,7 @@ def test_of_stance_no_word_says_how_far_from_the_band_it_lies(
     table: Any = time_distance_table(facts)[0]
     rows = [[cell["said"] for cell in row["cells"]] for row in table["rows"]]
     words = {row[0]: row[-1] for row in rows}
-    assert words["Stance, % of stride"] == NOTHING
+    assert words["Stance (% gait cycle)"] == NOTHING
     assert "SD" in words["Stride length, m"]
 
 

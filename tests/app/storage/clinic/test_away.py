@@ -226,7 +226,7 @@ def test_who_never_worked_here_cannot_begin_without_the_server(stations: Station
     first, _ = stations
     remember_operators(first)
     assert first.data_key is not None
-    with pytest.raises(NotAllowedError, match="Log in once while the clinic's server answers"):
+    with pytest.raises(NotAllowedError, match="Log in once while the clinic's server is available"):
         open_away(first.folder, first.data_key, "zz")
     assert not Path(first.folder / AWAY).exists()
 

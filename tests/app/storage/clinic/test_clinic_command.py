@@ -42,7 +42,7 @@ def test_a_library_goes_to_the_server_a_station_joins_and_it_comes_back(
     assert "is a station of" in capsys.readouterr().out
     monkeypatch.delenv(DATABASE_VARIABLE)  # from here on the station's own file names the server
     assert main(["clinic", "status", second, *key]) == 0
-    assert "All recordings were handed over." in capsys.readouterr().out
+    assert "All recordings were transferred." in capsys.readouterr().out
     assert main(["clinic", "back", second, *key, "--out", str(tmp_path / "copy"), "--copy"]) == 0
     assert main(["clinic", "back", str(folder), *key, "--out", back]) == 0
     assert "closed to all stations" in capsys.readouterr().out

@@ -259,7 +259,7 @@ def test_a_move_that_may_have_opened_the_server_is_not_given_up(
         patched.setattr(moving, "become_station", killed)
         with pytest.raises(KeyboardInterrupt):
             move_to_server(open_at(folder), station, silent)
-    with pytest.raises(LibraryError, match="Go on with moving it"):
+    with pytest.raises(LibraryError, match="Continue the move"):
         give_up_moving(folder)
     move_to_server(open_at(folder), station, silent)
 

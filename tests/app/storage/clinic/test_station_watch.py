@@ -102,12 +102,12 @@ def test_a_server_that_goes_and_comes_back_is_said_and_nothing_freezes(
     with qtbot.waitSignal(controller.gone, timeout=WAIT_MS) as said:
         server.stop()
     what, then = said.args or ["", ""]
-    assert what == "The clinic's server does not answer."
+    assert what == "The clinic's server does not respond."
     assert "kept on this computer" in then
     assert controller.is_gone
     with qtbot.waitSignal(controller.back, timeout=WAIT_MS) as said:
         server.start()
-    assert (said.args or [""])[0] == "The clinic's server answers again."
+    assert (said.args or [""])[0] == "The clinic's server responds again."
     assert not controller.is_gone
 
 

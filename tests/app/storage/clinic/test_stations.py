@@ -287,7 +287,7 @@ def test_the_file_that_names_the_server_is_its_owners_alone(moved: Station, fold
 
 def test_a_damaged_station_file_is_said_to_be(moved: Station, folder: Path) -> None:
     (folder / "station.json").write_text("{")
-    with pytest.raises(LibraryError, match="Join the clinic's library again"):
+    with pytest.raises(LibraryError, match="Connect to the clinic's library again"):
         station_of(folder)
 
 

@@ -121,7 +121,7 @@ def test_results_do_not_go_into_the_library_and_samples_not_over_a_network_in_th
     opened: OpenedLibrary, visits: list[UUID], run_batch: RunBatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert run_batch(out=opened.folder / "out") == 2
-    assert "this lies inside the library" in capsys.readouterr().err
+    assert "this folder is in the library" in capsys.readouterr().err
     assert run_batch("--dask", "tcp://192.0.2.1:8786") == 2
     assert "for anybody to read on the way" in capsys.readouterr().err
     assert exported(opened) == []
@@ -131,4 +131,4 @@ def test_a_library_without_a_recording_is_refused(
     opened: OpenedLibrary, session_id: UUID, run_batch: RunBatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert run_batch() == 2
-    assert "no session here has a recording" in capsys.readouterr().err
+    assert "no session in it has a recording" in capsys.readouterr().err

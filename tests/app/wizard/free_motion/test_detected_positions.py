@@ -64,7 +64,7 @@ def test_detected_positions_are_used_by_the_primary_button_and_the_step_goes_on(
 def test_without_a_doubt_the_primary_button_goes_on(visit: Visit, moved: FreeMotionStep) -> None:
     primary = moved.bar().primary
     assert primary is not None
-    assert (primary.text, moved.state) == ("Go on to walking", StepState.DONE)
+    assert (primary.text, moved.state) == ("Continue to walking", StepState.DONE)
 
 
 def test_positions_can_be_checked_and_kept_as_they_are(
@@ -84,10 +84,10 @@ def test_positions_can_be_checked_and_kept_as_they_are(
     sensors.leave()
     assert visit.sensors.site_of == worn
     sensors.enter()
-    assert sensors.page.notice.text == "All six are worn and heard."
+    assert sensors.page.notice.text == "All six are assigned and connected."
     primary = moved.bar().primary
     assert primary is not None
-    assert primary.text == "Go on to walking"
+    assert primary.text == "Continue to walking"
     visit.sensors.doubt(MIXED)  # the motion still says so
     assert not visit.sensors.detected
     sensors.deleteLater()
@@ -116,7 +116,7 @@ def test_a_motion_that_tells_no_positions_leads_to_them(qtbot: QtBot, visit: Vis
     assert told.args[0] == "Sensor positions could not be detected."
     bar = moved.bar()
     assert bar.primary is not None
-    assert (bar.primary.text, [one.text for one in bar.quiet]) == ("Begin the free motion", ["Check positions"])
+    assert (bar.primary.text, [one.text for one in bar.quiet]) == ("Start free motion", ["Check positions"])
     assert done == []
 
 

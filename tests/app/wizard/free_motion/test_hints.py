@@ -77,7 +77,7 @@ def test_every_hint_is_read_from_two_metres() -> None:
 
 def test_a_hint_names_side_and_limb_in_plain_words() -> None:
     assert hint_for(LEFT_LEG).sentence == "Circle the left lower leg"
-    assert hint_for(LEFT_LEG).how == "Change direction. Seated or standing, held by the hand is fine."
+    assert hint_for(LEFT_LEG).how == "Change direction. Seated or standing, moved by hand if needed."
     assert hint_for(Missing(Site.LEFT_SHANK, Movement.BEND)).sentence == "Bend the left knee"
     assert hint_for(Missing(Site.RIGHT_FOOT, Movement.BEND)).sentence == "Bend the right ankle"
 
@@ -90,7 +90,7 @@ def test_on_a_prosthetic_side_the_therapist_moves_the_limb() -> None:
 
 def test_nothing_is_asked_of_one_leg_before_anything_moved() -> None:
     still = motion({Joint.LEFT_KNEE: state(57, 250, moved_s=0.0)})
-    assert HintHold().ask(still, 0.0).hint.sentence == "Move any leg"
+    assert HintHold().ask(still, 0.0).hint.sentence == "Move either leg"
 
 
 def test_a_hint_stays_long_enough_to_be_followed() -> None:
@@ -121,9 +121,9 @@ PROSTHETIC = frozenset({Side.LEFT})
 
 def test_at_the_end_it_says_whether_the_motion_is_enough_or_all_only_as_good_as_they_get() -> None:
     enough = state(1, 8, None, is_closed=True)
-    assert last_hint(motion({Joint.LEFT_KNEE: enough})).sentence == "Enough motion"
+    assert last_hint(motion({Joint.LEFT_KNEE: enough})).sentence == "Enough movement"
     mixed = motion({Joint.LEFT_KNEE: enough, Joint.RIGHT_KNEE: state(4, 8, is_plateau=True)})
-    assert HintHold().ask(mixed, 0.0).hint.sentence == "As good as it gets"
+    assert HintHold().ask(mixed, 0.0).hint.sentence == "Certainty no longer rises"
 
 
 @pytest.mark.parametrize(
@@ -146,15 +146,15 @@ def test_a_joint_that_is_no_hinge_is_said_in_place_of_enough_motion() -> None:
     assert said.how == "The angle is the part about the main axis. Walking comes next, by itself."
     assert recorded_hint(motion(one), PROSTHETIC).sentence == "Left knee: no hinge"
     assert last_hint(motion(both), frozenset(Side)).sentence == "2 joints: no hinges"
-    assert last_hint(motion(one)).sentence == "Enough motion"  # of a living knee none is expected
-    assert last_hint(motion(all_four), PROSTHETIC).sentence == "Enough motion"
+    assert last_hint(motion(one)).sentence == "Enough movement"  # of a living knee none is expected
+    assert last_hint(motion(all_four), PROSTHETIC).sentence == "Enough movement"
 
 
 def test_the_rail_says_which_joints_have_enough_motion_and_an_ankle_by_its_centre() -> None:
     far, none = state(11, 34), frozenset[Side]()
     some = motion({Joint.LEFT_KNEE: ENOUGH, Joint.RIGHT_KNEE: far, Joint.LEFT_ANKLE: ENOUGH, Joint.RIGHT_ANKLE: ENOUGH})
     assert enough_for(some, none) == "enough motion for 1 of 2 knees, 2 of 2 ankle centres"
-    assert enough_for(motion(dict.fromkeys(LEG_JOINTS, ENOUGH)), none) == "enough motion"
+    assert enough_for(motion(dict.fromkeys(LEG_JOINTS, ENOUGH)), none) == "enough movement"
     assert enough_for(motion({Joint.LEFT_KNEE: far}), none) == "enough motion for 0 of 1 knee"
     assert enough_for(motion({Joint.LEFT_ANKLE: far}), none) == "enough motion for 0 of 1 ankle centre"
 
@@ -163,7 +163,7 @@ def test_a_joint_that_is_no_hinge_is_named_and_not_counted() -> None:
     loose = motion(dict.fromkeys(LEG_JOINTS, ENOUGH) | {Joint.LEFT_KNEE: LOOSE})
     said = "enough motion for 1 of 2 knees, 2 of 2 ankle centres; left knee: no hinge"
     assert enough_for(loose, PROSTHETIC) == said
-    assert enough_for(loose, frozenset()) == "enough motion"
+    assert enough_for(loose, frozenset()) == "enough movement"
 
 
 def test_what_was_given_up_is_asked_for_once_more_worst_first_and_then_no_more() -> None:
@@ -175,7 +175,7 @@ def test_what_was_given_up_is_asked_for_once_more_worst_first_and_then_no_more()
     assert in_turn == [Joint.RIGHT_KNEE, Joint.LEFT_KNEE, None]
     assert asked.index(Joint.RIGHT_KNEE) == RESTS_S
     assert asked.count(Joint.RIGHT_KNEE) == asked.count(Joint.LEFT_KNEE) == ONCE_MORE_S
-    assert hold.ask(left, 60.0).hint.sentence == "As good as it gets"
+    assert hold.ask(left, 60.0).hint.sentence == "Certainty no longer rises"
 
 
 def test_what_has_enough_the_second_time_is_asked_for_no_longer() -> None:
@@ -185,7 +185,7 @@ def test_what_has_enough_the_second_time_is_asked_for_no_longer() -> None:
         asked = hold.ask(left, float(now_s))
     assert asked.joint is Joint.LEFT_KNEE
     enough = motion({Joint.LEFT_KNEE: state(1, 8, None, is_closed=True)})
-    assert hold.ask(enough, RESTS_S + 1.0).hint.sentence == "Enough motion"
+    assert hold.ask(enough, RESTS_S + 1.0).hint.sentence == "Enough movement"
 
 
 def test_stopping_costs_nothing_when_the_motion_is_enough() -> None:
@@ -198,7 +198,7 @@ def test_stopping_before_a_joint_is_found_costs_its_angles() -> None:
     assert price_of_stopping(one) == "Stopping now leaves the left knee without angles to rely on."
     both = motion({Joint.LEFT_KNEE: unknown, Joint.RIGHT_KNEE: unknown})
     assert price_of_stopping(both) == "Stopping now leaves the left knee and the right knee without angles to rely on."
-    assert price_of_stopping(FreeMotionState()) == "Nothing is known of the joints yet."
+    assert price_of_stopping(FreeMotionState()) == "No joint is calibrated yet."
 
 
 def test_a_joint_that_is_nearly_there_is_told_with_both_figures_and_what_helps() -> None:
@@ -245,9 +245,9 @@ def test_hips_never_keep_anybody_from_walking() -> None:
     still_open = replace(motion(ALL_ENOUGH), hips=OPEN_HIPS)
     assert still_open.is_done
     assert price_of_stopping(still_open) == ""
-    assert enough_for(still_open, frozenset()) == "enough motion"
+    assert enough_for(still_open, frozenset()) == "enough movement"
     hint = last_hint(still_open)
-    assert hint.sentence == "Enough motion"
+    assert hint.sentence == "Enough movement"
     assert hint.how == "Walking comes next, by itself. It finds the ankles' axes and, with a turn, the hips."
 
 
@@ -265,7 +265,7 @@ def test_hips_are_asked_for_once_nothing_else_brings_more() -> None:
     assert (asked.joint, asked.site) == (Joint.LEFT_HIP, Site.PELVIS)
     assert "Circling legs do not show the hips" in asked.hint.how
     without = HintHold().ask(motion(plateau), 0.0)
-    assert without.hint.sentence == "As good as it gets"
+    assert without.hint.sentence == "Certainty no longer rises"
     open_knee = {**plateau, Joint.LEFT_KNEE: state(3.0, 6)}
     assert HintHold().ask(replace(motion(open_knee), hips=OPEN_HIPS), 0.0).joint is Joint.LEFT_KNEE
 
@@ -275,7 +275,7 @@ def test_a_hip_that_is_shown_is_asked_for_no_longer() -> None:
     hold = HintHold()
     hold.ask(replace(motion(plateau), hips=OPEN_HIPS), 0.0)
     shown = dict.fromkeys(OPEN_HIPS, hip(4.0, is_sure=True))
-    assert hold.ask(replace(motion(plateau), hips=shown), 0.5).hint.sentence == "As good as it gets"
+    assert hold.ask(replace(motion(plateau), hips=shown), 0.5).hint.sentence == "Certainty no longer rises"
 
 
 def test_the_hint_of_the_hips_can_be_read_from_two_metres() -> None:

@@ -72,7 +72,7 @@ def test_it_records_at_once_and_goes_on_by_itself_when_all_gauges_are_closed(
     qtbot: QtBot, step: FreeMotionStep, visit: Visit, worn: dict[str, Site]
 ) -> None:
     step.enter()
-    assert step.page.band.hint.sentence == "Move any leg"
+    assert step.page.band.hint.sentence == "Move either leg"
     ticks(qtbot, step, lambda: knows(step))
     closed = {joint: state(0.8, 6.0, None, is_closed=True) for joint in LEG_JOINTS}
     tell(step, worn, FreeMotionState(closed))
@@ -80,12 +80,12 @@ def test_it_records_at_once_and_goes_on_by_itself_when_all_gauges_are_closed(
         ticks(qtbot, step, lambda: states(step.page) == {GaugeState.ENOUGH, GaugeState.CENTRE})
         verb = step.bar().primary
         assert verb is not None
-        assert (verb.text, verb.is_wished) == ("Go on to walking", True)
+        assert (verb.text, verb.is_wished) == ("Continue to walking", True)
     moved = visit.recordings.free_motion
     assert moved is not None
     assert moved.read_back is not None
     assert set(moved.read_back.imu) == set(LEG_SITES)
-    assert (step.state, step.note) == (StepState.DONE, "enough motion")
+    assert (step.state, step.note) == (StepState.DONE, "enough movement")
 
 
 def test_a_plateau_is_said_and_left_to_the_therapist(
@@ -97,7 +97,7 @@ def test_a_plateau_is_said_and_left_to_the_therapist(
     joints = {joint: state(0.8, 6.0, None, is_closed=True) for joint in LEG_JOINTS}
     joints[Joint.LEFT_KNEE] = state(3.8, 6.0, is_plateau=True)
     tell(step, worn, FreeMotionState(joints))
-    ticks(qtbot, step, lambda: step.page.band.hint.sentence == "As good as it gets")
+    ticks(qtbot, step, lambda: step.page.band.hint.sentence == "Certainty no longer rises")
     assert not step._settled.isActive()
     bar = step.bar()
     assert bar.note == "Left knee: 3.8°, 1.5° wanted. Go on and the report says so."
@@ -127,7 +127,7 @@ def test_a_replay_that_has_ended_is_said_and_is_recorded_again_from_its_beginnin
     ticks(qtbot, step, lambda: step.page.band.hint.sentence == "The replay has ended")
     bar = step.bar()
     assert bar.primary is not None
-    assert bar.primary.text == "Go on to walking"
+    assert bar.primary.text == "Continue to walking"
     assert [verb.text for verb in bar.others] == ["Record again"]
     assert bar.note == "Left knee: 3.8°, 1.5° wanted. Go on and the report says so."
     step.on_other(0)
@@ -192,7 +192,7 @@ def test_leaving_before_a_leg_has_moved_is_said_and_does_not_count(
     qtbot.waitUntil(lambda: visit.recordings.is_recording)
     with qtbot.waitSignal(step.told, timeout=PATIENCE_MS) as told:
         step.leave()
-    assert told.args[0] == "Free motion was left before a leg had moved, so it does not count."
+    assert told.args[0] == "Free motion was left before a leg moved, so it is not used."
     qtbot.waitUntil(lambda: visit.recordings.free_motion is None, timeout=PATIENCE_MS)
     assert len(visit.recordings.every) == 1  # nothing is deleted
     assert step.state is StepState.TODO
@@ -219,7 +219,7 @@ def test_leaving_before_its_end_keeps_what_has_moved_unless_another_is_in_force(
     ticks(qtbot, step, lambda: visit.recordings.is_recording and knows(step))
     with qtbot.waitSignal(step.told, timeout=PATIENCE_MS) as told:
         step.leave()
-    assert told.args[0] == "Free motion was left before its end: the one before it stays in force."
+    assert told.args[0] == "Free motion was left early. The previous one still applies."
     qtbot.waitUntil(lambda: not visit.recordings.every[1].details.is_kept, timeout=PATIENCE_MS)
     assert visit.recordings.free_motion is not None
     assert visit.recordings.free_motion.id == kept.id
@@ -256,7 +256,7 @@ def test_a_free_motion_that_holds_is_not_recorded_again_unasked(
     record(qtbot, visit, RecordingKind.FREE_MOTION, 2.0)
     step.enter()
     assert not visit.recordings.is_recording
-    assert step.page.band.hint.sentence == "Free motion is recorded"
+    assert step.page.band.hint.sentence == "Free motion recorded"
     with qtbot.waitSignal(step.done):
         step.on_primary()
 
@@ -269,7 +269,7 @@ def test_a_missing_foot_sensor_and_a_foot_without_joint_have_no_gauge(
     step.enter()
     assert step.page.gauges[Joint.RIGHT_ANKLE].face.note == "R foot without sensor: no right ankle angle."
     assert step.page.gauges[Joint.LEFT_ANKLE].face.note.startswith("Foot without ankle joint")
-    ticks(qtbot, step, lambda: visit.recordings.is_recording and step.page.band.hint.sentence != "Move any leg")
+    ticks(qtbot, step, lambda: visit.recordings.is_recording and step.page.band.hint.sentence != "Move either leg")
     assert step.page.gauges[Joint.LEFT_ANKLE].face.state is GaugeState.ABSENT
 
 

@@ -146,7 +146,7 @@ def test_the_band_says_whom_it_is_of(page: PatientPage, birth_year: int | None, 
 
 
 def test_the_last_visit_can_be_had_again(page: PatientPage, qtbot: QtBot) -> None:
-    button = next(one for one in page.findChildren(QAbstractButton) if one.text() == "Same set-up as last visit")
+    button = next(one for one in page.findChildren(QAbstractButton) if one.text() == "Use last visit's set-up")
     assert not button.isVisible()
     page.show_last_visit(LastVisit("Last visit, 24 October 2026", (("Walks", "A, B"), ("Zero", "all 0°"))))
     page.show_last_visit(LastVisit("Last visit, 1 November 2026", (("Walks", "C"),)))

@@ -85,7 +85,7 @@ def test_the_set_up_of_the_last_visit_is_taken_over(
 ) -> None:
     controller.run(make_with_visit, None, None, step)
     step.page.open_pressed.emit("DEMO-10")
-    button = next(one for one in step.page.findChildren(QAbstractButton) if one.text() == "Same set-up as last visit")
+    button = next(one for one in step.page.findChildren(QAbstractButton) if one.text() == "Use last visit's set-up")
     qtbot.waitUntil(button.isVisible, timeout=5000)
     said = {label.text() for label in step.page.findChildren(QLabel)}
     assert {"Last visit, 24 Oct 2026", "barefoot", "left knee 15°, others 0°", "0A09, 0A31"} <= said

@@ -245,7 +245,7 @@ def test_a_preview_that_fails_goes_blank_and_says_so_until_one_can_be_shown(
         step.page.report.options_changed.emit()
         qtbot.waitUntil(lambda: bool(told), timeout=WAIT_MS)
     assert sheets.count == 0
-    assert told[-1] == ("The report cannot be shown.", "The log holds the details.")
+    assert told[-1] == ("The report cannot be shown.", "See the log for details.")
     step.page.report.options_changed.emit()
     qtbot.waitUntil(lambda: sheets.count >= 4, timeout=WAIT_MS)
     assert told[-1] == ("", "")

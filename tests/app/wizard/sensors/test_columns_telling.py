@@ -40,7 +40,7 @@ def step(qtbot: QtBot, visit: Visit, place: str) -> Iterator[SensorsStep]:
 
     lines = (LinesAt(PortInfo(place), 115200, 7), LinesAt(PortInfo("/dev/other"), 115200, 7))
     visit.known_choices = (
-        SourceChoice(COLUMNS, "Lines of numbers", search, lines=lines),  # type: ignore[arg-type]  # it only refuses
+        SourceChoice(COLUMNS, "Text lines (CSV)", search, lines=lines),  # type: ignore[arg-type]  # it only refuses
         SourceChoice(SEARCH, "Search", search),  # type: ignore[arg-type]  # it only refuses
     )
     step = SensorsStep(ThemeNotifier(), visit)

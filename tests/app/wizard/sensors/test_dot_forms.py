@@ -17,8 +17,8 @@ from tests.app.wizard.emulated_dots import rows_of
 LINES = [
     DotLine("DOT 0A22", True, -50, 0.85, "2.4.0"),
     DotLine("DOT 0A23", True, -70, 0.14, "2.4.0"),
-    DotLine("DOT 0A24", False, -80, None, "", "does not answer: press its button"),
-    DotLine("DOT 0A25", False, None, 0.5, "1.8.0", "firmware too old to be synchronised"),
+    DotLine("DOT 0A24", False, -80, None, "", "does not respond: press its button"),
+    DotLine("DOT 0A25", False, None, 0.5, "1.8.0", "firmware too old to synchronise"),
 ]
 SIZES = [(1016, 540), (744, 420)]
 HELD = [
@@ -29,7 +29,7 @@ SYNCHRONISING = ProgressShown(
     "The sensors are being synchronised",
     "The sensors compare their clocks by themselves. Leave them where they are. About 20 s are left.",
     0.4,
-    tuple(SensorLine(f"DOT 0A2{number}", LineState.NOW, "compares its clock") for number in range(7)),
+    tuple(SensorLine(f"DOT 0A2{number}", LineState.NOW, "comparing clocks") for number in range(7)),
     stop="Cancel",
 )
 
@@ -52,7 +52,7 @@ def test_a_line_tells_signal_battery_firmware_and_what_is_the_matter(form: DotFo
     assert words_of(form, 0) == ["DOT 0A22", "strong, \N{MINUS SIGN}50 dBm", "85 %", "2.4.0", ""]
     assert words_of(form, 1)[1:3] == ["fair, \N{MINUS SIGN}70 dBm", "14 %"]
     assert words_of(form, 2)[1:] == [
-        "weak, \N{MINUS SIGN}80 dBm", "unknown", "\N{EN DASH}", "does not answer: press its button",
+        "weak, \N{MINUS SIGN}80 dBm", "unknown", "\N{EN DASH}", "does not respond: press its button",
     ]  # fmt: skip
     assert words_of(form, 3)[1] == "unknown"
     ticks = [row.cells[0].is_checked for row in rows_of(form.list)]

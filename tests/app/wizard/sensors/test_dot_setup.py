@@ -105,7 +105,7 @@ def test_a_sensor_that_does_not_follow_is_named_and_can_be_left_out(
     asked.on_primary()
     qtbot.waitUntil(lambda: not asked.setup.is_synchronising and bool(asked.bar().others), timeout=WAIT_MS)
     assert "Not synchronised: DOT 0002 (heard too little of the others)." in asked.page.dots.notice.text
-    assert words_of(asked, 1)[4] == "heard too little of the others"
+    assert words_of(asked, 1)[4] == "received too little from the others"
     assert words_of(asked, 0)[4] == ""
     assert verb(asked.bar()) == ("Try again", True)
     assert [other.text for other in asked.bar().others] == ["Leave out DOT 0002"]
@@ -121,7 +121,7 @@ def test_whoever_cancels_comes_back_to_the_list_and_nobody_stays_synchronised(
     asked.on_primary()
     qtbot.waitUntil(lambda: asked.page.progress.shown.lines[0].state is not LineState.TO_DO, timeout=WAIT_MS)
     asked.page.progress.stop.click()
-    assert asked.page.progress.shown.title == "The sensors are being let go"
+    assert asked.page.progress.shown.title == "The sensors are being released"
     qtbot.waitUntil(lambda: asked.page.dots.isVisible(), timeout=WAIT_MS)
     assert asked.page.dots.notice.isHidden()
     assert not any(dot.is_synchronised for dot in radio.dots)
@@ -134,7 +134,7 @@ def test_what_a_sensor_records_is_stopped_before_anything_is_set(
     dot = radio.dots[0]
     dot.write(0x7001, start_recording(1_700_000_000).packed())
     step.page.source_chosen.emit(DRIVER)
-    qtbot.waitUntil(lambda: words_of(step, 0)[4] == "records in its memory", timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: words_of(step, 0)[4] == "recording to memory", timeout=WAIT_MS)
     assert verb(step.bar()) == ("Stop these recordings", True)
     assert "stays in their memories" in step.bar().note
     step.on_primary()
@@ -148,7 +148,7 @@ def test_one_that_does_not_answer_says_so_and_is_asked_until_it_does(
 ) -> None:
     radio.dots[1].faults.unreachable_until_ns = radio.now_ns() + 10**15
     step.page.source_chosen.emit(DRIVER)
-    qtbot.waitUntil(lambda: words_of(step, 1)[4] == "does not answer: press its button", timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: words_of(step, 1)[4] == "does not respond: press its button", timeout=WAIT_MS)
     radio.dots[1].faults.unreachable_until_ns = 0
     qtbot.waitUntil(lambda: words_of(step, 1)[4] == "", timeout=WAIT_MS)
 

@@ -79,10 +79,10 @@ def walk_in_memory(qtbot: QtBot, visit: Visit, *, is_fetched: bool) -> None:
 
 @pytest.mark.endurance
 def test_empty_memories_are_told_and_live_comes_back(qtbot: QtBot, opened: SensorsStep, visit: Visit) -> None:
-    assert [one.text for one in opened.bar().quiet] == ["Sensors' memories"]
+    assert [one.text for one in opened.bar().quiet] == ["Sensor memory"]
     look(qtbot, opened)
     assert opened.page.memories.isVisible()
-    assert opened.page.memories.title == "The sensors' memories are empty"
+    assert opened.page.memories.title == "The sensor memory is empty"
     assert visit.sensors.are_in_memory
     opened.on_primary()
     qtbot.waitUntil(lambda: not visit.sensors.are_in_memory and visit.sensors.sync.is_idle, timeout=WAIT_MS)
@@ -100,7 +100,7 @@ def test_what_is_kept_is_erased_after_a_second_press(
     bar = opened.bar()
     assert bar.primary is not None
     assert bar.primary.text == "Back to the sensors"
-    assert [other.text for other in bar.others] == ["Erase the memories"]
+    assert [other.text for other in bar.others] == ["Erase sensor memory"]
     assert bar.quiet == ()  # it is offered once
     opened.on_other(0)
     assert [len(dot.memory.files) for dot in radio.dots] == [1, 1]
@@ -109,7 +109,7 @@ def test_what_is_kept_is_erased_after_a_second_press(
     opened.on_other(0)
     wait(qtbot, opened)
     assert [len(dot.memory.files) for dot in radio.dots] == [0, 0]
-    assert opened.page.memories.title == "The sensors' memories are empty"
+    assert opened.page.memories.title == "The sensor memory is empty"
     assert opened.page.focusWidget() is opened.page.memories, "Enter would press another button"
 
 
@@ -174,7 +174,7 @@ def test_what_is_not_of_this_library_is_not_fetched_and_is_named_before_it_is_lo
     assert bar.primary.text == "Back to the sensors"
     opened.on_other(0)
     assert "1 recording is not kept in this library, and would be lost." in opened.page.memories.notice.text
-    assert [other.text for other in opened.bar().others] == ["Erase now, and lose what is not kept"]
+    assert [other.text for other in opened.bar().others] == ["Erase now, losing unsaved data"]
     assert [len(dot.memory.files) for dot in radio.dots] == [1, 1]
     opened.on_other(0)
     wait(qtbot, opened)
@@ -188,8 +188,8 @@ def test_a_sensor_that_is_out_of_reach_is_told_and_asked_again(
     radio.dots[1].faults.unreachable_until_ns = radio.now_ns() + 10**15
     radio.air.drop(radio.dots[1])
     look(qtbot, opened)
-    assert "A sensor is out of reach." in opened.page.memories.notice.text
-    assert opened.page.memories.title == "It is not known what the sensors hold"
+    assert "A sensor is out of range." in opened.page.memories.notice.text
+    assert opened.page.memories.title == "The content of the sensor memory is unknown"
     bar = opened.bar()
     assert bar.primary is not None
     assert bar.primary.text == "Try again"
@@ -198,7 +198,7 @@ def test_a_sensor_that_is_out_of_reach_is_told_and_asked_again(
     opened.on_primary()
     wait(qtbot, opened)
     assert opened.page.memories.notice.isHidden()
-    assert opened.page.memories.title == "The sensors' memories are empty"
+    assert opened.page.memories.title == "The sensor memory is empty"
 
 
 def test_a_recording_is_found_by_the_second_in_which_it_was_begun(

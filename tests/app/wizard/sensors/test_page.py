@@ -256,7 +256,7 @@ def test_shaking_assigns_nothing_unless_that_way_is_chosen(
 
 def test_a_foot_taken_off_costs_the_ankle_at_once(page: SensorsPage) -> None:
     page.show_sensors(rows(*LEG_SITES))
-    assert page.notice.text == "All six are worn and heard."
+    assert page.notice.text == "All six are assigned and connected."
     page.list.assigned.emit("0A22", None)
     page.show_sensors(rows(*LEG_SITES[:5]))
     assert page.notice.text.startswith("No right foot sensor: no right ankle angles.")
@@ -337,7 +337,7 @@ def test_left_to_the_motion_no_place_is_a_gap(page: SensorsPage) -> None:
     page.way_chosen.connect(chosen.append)
     page.ways.segments[2].click()
     assert chosen == [Way.MOTION]
-    assert page.notice.text.startswith("The free motion tells which sensor is where.")
+    assert page.notice.text.startswith("Sensor positions are detected in the free motion.")
     assert page.places.figure.accessibleDescription() == ""
 
 
@@ -460,7 +460,7 @@ def test_shaken_in_turn_the_pelvis_comes_last(page: SensorsPage, assigned: list[
 
 def test_what_is_said_of_a_pelvis_costs_the_hips_alone(page: SensorsPage) -> None:
     page.show_sensors(seven(*Site))
-    assert page.notice.text == "All seven are worn and heard."
+    assert page.notice.text == "All seven are assigned and connected."
     page.show_sensors(seven(*Site, s0A3E={"silent_s": 4.0}))
     assert page.notice.text == (
         "Pelvis has been silent for 4 s. Switch it off and on, or go on without hip angles; knees and ankles stay."
@@ -475,7 +475,7 @@ def test_what_is_said_of_a_pelvis_costs_the_hips_alone(page: SensorsPage) -> Non
 
 def test_without_a_pelvis_nothing_is_said_of_hips(page: SensorsPage) -> None:
     page.show_sensors(rows(*LEG_SITES))
-    assert page.notice.text == "All six are worn and heard."
+    assert page.notice.text == "All six are assigned and connected."
     page.show_sensors(rows(*LEG_SITES, s0A09={"silent_s": 4.0}))
     assert page.notice.text.endswith("go on without left knee angles.")
 

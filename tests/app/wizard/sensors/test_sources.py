@@ -23,7 +23,7 @@ from tests.safety.live_material import numbered_session
 
 REFUSED = Passed(
     PortInfo("COM7"),
-    SourceRefusedError("{place} is used by another program", "Close that program, then search again", place="COM7"),
+    SourceRefusedError("{place} is in use by another program", "Close that program, then search again", place="COM7"),
 )
 
 
@@ -92,7 +92,7 @@ def test_a_search_looks_anew_and_opens_whatever_is_there() -> None:
 @pytest.mark.parametrize(
     ("found", "what"),
     [
-        (SearchResult(), "No sensor was found"),
+        (SearchResult(), "No sensor found"),
         (SearchResult((), (REFUSED,)), "COM7 is used"),
         (SearchResult((), (REFUSED,) * 2), "No sensor"),
     ],
@@ -133,16 +133,16 @@ def test_streams_are_asked_for_by_a_choice_only_that_says_whom(monkeypatch: pyte
     sources.wait()
     *_, search, here, network, _with_pelvis = sources
     assert (search.key, asked) == (SEARCH, [])
-    assert (here.name, here.asks) == ("Streams of this computer's programs", ("", ""))
+    assert (here.name, here.asks) == ("Streams from programs on this computer", ("", ""))
     assert network.name == "Streams in the network of 192.0.2.9"
     assert network.asks == (
         "This asks every computer in the network of 192.0.2.9 whether it streams sensors: by UDP to 224.0.0.183, port "
         "16571, then those that answer. Nothing about the patient is sent.",
-        "Choose it once more to ask.",
+        "Choose it again to ask.",
     )
-    with pytest.raises(SourceRefusedError, match="No stream of motion was found"):
+    with pytest.raises(SourceRefusedError, match="No motion stream found"):
         here.make()
-    with pytest.raises(SourceRefusedError, match="No sensor was found"):
+    with pytest.raises(SourceRefusedError, match="No sensor found"):
         search.make()
     assert asked == ["127.0.0.1"]
     network.make().close()
@@ -173,7 +173,7 @@ def test_a_patient_with_one_prosthesis_is_simulated_with_it(sides: tuple[Side, .
 )
 def test_where_nothing_is_found_it_says_what_bluetooth_lacks(deaf: SourceRefusedError | None, said: str) -> None:
     sources = Sources(lambda: SearchResult(deaf=deaf))
-    with pytest.raises(SourceRefusedError, match="No sensor was found") as refused:
+    with pytest.raises(SourceRefusedError, match="No sensor found") as refused:
         sources[-2].make()
     assert re.search(said, refused.value.remedy)
 

@@ -128,7 +128,7 @@ def test_a_silent_sensor_is_asked_for_again_and_keeps_its_place(
 def test_left_to_the_motion_goes_on_without_places(qtbot: QtBot, visit: Visit, step: SensorsStep) -> None:
     open_source(qtbot, visit, step)
     step.page.ways.segments[2].click()
-    assert step.note == "left to the motion"
+    assert step.note == "from free motion"
     assert step.state is StepState.DONE
     verb = step.bar().primary
     assert verb is not None
@@ -150,7 +150,7 @@ def test_a_real_patient_is_offered_no_simulated_sensors(qtbot: QtBot, visit: Vis
     visit.known_choices = ()
     step = SensorsStep(ThemeNotifier(), visit)
     qtbot.addWidget(step.page)
-    assert step.cannot_enter == "Type the patient's code first."
+    assert step.cannot_enter == "Enter the patient's code first."
     step.enter()
     step.page.show()
     assert step.page.nothing.buttons == []
@@ -176,7 +176,7 @@ def test_a_search_that_is_stopped_gives_the_sources_back(visit: Visit, step: Sen
 
     def make() -> Acquisition:
         may_end.wait(10)
-        raise SourceRefusedError("No sensor was found", "Switch them on")
+        raise SourceRefusedError("No sensor found", "Switch them on")
 
     visit.known_choices = (SourceChoice("slow", "Slow", make),)
     step.page.source_chosen.emit("slow")
@@ -205,7 +205,7 @@ def test_whom_a_network_asks_is_told_only_as_long_as_it_is_chosen(
 @pytest.mark.usefixtures("pseudo_language")
 def test_what_is_refused_is_said_in_the_users_language(qtbot: QtBot, visit: Visit, step: SensorsStep) -> None:
     def make() -> Acquisition:
-        raise SourceRefusedError("{place} is used by another program", "Close that program", place="COM{7}")
+        raise SourceRefusedError("{place} is in use by another program", "Close that program", place="COM{7}")
 
     visit.known_choices = (SourceChoice("taken", "Taken", make),)
     with qtbot.waitSignal(visit.refused, timeout=5000) as refused:
@@ -234,7 +234,7 @@ def test_simulated_sensors_are_refused_at_once_on_a_patient_of_the_clinic(
     bar = step.bar()
     assert bar.note == "These sensors are simulated, and DEMO-7 is no demonstration patient: nothing would be recorded."
     assert bar.primary is not None
-    assert (bar.primary.text, bar.others[0].text) == ("Choose other sensors", "Begin with a demonstration patient")
+    assert (bar.primary.text, bar.others[0].text) == ("Choose other sensors", "Start with a demonstration patient")
     assert (step.state, step.note) == (StepState.ATTENTION, "not for this patient")
     for other in (StandStillStep, FreeMotionStep, WalkingStep):
         assert other(ThemeNotifier(), visit).cannot_enter == bar.note

@@ -98,14 +98,14 @@ def test_fewer_sensors_are_counted_as_they_are() -> None:
 
 def test_sensors_that_nobody_has_placed_go_by_their_names() -> None:
     unplaced = StandStillView(StandPhase.COUNTING, 0.1, movement_deg_s={"0A2C": 9.0, "0A22": 0.4}, moved=("0A2C",))
-    assert verdict(unplaced)[1:3] == ("0A2C moves", "The count starts again by itself.")
+    assert verdict(unplaced)[1:3] == ("0A2C moves", "The count restarts automatically.")
 
 
 def test_going_on_without_is_offered_after_three_restarts() -> None:
     assert not way_round(counting(restarts=2))[3]
     _, what, then, is_caution = way_round(counting(restarts=3))
     assert what == "The count began again 3 times."
-    assert then == "If the patient cannot stand, angles will be given as range only, without absolute values."
+    assert then == "If the patient cannot stand, range of motion is reported, absolute angles are not."
     assert is_caution
 
 
@@ -114,9 +114,7 @@ def test_without_standing_the_page_says_what_is_lost_and_the_way_back(qtbot: QtB
         page.zero.button.click()
     skipped = StandStillView(StandPhase.SKIPPED, movement_deg_s=STILL)
     page.show_state(skipped)
-    assert instruction(skipped) == (
-        "The patient cannot stand: angles will be given as range only, without absolute values."
-    )
+    assert instruction(skipped) == ("The patient cannot stand. Range of motion is reported, absolute angles are not.")
     assert not any(field.isEnabled() for field in page.zero.fields.values())
     with qtbot.waitSignal(page.can_stand_pressed):
         page.zero.button.click()
@@ -206,10 +204,10 @@ def test_seven_are_counted_and_the_pelvis_has_a_row_without_a_side(page: StandSt
 def test_a_silent_pelvis_holds_up_nothing(page: StandStillPage) -> None:
     silent = counting(1.2, silent=(Site.PELVIS,))
     _, what, then, is_caution = verdict(silent)
-    assert (what, then) == ("The pelvis is silent", "The count goes on; hip angles will be missing.")
+    assert (what, then) == ("Pelvis: no signal", "The count continues; hip angles will be missing.")
     assert is_caution
     assert verdict(silent, is_short=True)[2] == "No hip angles."
-    assert "The count waits." in verdict(counting(0.0, silent=(Site.PELVIS, Site.LEFT_FOOT)))[2]
+    assert "The count is paused." in verdict(counting(0.0, silent=(Site.PELVIS, Site.LEFT_FOOT)))[2]
 
 
 def test_a_pelvis_that_moves_is_named() -> None:

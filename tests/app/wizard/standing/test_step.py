@@ -52,7 +52,7 @@ def test_movement_is_seen_before_the_count_begins(qtbot: QtBot, step: StandStill
     assert phase(step) is StandPhase.READY
     verb = step.bar().primary
     assert verb is not None
-    assert (verb.text, verb.key) == ("Start the count", "Space")
+    assert (verb.text, verb.key) == ("Start count", "Space")
 
 
 @pytest.mark.endurance
@@ -79,14 +79,14 @@ def test_no_zero_is_called_set_while_the_library_has_not_taken_the_standing(
 
     def refusing(recorder: Recorder, opened: OpenedLibrary) -> object:
         recorder.halt()
-        raise LibraryError("This session is not in the library any more", "Reload the session")
+        raise LibraryError("This session is no longer in the library", "Reload the session")
 
     monkeypatch.setattr(Recorder, "stop", refusing)
     monkeypatch.setattr("app.wizard.reading_back.MOST_READINGS", 2)
     monkeypatch.setattr("app.wizard.reading_back.READ_AGAIN_MS", 200)
     assert step.on_intent(SPACE)
     ticks(qtbot, step, lambda: phase(step) is StandPhase.DONE)
-    assert (step.state, step.note) == (StepState.TODO, "being read back")
+    assert (step.state, step.note) == (StepState.TODO, "being loaded")
     qtbot.waitUntil(lambda: visit.recordings.is_idle, timeout=10_000)
     assert visit.recordings.standing is None
     assert (step.state, step.note) == (StepState.TODO, "")

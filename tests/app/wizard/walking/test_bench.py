@@ -121,7 +121,7 @@ def test_where_only_the_sound_side_changes_no_sentence_is_of_the_prosthetic_one(
     assert outcome is Outcome.NOTHING
     assert first == "The prosthetic side is similar with A and B: knee range 60.0° and 60.0°."
     assert then.startswith("The change of 0.0° may be measurement error: anything from \N{MINUS SIGN}")
-    assert "The sound side changes beyond error, too." in then
+    assert "The sound side also changes beyond measurement error." in then
 
 
 def test_strapped_on_anew_between_the_error_is_the_larger_and_said_so() -> None:
@@ -131,7 +131,7 @@ def test_strapped_on_anew_between_the_error_is_the_larger_and_said_so() -> None:
     assert told_of(changed, other)[0] is Outcome.DIFFERS
     outcome, _, then = told_of(replace(changed, attachment=1), other)
     assert outcome is Outcome.NOTHING
-    assert "Sensors were strapped on anew between." in then
+    assert "Sensors were reattached in between." in then
 
 
 def test_a_change_that_the_table_marks_is_told_with_its_error_however_little_it_is_beyond() -> None:
@@ -290,7 +290,7 @@ def test_where_only_tests_were_walked_the_bench_says_what_to_do(bench: Bench, vi
     visit.evaluation.session = Session(tests)
     state = bench.state()
     assert state is not None
-    assert state.answer.first == "There is no walk to compare yet."
+    assert state.answer.first == "No walk to compare yet."
 
 
 def test_a_discarded_walk_after_the_return_leaves_the_prosthesis_as_it_is(bench: Bench, visit: SimpleNamespace) -> None:
@@ -360,7 +360,7 @@ def test_a_walk_whose_analysis_ended_early_is_not_said_to_be_analysed(bench: Ben
     visit.evaluation.has_failed = True
     state = bench.state()
     assert state is not None
-    assert state.answer.first == "The analysis ended before it was done."
+    assert state.answer.first == "The analysis stopped before it finished."
 
 
 @pytest.fixture
@@ -426,7 +426,7 @@ def test_each_curve_says_what_may_be_read_of_it(page: WalkingPage, bench: Bench)
 def test_the_next_change_is_told_by_keys_and_reads_as_it_prints(page: WalkingPage, bench: Bench) -> None:
     card = page.bench.alignments
     page.bench.told.connect(lambda: page.bench.show_entry(bench.next_title))
-    assert card.written.text() == "Nothing changed yet."
+    assert card.written.text() == "No change recorded."
     for name, key, times in (
         ("turns", Qt.Key.Key_Plus, 4),
         ("angle_deg", Qt.Key.Key_Up, 5),
@@ -527,7 +527,7 @@ def test_a_measure_for_fitting_is_named_where_it_changes_by_more_than_its_error(
     names = [row.cells[0] for row in shown_differences.table.cells.rows]
     words = [cell.text for cell in names if isinstance(cell, TextCell)]
     assert ("Heel rise" in words) is is_named
-    assert "Foot flat, % of stride" not in words  # was not measured
+    assert "Foot flat (% gait cycle)" not in words  # was not measured
 
 
 @pytest.mark.usefixtures("pseudo_language")

@@ -80,7 +80,7 @@ def test_a_walk_in_memories_is_made_ready_recorded_and_fetched(
     qtbot: QtBot, visit: Visit, radio: FastRadio, walking: Callable[[int], WalkingStep]
 ) -> None:
     step = walking(120)
-    assert texts(step.bar()) == ("Make the sensors ready", ["Send walks live", "Patient's screen"])
+    assert texts(step.bar()) == ("Prepare the sensors", ["Record walks live", "Patient screen"])
     assert step.page.memory.shown.title == "Walks are recorded in the sensors"
     assert step.page.memory.isVisible()
     step.on_intent(RUN)
@@ -92,11 +92,11 @@ def test_a_walk_in_memories_is_made_ready_recorded_and_fetched(
     assert "Set them back to live" in visit.cannot_calibrate
     step.on_intent(RUN)
     qtbot.waitUntil(lambda: visit.recordings.has_begun, timeout=WAIT_MS)
-    assert step.page.memory.shown.title == "The sensors record in their memories"
+    assert step.page.memory.shown.title == "The sensors are recording to memory"
     assert step.page.figures.isHidden()
     recording = step.bar().recording
     assert recording is not None
-    assert "Kept in the sensors." in recording.note
+    assert "Stored in the sensors." in recording.note
     qtbot.wait(60)
     step.on_intent(RUN)
     assert step.bar().note == "The walk is being fetched."
@@ -125,7 +125,7 @@ def test_a_walk_may_be_fetched_later_and_a_lost_sensor_is_named_and_tried_again(
     assert step.page.memory.shown.what == "DOT 0002 is out of reach."
     assert texts(step.bar())[:1] == ("Fetch again",)
     step.on_other(0)
-    assert texts(step.bar()) == ("Start walk", ["Fetch 1 walk", "Patient's screen"])
+    assert texts(step.bar()) == ("Start walk", ["Fetch 1 walk", "Patient screen"])
     assert step.page.memory.isHidden()
     assert [one.name for one in visit.recordings.in_sensors] == ["walk 1"]
     radio.dots[1].faults.unreachable_until_ns = 0
@@ -154,7 +154,7 @@ def test_a_walk_that_is_fetched_later_holds_up_no_live_one_and_stands_before_it(
     walk(qtbot, visit, step)
     qtbot.waitUntil(lambda: [one.details.name for one in visit.recordings.walks] == ["walk 2"], timeout=WAIT_MS)
     assert not visit.recordings.is_recording
-    assert texts(step.bar())[1] == ["Fetch 1 walk", "Patient's screen"]
+    assert texts(step.bar())[1] == ["Fetch 1 walk", "Patient screen"]
     step.on_quiet(0)
     qtbot.waitUntil(lambda: len(visit.recordings.walks) == 2, timeout=WAIT_MS)
     assert [one.details.name for one in visit.recordings.walks] == ["walk 1", "walk 2"]
@@ -178,16 +178,16 @@ def test_at_the_live_rate_they_are_ready_at_once_and_live_again_for_a_timed_test
 ) -> None:
     step = walking(60)
     qtbot.waitUntil(lambda: visit.sensors.are_ready_for_walks and visit.sensors.sync.is_idle, timeout=WAIT_MS)
-    assert texts(step.bar()) == ("Start walk", ["Patient's screen"])
+    assert texts(step.bar()) == ("Start walk", ["Patient screen"])
     step.page.next.test.chosen.emit(TimedProtocol.UP_AND_GO.value)
     assert "Timed tests need what the sensors send live" in step.bar().note
-    assert texts(step.bar()) == ("Start timed up and go", ["Send walks live", "Patient's screen"])
+    assert texts(step.bar()) == ("Start timed up and go", ["Record walks live", "Patient screen"])
     step.on_intent(RUN)
     assert not visit.recordings.is_recording
     step.on_quiet(0)
     qtbot.waitUntil(lambda: not visit.sensors.are_in_memory and visit.sensors.sync.is_idle, timeout=WAIT_MS)
     assert all(dot.is_streaming and dot.is_synchronised for dot in radio.dots)
-    assert texts(step.bar()) == ("Start timed up and go", ["Patient's screen"])
+    assert texts(step.bar()) == ("Start timed up and go", ["Patient screen"])
     assert "Timed tests need" not in step.bar().note
 
 
@@ -200,7 +200,7 @@ def test_a_failure_before_walks_is_named_and_walks_may_be_sent_live_instead(
     step.on_primary()
     qtbot.waitUntil(lambda: visit.sensors.sync.failure[0] != "" and visit.sensors.sync.is_idle, timeout=WAIT_MS)
     assert step.page.memory.shown.what == "Not synchronised: DOT 0002 (its clock runs too differently)."
-    assert texts(step.bar()) == ("Try again", ["Send walks live", "Patient's screen"])
+    assert texts(step.bar()) == ("Try again", ["Record walks live", "Patient screen"])
     step.on_other(0)
     qtbot.waitUntil(lambda: not visit.sensors.are_loose and visit.sensors.sync.is_idle, timeout=WAIT_MS)
     assert texts(step.bar())[0] == "Start walk"

@@ -129,7 +129,7 @@ def texts(page: WalkingPage) -> list[str]:
 
 
 def test_before_the_first_walk_it_says_what_to_do(page: WalkingPage) -> None:
-    assert "Choose a label, then press Space." in texts(page)
+    assert "Choose a condition, then press Space." in texts(page)
     assert not page.charts.isVisible()
     assert "Next condition: A" in texts(page)
 
@@ -148,7 +148,7 @@ def test_a_message_moves_nothing_while_a_walk_is_recorded(page: WalkingPage, qtb
     page.show_walks((RECORDING,))
     QApplication.processEvents()
     before = page.charts.geometry()
-    page.show_message("R foot has been silent for 2 s", "Recording goes on.")
+    page.show_message("R foot has been silent for 2 s", "Recording continues.")
     QApplication.processEvents()
     assert page.charts.geometry() == before
     assert "R foot has been silent for 2 s" in texts(page)
@@ -158,7 +158,7 @@ def test_a_message_moves_nothing_while_a_walk_is_recorded(page: WalkingPage, qtb
 
 def test_a_stopped_walk_is_kept_or_discarded(page: WalkingPage, qtbot: QtBot) -> None:
     page.show_walks((KEPT, ASKING), "L 12, R 11 strides")
-    assert {"Keep 12 strides", "Discard", "L 12, R 11 strides", "keep or discard?"} <= set(texts(page))
+    assert {"Keep 12 strides", "Discard", "L 12, R 11 strides", "include or exclude?"} <= set(texts(page))
     with qtbot.waitSignal(page.keep_pressed) as kept:
         page.stopped.keep.click()
     assert kept.args == ["3"]
@@ -180,7 +180,7 @@ def test_what_was_discarded_can_come_back(page: WalkingPage, qtbot: QtBot) -> No
 
 def test_a_recovered_walk_asks_as_a_stopped_one_does(page: WalkingPage, qtbot: QtBot) -> None:
     page.show_walks((KEPT, RECOVERED))
-    assert {"recovered, look at it", "B  Shoes: recovered", "Keep 9 strides"} <= set(texts(page))
+    assert {"recovered, needs review", "B  Shoes: recovered", "Keep 9 strides"} <= set(texts(page))
     page.show_walks((KEPT, RECOVERED, ASKING))
     assert "C  AFO: stopped" in texts(page)  # the newest question first
 
@@ -265,7 +265,7 @@ def test_sensors_strapped_anew_begin_a_letter(page: WalkingPage) -> None:
 
 def test_sensors_strapped_anew_are_told_with_the_consequence(page: WalkingPage, qtbot: QtBot) -> None:
     page.show_walks((KEPT,))
-    assert "Standing still and free motion come again first." in page.walks.restrapped.accessibleDescription()
+    assert "Standing still and free motion must then be repeated." in page.walks.restrapped.accessibleDescription()
     with qtbot.waitSignal(page.restrapped_pressed):
         QTest.keyClick(page.walks.restrapped, Qt.Key.Key_Return)
 

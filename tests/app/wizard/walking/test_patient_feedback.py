@@ -197,7 +197,7 @@ def test_closed_it_neither_sounds_nor_counts(
 
 def test_the_patient_is_not_named_on_it(feedback: PatientFeedback) -> None:
     assert feedback.window is not None
-    assert feedback.window.windowTitle() == "Patient's screen"
+    assert feedback.window.windowTitle() == "Patient screen"
 
 
 def test_reasons_are_said_in_words_of_what_is_gated_only() -> None:
@@ -207,7 +207,7 @@ def test_reasons_are_said_in_words_of_what_is_gated_only() -> None:
     assert reasons[TargetMeasure.KNEE_SWING_PEAK, Side.LEFT].startswith("No zero was set")
     assert (TargetMeasure.KNEE_SWING_PEAK, Side.RIGHT) not in reasons
     assert "prosthetic foot rolls on" in reasons[TargetMeasure.STANCE_RATIO, Side.LEFT]
-    assert reasons_against((), (), {}, frozenset())[TargetMeasure.CADENCE, None] == "No foot sensor is worn."
+    assert reasons_against((), (), {}, frozenset())[TargetMeasure.CADENCE, None] == "There is no foot sensor."
     one_leg = tuple(site for site in LEG_SITES if site.side is Side.LEFT)
     reasons = reasons_against(one_leg, ALL, SURE, frozenset())
     assert reasons[TargetMeasure.STANCE_RATIO, Side.LEFT] == "Both feet need a sensor."
@@ -215,7 +215,7 @@ def test_reasons_are_said_in_words_of_what_is_gated_only() -> None:
     assert (TargetMeasure.FOOT_STRIKE, Side.LEFT) not in reasons
     without = tuple(site for site in LEG_SITES if site is not Site.RIGHT_THIGH)
     reasons = reasons_against(LEG_SITES, without, SURE, frozenset())
-    assert [*reasons.values()] == ["Its sensors have not rested. Let the patient stand still first."]
+    assert [*reasons.values()] == ["These sensors have not been still yet. Let the patient stand still first."]
     assert (TargetMeasure.KNEE_SWING_PEAK, Side.RIGHT) in reasons
     assert reasons_against(LEG_SITES, ALL, {}, frozenset())[TargetMeasure.KNEE_SWING_PEAK, Side.LEFT].startswith(
         "The knee's"
@@ -225,11 +225,11 @@ def test_reasons_are_said_in_words_of_what_is_gated_only() -> None:
 def test_a_walk_without_a_target_shows_the_steps_that_the_operator_sees(feedback: PatientFeedback) -> None:
     card_of(feedback).target_set.emit(None)
     feedback.count({Side.LEFT: 13, Side.RIGHT: 12})
-    assert feedback.view.in_words == "Please wait"  # nothing is recorded
+    assert feedback.view.in_words == "One moment"  # nothing is recorded
     feedback.begin_walk()
     assert feedback.view.in_words == "0 steps so far"
     feedback.count({Side.LEFT: 13, Side.RIGHT: 12})
     assert feedback.window is not None
     assert feedback.window.view.in_words == "13 steps so far"
     feedback.end_walk()
-    assert feedback.window.view.in_words == "Please wait"
+    assert feedback.window.view.in_words == "One moment"

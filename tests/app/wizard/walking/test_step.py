@@ -230,7 +230,7 @@ def test_space_pressed_twice_at_the_end_keeps_what_the_patient_reached(
         step.on_intent(RUN)
     with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
         step.on_intent(RUN)
-        assert step.cannot_leave == "The walk is being read back."
+        assert step.cannot_leave == "The walk is being loaded."
         step.on_intent(RUN)
     qtbot.waitUntil(lambda: tallies_of(visit.recordings.walks[0].details.note) == (tally,), timeout=PATIENCE_MS)
     qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=PATIENCE_MS)
@@ -349,5 +349,5 @@ def test_while_no_sensor_is_heard_no_walk_is_started(
 
 def test_without_sensors_it_cannot_be_entered(look: ThemeNotifier, visit: Visit) -> None:
     step = WalkingStep(look, visit)
-    assert step.cannot_enter == "Type the patient's code first."
+    assert step.cannot_enter == "Enter the patient's code first."
     assert Joint.LEFT_KNEE not in visit.sensors.joints

@@ -48,5 +48,5 @@ def test_what_an_analysis_that_ended_early_left_open_is_not_said_to_be_analysed(
     view.show_state(open_still)
     assert view.first.text() == "10-metre walk: being analysed."
     view.show_state(replace(open_still, failure=failure_in_words()))
-    assert view.first.text() == "The analysis ended before it was done."
-    assert view.then.text() == "The recordings are kept; the log holds the details."
+    assert view.first.text() == "The analysis stopped before it finished."
+    assert view.then.text() == "The recordings are safe. See the log for details."

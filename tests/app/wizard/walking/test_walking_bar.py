@@ -86,7 +86,7 @@ def test_beside_the_list_of_walks_the_clocks_can_be_synchronised(visit: Any, ben
 @pytest.mark.parametrize(
     ("kind", "is_stopping", "primary", "note"),
     [
-        (RecordingKind.WALKING, True, "Start walk", "The walk is being read back."),
+        (RecordingKind.WALKING, True, "Start walk", "The walk is being loaded."),
         (RecordingKind.FREE_MOTION, True, "Start walk", "Free motion: being read back"),
         (RecordingKind.FREE_MOTION, False, "Start walk", "Free motion: being read back"),
     ],

@@ -108,7 +108,7 @@ def test_events_and_strides_have_tables_of_their_own(read: Read) -> None:
         ("time_s,side,event\n1,left,landing\n", r'line 2: "landing" is no event'),
         ("time_s,side,event\n1,middle,toe_off\n", r'line 2: "middle" is no side'),
         ("<xml>\n", r"no reference is recognised in it\. Give a CSV"),
-        ("", r"no reference is recognised in it"),
+        ("", "this is not a recognised reference file"),
     ],
 )
 def test_what_is_no_reference_is_refused_with_what_where_and_what_to_do(read: Read, content: str, said: str) -> None:
@@ -121,7 +121,7 @@ def test_what_is_no_reference_is_refused_with_what_where_and_what_to_do(read: Re
 def test_a_folder_and_a_file_that_is_not_there_are_refused(tmp_path: Path) -> None:
     with pytest.raises(FileRefusedError, match=r"this is a folder\. Give the reference's file"):
         read_reference(tmp_path)
-    with pytest.raises(FileRefusedError, match="there is no such file"):
+    with pytest.raises(FileRefusedError, match="this file does not exist"):
         read_reference(tmp_path / "gone.csv")
 
 
@@ -201,7 +201,7 @@ def test_visual3d_has_trials_beside_one_another(read: Read) -> None:
     ("content", "said"),
     [
         (visual3d(time="FRAMES"), "there is no signal TIME, so the frames have no instants. Export TIME with them"),
-        (visual3d(knee="RElbowAngle"), "no signal is the angle of a hip, a knee or an ankle"),
+        (visual3d(knee="RElbowAngle"), "no signal is a hip, knee or ankle angle"),
         (visual3d() + "61\t0.1\n", "line 66: the line has 2 columns, the header 5"),
     ],
 )
