@@ -33,6 +33,7 @@ def main(arguments: list[str]) -> None:
     parser.add_argument("--folder-only", action="store_true", help="pack nothing")
     wanted = parser.parse_args(arguments)
     python = make_environment(WORK / "environment")
+    run([str(python), ROOT / "packaging" / "safety_tables.py"])  # ends here where a requirement has no test
     folder = freeze(python, is_with_tour=wanted.with_tour)
     (WORK / "version.txt").write_text(f"{VERSION}\n", encoding="ascii")  # for windows.iss
     wanted.out.mkdir(parents=True, exist_ok=True)

@@ -1,9 +1,10 @@
 """Make the tables of requirements, risks and use errors: `python packaging/safety_tables.py`.
 
-What is written by hand stands in `packaging/safety/*.toml`: each requirement with the tests that hold it, each risk
-with the requirements that control it, each use error with the message it meets. From these come the tables beside
-them, in which every control leads to its tests. What does not fit together is printed, nothing is written then, and a
-test fails: a requirement without a test, a test, script or message that is not there, a risk without a control.
+`packaging/safety/*.toml` is written by hand: each requirement with the tests that hold it, each risk with the
+requirements that control it, each use error with the message it meets. From these come the tables beside them, in
+which every control leads to its tests. They are made for reading and with every build, and are not committed. What
+does not fit together is printed, nothing is written then, and a test fails: a requirement without a test, a test,
+script or message that is not there, a risk without a control.
 """
 
 import ast
@@ -16,13 +17,12 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from babel.messages.pofile import read_po
-
 ROOT = Path(__file__).resolve().parents[1]
 SAFETY = ROOT / "packaging" / "safety"
 TEMPLATE = ROOT / "resources" / "locale" / "gaitwright.pot"
 ID = re.compile(r"R-[A-Z]{2,3}-\d\d")
-TABLES = ("requirements.md", "risks.md", "use_errors.md")  # made here
+TABLES = ("requirements.md", "risks.md", "use_errors.md")  # made here, and ignored by git
+MESSAGE = re.compile(r'(?m)^msgid(?:_plural)? ((?:".*"\n)+)')
 NODE = re.compile(r"tests/[\w/]+\.py::test_\w+")
 FILE = re.compile(r"\b(?:app|core|devices|packaging|resources|tests)/[\w/-]+\.(?:py|toml|md)\b")
 TO_COME = {"packaging/build.py"}  # of the installers
@@ -224,10 +224,9 @@ def said() -> dict[str, str]:
         sys.path.insert(0, str(ROOT))  # a script sees its own folder only
     from app.wording.translation import SENTENCES
 
-    with TEMPLATE.open("rb") as file:  # which tests/app/test_translation.py keeps current
-        ids = [message.id for message in read_po(file) if message.id]
-    every = [text for one in ids for text in ([one] if isinstance(one, str) else one)]
-    return {text: text for text in every} | SENTENCES
+    template = TEMPLATE.read_text(encoding="utf-8")  # which tests/app/test_translation.py keeps current
+    every: list[str] = [ast.literal_eval(f"({quoted})") for quoted in MESSAGE.findall(template)]
+    return {text: text for text in every if text} | SENTENCES
 
 
 def level(risk: tuple[int, int]) -> int:
@@ -328,4 +327,4 @@ if __name__ == "__main__":
         sys.exit("\n".join(wrong))
     for name, text in pages().items():
         (SAFETY / name).write_text(text, encoding="utf-8", newline="\n")
-        print((SAFETY / name).relative_to(ROOT))
+        print(SAFETY / name)
