@@ -37,6 +37,7 @@ class Topic(StrEnum):
     PRIVACY = "privacy"
     ADMINISTRATION = "administration"
     STATIONS = "stations"
+    COMMAND_LINE = "command-line"
     MESSAGES = "messages"
     KEYS = "keys"
     ACCESSIBILITY = "accessibility"
@@ -97,6 +98,7 @@ def topic_title(topic: Topic) -> str:
         Topic.PRIVACY: tr("Data and privacy"),
         Topic.ADMINISTRATION: tr("For administrators"),
         Topic.STATIONS: tr("Several workstations"),
+        Topic.COMMAND_LINE: tr("Command line"),
         Topic.MESSAGES: tr("Messages explained"),
         Topic.KEYS: tr("Keys"),
         Topic.ACCESSIBILITY: tr("Accessibility"),

@@ -197,7 +197,7 @@ def _strides(facts: Facts) -> str:
 
 
 def _accuracy() -> str:
-    # the figures stand in resources/help/accuracy.md and README.md; a test holds them together
+    # the figures of resources/help/accuracy.md; a test compares them
     return tr(
         "Compared with optical systems (root mean square, mean removed): two mechanical hinges 0.31° "
         "and 0.25°; walking of one person 4.3° and 3.1° at the knees, 2.1° at the ankles. Absolute "
