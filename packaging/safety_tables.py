@@ -36,7 +36,7 @@ ACCEPTED, REDUCED = 4, 6  # severity times probability: up to here accepted; up 
 
 @dataclass(frozen=True, slots=True)
 class Requirement:
-    """One sentence that can be false, and what shows that it is not. `source` says where it comes from."""
+    """One sentence that can be false, its tests, and the source that asks for it."""
 
     id: str
     says: str
@@ -61,7 +61,7 @@ class Risk:
 
 @dataclass(frozen=True, slots=True)
 class UseError:
-    """What somebody may do wrong, how it is noticed, what is then said, and the tests of both.
+    """What somebody may do wrong, how it is noticed, which message follows, and the tests of both.
 
     `messages` are keys of findings in `app.wording`'s SENTENCES, or sentences of the catalogue as the code has them.
     """
@@ -88,19 +88,19 @@ def read(name: str) -> dict[str, Any]:
 
 
 def requirements() -> list[Requirement]:
-    return [Requirement(**_tuples(told)) for told in read("requirements.toml")["requirement"]]
+    return [Requirement(**_tuples(entry)) for entry in read("requirements.toml")["requirement"]]
 
 
 def risks() -> list[Risk]:
-    return [Risk(**_tuples(told)) for told in read("risks.toml")["risk"]]
+    return [Risk(**_tuples(entry)) for entry in read("risks.toml")["risk"]]
 
 
 def use_errors() -> list[UseError]:
-    return [UseError(**_tuples(told)) for told in read("use_errors.toml")["use_error"]]
+    return [UseError(**_tuples(entry)) for entry in read("use_errors.toml")["use_error"]]
 
 
-def _tuples(told: Mapping[str, Any]) -> dict[str, Any]:
-    return {name: tuple(value) if isinstance(value, list) else value for name, value in told.items()}
+def _tuples(entry: Mapping[str, Any]) -> dict[str, Any]:
+    return {name: tuple(value) if isinstance(value, list) else value for name, value in entry.items()}
 
 
 @cache
@@ -165,9 +165,9 @@ def faults_of_requirements(known: Sequence[Requirement], sources: set[str]) -> I
                 yield f"{one.id}: there is no script {run}"
 
 
-def faults_of_risks(told: Sequence[Risk], known: set[str]) -> Iterator[str]:
-    yield from _twice(one.id for one in told)
-    for one in told:
+def faults_of_risks(entries: Sequence[Risk], known: set[str]) -> Iterator[str]:
+    yield from _twice(one.id for one in entries)
+    for one in entries:
         if not one.controls:
             yield f"{one.id} has no control"
         yield from (f"{one.id}: there is no requirement {name}" for name in one.controls if name not in known)
@@ -178,14 +178,14 @@ def faults_of_risks(told: Sequence[Risk], known: set[str]) -> Iterator[str]:
             yield f"{one.id}: the controls leave {level(one.after)} of {level(one.before)}"
 
 
-def faults_of_use_errors(told: Sequence[UseError]) -> Iterator[str]:
-    yield from _twice(one.id for one in told)
-    sentences = said()
-    for one in told:
+def faults_of_use_errors(entries: Sequence[UseError]) -> Iterator[str]:
+    yield from _twice(one.id for one in entries)
+    sentences = sentences_of_screen()
+    for one in entries:
         yield from _missing(one.id, one.tests)
         if not one.messages:
             yield f"{one.id} meets no message"
-        yield from (f"{one.id}: nothing says {text!r}" for text in one.messages if text not in sentences)
+        yield from (f"{one.id}: no message reads {text!r}" for text in one.messages if text not in sentences)
 
 
 def faults_of_pages(known: set[str]) -> Iterator[str]:
@@ -218,7 +218,7 @@ def _twice(ids: Iterable[str]) -> Iterator[str]:
 
 
 @cache
-def said() -> dict[str, str]:
+def sentences_of_screen() -> dict[str, str]:
     """Give every sentence of the screen as the code has it; a finding's by its key, too."""
     if str(ROOT) not in sys.path:
         sys.path.insert(0, str(ROOT))  # a script sees its own folder only
@@ -243,7 +243,7 @@ def pages() -> dict[str, str]:
 
 
 def _requirements_page(known: Sequence[Requirement]) -> str:
-    told = read("requirements.toml")
+    texts = read("requirements.toml")
     tests = {test for one in known for test in one.tests}
     long = sum(found.is_long for test in tests if (found := find_test(test)))
     lines = [
@@ -257,10 +257,10 @@ def _requirements_page(known: Sequence[Requirement]) -> str:
         "",
         "Where they come from:",
         "",
-        *(f"- **{name}**: {what}" for name, what in told["sources"].items()),
+        *(f"- **{name}**: {what}" for name, what in texts["sources"].items()),
         "",
     ]
-    for prefix, title in told["groups"].items():
+    for prefix, title in texts["groups"].items():
         lines += [f"## {title}", "", "| id | what must hold | from | shown by |", "|---|---|---|---|"]
         for one in known:
             if one.id.startswith(f"R-{prefix}-"):
@@ -270,7 +270,7 @@ def _requirements_page(known: Sequence[Requirement]) -> str:
     return "\n".join(lines)
 
 
-def _risks_page(told: Sequence[Risk], known: Mapping[str, Requirement]) -> str:
+def _risks_page(entries: Sequence[Risk], known: Mapping[str, Requirement]) -> str:
     lines = [
         "# Risks and their controls",
         "",
@@ -282,10 +282,10 @@ def _risks_page(told: Sequence[Risk], known: Mapping[str, Requirement]) -> str:
         *(
             f"| {one.id} | {one.hazard} | {one.harm} | {_level(one.before)} | {', '.join(one.controls)} "
             f"| {_level(one.after)} |"
-            for one in told
+            for one in entries
         ),
     ]
-    for one in told:
+    for one in entries:
         lines += ["", f"## {one.id} {one.hazard}", "", f"- **How it comes about**: {one.sequence}"]
         lines += [f"- **Harm**: {one.harm}. Before {_level(one.before)}, after {_level(one.after)}.", "- **Controls**:"]
         for control in (known[name] for name in one.controls):
@@ -294,11 +294,11 @@ def _risks_page(told: Sequence[Risk], known: Mapping[str, Requirement]) -> str:
     return "\n".join([*lines, ""])
 
 
-def _use_errors_page(told: Sequence[UseError]) -> str:
-    sentences = said()
+def _use_errors_page(entries: Sequence[UseError]) -> str:
+    sentences = sentences_of_screen()
     lines = ["# Use errors", "", MADE.format(source="use_errors.toml")]
     lines += read("use_errors.toml")["introduction"].strip().splitlines()
-    for one in told:
+    for one in entries:
         lines += [
             "",
             f"## {one.id} {one.error}",

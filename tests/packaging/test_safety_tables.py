@@ -37,7 +37,7 @@ def test_the_sentences_of_the_screen_are_those_of_the_catalogue(tables: ModuleTy
     with tables.TEMPLATE.open("rb") as file:
         ids = [one.id for one in read_po(file) if one.id]
     every = {text for one in ids for text in ([one] if isinstance(one, str) else one)}
-    assert every | set(SENTENCES) == set(tables.said())
+    assert every | set(SENTENCES) == set(tables.sentences_of_screen())
 
 
 def test_a_requirement_that_leads_nowhere_is_named(tables: ModuleType) -> None:
@@ -74,10 +74,10 @@ def test_a_risk_without_a_control_or_whose_controls_leave_it_is_named(tables: Mo
     assert list(tables.faults_of_risks([risk], known)) == []
 
 
-def test_a_use_error_that_nothing_tells_of_is_named(tables: ModuleType) -> None:
+def test_a_use_error_without_a_message_is_named(tables: ModuleType) -> None:
     error = tables.use_errors()[0]
     wrong = {
-        f"{error.id}: nothing says 'Well done.'": replace(error, messages=("Well done.",)),
+        f"{error.id}: no message reads 'Well done.'": replace(error, messages=("Well done.",)),
         f"{error.id} meets no message": replace(error, messages=()),
         f"{error.id} has no test": replace(error, tests=()),
     }
