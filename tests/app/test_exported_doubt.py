@@ -39,7 +39,7 @@ WALK = "walk 1"
 SIDES = ("left", "right")
 FIGURES = {  # what a person calls it, its column
     "knee range": "knee_range_deg",
-    "knee swing peak": "knee_swing_peak_deg",
+    "knee peak flexion, swing": "knee_swing_peak_deg",
     "knee peak time": "knee_swing_peak_percent",
     "ankle range": "ankle_range_deg",
     "ankle dorsiflexion": "ankle_stance_dorsiflexion_deg",
@@ -86,7 +86,7 @@ STOOD, WALKED = Standing(), Walk(WALK, strides=16)
 STIFF = replace(WALKED, change=GaitChange(knee_deg=-7.0), changed_side=Side.LEFT)  # of 14 deg, so that 7 are left
 LATE = {site: 0.1 for site in LEG_SITES if site.side is Side.RIGHT}
 CASES = {
-    "no zero": Case(
+    "no standing reference": Case(
         WalkerSettings(seed=4, recordings=(WALKED,)),
         {"* swing peak": WITHHELD, "* dorsiflexion": WITHHELD, "* curve": SHAPE},
         "No zero was set",
@@ -154,7 +154,7 @@ def rows_of(path: Path) -> list[dict[str, str]]:
 
 CSV_STATUS = {  # which column of status a figure stands under
     "knee range": "knee_shape_status",
-    "knee swing peak": "knee_height_status",
+    "knee peak flexion, swing": "knee_height_status",
     "ankle range": "ankle_shape_status",
     "ankle dorsiflexion": "ankle_height_status",
     "stance": "timing_status",
@@ -324,7 +324,7 @@ def in_mot(out: Path) -> dict[str, str]:
         coordinate = next(coordinate for coordinate, of in MOT.items() if of == joint)
         where, status = comments[coordinate].split(":")[0].split(", ")
         assert (where == "here") == (coordinate in names)
-        assert where in ("here", "left out")
+        assert where in ("here", "excluded")
         said[name] = status if coordinate in names else SHAPE if status == "no_zero" else WITHHELD
     return said
 

@@ -77,7 +77,7 @@ def test_what_is_missing_or_there_twice_is_named(soup: ModuleType, monkeypatch: 
     monkeypatch.setattr(soup, "parts", lambda: [twice])
     monkeypatch.setattr(soup, "told", lambda: {"development": {"names": ["pytest"]}})
     assert list(soup.faults()) == [
-        "pytest is there twice",
+        "pytest is given twice",
         "new-part is locked, and nothing says why",
         "gone is not in the lock",
     ]

@@ -210,7 +210,7 @@ class WindowSession:
         """Say what the columns of lines of numbers mean, as the page guesses it."""
         step = self.wizard.steps[1]
         assert isinstance(step, SensorsStep)
-        self.wait(lambda: any(source.key == COLUMNS for source in self.visit.choices), "lines of numbers")
+        self.wait(lambda: any(source.key == COLUMNS for source in self.visit.choices), "text lines (CSV)")
         step.page.source_chosen.emit(COLUMNS)
         self.wait(lambda: step.telling.columns is not None, "columns")
         self.linger(1.0)

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 READ_BACK = "('closed', 'recovered')"
 KEPT = re.compile(r"(\d+) kept")
-STOOD = re.compile(r"([\d.]+) s, zero set")
+STOOD = re.compile("([\\d.]+) s, standing reference")
 WORN = re.compile(r"(\d) of 6 worn")
 SAVED_AS = re.compile(r"Saved as (.+)\. Saving again asks where\.")
 RECOVERED_ONE = re.compile(r"\d+:\d\d of (.+) was recovered\.")

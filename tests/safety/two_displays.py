@@ -238,15 +238,15 @@ def _lose_the_server(one: StationOnScreen, two: StationOnScreen, server: Server,
     began_s = time.monotonic()
     server.stop()
     slowest_s = _watch(one, AWAY_S)
-    one.lead(Stop("59-away", lambda seen: any("does not answer" in one for one in (seen.banner, *seen.words))))
-    two.lead(Stop("60-away", lambda seen: any("does not answer" in one for one in (seen.banner, *seen.words))))
+    one.lead(Stop("59-away", lambda seen: any("does not respond" in one for one in (seen.banner, *seen.words))))
+    two.lead(Stop("60-away", lambda seen: any("does not respond" in one for one in (seen.banner, *seen.words))))
     one.application.hand("key", "space")
     walked_s = time.monotonic() - began_s
     slowest_s = max(slowest_s, _watch(one, 5.0))
     one.lead(Stop("60-stopped", lambda seen: not seen.says("Stop walk")))
     server.start()
     one.lead(
-        Stop("61-back", lambda seen: not any("does not answer" in one for one in (seen.banner, *seen.words))),
+        Stop("61-back", lambda seen: not any("does not respond" in one for one in (seen.banner, *seen.words))),
         Stop("62-asked", offers("Keep 1"), ("press k",), patience_s=PATIENCE_S, lingers_s=2.0),
         Stop("63-kept", offers("Results"), ("press Return",), patience_s=PATIENCE_S),
         Stop("64-results", offers("Legs", "Data"), patience_s=PATIENCE_S, lingers_s=2.0),

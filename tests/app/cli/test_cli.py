@@ -329,7 +329,7 @@ def test_a_place_that_cannot_be_written_is_refused(
 ) -> None:
     (tmp_path / "file").write_text("mine")
     assert analyse(session, tmp_path / "file" / "out") == 2
-    assert "cannot be written" in refusal(capsys)
+    assert "is not writable" in refusal(capsys)
 
 
 def test_a_full_disk_leaves_the_old_results(

@@ -111,7 +111,7 @@ def test_what_is_searched_for_is_counted_in_every_topic_and_marked(page: HelpPag
     assert len(page.text.extraSelections()) == text.count("space") > 1
     named = {row.text(): row.accessibleName() for row in page.topics.rows}
     assert named["Walking"] == f"Walking, {text.count('space')} places"
-    assert named["Report"] == "Report, 0 places"
+    assert named["Report"] == "Report, 0 matches"
 
 
 def test_enter_goes_on_to_the_next_topic_and_round_again(page: HelpPage) -> None:

@@ -134,7 +134,7 @@ def test_what_is_bold_is_a_control_or_a_key_of_the_application(language: str) ->
 def test_a_name_that_is_on_no_control_is_found() -> None:
     assert not is_known("en", "Press me")
     assert not is_known("de", "New patient")
-    assert is_known("en", "Keep 13 strides")
+    assert is_known("en", "Include 13 strides")
     assert is_known("de", "13 Doppelschritte behalten")
 
 

@@ -113,7 +113,7 @@ def test_a_session_is_opened_by_a_click_and_by_enter(qtbot: QtBot, home: Home) -
 def test_a_deleted_patient_comes_back_by_undo(qtbot: QtBot, home: Home) -> None:
     delete_patient(qtbot, home)
     qtbot.waitUntil(lambda: codes(home) == ["P-0147"], timeout=WAIT_MS)
-    assert home.toast.text == "P-0163 is deleted, for good in 30 days."
+    assert home.toast.text == "P-0163 is deleted, permanently in 30 days."
     home.toast.undo()
     qtbot.waitUntil(lambda: codes(home) == ["P-0163", "P-0147"], timeout=WAIT_MS)
     assert home.bar.primary.text() == "New session for P-0163"
@@ -164,7 +164,7 @@ def test_of_two_deletions_the_last_comes_back_by_its_keys_also_from_the_search(q
     QTest.keyClick(home.page.sessions, Qt.Key.Key_Delete)
     delete_patient(qtbot, home)
     qtbot.waitUntil(lambda: codes(home) == ["P-0147"], timeout=WAIT_MS)
-    assert home.toast.text == "P-0163 is deleted, for good in 30 days."
+    assert home.toast.text == "P-0163 is deleted, permanently in 30 days."
     home.page.search.setFocus()
     home.page.search.insert("0")  # what may be taken back here, too
     QTest.keyClick(home.page.search, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
@@ -315,7 +315,7 @@ def test_a_recovered_walk_is_asked_for_at_every_start_until_it_is_decided(
     home = new_home(qtbot, controller, settings)
     open_library(qtbot, controller, home, folder)
     qtbot.waitUntil(home.banner.isVisible, timeout=WAIT_MS)
-    asked = "walk 3 of P-0163 was recovered earlier, and nobody has said yet whether it is kept."
+    asked = "walk 3 of P-0163 was recovered earlier and still awaits a decision."
     assert home.banner.text == f"{asked} Look at it, then keep or discard."
     qtbot.waitUntil(lambda: [one.needs_look for one in lines(home)] == [True, False], timeout=WAIT_MS)
     qtbot.waitUntil(lambda: [one.id for one in sessions(home) if one.needs_look] == [session_id], timeout=WAIT_MS)
@@ -346,7 +346,7 @@ def test_several_recovered_walks_are_asked_for_together(
     home = new_home(qtbot, controller, settings)
     open_library(qtbot, controller, home, folder)
     qtbot.waitUntil(home.banner.isVisible, timeout=WAIT_MS)
-    assert home.banner.text.startswith("2 walks were recovered earlier, and nobody has said yet whether they are kept.")
+    assert home.banner.text.startswith("2 walks were recovered earlier and still await a decision.")
 
 
 def any_needs_look(home: Home) -> bool:
@@ -387,7 +387,7 @@ def test_what_the_library_did_not_answer_for_goes_into_its_session_or_out(
     assert "of walk 3 was recorded while the library did not answer. It is in its session now." in home.banner.text
     qtbot.waitUntil(lambda: any(line.needs_look for line in sessions(home)), timeout=WAIT_MS)
     home.banner.dismiss.click()
-    assert home.banner.text.startswith("2 recordings, 00:00 in all, belong to no session.")
+    assert home.banner.text.startswith("2 recordings, 00:00 in total, are not assigned to a session.")
     assert home.banner.act.text() == "Export"
     home.recovering.export(tmp_path / "out")
     qtbot.waitUntil(lambda: "2 recordings were exported." in home.banner.text, timeout=WAIT_MS)

@@ -43,7 +43,7 @@ def test_arrows_step_through_the_stride_and_each_leg_has_its_own_place(legs: Mov
     QTest.keyClick(legs, Qt.Key.Key_Left, Qt.KeyboardModifier.ShiftModifier)
     QTest.keyClick(legs, Qt.Key.Key_Left, Qt.KeyboardModifier.ShiftModifier)
     assert legs.percent == pytest.approx(91.0)
-    assert legs.accessibleDescription() == "91 % of the left stride"
+    assert legs.accessibleDescription() == "91 % of the left gait cycle"
 
 
 def test_another_place_is_another_picture(legs: MovingLegs) -> None:

@@ -266,6 +266,6 @@ def test_a_change_that_another_program_holds_up_for_long_is_refused(
 ) -> None:
     data_key, _ = slots.create("hk", OLD)
     monkeypatch.setattr(keys, "BUSY_S", 0.1)
-    with held(tmp_path / "keys.json.lock"), pytest.raises(KeyRefusedError, match="Somebody else"):
+    with held(tmp_path / "keys.json.lock"), pytest.raises(KeyRefusedError, match="Another user"):
         slots.add(data_key, "ab", NEW)
     slots.add(data_key, "ab", NEW)

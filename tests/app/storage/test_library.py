@@ -98,7 +98,7 @@ def test_no_library_and_no_rights_are_said(tmp_path: Path) -> None:
         Library.open(tmp_path, DATA_KEY)
     assert list(tmp_path.iterdir()) == []
     (tmp_path / "file").write_text("")
-    with pytest.raises(LibraryError, match="cannot be written"):
+    with pytest.raises(LibraryError, match="is not writable"):
         Library.create(tmp_path / "file", DATA_KEY, FIRST)
 
 

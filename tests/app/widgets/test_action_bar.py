@@ -54,8 +54,8 @@ def test_each_verb_tells_that_it_was_pressed(bar: ActionBar, qtbot: QtBot) -> No
 
 
 def test_words_of_a_screen_reader_follow_the_verb(bar: ActionBar) -> None:
-    bar.show_state(BarState(BarAction("Keep 18 strides", "K")))
-    assert bar.primary.accessibleName() == "Keep 18 strides"
+    bar.show_state(BarState(BarAction("Include 18 strides", "K")))
+    assert bar.primary.accessibleName() == "Include 18 strides"
     assert bar.primary.accessibleDescription() == "Key K"
     bar.show_state(BarState(BarAction("Write report")))
     assert bar.primary.accessibleName() == "Write report"
@@ -126,7 +126,7 @@ def test_a_button_keeps_the_focus_when_its_word_is_another(bar: ActionBar) -> No
 @pytest.mark.parametrize("note", ["", "Stopping now leaves the left knee with range only, without absolute angles."])
 def test_nothing_is_cut_and_nothing_overlaps(bar: ActionBar, width: int, note: str) -> None:
     state = BarState(
-        BarAction("Reconnect R foot", "Enter"), (BarAction("Go on without"),), (BarAction("Repeat one leg"),), note
+        BarAction("Reconnect R foot", "Enter"), (BarAction("Continue without"),), (BarAction("Repeat one leg"),), note
     )
     bar.show_state(state)
     bar.resize(width, bar.height())

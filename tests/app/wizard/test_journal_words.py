@@ -43,7 +43,7 @@ def test_nothing_is_lost_yet_only_while_the_disk_is_late_and_every_counter_is_no
     status: JournalStatus, lost: int, is_said: bool
 ) -> None:
     said = " ".join(trouble_message(Trouble.DISK_SLOW, status, lost))
-    assert ("Nothing is lost yet" in said) is is_said
+    assert ("No data lost so far" in said) is is_said
     assert ("answers late" in said) is (status is LATE)
 
 
@@ -66,8 +66,8 @@ def test_what_was_dropped_is_counted(trouble: Trouble) -> None:
 @pytest.mark.parametrize("trouble", sorted(ENDS))
 def test_a_disk_that_ended_the_recording_says_up_to_where_it_is_kept(trouble: Trouble) -> None:
     _, then = trouble_message(trouble, CLOSED)
-    assert ("Its first 1:02 are written." in then) is (trouble is not Trouble.DISK_GONE)
-    assert ("The disk has confirmed the first 1:01 of it." in then) is (trouble is Trouble.DISK_GONE)
+    assert ("The first 1:02 are written." in then) is (trouble is not Trouble.DISK_GONE)
+    assert ("The first 1:01 are confirmed on the disk." in then) is (trouble is Trouble.DISK_GONE)
     _, then = trouble_message(trouble, replace(CLOSED, dropped_records=2))
     assert ("what came after that is lost" in then) is (trouble is not Trouble.DISK_GONE)
 

@@ -167,7 +167,7 @@ def test_what_is_said_of_a_late_disk_follows_its_counters(
 
     recording = step.bar().recording
     assert recording is not None
-    assert "Nothing is lost yet" in said()
+    assert "No data lost so far" in said()
     assert "Saved" not in recording.note
     monkeypatch.setattr(acquisition, "lost", lambda: {"DEMO-left_foot": 400})
     assert "Nothing is lost" not in said()
@@ -201,7 +201,7 @@ def test_a_standstill_amid_a_recording_is_said_on_every_step_that_records(
     monkeypatch.setattr(visit.recordings, "ongoing", Ongoing(told, 100.0))
     monkeypatch.setattr(visit.recordings, "_acquisition", acquisition)
     wizard._watch_recording()
-    assert ("Gaitwright stood still for 20 s, 0:01 into the recording." in wizard.shell.banner.text) is is_said
+    assert ("Gaitwright stalled for 20 s, 0:01 into the recording." in wizard.shell.banner.text) is is_said
     monkeypatch.setattr(visit.recordings, "ongoing", None)
 
 
@@ -319,7 +319,7 @@ def test_walks_are_judged_without_sensors(qtbot: QtBot, controller: LibraryContr
     recovered = controller.state.library.library.recordings.close(walk.id, RecordingState.RECOVERED, sha256)
     again.recordings.every = (replace(walk, stored=recovered, is_decided=False),)
     step.tick()
-    assert "was recovered, up to the last record on the disk" in step.page.notice.text
+    assert "was recovered, up to the last record on disk" in step.page.notice.text
     step.page.discard_pressed.emit(str(walk.id))
     qtbot.waitUntil(lambda: not again.recordings.walks[0].details.is_kept, timeout=WAIT_MS)
     step.leave()

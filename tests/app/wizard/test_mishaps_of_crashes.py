@@ -89,13 +89,13 @@ def test_what_a_crash_cut_short_is_not_done(qtbot: QtBot, left: Visit) -> None:
     rest(2.1)
     assert (stands.state, stands.note) == (StepState.TODO, "")
     rest(3.0)
-    assert (stands.state, stands.note) == (StepState.DONE, "3.0 s, zero set")
+    assert (stands.state, stands.note) == (StepState.DONE, "3.0 s, standing reference")
     assert moves.state is StepState.DONE
     recovered = replace(moved, stored=replace(moved.stored, state=RecordingState.RECOVERED))
     left.recordings.every = tuple(
         recovered if recording.id == moved.id else recording for recording in left.recordings.every
     )
-    assert (moves.state, moves.note) == (StepState.ATTENTION, "cut short")
+    assert (moves.state, moves.note) == (StepState.ATTENTION, "stopped early")
 
 
 @pytest.mark.endurance

@@ -99,7 +99,7 @@ def test_what_is_said_otherwise_of_a_session_is_seen(session_in_sight: Any, held
 
 def test_what_is_said_otherwise_on_home_is_seen(home_in_sight: Any, held: HeldLibrary, alter: Alter) -> None:
     assert contradictions(home_in_sight, held) == []
-    home_in_sight.home.banner.tell("The program was closed while recording. 00:14 of walk 1 was recovered.")
+    home_in_sight.home.banner.tell("The program closed during recording. 00:14 of walk 1 was recovered.")
     for statement, words in (
         ("UPDATE sessions SET is_simulated = 0", "simulated, it is not held as such"),
         ("UPDATE recordings SET condition = 'else'", "home says conditions"),
@@ -113,7 +113,7 @@ def test_what_is_said_otherwise_on_home_is_seen(home_in_sight: Any, held: HeldLi
 
 
 def test_a_banner_that_is_hidden_says_nothing(home_in_sight: Any, held: HeldLibrary) -> None:
-    home_in_sight.home.banner.tell("The program was closed while recording. 00:05 of standing 6 was recovered.")
+    home_in_sight.home.banner.tell("The program closed during recording. 00:05 of standing 6 was recovered.")
     assert any("no recovered 'standing 6'" in one for one in contradictions(home_in_sight, held))
     home_in_sight.home.banner.hide()  # as where another library is opened
     assert contradictions(home_in_sight, held) == []

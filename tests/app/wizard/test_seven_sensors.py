@@ -64,10 +64,10 @@ def test_the_pelvis_stays_where_sides_are_changed() -> None:
         (tuple(Site), ""),
         (
             tuple(site for site in Site if site is not Site.LEFT_THIGH),
-            "Without L thigh: no left knee, left hip angles.",
+            "No sensor at L thigh: no angles for left knee, left hip.",
         ),
         (LEG_SITES, ""),  # nobody asked for hips
-        (LEG_SITES[1:], "Without L thigh: no left knee angles."),
+        (LEG_SITES[1:], "No sensor at L thigh: no angles for left knee."),
     ],
 )
 def test_what_is_missing_costs_hips_only_where_there_is_a_pelvis(

@@ -63,7 +63,7 @@ def recording() -> BarState:
 
 def reconnect() -> BarState:
     wished = BarAction(tr("Reconnect R foot"), tr("Enter"), Icon.REPEAT)
-    return BarState(wished, others=(BarAction(tr("Go on without right ankle")),))
+    return BarState(wished, others=(BarAction(tr("Continue without right ankle")),))
 
 
 def filled(look: ThemeNotifier) -> WizardShell:
@@ -157,7 +157,7 @@ def test_a_page_is_told_its_room_in_px_of_the_design(shell: WizardShell, look: T
 def test_a_question_above_the_gauges_pushes_none_out_of_sight(shell: WizardShell, look: ThemeNotifier) -> None:
     page = FreeMotionPage(look)
     shell.show_page(7, page)
-    page.ask("Both legs moved at once. Which one wears 0A31 on its shank?", "", ("Left", "Right"))
+    page.ask("Both legs moved at once. Which leg has 0A31 on the shank?", "", ("Left", "Right"))
     settle()
     assert page.question.isVisible()
     assert page.height() <= shell._scroll.viewport().height()
@@ -232,7 +232,7 @@ def test_the_folded_strip_is_a_region_of_its_own_and_a_hidden_one_is_none(shell:
 def test_the_folded_strip_opens_at_a_press(shell: WizardShell) -> None:
     shell.set_strip_mode(StripMode.FOLDED)
     assert not shell.strip.isVisible()
-    assert shell.header.fold.text() == "6 sensors, all heard"
+    assert shell.header.fold.text() == "6 sensors, all connected"
     told = QAccessible.queryAccessibleInterface(shell.header.fold)
     assert (told.role(), bool(told.state().checked)) == (QAccessible.Role.CheckBox, False)
     QTest.mouseClick(shell.header.fold, Qt.MouseButton.LeftButton)
@@ -293,7 +293,7 @@ def test_a_banner_that_comes_while_recording_pushes_nothing(shell: WizardShell) 
 
 
 def test_the_toast_stands_above_the_bar_at_its_left(shell: WizardShell) -> None:
-    shell.toast.offer("Walk 2 discarded.")
+    shell.toast.offer("Walk 2 excluded.")
     settle()
     assert shell.toast.geometry().bottom() < shell.bar.mapTo(shell, QPoint(0, 0)).y()
     assert shell.toast.x() == shell.rail.width() + 24
@@ -356,7 +356,7 @@ def test_no_word_of_the_frame_is_cut(
     shell.strip.show_at_once(bad)
     for state in (stop_early(), recording(), reconnect()):
         shell.bar.show_state(state)
-        shell.toast.offer(tr("Walk 2 discarded."))
+        shell.toast.offer(tr("Walk 2 excluded."))
         assert words_cut(shell) == []
         assert shell.size().toTuple() == size
 

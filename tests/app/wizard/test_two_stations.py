@@ -297,7 +297,7 @@ def test_strides_left_out_at_both_stations_are_all_left_out(qtbot: QtBot, ours: 
     ours.recordings.change(walk, lambda told: replace(told, left_out_s={Side.LEFT: (7.0,)}))
     settle(qtbot, ours, other, lambda: other.walk.left_out_s == {Side.LEFT: (4.0, 7.0)})
     qtbot.waitUntil(lambda: bool(ear.heard), timeout=WAIT_MS)
-    assert "Strides left out, left: 2 strides: 4.0 s, 7.0 s" in ear.heard[0]
+    assert "Strides excluded, left: 2 strides: 4.0 s, 7.0 s" in ear.heard[0]
     choice = StrideChoice(ours.recordings, ours)
     choice.take_all_in("walk 1")
     settle(qtbot, ours, other, lambda: other.walk.left_out_s == {})

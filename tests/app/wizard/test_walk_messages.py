@@ -48,8 +48,8 @@ def test_angles_are_promised_for_when_they_come() -> None:
     [
         ((), ""),
         ((Lack("DOT 0003", lost=12),), "Samples of A Shoes could not be fetched: DOT 0003 12."),
-        ((Lack("DOT 0003", 12), Lack("DOT 0004", 0, 20.4)), "DOT 0004 ended 20 s before A Shoes was stopped."),
-        ((Lack("DOT 0003", is_end_known=False),), "DOT 0003 did not say where A Shoes ends."),
+        ((Lack("DOT 0003", 12), Lack("DOT 0004", 0, 20.4)), "DOT 0004 stopped 20 s before the end of A Shoes."),
+        ((Lack("DOT 0003", is_end_known=False),), "DOT 0003 did not report the end of A Shoes."),
     ],
 )
 def test_what_could_not_be_fetched_is_told_the_gravest_first(lacks: tuple[Lack, ...], said: str) -> None:
@@ -57,14 +57,14 @@ def test_what_could_not_be_fetched_is_told_the_gravest_first(lacks: tuple[Lack, 
 
 
 def test_sensors_without_one_clock_are_named_or_said_to_drift() -> None:
-    assert loose_message(["DOT 0003"])[0] == "Not on the common clock: DOT 0003."
+    assert loose_message(["DOT 0003"])[0] == "Not synchronised: DOT 0003."
     assert "half an hour ago" in loose_message([])[0]
 
 
 def test_only_what_is_short_of_a_spread_is_told() -> None:
     assert few_strides_message({Side.LEFT: 12}) == NOTHING
-    assert few_strides_message({Side.LEFT: 12, Side.RIGHT: 4})[0] == "Only 4 right strides, 10 make a spread."
-    assert few_strides_message({Side.LEFT: 9})[0] == "Only 9 left strides, 10 make a spread."
+    assert few_strides_message({Side.LEFT: 12, Side.RIGHT: 4})[0] == "Only 4 right strides; a standard deviation needs 10."
+    assert few_strides_message({Side.LEFT: 9})[0] == "Only 9 left strides; a standard deviation needs 10."
 
 
 def test_a_clock_shows_minutes_and_no_negative_time() -> None:

@@ -123,7 +123,7 @@ def test_what_was_recorded_meanwhile_is_home_once_it_is_back(
     with qtbot.waitSignal(controller.back, timeout=WAIT_MS) as said:
         elsewhere.rename(folder)
     assert said.args is not None
-    assert said.args[1] == "1 recording that was made meanwhile is in it now."
+    assert said.args[1] == "1 recording made meanwhile was added."
     assert [path.name for path in opened.recordings.iterdir()] == [f"{recording_id}.1.journal"]
 
 
@@ -238,7 +238,7 @@ def test_after_a_change_of_the_key_the_library_is_watched_as_before(
     with qtbot.waitSignal(controller.back, timeout=WAIT_MS) as said:
         elsewhere.rename(folder)
     assert said.args is not None
-    assert said.args[1] == "1 recording that was made meanwhile is in it now."
+    assert said.args[1] == "1 recording made meanwhile was added."
     (found,) = find_interrupted(opened_of(controller))
     assert (found.recording_id, found.problem) == (recording_id, "")
     assert found.belonging is not None

@@ -48,7 +48,7 @@ def test_one_that_says_too_little_of_its_rate_is_a_refusal_and_nobody_records(
     cut = wearing.dots[1]
     whole = cut.read
     monkeypatch.setattr(cut, "read", lambda which: whole(which)[:4] if which == 0x1002 else whole(which))
-    with pytest.raises(DotRefusedError, match="DOT 0002 is out of reach"):
+    with pytest.raises(DotRefusedError, match="DOT 0002 is out of range"):
         radio.run(record(wearing.group.sensors, UTC_S, 120))
     assert [dot.memory.files for dot in wearing.dots] == [[], []]
 

@@ -51,7 +51,7 @@ def test_a_stream_of_one_sensor_has_its_name(labels: tuple[str, ...]) -> None:
 
 @pytest.mark.parametrize("units", [[], ["", "", "", "g", "g", "g"], ["deg/s"] * 2 + ["rad/s"] + ["g"] * 3])
 def test_units_that_are_not_told_are_not_guessed(units: list[str]) -> None:
-    with pytest.raises(SourceRefusedError, match="does not tell its units"):
+    with pytest.raises(SourceRefusedError, match="gives no units"):
         sensors_of("s", PLAIN, units)
 
 

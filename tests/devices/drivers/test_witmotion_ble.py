@@ -180,7 +180,7 @@ def test_a_link_that_is_lost_is_found_again_and_the_gap_is_counted(radio: Virtua
         measure(1.0)
     source.close()
     radio.pass_s(2.0)
-    with pytest.raises(SourceRefusedError, match="does not answer"):
+    with pytest.raises(SourceRefusedError, match="does not respond"):
         source.open()
     wit.is_away = False
     source.open()

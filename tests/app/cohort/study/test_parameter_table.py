@@ -185,7 +185,7 @@ def test_what_is_no_table_of_a_batch_is_refused(tmp_path: Path) -> None:
     broken.write_bytes(b"PAR1 and no more")
     empty.mkdir()
     for place, said in (
-        (other, "there is no column side"),
+        (other, "column side is missing"),
         (broken, "this cannot be read as Parquet"),
         (empty, "parameters.parquet: this is not there"),
         (tmp_path / "nothing.parquet", "not found"),

@@ -73,7 +73,7 @@ def test_what_is_withheld_is_no_answer_but_the_caveat_beside_it(
         request_of_demonstration, recalibrated(shortened, [Joint.LEFT_KNEE], is_same_joint=False, sign_margin=1.05)
     )
     assert "knee moves" not in found.first
-    assert found.then.endswith("Withheld: left knee.")
+    assert found.then.endswith("Not reported: left knee.")
 
 
 def test_the_screen_and_the_report_say_the_same(request_of_demonstration: ReportRequest, analysis: Analysis) -> None:

@@ -119,7 +119,7 @@ def test_page_one_stays_one_page(
 
 def test_the_pages_stand_in_their_order(report: bytes) -> None:
     headings = (
-        "In short",
+        "Summary",
         "All curves and peaks",
         "Time, distance and strides",
         "Clinical comment",
@@ -168,14 +168,14 @@ def test_what_explains_the_peaks_takes_no_page_of_its_own(request_of_demonstrati
 def test_a_walk_is_called_as_on_the_screen(request_of_alignments: ReportRequest) -> None:
     assert "walk: C alignment C" in first_page(request_of_alignments)
     two = replace(request_of_alignments, walks=("walk 2", "walk 3"))
-    assert "Compared, C shown here: B alignment B · C alignment C" in first_page(two)
+    assert "Compared (C shown here): B alignment B · C alignment C" in first_page(two)
     visit = request_of_alignments.visit
     told = visit.session.recordings
     alike = tuple(replace(one, condition="shoes" if one.name.startswith("walk") else "") for one in told)
     same = AnalysedVisit(replace(visit.session, recordings=alike), visit.analysis)
     first = first_page(replace(two, visit=same))
     assert "walk: A3 shoes" in first
-    assert "Compared, A3 shown here: A2 shoes · A3 shoes" in first
+    assert "Compared (A3 shown here): A2 shoes · A3 shoes" in first
     unnamed = tuple(replace(one, condition="") for one in told)
     bare = AnalysedVisit(replace(visit.session, recordings=unnamed), visit.analysis)
     assert "walk: walk 3" in first_page(replace(two, visit=bare, walks=("walk 3",)))
@@ -186,8 +186,8 @@ def test_page_one_alone_says_what_was_measured_and_what_differs(
 ) -> None:
     first = first_page(request_of_alignments)
     assert "Knee and ankle of both legs · 6 motion sensors" in first
-    assert "Compared, C shown here: A alignment A · B alignment B · C alignment C" in first
-    assert "Speed A: 1.05, B: 1.16, C: 1.20 m/s: part of a difference can come from speed." in first
+    assert "Compared (C shown here): A alignment A · B alignment B · C alignment C" in first
+    assert "Speed A: 1.05, B: 1.16, C: 1.20 m/s: part of a difference may be due to speed." in first
     before = walked_under(request_of_one_leg.visit, request_of_alignments)
     with_one_leg_before = replace(request_of_alignments, earlier=before)
     first = first_page(with_one_leg_before)
@@ -284,6 +284,6 @@ def test_the_page_of_conditions_says_what_was_turned_and_against_which(request_o
     assert "Foot, front screw ½ turn out" in page
     assert "Pylon +3 mm" in page
     assert "Jonkergouw" in page
-    assert "C against B" in page
-    assert "C against A" in without
+    assert "C vs B" in page
+    assert "C vs A" in without
     assert not any(words in without for words in ("Jonkergouw", "turn out", "Changed from"))

@@ -71,7 +71,7 @@ def test_six_joints_are_counted_and_the_late_clock_is_told() -> None:
 
 def test_a_withheld_hip_is_told_once_with_what_to_do() -> None:
     found = data_quality(hip_facts(with_hip(hip_analysis(), Joint.LEFT_HIP, margin=1.2, is_3d=False)))
-    assert found.first == "5 of 6 joints can be read. Withheld: left hip."
+    assert found.first == "5 of 6 joints are reported. Not reported: left hip."
     (line,) = found.lines  # its abduction goes with it
     assert line.where == "Left hip"
     assert line.verdict is Verdict.WITHHELD
@@ -123,7 +123,7 @@ def test_the_gates_of_a_hip_stand_with_their_limits_and_what_failed_is_withheld(
     assert table["Adjacent segments, margin"][2] == "at least 1.5"
     assert table["ROM, shape"][:2] == ["withheld", "good"]
     assert table["Abduction"][:2] == ["withheld", "good"]
-    assert table["Pelvis–thigh heading, 1 SD"][2] == "at most 6°, of abduction alone"
+    assert table["Pelvis–thigh heading, 1 SD"][2] == "at most 6°, for abduction only"
 
 
 def test_no_difference_of_hips_is_judged_and_rotation_is_named_as_unreadable() -> None:

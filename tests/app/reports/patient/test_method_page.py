@@ -40,9 +40,9 @@ def test_the_page_of_the_method_says_how_it_was_measured(request_of_demonstratio
     for title, words in {
         "Sensors": "6 × MTi, firmware 4.2, set to 100 Hz, 100.0 Hz by their stamps, on thigh, shank and foot of both",
         "Calibration": "from the patient's own free movement, the ankle's axis from the walks too: no posture",
-        "Angles": "VQF (Laidig, Seel 2023) forward and back, without magnetometer, time constant 3 s, from rates of "
-        "instants. An angle is the turn of the lower segment against the upper one about the joint's own axis: one of "
-        "its three",
+        "Angles": ("VQF (Laidig, Seel 2023) forward and back, without magnetometer, time constant 3 s, from "
+"rates of instants. An angle is the turn of the lower segment vs the upper one about the "
+"joint's own axis: one of its three"),
         "Events and strides": "Contact and toe\u2011off: from the pitch of the feet, of feet that hardly roll",
         "Accuracy": "It has not been tested on patients",
         "Software": "Gaitwright 9.8.7, the robust method",

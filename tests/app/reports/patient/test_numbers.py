@@ -224,8 +224,8 @@ def test_words_against_a_band_state_the_size_of_a_distance_only() -> None:
     band = (8.0, 12.0)
     words = {value: against_band(value, band).replace("\u00a0", " ") for value in (10.0, 12.0, 13.9, 5.0, 7.9)}
     assert words == {
-        10.0: "inside 1 SD",
-        12.0: "inside 1 SD",
+        10.0: "within 1 SD",
+        12.0: "within 1 SD",
         13.9: "1–2 SD above",
         5.0: "more than 2 SD below",
         7.9: "1–2 SD below",

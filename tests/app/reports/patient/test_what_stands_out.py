@@ -110,7 +110,7 @@ def test_a_knee_that_moves_less_than_the_other_by_more_than_its_error(
     assert bool(told) is is_told
     if is_told:
         first, second = told[0].split(". ")
-        assert first == "The left knee moves 21.3° less over the stride than the right: 41.7° against 63.0°"
+        assert first == "The left knee moves 21.3° less over the stride than the right: 41.7° vs 63.0°"
         assert second.startswith("Measurement error between the legs: 9.")
     assert any(NO_DIFFERENCE in sentence for sentence in said(request_of_demonstration, analysis)) is not is_told
 
@@ -221,12 +221,12 @@ def test_a_curve_that_lies_ten_degrees_off_sends_to_the_zero_first(request_of_de
     told = said(request_of_demonstration, raised(analysis, Joint.RIGHT_ANKLE, 20.0))
     assert any(
         one.startswith("Right ankle: the whole curve lies +1")
-        and one.endswith("° from the band: look at the zero first.")
+        and one.endswith("° from the reference. Check the standing reference first")
         for one in told
     )
-    assert not any("the whole curve lies" in one for one in said(request_of_demonstration))
+    assert not any("the whole curve is" in one for one in said(request_of_demonstration))
     unset = recalibrated(raised(analysis, Joint.RIGHT_ANKLE, 20.0), zero=ZeroKind.NONE)
-    assert not any("the whole curve lies" in one for one in said(request_of_demonstration, unset))
+    assert not any("the whole curve is" in one for one in said(request_of_demonstration, unset))
 
 
 @pytest.mark.parametrize(("more_deg", "is_told"), [(-4.0, False), (-14.0, True)])

@@ -87,7 +87,7 @@ def test_a_bucket_that_does_not_answer_is_said_not_to(monkeypatch: pytest.Monkey
     monkeypatch.setenv("AWS_ENDPOINT_URL", "http://127.0.0.1:9")
     monkeypatch.setenv("AWS_ACCESS_KEY_ID", "testing")
     monkeypatch.setenv("AWS_SECRET_ACCESS_KEY", "testing")
-    with pytest.raises(LibraryError, match="does not answer"):
+    with pytest.raises(LibraryError, match="does not respond"):
         JournalStore("s3://bucket").put(journal)
 
 

@@ -307,7 +307,7 @@ def test_the_servers_own_trouble_in_tls_is_not_said_to_be_a_false_name() -> None
     said = psycopg.OperationalError("consuming input failed: SSL error: unexpected eof while reading")
     cause = OperationalError("", {}, said, connection_invalidated=True)
     database = Database(postgres_engine("postgresql+psycopg://nobody@/nowhere"))
-    with pytest.raises(LibraryFaultError, match="does not answer"), database.reading():
+    with pytest.raises(LibraryFaultError, match="does not respond"), database.reading():
         raise cause
 
 

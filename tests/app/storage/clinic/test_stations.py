@@ -254,7 +254,7 @@ def test_without_the_server_a_station_knows_its_operators_and_changes_nothing(
     slots = slots_of(second.folder)
     assert slots.codes == ("hk", "ab")
     assert slots.open("hk", PASSPHRASE) == second.data_key
-    with pytest.raises(LibraryError, match="server does not answer"):
+    with pytest.raises(LibraryError, match="server does not respond"):
         slots.set_passphrase(second.data_key, "hk", "other words for then")
     monkeypatch.delenv(DATABASE_VARIABLE)
     assert slots_of(first.folder).open("hk", PASSPHRASE) == first.data_key

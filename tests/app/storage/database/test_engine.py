@@ -208,7 +208,7 @@ def test_errors_do_not_quote_what_was_to_be_written(tables: Database, caplog: py
 
 def test_a_server_that_does_not_answer_is_said_not_to(tmp_path: Path) -> None:
     nowhere = Database(postgres_engine(f"postgresql+psycopg://gaitwright@/gaitwright?host={tmp_path}"))
-    with pytest.raises(LibraryError, match="server does not answer"):
+    with pytest.raises(LibraryError, match="server does not respond"):
         names(nowhere)
     nowhere.close()
 

@@ -205,12 +205,12 @@ def test_leaving_before_its_end_keeps_what_has_moved_unless_another_is_in_force(
     ticks(qtbot, step, lambda: knows(step))
     with qtbot.waitSignal(step.told, timeout=PATIENCE_MS) as told:
         step.leave()
-    assert told.args[0].startswith("Free motion was left before its end and is kept: ")
+    assert told.args[0].startswith("Free motion was left early and is used")
     kept, note = visit.recordings.free_motion, step.note
     assert kept is not None
     assert kept.read_back is not None
     assert len(kept.read_back.imu) == len(LEG_SITES)
-    assert note.startswith("enough motion for ")
+    assert note.startswith("enough movement for")
     assert note.endswith("of 2 ankle centres")
     assert told.args[0] == f"Free motion was left before its end and is kept: {note}."
     step.enter()
@@ -244,7 +244,7 @@ def test_a_knee_that_is_no_hinge_is_not_counted_as_enough_but_named(
     tell(step, worn, FreeMotionState(closed | {Joint.LEFT_KNEE: loose}))
     with qtbot.waitSignal(step.done, timeout=PATIENCE_MS):  # more motion would not make it one
         ticks(qtbot, step, lambda: GaugeState.LOOSE in states(step.page))
-        assert step.page.band.hint.sentence == "Left knee: no hinge"
+        assert step.page.band.hint.sentence == "Left knee: not a hinge"
     assert step.note == "enough motion for 1 of 2 knees, 2 of 2 ankle centres; left knee: no hinge"
     assert step.state is StepState.ATTENTION
     assert Sound.READY not in heard

@@ -146,7 +146,7 @@ def test_a_walk_is_left_out_comes_back_and_changes_its_condition(qtbot: QtBot, v
         qtbot.waitSignal(visit.evaluation.done, timeout=30_000),
     ):
         row.kept.click()
-    assert offered.args == ["Walk 1 is left out."]
+    assert offered.args == ["Walk 1 is excluded."]
     assert visit.evaluation.analysis is not None
     assert not any(recording.gait for recording in visit.evaluation.analysis.recordings)
     with qtbot.waitSignal(visit.evaluation.done, timeout=30_000):
@@ -161,7 +161,7 @@ def test_a_walk_is_left_out_comes_back_and_changes_its_condition(qtbot: QtBot, v
     for is_kept in (False, True):
         with qtbot.waitSignal(visit.evaluation.done, timeout=30_000):
             step.page.correct().kept_turned.emit(key, is_kept)
-    assert said == ["A AFO is left out.", "A AFO counts."]
+    assert said == ["A AFO is excluded.", "A AFO is included."]
     assert step.page.results().recordings.currentText() == "A AFO"
     assert [recording.details.condition for recording in visit.recordings.walks] == ["AFO"]
     step.page.correct().closed.emit()
@@ -188,7 +188,7 @@ def test_the_last_visit_is_read_from_the_library_to_stand_beside_the_walk(
         results.beside.setCurrentIndex(results.beside.findData(Beside.LAST_VISIT))
         assert results.cycles.charts.knee.beside.text() == "Reading earlier visits."  # nobody waits for it
     assert results.cycles.charts.knee.beside.text() == "Thin: 2026-09-01."
-    assert results.answer.text.startswith("No change from 2026-09-01 is larger than its error.")
+    assert results.answer.text.startswith("All judged changes from 2026-09-01 are within measurement error.")
     assert results.cycles.charts.knee.chart.described.beside
 
 

@@ -114,10 +114,10 @@ def test_everything_of_the_memories_has_its_room(look: ThemeNotifier, qtbot: QtB
     qtbot.addWidget(form)
     form.resize(*size)
     form.show_lines(HELD)
-    form.tell("1 recording is not kept in this library, and would be lost.", "Press once more to erase.")
+    form.tell("1 recording is not saved in this library and would be lost.", "Press once more to erase.")
     form.show()
     assert words_cut(form) == []
-    assert form.title == "2 recordings are in the sensors' memories"
+    assert form.title == "2 recordings in the sensor memory"
     assert form.chosen_number == 1, "the first that can be fetched"
 
 

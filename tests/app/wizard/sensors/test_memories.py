@@ -173,7 +173,7 @@ def test_what_is_not_of_this_library_is_not_fetched_and_is_named_before_it_is_lo
     assert bar.primary is not None
     assert bar.primary.text == "Back to the sensors"
     opened.on_other(0)
-    assert "1 recording is not kept in this library, and would be lost." in opened.page.memories.notice.text
+    assert "1 recording is not saved in this library and would be lost." in opened.page.memories.notice.text
     assert [other.text for other in opened.bar().others] == ["Erase now, losing unsaved data"]
     assert [len(dot.memory.files) for dot in radio.dots] == [1, 1]
     opened.on_other(0)

@@ -83,7 +83,7 @@ def test_a_session_of_the_library_is_chosen_by_code_and_date(
     assert (line.code, line.when, line.sessions) == ("P-7", "24 Oct 2026", "3 recordings")  # type: ignore[union-attr]  # lines of patients only
     bar = step.bar()
     assert bar.primary is not None
-    assert (bar.primary.text, bar.primary.is_enabled) == ("Replay it", True)
+    assert (bar.primary.text, bar.primary.is_enabled) == ("Replay", True)
     with qtbot.waitSignal(visit.sensors.opened, timeout=10_000):
         step.on_primary()
     assert visit.sensors.site_of == {f"S-{site}": site for site in LEG_SITES}

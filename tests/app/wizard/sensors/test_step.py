@@ -115,7 +115,7 @@ def test_a_silent_sensor_is_asked_for_again_and_keeps_its_place(
     bar = step.bar()
     assert bar.primary is not None
     assert bar.primary.text == "Reconnect R foot"
-    assert [verb.text for verb in bar.others] == ["Go on without right ankle"]
+    assert [verb.text for verb in bar.others] == ["Continue without right ankle"]
     assert "R foot has been silent" in step.page.notice.text
     source.wake(foot)
     with qtbot.waitSignal(visit.sensors.opened, timeout=10_000):
@@ -232,7 +232,8 @@ def test_simulated_sensors_are_refused_at_once_on_a_patient_of_the_clinic(
 ) -> None:
     visit = simulated_on_a_patient
     bar = step.bar()
-    assert bar.note == "These sensors are simulated, and DEMO-7 is no demonstration patient: nothing would be recorded."
+    assert bar.note == ("These sensors are simulated and DEMO-7 is not a demonstration patient. Nothing would be "
+"recorded.")
     assert bar.primary is not None
     assert (bar.primary.text, bar.others[0].text) == ("Choose other sensors", "Start with a demonstration patient")
     assert (step.state, step.note) == (StepState.ATTENTION, "not for this patient")

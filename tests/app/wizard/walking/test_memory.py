@@ -122,7 +122,7 @@ def test_a_walk_may_be_fetched_later_and_a_lost_sensor_is_named_and_tried_again(
     step = walking(120)
     make_ready(qtbot, visit, step)
     walk_out_of_reach(qtbot, visit, radio, step)
-    assert step.page.memory.shown.what == "DOT 0002 is out of reach."
+    assert step.page.memory.shown.what == "DOT 0002 is out of range."
     assert texts(step.bar())[:1] == ("Fetch again",)
     step.on_other(0)
     assert texts(step.bar()) == ("Start walk", ["Fetch 1 walk", "Patient screen"])

@@ -209,7 +209,7 @@ def test_a_walk_is_discarded_and_comes_back(
     walk(qtbot, step, visit, patient_time, 4.0)
     with qtbot.waitSignal(step.offered) as offered:
         step.on_intent(Intent(KeyAction.DISCARD))
-    assert offered.args == ["A Alignment A discarded."]
+    assert offered.args == ["A Alignment A excluded."]
     qtbot.waitUntil(lambda: not visit.recordings.walks[0].details.is_kept)
     assert states(step) == [("", "Alignment A", WalkState.DISCARDED)]
     step.undo()

@@ -120,5 +120,5 @@ def test_a_timed_test_that_the_next_walk_is_stands_on_the_bar(
     assert "10-metre" not in words()[0]
     timed.planned = PlannedTest(TimedProtocol.TEN_METRES)
     label = "Alignment C" if is_bench else "Alignment D"
-    start = "Keep, start 10-metre walk" if is_asked and not is_bench else "Start 10-metre walk"
+    start = "Include, start 10-metre walk" if is_asked and not is_bench else "Start 10-metre walk"
     assert words() == (start, f"Next: test, {label}")
