@@ -83,7 +83,7 @@ def xdf(case: Case, thigh: str = "thigh", shank: str = "shank") -> Outcome:
 def xdf_stamps_step_back(case: Case) -> None:
     outcome = xdf(case)
     assert outcome.code == 2
-    assert "thigh, sample 801: \"time\" goes back from 7.99 to 7.5" in outcome.text
+    assert 'thigh, sample 801: "time" goes back from 7.99 to 7.5' in outcome.text
     assert not case.out.exists()
 
 

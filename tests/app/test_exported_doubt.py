@@ -89,7 +89,7 @@ CASES = {
     "no standing reference": Case(
         WalkerSettings(seed=4, recordings=(WALKED,)),
         {"* swing peak": WITHHELD, "* dorsiflexion": WITHHELD, "* curve": SHAPE},
-        "No zero was set",
+        "There is no standing reference, so absolute angles are not reported",
     ),
     "sign unknown": Case(
         WalkerSettings(seed=4, recordings=(STOOD, STIFF), stiff_knee_side=Side.LEFT),
@@ -106,7 +106,7 @@ CASES = {
     "two clocks": Case(
         WalkerSettings(seed=4, recordings=(STOOD, WALKED), clock_late_s=LATE),
         {"* step time": WITHHELD},
-        "the legs' clocks differ",
+        "Left and right sensors are not synchronised: the left step takes",
     ),
     "two strides": Case(  # of the right leg; the left made three
         WalkerSettings(seed=4, recordings=(STOOD, replace(WALKED, strides=4))),
@@ -315,7 +315,12 @@ def in_mot(out: Path) -> dict[str, str]:
     Where none is left there is no file, and the export says why.
     """
     if not (out / "walk_1" / "angles.mot").exists():
-        return dict.fromkeys(CURVES, SHAPE if "No zero was set" in words_of_mot(out) else WITHHELD)
+        return dict.fromkeys(
+            CURVES,
+            SHAPE
+            if "There is no standing reference, so absolute angles are not reported" in words_of_mot(out)
+            else WITHHELD,
+        )
     head, body = (out / "walk_1" / "angles.mot").read_text(encoding="ascii").split("endheader\n")
     names = body.splitlines()[0].split("\t")
     comments = dict(line.split(" is ", 1) for line in head.splitlines() if line.split(" is ")[0] in MOT)

@@ -181,7 +181,7 @@ def test_a_recovery_key_that_was_never_typed_back_is_asked_for_until_it_is(
         log_in.passphrase.set_text(PASSPHRASE)
         QTest.keyClick(log_in.passphrase.line_edit, Qt.Key.Key_Return)
         qtbot.waitUntil(page.later.isVisible, timeout=WAIT_MS)
-        assert "nobody has typed it back" in words_in_sight(window)
+        assert "It is the only way to open the library if the passphrase is forgotten" in words_in_sight(window)
         assert key not in words_in_sight(window)
         if put_off:
             page.later.click()
@@ -408,7 +408,9 @@ def test_the_wait_after_wrong_passphrases_outlives_the_program(qtbot: QtBot, ope
     delay = LoginDelay(folder, time.monotonic)
     for _ in range(6):
         with suppress(KeyRefusedError), delay.trying("hk"):
-            raise KeyRefusedError("This passphrase does not open the library", "Type it again")
+            raise KeyRefusedError(
+                "This passphrase does not open the library", "Enter it again, or use the recovery key"
+            )
     window = open_window(folder)
     assert window.entry is not None
     page = window.entry.log_in
@@ -438,7 +440,7 @@ def test_five_minutes_without_anybody_cover_the_library(qtbot: QtBot, open_windo
     window.lock()
     assert window.is_covered
     assert SECRET_CODE not in words_in_sight(window)
-    assert "nobody worked here for five minutes" in words_in_sight(window)
+    assert "Locked after five minutes without activity" in words_in_sight(window)
     for key in (Qt.Key.Key_O, Qt.Key.Key_D):
         QTest.keyClick(window, key, Qt.KeyboardModifier.ControlModifier)
     assert window.is_covered
@@ -817,7 +819,7 @@ def test_where_the_environment_names_no_server_that_answers_it_is_said_and_tried
     assert window.entry is not None
     page = window.entry.join
     qtbot.waitUntil(page.isVisible, timeout=WAIT_MS)
-    assert "no address of a PostgreSQL server" in page.lead.text()
+    assert "This is not the address of a PostgreSQL server" in page.lead.text()
     page.again.click()
     assert window.entry.waiting.isVisible()
     qtbot.waitUntil(page.isVisible, timeout=WAIT_MS)

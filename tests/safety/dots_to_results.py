@@ -62,7 +62,10 @@ class DotWindowSession(WindowSession):
         for letter in code:
             self.press(Qt.Key(ord(letter)))
         self.press(Qt.Key.Key_Return)
-        self.wait(lambda: self.wizard.step_number == 1 and self.visit.session is not None, "sensors' step")
+        self.wait(
+            lambda: self.wizard.step_number == 1 and self.visit.session is not None,
+            "Return them to live on the Sensors step first",
+        )
         sensors, step = self.visit.sensors, self.wizard.steps[1]
         assert isinstance(step, SensorsStep)
         sensors.search(next(source for source in self.visit.choices if source.key == SEARCH))

@@ -193,7 +193,10 @@ class WindowSession:
         for letter in code:
             self.press(Qt.Key(ord(letter)))
         self.press(Qt.Key.Key_Return)
-        self.wait(lambda: self.wizard.step_number == 1 and self.visit.session is not None, "sensors' step")
+        self.wait(
+            lambda: self.wizard.step_number == 1 and self.visit.session is not None,
+            "Return them to live on the Sensors step first",
+        )
         sources = self.visit.choices
         assert not any(source.is_simulated for source in sources), "they would not be kept of this patient"
         if kind == "csv":

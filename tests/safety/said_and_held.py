@@ -238,7 +238,7 @@ def _of_results(wizard: "Wizard", visit: "Visit", held: HeldLibrary) -> Iterator
     if frame is None or visit.session is None or visit.evaluation.is_busy:
         return
     walks = held.ask(WALKS, visit.session.id.hex)
-    if frame.currentWidget() is frame.sentence and "No walk is kept" in frame.sentence._what.text():
+    if frame.currentWidget() is frame.sentence and "No walk is included yet" in frame.sentence._what.text():
         if any(row[2] for row in walks):
             yield f"the results say that no walk is kept, held are {[row[0] for row in walks if row[2]]}"
         return

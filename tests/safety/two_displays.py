@@ -149,7 +149,9 @@ def _set_up(one: StationOnScreen, two: StationOnScreen, server: Server, place: P
             ),
         ),
         Stop("12-to-be-moved", says("Several workstations"), ("press space",)),
-        Stop("13-moved", says("compared row by row"), ("press Escape",), patience_s=PATIENCE_S),
+        Stop(
+            "13-moved", says("are on the clinic's server, checked row by row"), ("press Escape",), patience_s=PATIENCE_S
+        ),
         Stop("14-home", offers("New patient")),
     )
     two.lead(
@@ -157,11 +159,18 @@ def _set_up(one: StationOnScreen, two: StationOnScreen, server: Server, place: P
         Stop("11-wrong", at("JoinPage"), ("type nowhere", "press Return")),
         Stop(
             "12-refused",
-            lambda seen: any("no address" in name for name in (*seen.words, *seen.controls)),
+            lambda seen: any(
+                "This is not the address of a PostgreSQL server" in name for name in (*seen.words, *seen.controls)
+            ),
             ("press ctrl+a", f"type {server.address}"),
         ),
         Stop("13-typed", at("JoinPage"), ("press Return",)),
-        Stop("13a-place", says("The server names this storage"), ("press Return",), patience_s=PATIENCE_S),
+        Stop(
+            "13a-place",
+            says("The server gives this storage for the recordings"),
+            ("press Return",),
+            patience_s=PATIENCE_S,
+        ),
         Stop("14-log-in", says("The clinic's library on"), (f"type {PASSPHRASE}", "press Return")),
         Stop("15-home", offers("New patient"), patience_s=PATIENCE_S),
     )
@@ -228,7 +237,7 @@ def _lose_the_server(one: StationOnScreen, two: StationOnScreen, server: Server,
         Stop("52-patient", at_step("PatientStep"), ("click Put on sensors",)),
         Stop("53-source", at_step("SensorsStep"), ("press Return",), lingers_s=1.0),
         Stop("53b-sensors", offers("Detect from movement"), placed, lingers_s=5.0),
-        Stop("53c-placed", says("All six are worn"), ("press Return",), lingers_s=1.0),
+        Stop("53c-placed", says("All six are assigned and connected"), ("press Return",), lingers_s=1.0),
         Stop("54-stand-still", at_step("StandStillStep"), ("press space",), lingers_s=1.0),
         Stop("55-standing", is_recording, lingers_s=1.0),
         Stop("56-free-motion", lambda seen: at_step("FreeMotionStep")(seen) and seen.is_recording, lingers_s=7.0),

@@ -202,7 +202,7 @@ def test_without_a_screen_the_window_says_so(
     for name in ("DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM"):
         monkeypatch.delenv(name, raising=False)
     assert main([]) == 2
-    assert "no screen" in refusal(capsys)
+    assert "rrd from the results on a computer that has one" in refusal(capsys)
 
 
 def test_on_a_terminal_progress_is_one_line_that_renews_itself(

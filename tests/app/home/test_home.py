@@ -483,7 +483,9 @@ def test_an_older_state_of_the_library_is_said_and_an_administrator_may_accept_i
     assert said.startswith("This library is older than when this computer saw it last. What was done from entry 5 to 9")
     button = home.notices.rollback.findChildren(Button)[0]
     assert button.isVisible() is (role is Role.ADMINISTRATOR)
-    assert ("Tell an administrator" in said) is (role is Role.CLINICIAN)
+    assert ("Inform an administrator, who can check this and accept it if a backup was restored" in said) is (
+        role is Role.CLINICIAN
+    )
     if role is Role.ADMINISTRATOR:
         button.click()
         qtbot.waitUntil(lambda: not home.notices.rollback.isVisible(), timeout=WAIT_MS)
@@ -497,9 +499,17 @@ def test_what_became_of_work_without_the_server_is_said_and_of_other_libraries_n
     home.show_library(state)
     assert not away.isVisible()
     for changed, begins, ends in (
-        ({"is_away": True}, "You are working offline, without the clinic's server.", "known again by their codes."),
+        (
+            {"is_away": True},
+            "You are working offline, without the clinic's server.",
+            "They move to the server at the first login after it responds again",
+        ),
         ({"brought_from_away": 1}, "1 session that was made without", "on it now."),
-        ({"still_away": Refusal("It is full.", "Ask.")}, "Sessions that were made without", "It is full. Ask."),
+        (
+            {"still_away": Refusal("It is full.", "Ask.")},
+            "Offline sessions are still on this computer only",
+            "It is full. Ask.",
+        ),
     ):
         home.show_library(replace(state, **changed))
         assert away.isVisible()
@@ -534,7 +544,9 @@ def test_an_operator_is_removed_with_a_change_of_the_key_and_comes_back_with_a_n
     qtbot.waitUntil(lambda: page.operators.rows.count() == 2, timeout=WAIT_MS)
     shutil.copy(folder / KEYS, folder.parent / "old.json")
     row()[0].click()
-    assert "Backups that were made before keep their old key" in page.operators.leaving_words.text()
+    assert (
+        "Earlier backups keep their old key: anyone who has one can still read it with the old passphrase"
+    ) in page.operators.leaving_words.text()
     page.operators.keep.click()
     assert not page.operators.remove.isVisible()
     row()[0].click()

@@ -68,9 +68,11 @@ def test_space_plays_and_stops_and_out_of_sight_nothing_plays(qtbot: QtBot, legs
 def test_clocks_that_do_not_agree_are_said_and_no_legs_say_why(legs: MovingLegs) -> None:
     assert "clocks" not in legs.note.text()
     legs.show_legs(MeanLegs({side: leg() for side in Side}, Side.LEFT))
-    assert "The clocks of both legs are not known to agree" in legs.note.text()
+    assert "Left and right sensors are not synchronised: legs are drawn half a gait cycle apart" in legs.note.text()
     legs.show_legs(None)
-    assert legs.note.text().startswith("Legs are drawn where a thigh was heard")
+    assert legs.note.text().startswith(
+        "Legs are drawn where a thigh sensor was received and a knee has an absolute angle"
+    )
     assert legs.places == {}
     legs.turn()
     assert not legs.is_playing

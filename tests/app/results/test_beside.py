@@ -245,9 +245,7 @@ def test_the_sentence_is_of_what_stands_beside_and_never_of_the_legs(page: Resul
     of_legs = page.answer.text
     choose(page, "walk 2")
     assert page.answer.text.startswith("Walking speed: 0.39\N{NO-BREAK SPACE}m/s more than B AFO, ")
-    assert (
-        "Beyond measurement error (±0.08\N{NO-BREAK SPACE}m/s†)." in page.answer.text
-    )  # of two walks, unverified
+    assert "Beyond measurement error (±0.08\N{NO-BREAK SPACE}m/s†)." in page.answer.text  # of two walks, unverified
     assert of_legs not in page.answer.text
     show(page, "walk 2")
     choose(page, "walk 1")

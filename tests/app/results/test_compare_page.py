@@ -439,7 +439,7 @@ def test_visits_without_a_common_condition_are_not_compared_and_that_is_said(
     compare.show_visits(visits_by_condition(visits), conditions_in_words(visits))
     assert compare.nothing.text() == (
         "This visit shares no condition with an earlier visit, so they are not compared. May: A, no "
-"condition stated. July: B. “Any visits and conditions” compares any two you choose."
+        "condition stated. July: B. “Any visits and conditions” compares any two you choose."
     )
     assert not compare.card.plot.isVisible()
     assert compare.kinds.itemText(compare.kinds.currentIndex()) == "Visits"
@@ -543,7 +543,7 @@ def test_an_error_that_could_not_be_verified_bears_a_dagger_in_the_table(
     shown(page, analysis, session, Contrast.SIDES)
     rows = {name: cells for _, name, *cells in table_words(page)}
     assert rows["Ankle range of motion"][2].endswith(" \N{DAGGER}")
-    assert "\N{DAGGER} rests on a figure" in page.compare.error.text()
+    assert "† based on a figure whose source could not be verified" in page.compare.error.text()
     assert "The ankle uses the knee's error figure." in page.compare.error.text()
     assert "sensor attachment" in page.compare.error.text()
     shown(page, analysis, session, Contrast.CONDITIONS)

@@ -343,7 +343,7 @@ def test_the_answer_stands_over_the_mean_cycle_and_nothing_scrolls_for_it(page: 
     show(page, changed(analysis, gait={}))
     page.view.choose(WHOLE)
     assert page.answer.isVisible()
-    assert page.answer.text.startswith("Nothing can be read of this walk")
+    assert page.answer.text.startswith("No results for this walk: no stride was found from a foot or shank sensor")
 
 
 @pytest.mark.parametrize("room", [(1064.0, 672.0), (1150.0, 640.0)])  # of windows of 1280 x 800 and 1366 x 768

@@ -156,7 +156,7 @@ def test_changing_a_patient_keeps_what_it_was_and_who_did_it(
     assert library.patients.get(patient.id).details == FULL
     again, first = library.corrections.of_patient(patient.id)
     assert (again.undoes, again.is_undone, first.is_undone) == (correction.id, False, True)
-    with pytest.raises(LibraryError, match="undone already"):
+    with pytest.raises(LibraryError, match="This correction was already undone"):
         library.corrections.undo(correction.id)
     library.corrections.undo(again.id)
     assert library.patients.get(patient.id).details == changed.details
@@ -242,9 +242,9 @@ def test_a_session_needs_a_patient_who_is_there(library: Library, patient: Store
     ],
 )
 def test_a_zero_or_sign_out_of_range_is_refused(library: Library, visit: StoredSession, told: Session) -> None:
-    with pytest.raises(LibraryError, match="value of a joint"):
+    with pytest.raises(LibraryError, match="The joint value must be"):
         library.sessions.create(visit.patient_id, told)
-    with pytest.raises(LibraryError, match="value of a joint"):
+    with pytest.raises(LibraryError, match="The joint value must be"):
         library.sessions.change(visit, told)
 
 
@@ -313,9 +313,9 @@ def test_a_recording_goes_from_open_to_closed_with_the_hash_of_each_journal(
     for journal in journals:
         library.recordings.add_journal(own, journal)
     assert [recording.id for recording in library.recordings.still_open()] == [own]
-    with pytest.raises(LibraryError, match="other files"):
+    with pytest.raises(LibraryError, match="The files of the recording do not match the library"):
         library.recordings.close(own, RecordingState.CLOSED, {0: "a"})
-    with pytest.raises(LibraryError, match="segment already"):
+    with pytest.raises(LibraryError, match="The recording already has this part"):
         library.recordings.add_journal(own, journals[0])
     closed = library.recordings.close(own, RecordingState.RECOVERED, {0: "a", 1: "b"})
     assert closed.state is RecordingState.RECOVERED

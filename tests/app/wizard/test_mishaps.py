@@ -170,7 +170,7 @@ def test_what_is_said_of_a_late_disk_follows_its_counters(
     assert "No data lost so far" in said()
     assert "Saved" not in recording.note
     monkeypatch.setattr(acquisition, "lost", lambda: {"DEMO-left_foot": 400})
-    assert "Nothing is lost" not in said()
+    assert "No data lost so far" not in said()
     now[0] = replace(fine, stuck_s=3.0, dropped_records=5)
     assert "5 packets of samples were dropped so far" in said()
     now[0] = fine

@@ -40,7 +40,7 @@ def test_strides_that_are_not_counted_live_are_told(worn: frozenset[Site], said:
 
 def test_angles_are_promised_for_when_they_come() -> None:
     assert "five strides" in no_angles_message(ALL)[1]
-    assert "once the walk is stopped" in no_angles_message(ALL - FEET)[1]
+    assert "They appear when the walk has been stopped" in no_angles_message(ALL - FEET)[1]
 
 
 @pytest.mark.parametrize(
@@ -63,7 +63,9 @@ def test_sensors_without_one_clock_are_named_or_said_to_drift() -> None:
 
 def test_only_what_is_short_of_a_spread_is_told() -> None:
     assert few_strides_message({Side.LEFT: 12}) == NOTHING
-    assert few_strides_message({Side.LEFT: 12, Side.RIGHT: 4})[0] == "Only 4 right strides; a standard deviation needs 10."
+    assert (
+        few_strides_message({Side.LEFT: 12, Side.RIGHT: 4})[0] == "Only 4 right strides; a standard deviation needs 10."
+    )
     assert few_strides_message({Side.LEFT: 9})[0] == "Only 9 left strides; a standard deviation needs 10."
 
 

@@ -176,7 +176,7 @@ CASES: list[tuple[RecordingAnalysis, dict[str, Any], str]] = [
     (
         clocks(tie=ClockTie.UNKNOWN, residual_s=float("nan")),
         {},
-        "Nothing ties the clocks of both legs together, so nothing",
+        "Left and right sensors are not synchronised",
     ),
     (clocks(residual_s=0.010), {}, f"The clocks of both legs may be 10.0 ms apart (5.0 ms at most). {ONE}"),
     (clocks(lag_s=0.030), {}, f"The clocks of both legs may be 30.0 ms apart (5.0 ms at most). {ONE}"),

@@ -61,7 +61,7 @@ def test_what_is_missing_is_said_with_its_reason_and_nothing_else_is() -> None:
 def test_the_tape_is_compared_where_a_key_told_where_it_is(own_m: float, is_allowed: bool) -> None:
     keyed = replace(TEN, is_end_by_key=True, sensor_distance_m=own_m)
     assert f"{own_m:.2f} m, {own_m - 10.0:+.2f} m from the tape's 10.00 m" in tape_sentence(keyed)
-    assert ("more than the 3 % that is allowed" in tape_sentence(keyed)) is not is_allowed
+    assert ("Check the position of the tape" in tape_sentence(keyed)) is not is_allowed
     assert tape_sentence(replace(keyed, is_end_by_key=False)) == ""
     assert tape_sentence(replace(keyed, sensor_distance_m=math.nan)) == ""
     assert tape_sentence(replace(TWO, is_end_by_key=True)) == ""  # no tape is its end
@@ -82,16 +82,14 @@ def test_strides_on_stairs_are_told_apart_where_there_are_some() -> None:
     assert stairs_sentence(TEN) == ""
     strides = tuple(StairStride(Side.LEFT, 0.0, 1.5, climb_m) for climb_m in (0.3, 0.3, -0.3))
     told = stairs_sentence(replace(TEN, protocol=TimedProtocol.STAIRS, stairs=strides))
-    assert told == ("Stair strides, excluded from walking means: strides up: 2, 1.50 s each; strides down: 1, "
-"1.50 s each.")
+    assert told == (
+        "Stair strides, excluded from walking means: strides up: 2, 1.50 s each; strides down: 1, 1.50 s each."
+    )
 
 
 def test_an_error_that_was_not_verified_has_a_dagger() -> None:
     assert error_words(KnownError("time_s", 0.0, 0.2, paper="us", is_verified=True)) == "Time: up to 0.2 s, us."
-    assert (
-        error_words(KnownError("distance_m", 16.0, 39.0, paper="a paper"))
-        == "Distance error: 16–39 m†, a paper."
-    )
+    assert error_words(KnownError("distance_m", 16.0, 39.0, paper="a paper")) == "Distance error: 16–39 m†, a paper."
     every = [error_words(one) for known in DEFINITIONS.values() for one in known.errors]
     assert all(every)
 

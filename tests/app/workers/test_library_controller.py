@@ -319,7 +319,7 @@ def test_a_library_that_another_program_holds_is_not_opened(
     with held_alone(folder), qtbot.waitSignal(controller.not_opened, timeout=WAIT_MS) as told:
         controller.open(folder, PASSPHRASE, "hk")
     assert told.args is not None
-    assert "open with this library already" in told.args[0]
+    assert "This library is already open in Gaitwright" in told.args[0]
     opened(qtbot, controller, folder)
 
 
@@ -554,7 +554,7 @@ def test_what_is_no_address_is_refused_and_leaves_nothing(
     (joined,) = asker.results
     assert isinstance(joined, Joined)
     assert joined.refusal is not None
-    assert "no address" in joined.refusal.what
+    assert "This is not the address of a PostgreSQL server" in joined.refusal.what
     assert not (tmp_path / "station").exists()
 
 
@@ -565,7 +565,7 @@ def test_a_move_that_is_refused_leaves_the_library_open(
     asker = Asker()
     controller.move_to_server("nowhere", "", str(folder), asker.on_done, asker.on_failed, asker.on_progressed, asker)
     qtbot.waitUntil(lambda: bool(asker.refusals), timeout=WAIT_MS)
-    assert "no address" in asker.refusals[0][0]
+    assert "This is not the address of a PostgreSQL server" in asker.refusals[0][0]
     assert controller.state is not None
     assert controller.state.library is state.library
     controller.run(lambda library: library.library.patients.search(), asker.on_done, asker.on_failed, asker)
@@ -578,7 +578,7 @@ def test_a_library_in_a_folder_is_not_brought_back(qtbot: QtBot, controller: Lib
     asker = Asker()
     controller.bring_back(asker.on_done, asker.on_failed, asker.on_progressed, asker)
     qtbot.waitUntil(lambda: bool(asker.refusals), timeout=WAIT_MS)
-    assert "in a folder already" in asker.refusals[0][0]
+    assert "This library is already in a folder" in asker.refusals[0][0]
     assert controller.state is not None
 
 

@@ -229,7 +229,7 @@ def test_after_a_change_of_the_key_the_library_is_watched_as_before(
     assert opened_of(controller) is not before
     qtbot.wait(1200)
     assert gone.count() == 0
-    with pytest.raises(LibraryError, match="open with this library already"), held_alone(folder):
+    with pytest.raises(LibraryError, match="This library is already open in Gaitwright"), held_alone(folder):
         pass
     elsewhere = folder.with_name("renamed")
     with qtbot.waitSignal(controller.gone, timeout=WAIT_MS):
@@ -278,7 +278,7 @@ def test_the_key_is_not_changed_while_what_was_recorded_waits_and_nobody_is_remo
     controller.change_key("ab", asker.on_done, asker.on_failed, asker.on_progressed, asker)
     qtbot.waitUntil(lambda: asker.has_heard, timeout=WAIT_MS)
     ((what, remedy),) = asker.refusals
-    assert what.startswith("What was recorded while the library was gone is not in it yet")
+    assert what.startswith("Recordings made while the library was unavailable are not in it yet")
     assert str(opened.shelter.folder) in remedy
     assert [one.is_active for one in opened_of(controller).library.operators.list()] == [True, True]
     with qtbot.waitSignal(controller.gone, timeout=WAIT_MS):  # it is watched all the same

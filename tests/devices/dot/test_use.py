@@ -36,7 +36,7 @@ def test_a_rate_is_not_changed_after_synchronising_and_a_recording_at_another_is
     for dot in wearing.dots:
         dot.write(0x1002, bytes.fromhex("10" + "00" * 23 + "7800" + "00" * 6))
     assert [dot.rate_hz for dot in wearing.dots] == [60, 60]
-    with pytest.raises(DotRefusedError, match="does not have the rate"):
+    with pytest.raises(DotRefusedError, match="is not set to the recording rate"):
         radio.run(record(wearing.group.sensors, UTC_S, 120))
 
 

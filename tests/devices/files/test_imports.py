@@ -36,9 +36,9 @@ def test_a_map_names_sites() -> None:
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("", "does not say which file"),
-        ("left_thigh", "does not say which file"),
-        ("left_thigh=", "does not say which file"),
+        ("", "does not assign a file to a site"),
+        ("left_thigh", "does not assign a file to a site"),
+        ("left_thigh=", "does not assign a file to a site"),
         ("sternum=a", '"sternum" is not a site'),
         ("left_thigh=a,left_thigh=b", "left_thigh is given twice"),
     ],

@@ -157,7 +157,7 @@ def test_an_excel_file_holds_the_same(tmp_path: Path) -> None:
     np.testing.assert_array_equal(one.time_s, other.time_s)
     sheet.cell(20, 5).value = "moved"
     book.save(tmp_path / "b.xlsx")
-    assert "b.xlsx, row 20: \"moved\" is not a number" in refusal(tmp_path / "b.xlsx")
+    assert 'b.xlsx, row 20: "moved" is not a number' in refusal(tmp_path / "b.xlsx")
 
 
 def test_an_excel_file_without_the_library_says_what_to_install(
@@ -262,7 +262,9 @@ def test_other_units_are_refused(tmp_path: Path) -> None:
     without = {name: value * 0.3 if name.startswith("Acc") else value for name, value in columns.items()}
     assert "which is not gravity" in refusal(dot(tmp_path / "b.csv", "Acc", "Gyr", columns=without))
     rad = {name: np.radians(value) if name.startswith("Gyr") else value for name, value in columns.items()}
-    assert "in rad/s and not in deg/s" in refusal(dot(tmp_path / "c.csv", "Quat", "Acc", "Gyr", columns=rad))
+    assert "the angular rates are in rad/s, not in deg/s" in refusal(
+        dot(tmp_path / "c.csv", "Quat", "Acc", "Gyr", columns=rad)
+    )
     double = {name: value * 2 if name.startswith("Quat") else value for name, value in columns.items()}
     assert "d.csv, line 9: the orientation is no rotation" in refusal(
         dot(tmp_path / "d.csv", "Quat", "Acc", columns=double)

@@ -163,7 +163,7 @@ def test_other_units_and_broken_frames_are_refused(tmp_path: Path) -> None:
     assert "its frames take 3.0 s at 100 Hz, but its timestamps 6.0 s" in refusal(
         mvnx(tmp_path / "e.mvnx", held, ms_each=20.0)
     )
-    assert "\"A\" is not a sensor name, or is used twice" in refusal(mvnx(tmp_path / "f.mvnx", held, names=("A", "A")))
+    assert '"A" is not a sensor name, or is used twice' in refusal(mvnx(tmp_path / "f.mvnx", held, names=("A", "A")))
 
 
 @pytest.mark.endurance

@@ -282,7 +282,7 @@ def test_a_wrong_session_toml_is_refused(make_session: MakeSession, toml: str | 
         ("\n\n", "the file has no header line"),
         ("a,b\n1,2\n", "line 1: required columns are missing: time_s"),
         (table("0,1,1,1,1,1", columns=COLUMNS.replace("acc_y_m_s2,", "")), "columns are missing: acc_y_m_s2"),
-        (table(*ROWS, columns=COLUMNS.replace("acc_y", "acc_x")), "line 1: column \"acc_x_m_s2\" is given twice"),
+        (table(*ROWS, columns=COLUMNS.replace("acc_y", "acc_x")), 'line 1: column "acc_x_m_s2" is given twice'),
         (table("0,1,1,1,1,1,1", "1,1,1,1,1,1,1", "0.5,1,1,1,1,1,1"), "line 4: the clock goes back from 1 s to 0.5 s"),
         (table("0,1,1,1,1,1,1", "", "1,1,1,1,1,1,1", "", "0.5,1,1,1,1,1,1"), "line 6: the clock steps back"),
         (table("0,1,1,1,1,1,1", "1,1,x1,1,1,1,1"), 'line 3: "x1" in column acc_y_m_s2 is not a number'),

@@ -115,7 +115,7 @@ def test_nothing_is_imported_as_long_as_something_is_wrong(qtbot: QtBot, home: H
     two.setCurrentIndex(2)
     page.day_field.line_edit.setText("9 March")
     page.day_field.line_edit.textEdited.emit("9 March")
-    assert "Write it as year-month-day" in shown(page)
+    assert "Enter it as year-month-day, such as 2026-03-09" in shown(page)
     assert not home.bar.primary.isEnabled()
     QTest.keyClick(page.code.line_edit, Qt.Key.Key_Return)
     assert home.current is page  # nor by the key
@@ -187,7 +187,7 @@ def test_a_site_that_was_said_tells_the_side(qtbot: QtBot, home: Home, test_data
     thigh.setCurrentIndex(3)  # a foot, which the motion takes for a thigh
     page.draft.place.click()
     qtbot.waitUntil(home.banner.isVisible, timeout=WAIT_MS)
-    assert "does not fit what is said" in home.banner.text
+    assert "The movement does not fit the entered sensor positions" in home.banner.text
     assert page.draft.sites["00B421E6"] is None
 
 
@@ -195,7 +195,7 @@ def test_import_begins_with_a_choice_of_files_or_a_folder(qtbot: QtBot, home: Ho
     home.rail.step_pressed.emit(2)
     page = home.importing.page
     assert home.current is page
-    assert "Drop files or folders onto this window" in shown(page)
+    assert "Drop files or folders here, or choose them" in shown(page)
     assert page.choose_files.hasFocus()
     home.escape()
     assert home.page.isVisible()

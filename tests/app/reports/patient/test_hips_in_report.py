@@ -107,8 +107,13 @@ def test_how_the_legs_have_one_time_is_said(
     [
         (0.04, 0.005, ClockStatus.FOUND, "found through the hips, the right leg's 40 ms late, 1 SD 5 ms, taken out."),
         (-0.004, 0.005, ClockStatus.FOUND, "found through the hips, the left leg's 4 ms late, 1 SD 5 ms."),
-        (0.001, 0.005, ClockStatus.PROVEN, "proven to be one."),
-        (math.nan, math.nan, ClockStatus.WITHHELD, "not told by the hips."),
+        (0.001, 0.005, ClockStatus.PROVEN, "Left and right sensors: synchronised, confirmed"),
+        (
+            math.nan,
+            math.nan,
+            ClockStatus.WITHHELD,
+            "Left and right sensors: hip movement does not show their time offset",
+        ),
     ],
 )
 def test_page_four_says_how_both_clocks_are_tied(
@@ -133,7 +138,9 @@ def test_no_difference_of_hips_is_judged_and_rotation_is_named_as_unreadable() -
     assert left.endswith(tuple("0123456789"))
     assert right != left
     assert (difference != "–", error, judged) == (True, "–", "not judged")
-    assert "Rotation of the hip is not readable and not given." in said(peaks_table(facts))
+    assert (
+        "For hips and pelvis the measurement error of a difference is not known: differences are given but not judged"
+    ) in said(peaks_table(facts))
 
 
 def test_no_sentence_tells_how_hips_or_pelvis_differ_however_much() -> None:

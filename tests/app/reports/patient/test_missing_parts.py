@@ -77,11 +77,13 @@ def test_without_a_zero_no_height_is_told(request_of_demonstration: ReportReques
     assert "Absolute angle of all joints: No zero was set, so heights say nothing." in pages[0]
     assert "none: no absolute angles" in pages[0]
     assert "Knee range of motion" in pages[0]
-    assert "from band" not in pages[0]
+    assert "° vs reference" not in pages[0]
     assert "Left knee, ° from its mean" in pages[0]
-    assert "laid at the height of each curve" in pages[0]  # a shape needs no zero
+    assert (
+        "It is shifted to the level of each curve to compare shape; the absolute angle is shown beside it"
+    ) in pages[0]  # a shape needs no zero
     assert "degrees from the mean of the stride" in pages[1]
-    assert "without a zero there is no height to compare" in pages[1]
+    assert "No reference: without a standing reference there are no absolute angles to compare" in pages[1]
     assert "At initial contact" not in pages[1]
 
 
@@ -231,7 +233,7 @@ def test_visits_with_different_zeros_are_compared_in_shape_and_range_only(
         "The standing reference is missing or of another kind: only range of motion and timing are compared."
     ) in page
     assert "Left: knee, degrees from the mean (flexion +)" in page
-    assert "Band mean" not in page
+    assert "Reference mean, ±1 SD" not in page
     assert "Knee: most flexed, swing withheld 58.8 ± 0.9 – – not reported" in page
     assert re.search(r"Knee: range over the stride 61\.7 ± 0\.8 61\.7 ± 0\.8 0\.0 \d+\.\d inside error", page)
     assert "degrees (flexion +" in shown(replace(request_of_demonstration, earlier=visit))[4]

@@ -14,7 +14,13 @@ from tests.app.changed_analysis import recalibrated, walk_of
 
 MOVEMENTS = ["Flexion, stance to swing", "Flexion, loading response", "Extension, mid-stance", "Range of motion"]
 TIME = "Time of peak flexion, swing, %"
-MOVEMENTS_OF_ANKLE = ["Push\u2011off", "Ankle dorsiflexion, stance", "Heel rocker", "Dorsiflexion, swing", "Range of motion"]
+MOVEMENTS_OF_ANKLE = [
+    "Push\u2011off",
+    "Ankle dorsiflexion, stance",
+    "Heel rocker",
+    "Dorsiflexion, swing",
+    "Range of motion",
+]
 
 
 def groups(request: ReportRequest, analysis: Analysis) -> dict[str, dict[str, list[str]]]:

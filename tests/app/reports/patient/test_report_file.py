@@ -79,5 +79,5 @@ def test_the_last_walk_of_each_condition_is_shown(alignments: AnalysedVisit) -> 
     assert chosen_walks(alike, ["walk 2", "walk 1"], "session") == ("walk 2", "walk 1")
     nothing = AnalysedVisit(alignments.session, replace(alignments.analysis, recordings=()))
     assert default_walks(nothing) == ()
-    with pytest.raises(FileRefusedError, match="no kept walk"):
+    with pytest.raises(FileRefusedError, match="this contains no included walk, so there is nothing to report"):
         chosen_walks(nothing, [], "session")

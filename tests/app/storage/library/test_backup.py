@@ -172,12 +172,12 @@ def test_nothing_is_restored_over_a_library_nor_with_another_key_nor_by_a_strang
     record("walk 1")
     folder = back_up(opened, tmp_path / "backups").folder
     before = {path: path.stat().st_mtime_ns for path in opened.recordings.iterdir()}
-    with pytest.raises(LibraryError, match="something in this folder"):
+    with pytest.raises(LibraryError, match="This folder is not empty"):
         restore(folder, opened.folder, opened.data_key, "hk")
     assert {path: path.stat().st_mtime_ns for path in opened.recordings.iterdir()} == before
-    with pytest.raises(LibraryError, match="does not open with this key"):
+    with pytest.raises(LibraryError, match="This key does not open the library, or the start of its file is damaged"):
         restore(folder, tmp_path / "restored", bytes(32), "hk")
-    with pytest.raises(LibraryError, match="does not work here"):
+    with pytest.raises(LibraryError, match="This user is not active in this library"):
         restore(folder, tmp_path / "restored", opened.data_key, "somebody")
     assert not (tmp_path / "restored").exists()
 
@@ -192,14 +192,14 @@ def test_a_list_cannot_lead_out_of_its_backup(opened: OpenedLibrary, tmp_path: P
     assert not (tmp_path / "restored" / "elsewhere").exists()
     del told["files"][KEYS]
     (folder / LIST).write_text(json.dumps(told))
-    with pytest.raises(LibraryError, match="not a backup"):
+    with pytest.raises(LibraryError, match="This version cannot read this folder as a backup"):
         restore(folder, tmp_path / "again", opened.data_key, "hk")
 
 
 def test_a_backup_stands_outside_of_its_library_and_needs_room(
     opened: OpenedLibrary, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    with pytest.raises(LibraryError, match="inside of its library"):
+    with pytest.raises(LibraryError, match="A backup cannot be stored inside its own library"):
         back_up(opened, opened.folder / "backups")
     monkeypatch.setattr("app.storage.backup.SPARE_BYTES", 10**18)
     with pytest.raises(LibraryError, match="MB free"):

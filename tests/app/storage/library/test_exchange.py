@@ -385,7 +385,7 @@ def test_a_destroyed_recording_is_not_exported_and_a_missing_file_is_said(
 def test_an_export_takes_nobodys_place(opened: OpenedLibrary, walked: Session, tmp_path: Path) -> None:
     imported = import_session(opened, small(walked), silent, room=ANY_ROOM)
     (tmp_path / "theirs.txt").write_text("theirs")
-    with pytest.raises(LibraryError, match="something in this folder"):
+    with pytest.raises(LibraryError, match="This folder is not empty"):
         export_session(opened, imported.session_id, tmp_path, {}, silent)
 
 

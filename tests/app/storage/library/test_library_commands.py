@@ -97,7 +97,7 @@ def test_a_library_that_is_in_use_is_not_recovered(
     record("walk 1", is_stopped=False)
     with held_alone(opened.folder):
         assert cli.main(["recover", str(opened.folder), *key]) == 2
-    assert "open with this library already" in capsys.readouterr().err
+    assert "This library is already open in Gaitwright" in capsys.readouterr().err
     assert len(find_interrupted(opened)) == 1
 
 

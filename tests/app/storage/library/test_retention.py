@@ -134,7 +134,7 @@ def test_the_keys_are_gone_before_the_file_is(
         with pytest.raises(KeyboardInterrupt):
             destroy_recording(opened, recording)
     assert wrapped not in path.read_bytes()
-    with pytest.raises(JournalRefusedError, match="destroyed for good"):
+    with pytest.raises(JournalRefusedError, match="this recording was permanently destroyed"):
         JournalReader(path, opened.data_key)
     destroy_recording(opened, recording)
     assert not path.exists()

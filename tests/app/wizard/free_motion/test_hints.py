@@ -229,7 +229,7 @@ def test_a_joint_without_gauge_says_why() -> None:
     worn = set(LEG_SITES) - {Site.RIGHT_FOOT}
     assert absent_note(Joint.RIGHT_ANKLE, worn, ()) == "R foot without sensor: no right ankle angle."
     assert absent_note(Joint.RIGHT_KNEE, worn, ()) == ""
-    assert absent_note(Joint.LEFT_ANKLE, worn, {Side.LEFT}).startswith("Foot without ankle joint: nothing to find.")
+    assert absent_note(Joint.LEFT_ANKLE, worn, {Side.LEFT}).startswith("Foot without ankle joint: nothing to calibrate")
     assert absent_note(Joint.LEFT_KNEE, worn, {Side.LEFT}) == ""
 
 
@@ -263,7 +263,7 @@ def test_hips_are_asked_for_once_nothing_else_brings_more() -> None:
     asked = hold.ask(replace(motion(plateau), hips=OPEN_HIPS), 0.0)
     assert asked.hint == hip_hint()
     assert (asked.joint, asked.site) == (Joint.LEFT_HIP, Site.PELVIS)
-    assert "Circling legs do not show the hips" in asked.hint.how
+    assert "Circling the legs does not calibrate the hips; walking does" in asked.hint.how
     without = HintHold().ask(motion(plateau), 0.0)
     assert without.hint.sentence == "Certainty no longer rises"
     open_knee = {**plateau, Joint.LEFT_KNEE: state(3.0, 6)}

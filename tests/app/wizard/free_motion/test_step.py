@@ -413,7 +413,7 @@ def test_two_legs_that_begin_together_are_told_apart_by_asking(
     assert [button.text() for button in question.buttons if not button.isHidden()] == ["Undo"]
     step.page.answered.emit(1)
     assert step.labels.named is None
-    assert "Which one wears" in question.notice.text
+    assert "Both legs moved at once" in question.notice.text
     step.page.answered.emit(0)
     assert question.notice.text == f"Understood: {shanks[0]} is on the left leg."
 

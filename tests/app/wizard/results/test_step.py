@@ -199,7 +199,7 @@ def test_rerun_that_is_missing_is_told(
     with qtbot.waitSignal(visit.refused) as told:
         step.on_quiet(1)
     assert told.args is not None
-    assert "Rerun is not installed here" in told.args[0]
+    assert "Rerun is not installed on this computer" in told.args[0]
 
 
 def test_how_a_joint_was_found_is_shown_saved_audited_and_left_again(

@@ -84,9 +84,9 @@ def test_synchronising_is_told_step_by_step_and_gives_sensors_on_one_clock(
     with qtbot.waitSignal(visit.sensors.opened, timeout=WAIT_MS):
         asked.on_primary()
         assert asked.bar() == BarState()
-        assert "Wait until they are, or cancel it." in asked.cannot_leave
+        assert "The sensors are being synchronised" in asked.cannot_leave
         qtbot.waitUntil(asked.page.progress.isVisible, timeout=WAIT_MS)
-    assert any(one.sentence.startswith("The sensors compare their clocks by themselves.") for one in shown)
+    assert any(one.sentence.startswith("The sensors are comparing their clocks") for one in shown)
     shares = [one.share for one in shown if one.share is not None and one.lines]
     assert shares == sorted(shares)
     assert asked.cannot_leave == ""
@@ -136,7 +136,7 @@ def test_what_a_sensor_records_is_stopped_before_anything_is_set(
     step.page.source_chosen.emit(DRIVER)
     qtbot.waitUntil(lambda: words_of(step, 0)[4] == "recording to memory", timeout=WAIT_MS)
     assert verb(step.bar()) == ("Stop these recordings", True)
-    assert "stays in their memories" in step.bar().note
+    assert "Their recordings stay in the sensor memory" in step.bar().note
     step.on_primary()
     qtbot.waitUntil(lambda: verb(step.bar())[0] == "Synchronise 2 sensors", timeout=WAIT_MS)
     assert dot.memory.state != RECORDING

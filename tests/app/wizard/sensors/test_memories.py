@@ -104,7 +104,7 @@ def test_what_is_kept_is_erased_after_a_second_press(
     assert bar.quiet == ()  # it is offered once
     opened.on_other(0)
     assert [len(dot.memory.files) for dot in radio.dots] == [1, 1]
-    assert "kept in this library, every sample of it" in opened.page.memories.notice.text
+    assert "recording in the sensor memory is saved completely in this library" in opened.page.memories.notice.text
     assert [other.text for other in opened.bar().others] == ["Erase now"]
     opened.on_other(0)
     wait(qtbot, opened)
@@ -119,7 +119,7 @@ def test_no_other_sensors_are_opened_while_these_are_asked(qtbot: QtBot, opened:
     with qtbot.waitSignal(opened.told) as told:
         opened.page.source_chosen.emit(DRIVER)
     assert told.args is not None
-    assert "Wait until they have answered" in told.args[0]
+    assert "The sensors are being queried" in told.args[0]
     assert not opened.on_intent(Intent(KeyAction.IDENTIFY)), "a light was lit of a sensor that is not in sight"
     wait(qtbot, opened)
     assert visit.sensors.acquisition is open_ones

@@ -160,7 +160,7 @@ def test_only_demonstration_patients_are_offered_a_replay(qtbot: QtBot, visit: V
 def test_discarded_walks_are_not_played(short_session: Session) -> None:
     """Nor is a session of which nothing is left."""
     discarded = tuple(replace(recording, is_kept=False) for recording in short_session.recordings)
-    with pytest.raises(LibraryError, match="Nothing was recorded"):
+    with pytest.raises(LibraryError, match="This session has no recording that can be replayed"):
         replay_of(replace(short_session, recordings=discarded), "it")
     empty = replace(short_session.recordings[2], name="walk 2", imu={})
     choice = replay_of(replace(short_session, recordings=(*discarded[:2], short_session.recordings[2], empty)), "it")

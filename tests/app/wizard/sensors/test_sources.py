@@ -137,7 +137,7 @@ def test_streams_are_asked_for_by_a_choice_only_that_says_whom(monkeypatch: pyte
     assert network.name == "Streams on the network of 192.0.2.9"
     assert network.asks == (
         "This asks every computer on the network of 192.0.2.9 for sensor streams, by UDP to "
-"224.0.0.183, port 16571. It then contacts those that answer. No patient data are sent.",
+        "224.0.0.183, port 16571. It then contacts those that answer. No patient data are sent.",
         "Choose it again to ask.",
     )
     with pytest.raises(SourceRefusedError, match="No motion stream found"):

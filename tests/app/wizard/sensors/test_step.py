@@ -232,8 +232,9 @@ def test_simulated_sensors_are_refused_at_once_on_a_patient_of_the_clinic(
 ) -> None:
     visit = simulated_on_a_patient
     bar = step.bar()
-    assert bar.note == ("These sensors are simulated and DEMO-7 is not a demonstration patient. Nothing would be "
-"recorded.")
+    assert bar.note == (
+        "These sensors are simulated and DEMO-7 is not a demonstration patient. Nothing would be recorded."
+    )
     assert bar.primary is not None
     assert (bar.primary.text, bar.others[0].text) == ("Choose other sensors", "Start with a demonstration patient")
     assert (step.state, step.note) == (StepState.ATTENTION, "not for this patient")

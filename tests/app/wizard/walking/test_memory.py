@@ -89,7 +89,7 @@ def test_a_walk_in_memories_is_made_ready_recorded_and_fetched(
     assert texts(step.bar())[0] == "Start walk"
     assert step.page.memory.isHidden()
     assert step.cannot_leave == ""
-    assert "Set them back to live" in visit.cannot_calibrate
+    assert "Return them to live on the Sensors step first" in visit.cannot_calibrate
     step.on_intent(RUN)
     qtbot.waitUntil(lambda: visit.recordings.has_begun, timeout=WAIT_MS)
     assert step.page.memory.shown.title == "The sensors are recording to memory"
@@ -100,7 +100,7 @@ def test_a_walk_in_memories_is_made_ready_recorded_and_fetched(
     qtbot.wait(60)
     step.on_intent(RUN)
     assert step.bar().note == "The walk is being fetched."
-    assert "Wait until it is, or fetch it later." in step.cannot_leave
+    assert "A walk is being fetched" in step.cannot_leave
     assert step.note == "being fetched"
     assert [row.state for row in step.page.rows] == [WalkState.IN_SENSORS]
     qtbot.waitUntil(lambda: len(visit.recordings.walks) == 1, timeout=WAIT_MS)
@@ -180,7 +180,7 @@ def test_at_the_live_rate_they_are_ready_at_once_and_live_again_for_a_timed_test
     qtbot.waitUntil(lambda: visit.sensors.are_ready_for_walks and visit.sensors.sync.is_idle, timeout=WAIT_MS)
     assert texts(step.bar()) == ("Start walk", ["Patient screen"])
     step.page.next.test.chosen.emit(TimedProtocol.UP_AND_GO.value)
-    assert "Timed tests need what the sensors send live" in step.bar().note
+    assert "Choose no test, or record walks live" in step.bar().note
     assert texts(step.bar()) == ("Start timed up and go", ["Record walks live", "Patient screen"])
     step.on_intent(RUN)
     assert not visit.recordings.is_recording

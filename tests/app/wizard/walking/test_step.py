@@ -337,7 +337,7 @@ def test_while_no_sensor_is_heard_no_walk_is_started(
     primary = step.bar().primary
     assert primary is not None
     assert not primary.is_enabled
-    assert step.bar().note.startswith("No sensor is heard.")
+    assert step.bar().note.startswith("Switch them on, or move the receiver closer")
     one_heard = {**silent, next(iter(silent)): replace(next(iter(silent.values())), silent_s=0.0)}
     monkeypatch.setattr(acquisition, "status", lambda: one_heard)
     with qtbot.waitSignal(step.changed, timeout=5000):

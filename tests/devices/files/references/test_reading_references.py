@@ -307,7 +307,7 @@ def test_markers_may_go_any_way_and_one_that_is_hidden_is_a_gap() -> None:
 def test_a_c3d_of_other_points_and_a_broken_one_are_refused(read: Read, tmp_path: Path) -> None:
     content = c3d_of(tmp_path / "made.c3d", {"C7": bent(KNEE_DEG)})
     with pytest.raises(
-        FileRefusedError, match="no angles of hips, knees or ankles, and not the markers to make them of"
+        FileRefusedError, match="it contains neither hip, knee or ankle angles nor the markers to compute them"
     ):
         read(content)
     for length in (512, 700, len(content) // 2, len(content) - 512):
