@@ -110,7 +110,7 @@ def test_sensors_by_number_and_by_name(test_data: FindData) -> None:
     stamps = [int(line[0]) for line in cells[3:] if line]
     np.testing.assert_allclose(imported.imu[Site.LEFT_FOOT].time_s * 1e6, np.array(stamps) - stamps[0], atol=1.0)
     with pytest.raises(
-        FileRefusedError, match='"Knee". The sensors there are Lumbar \\(5718\\) matches no file and no sensor'
+        FileRefusedError, match=r'"Knee". The sensors there are Lumbar \(5718\) matches no file and no sensor'
     ):
         import_with(apdm_trial, [path], {Site.LEFT_FOOT: "Knee"}, "walk 1")
     with pytest.raises(FileRefusedError, match="at two sites"):

@@ -69,7 +69,7 @@ def test_what_is_left_open_is_asked_for(tmp_path: Path) -> None:
 def test_stamps_that_step_back_are_refused_by_their_row(tmp_path: Path) -> None:
     back = TIME_MS.copy()
     back[20:] -= 200
-    with pytest.raises(FileRefusedError, match='a.parquet, row 21: "time_ms" goes back from 190 to 0'):
+    with pytest.raises(FileRefusedError, match=r'a.parquet, row 21: "time_ms" goes back from 190 to 0'):
         parquet_trial([written(tmp_path / "a.parquet", {"time_ms": back, **columns()}, in_degrees())])
 
 
