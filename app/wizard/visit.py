@@ -417,8 +417,7 @@ class Visit(QObject):
             if is_news:
                 self.deleted_elsewhere.emit(*deletion_message(self.patient.details.code, by))
             return
-        is_settled = self.record.is_settled and self.recordings.is_idle
-        if self.session is None or not is_settled:
+        if self.session is None or self.record.is_busy or not self.recordings.is_idle:
             return
         here = [(one.id, one.stored.details, one.stored.placement) for one in self.recordings.every]
         there = [(one.id, one.details, one.placement) for one in found.recordings if one.state in USABLE]
