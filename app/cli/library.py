@@ -9,13 +9,14 @@ import getpass
 import math
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 from uuid import UUID
 
+from app.system.progress import Report
 from devices.decoders import DECODERS
 from devices.files.refusal import FileRefusedError, one_line
 
@@ -27,8 +28,6 @@ if TYPE_CHECKING:
 PREFIX = "library:"
 WHO = "--operator"
 PASSPHRASE_FILE = "--passphrase-file"
-
-Report = Callable[[float, str], None]
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,7 +17,7 @@ from app.storage.journal.disk import ROOM, TOLD, Room, Trouble
 from app.storage.journal.header import RESTORE, JournalRefusedError
 from app.storage.journal.payloads import layout_of, with_keys
 from app.storage.journal.writer import JournalSummary, JournalWriter, State
-from app.storage.opened import OpenedLibrary, Report
+from app.storage.opened import OpenedLibrary
 from app.storage.pseudonyms import Pseudonyms, Typed
 from app.storage.recovery import Interrupted
 from app.storage.sessions import NO_LIMITS
@@ -32,6 +32,7 @@ from app.storage.stored import (
     StoredRecording,
     StoredSession,
 )
+from app.system.progress import Report
 from app.wording.translation import tr
 from core.body import Site
 from core.findings import Finding, Severity

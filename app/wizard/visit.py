@@ -19,6 +19,7 @@ from app.editing.question import EditQuestion
 from app.editing.session import SessionRecord, current_time
 from app.editing.session_recording import SessionRecording
 from app.storage.stored import StoredSession
+from app.system.progress import Report
 from app.wizard.evaluation import Evaluation
 from app.wizard.fetch_control import FetchControl
 from app.wizard.kept_results import KeptResults
@@ -37,7 +38,7 @@ from app.wizard.reviewing import Reviewing
 from app.wizard.worn_corrections import WornCorrections
 from app.wizard.worn_sensors import SourceChoice, WornSensors
 from app.wording.translation import tr
-from app.workers.background import Background, Report
+from app.workers.background import Background
 from app.workers.library_controller import LibraryController
 from core.body import Joint, Side, Site
 from core.samples import Recording, RecordingKind, Session

@@ -31,12 +31,12 @@ from app.storage.library import Library
 from app.storage.login_delay import LoginDelay
 from app.storage.slots import Cost
 from app.storage.stored import Operator, Role
+from app.system.progress import Report
 from app.system.settings import Scheme, Settings
 from app.theme.colours import DARK, LIGHT
 from app.theme.notifier import ThemeNotifier
 from app.wizard.keys import Intent, KeyAction
 from app.wording.translation import use_language
-from app.workers.background import Report
 from core.samples import Patient, Recording, RecordingKind, Session
 
 PASSPHRASE = "four short words here"
