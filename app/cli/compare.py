@@ -116,7 +116,7 @@ def _table(comparison: "Comparison") -> Iterator[str]:
         yield f"{simulated}{_named(rows[0].part)} less {_named(comparison.against)}"
         yield f"  {'':5} {'':38} {'one':>9} {'other':>9} {'differs':>9} {'error':>7}"
         for row in rows:
-            side = "" if row.side is None else row.side[0].upper()
+            side = "" if row.side is None else row.side.letter
             found = row.difference
             figures = (row.value.mean, row.other.mean, found.difference)
             cells = " ".join(f"{_short(figure):>9}" for figure in figures)

@@ -331,7 +331,7 @@ class _Course(Themed):
             if share <= 1.0:
                 box = QRectF(inner.left() + share * inner.width() - px(12), under.top(), px(24), under.height())
                 tone = "left_text" if side is Side.LEFT else "right_text"
-                found.append(PaintedText(_LETTERS[side], box, theme.font(17, SEMIBOLD), tone, CENTRE))
+                found.append(PaintedText(side.letter, box, theme.font(17, SEMIBOLD), tone, CENTRE))
         return found
 
     def _on_look_changed(self) -> None:
@@ -378,6 +378,3 @@ def _middle_words(state: TimedViewState) -> str:
         return laps
     left_s = max(0, math.ceil(definition.duration_s - state.elapsed_s))
     return tr("{lap}, {minutes}:{seconds:02d} left").format(lap=laps, minutes=left_s // 60, seconds=left_s % 60)
-
-
-_LETTERS = {Side.LEFT: "L", Side.RIGHT: "R"}

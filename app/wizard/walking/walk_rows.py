@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     from app.wizard.recordings import SessionRecordings
     from app.wizard.visit import Visit
 
-LETTERS = {Side.LEFT: "L", Side.RIGHT: "R"}
-
 
 def ongoing_walk(recordings: "SessionRecordings") -> "Ongoing | None":
     """The walk that is being recorded."""
@@ -55,7 +53,7 @@ def facts_of(visit: "Visit", recording: "SessionRecording", cadence_steps_min: f
     strides = strides_of(visit, recording)
     said = []
     if strides:
-        counts = ", ".join(f"{letter} {strides[side]}" for side, letter in LETTERS.items() if side in strides)
+        counts = ", ".join(f"{side.letter} {strides[side]}" for side in Side if side in strides)
         said.append(tr("Strides: {counts}").format(counts=counts))
     if math.isfinite(cadence_steps_min):
         said.append(tr("{cadence:.0f} steps/min").format(cadence=cadence_steps_min))
