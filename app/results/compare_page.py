@@ -13,7 +13,6 @@ from app.plots.compared_chart import ComparedChart, ComparedFrame
 from app.plots.cycle_chart import CycleCharts
 from app.results.compared_card import ComparedCard, scrolling
 from app.results.compared_words import (
-    MINUS,
     conclusion,
     days_of,
     error_in_words,
@@ -37,6 +36,7 @@ from app.widgets.icons import IconMark
 from app.widgets.segmented import Segmented
 from app.widgets.text import Text
 from app.widgets.themed import Themed
+from app.wording.numbers import MINUS
 from app.wording.translation import later, tr
 from core.body import JointKind, Side
 from core.gait.cycles import POINTS

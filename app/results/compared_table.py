@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from app.charts.cycles import is_mean_enough, is_spread_enough
-from app.results.compared_words import BRIEF, MINUS, change_in_words, days_of, error_in_figures
+from app.results.compared_words import BRIEF, change_in_words, days_of, error_in_figures
 from app.summary.comparison import Compared, Comparison, Contrast, SideRow
 from app.summary.conditions import Part
 from app.summary.goals import goal_mark
@@ -17,6 +17,7 @@ from app.widgets.table import TableColumn, TableRow
 from app.widgets.table_cells import EMPTY, RIGHT, TextCell
 from app.widgets.text import REGULAR, SEMIBOLD
 from app.widgets.trend_cell import TrendCell
+from app.wording.numbers import MINUS
 from app.wording.translation import figure_text, side_name, tr
 from app.wording.verdicts import verdict_word
 from core.body import Side

@@ -16,7 +16,6 @@ from core.body import Joint, Side
 from core.verdicts.measurement_error import Difference, Judgement
 from core.verdicts.model import Verdict
 
-MINUS = "\N{MINUS SIGN}"
 BRIEF = ("knee_stance_to_swing_deg", "knee_while_loading_deg", "ankle_push_off_deg", "stance_percent")
 JUDGED = (Judgement.EXCEEDS_ERROR, Judgement.INSIDE_ERROR)
 MOST_SAID = 3  # sentences about differences; the table has all of them

@@ -8,6 +8,7 @@ from app.summary.walk_figures import Figure
 from app.widgets.table import TableColumn, TableRow
 from app.widgets.table_cells import CENTRE, EMPTY, RIGHT, TextCell
 from app.widgets.text import SEMIBOLD
+from app.wording.numbers import MINUS
 from app.wording.translation import capitalised, figure_text, later, side_name, tr, tr_n, within_sentence
 from app.wording.verdicts import verdict_word
 from core.body import Side
@@ -16,7 +17,6 @@ from core.verdicts.model import Verdict
 
 FIGURE = 15  # px of the letters of a value
 BAND_HEAD = later("band 1 SD")
-MINUS = "\N{MINUS SIGN}"
 CARE_MARK = "*"  # behind what is to be read with care
 
 

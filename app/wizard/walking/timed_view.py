@@ -16,6 +16,7 @@ from app.widgets.icons import IconMark
 from app.widgets.painted_text import CENTRE, LEFT, RIGHT, PaintedText
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.themed import Themed
+from app.wording.numbers import clock
 from app.wording.timed_tests import end_words, name_of_test, reason_words, start_words
 from app.wording.translation import capitalised, figure_text, joined, name_of, tr
 from core.body import Side
@@ -56,7 +57,7 @@ def time_text(elapsed_s: float) -> str:
     """Seconds with a tenth below `LONG_S`, from then on minutes and seconds."""
     if elapsed_s < LONG_S:
         return figure_text(math.floor(10.0 * elapsed_s + 1e-6) / 10.0, ".1f")
-    return f"{int(elapsed_s) // 60}:{int(elapsed_s) % 60:02d}"
+    return clock(elapsed_s)
 
 
 def status_words(state: TimedViewState) -> str:

@@ -4,9 +4,9 @@ import math
 from typing import TYPE_CHECKING
 
 from app.storage.stored import RecordingState
-from app.wizard.walk_messages import clock
 from app.wizard.walking.walk_list import WalkRow, WalkState
 from app.wizard.walking.walk_notice import length_s, strides_of
+from app.wording.numbers import clock
 from app.wording.translation import tr
 from core.body import Side
 from core.samples import RecordingKind
