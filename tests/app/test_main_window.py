@@ -827,7 +827,7 @@ def test_where_the_environment_names_no_server_that_answers_it_is_said_and_tried
 def test_the_environment_leads_to_a_folder_of_its_own_unless_the_own_one_is_a_station(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("app.cli.library.platformdirs.user_data_path", lambda *_, **__: tmp_path)
+    monkeypatch.setattr("app.storage.layout.platformdirs.user_data_path", lambda *_, **__: tmp_path)
     assert default_folder() == tmp_path / "library"
     monkeypatch.setenv(DATABASE_VARIABLE, "postgresql://station@server/clinic")
     assert default_folder() == tmp_path / "clinic"
