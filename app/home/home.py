@@ -28,6 +28,7 @@ from app.theme.icons import Icon
 from app.theme.notifier import ThemeNotifier
 from app.widgets.action_bar import ActionBar, BarAction, BarState
 from app.widgets.banner import Banner
+from app.widgets.grid import COMPACT_BELOW
 from app.widgets.rail_row import RailForm, RailRow, StepState
 from app.widgets.start_pages import WorkingPage
 from app.widgets.step_rail import StepRail, home_below
@@ -37,7 +38,6 @@ from app.wording.translation import place, tr
 from app.workers.library_controller import LibraryController
 from app.workers.library_state import OpenedState
 
-COMPACT_BELOW = (1180, 720)
 WIDE_FROM = 1800
 PATIENTS, DEMONSTRATION, IMPORT, QUESTIONS = range(4)
 

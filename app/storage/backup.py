@@ -32,8 +32,9 @@ from app.storage.files import replace_file, sync_folder
 from app.storage.journal.header import JournalRefusedError, read_header
 from app.storage.layout import DATABASE, KEYS, RECORDINGS, SUFFIX
 from app.storage.library import Library, now_utc
-from app.storage.opened import OpenedLibrary, Report, made_beside
+from app.storage.opened import OpenedLibrary, made_beside
 from app.storage.stored import Action, AuditFault, Checkpoint, LibraryError
+from app.system.progress import Report
 from app.wording.translation import tr
 
 FORMAT = "gaitwright-backup/1"

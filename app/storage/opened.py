@@ -4,7 +4,7 @@ import glob
 import re
 import shutil
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -24,9 +24,6 @@ from app.storage.layout import IN_USE, KEYS, RECORDINGS
 from app.storage.library import Library
 from app.storage.stored import LibraryError, Operator, StoredJournal
 from app.wording.translation import tr
-
-Report = Callable[[float, str], None]
-"""Called with the share done (0 to 1) and what is being done. What it raises ends the work."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -25,6 +25,7 @@ from app.widgets.grid import LEAST, NARROW_BELOW, side_margin
 from app.widgets.painted_text import PaintedText
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed
+from app.wording.numbers import clock
 from app.wording.translation import tr
 
 BAR = 72
@@ -364,7 +365,7 @@ class _Clock(QWidget):
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
 
     def show_elapsed(self, elapsed_s: float) -> None:
-        time = clock_time(elapsed_s)
+        time = clock(elapsed_s, 2)
         if time != self._time:
             self._time = time
             self.setAccessibleName(tr("Recording, {time}").format(time=time))
@@ -391,12 +392,6 @@ class _Clock(QWidget):
 
     def _text_left(self) -> int:
         return self._look.theme.px(36)
-
-
-def clock_time(elapsed_s: float) -> str:
-    """Give a time as minutes and seconds: "04:06"."""
-    minutes, seconds = divmod(int(max(elapsed_s, 0.0)), 60)
-    return f"{minutes:02d}:{seconds:02d}"
 
 
 def _without_time(state: BarState) -> BarState:

@@ -13,6 +13,7 @@ from app.cohort.batch.again import AgainResult, analyse_again
 from app.cohort.batch.executors import of_this_computer, processors
 from app.home.again.analyse_again_page import AgainLine, AnalyseAgainPage
 from app.storage.kept_analyses import algorithm
+from app.system.progress import Report
 from app.theme.icons import Icon
 from app.theme.notifier import ThemeNotifier
 from app.widgets.action_bar import BarAction, BarState
@@ -20,7 +21,6 @@ from app.widgets.folder_dialog import ask_for_new_folder
 from app.wizard.resuming import session_to_analyse
 from app.wording.patients import when
 from app.wording.translation import tr, tr_n
-from app.workers.background import Report
 from app.workers.library_controller import LibraryController
 
 if TYPE_CHECKING:

@@ -11,13 +11,14 @@ from app.cohort.study.found_csv import write_csv
 from app.cohort.study.groups import GroupAnswer, Grouping, GroupQuestion, answer, groupings_of, measures_of, table_of
 from app.cohort.study.parameter_table import PARQUET, ParameterTable
 from app.home.cohort.cohort_page import QuestionsPage
+from app.system.progress import Report
 from app.system.settings import Settings
 from app.theme.icons import Icon
 from app.theme.notifier import ThemeNotifier
 from app.widgets.action_bar import BarAction, BarState
 from app.widgets.folder_dialog import ask_for_new_file
 from app.wording.translation import filled, tr
-from app.workers.background import Background, Report, Work
+from app.workers.background import Background, Work
 from devices.files.refusal import FileRefusedError
 
 _log = logging.getLogger(__name__)

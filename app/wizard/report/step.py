@@ -22,6 +22,7 @@ from app.summary.course_lanes import CourseVisit
 from app.summary.report_dates import day
 from app.summary.request import AnalysedVisit, ReportRequest, default_walks
 from app.system.logs import version_of
+from app.system.progress import Report
 from app.theme.icons import Icon
 from app.theme.notifier import ThemeNotifier
 from app.widgets.action_bar import BarAction, BarState
@@ -35,7 +36,7 @@ from app.wizard.report.printing import PRINTED_PPI, ReportPrinter
 from app.wizard.resuming import course_to, courses_before, read_analysed
 from app.wizard.step import Step
 from app.wording.translation import capitalised, filled, tr
-from app.workers.background import Report, Work
+from app.workers.background import Work
 from app.workers.library_controller import LibraryController
 from core.samples import RecordingKind
 from devices.decoders import DECODERS

@@ -20,10 +20,10 @@ from devices.live import SourceLostError, SourceRefusedError
 
 if TYPE_CHECKING:
     from app.acquisition.dot_fleet import HeardDot
+    from app.system.progress import Report
     from app.widgets.sensors_progress import SensorsProgress
     from app.wizard.sensors.dot_form import DotForm
     from app.wizard.worn_sensors import SourceChoice, WornSensors
-    from app.workers.background import Report
     from devices.dot.source import DotGroup
 
 LISTENS_S = 0.1  # so often it is looked whether somebody wants something of the sensors

@@ -24,10 +24,10 @@ from devices.live import SourceLostError, SourceRefusedError
 if TYPE_CHECKING:
     from app.storage.opened import OpenedLibrary
     from app.storage.stored import StoredRecording
+    from app.system.progress import Report
     from app.widgets.sensors_progress import SensorsProgress
     from app.wizard.sensors.memories_form import MemoriesForm
     from app.wizard.visit import Visit
-    from app.workers.background import Report
 
 Asked = Callable[[DotMemories, Callable[[str], None], Callable[[], None]], object]
 

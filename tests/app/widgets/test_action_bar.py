@@ -9,7 +9,7 @@ from pytestqt.qtbot import QtBot
 from app.theme.colours import LIGHT
 from app.theme.icons import Icon
 from app.theme.notifier import ThemeNotifier, load_fonts
-from app.widgets.action_bar import ActionBar, BarAction, BarState, RecordingNote, clock_time
+from app.widgets.action_bar import ActionBar, BarAction, BarState, RecordingNote
 from tests.app.room import settle, words_cut
 
 STOP = BarAction("Stop walk", "Space", Icon.STOP)
@@ -135,11 +135,6 @@ def test_nothing_is_cut_and_nothing_overlaps(bar: ActionBar, width: int, note: s
     boxes = [button.geometry() for button in bar.tab_order]
     boxes += [text.geometry() for text in (bar._title, bar._note) if text.text()]
     assert not any(one.intersects(other) for k, one in enumerate(boxes) for other in boxes[:k])
-
-
-@pytest.mark.parametrize(("elapsed_s", "shown"), [(0.0, "00:00"), (59.99, "00:59"), (246.0, "04:06"), (-1.0, "00:00")])
-def test_a_time_is_minutes_and_seconds(elapsed_s: float, shown: str) -> None:
-    assert clock_time(elapsed_s) == shown
 
 
 def test_a_double_click_is_one_press(bar: ActionBar) -> None:

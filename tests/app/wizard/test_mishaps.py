@@ -16,6 +16,7 @@ from app.storage.journal.disk import Trouble
 from app.storage.opened import OpenedLibrary
 from app.storage.shared_edits import SharedEdits
 from app.storage.stored import LibraryBusyError, LibraryError, RecordingState
+from app.system.progress import Report
 from app.theme.notifier import ThemeNotifier
 from app.wizard import wizard as wizard_module
 from app.wizard.free_motion.step import FreeMotionStep
@@ -24,7 +25,6 @@ from app.wizard.standing.step import StandStillStep
 from app.wizard.visit import Visit
 from app.wizard.walking.step import WATCH_TICKS, WalkingStep
 from app.wizard.wizard import DEAF_S, FREE_MOTION, RESULTS, WALKING, Wizard
-from app.workers.background import Report
 from app.workers.library_controller import LibraryController
 from core.body import LEG_SITES, Site
 from core.samples import Patient, Recording, RecordingKind, Session

@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.storage.analysis_content import packed
-from app.storage.exchange import export_session, session_with_samples
+from app.storage.exchange import session_with_samples
 from app.theme.notifier import ThemeNotifier
 from app.wizard.free_motion.step import FreeMotionStep
 from app.wizard.sensors.replays import replay_of
@@ -29,6 +29,7 @@ from devices.decoders import DECODERS
 from devices.files.session_folder import read_session
 from devices.simulation.replay import ReplaySource
 from devices.simulation.walker import DEMONSTRATION, FreeMotion, Motion, Standing, Walk, simulate
+from tests.app.storage.library.folder_export import write_folder
 from tests.app.wizard.begun_visit import begin, record
 from tests.app.wizard.conftest import SPEED
 
@@ -128,7 +129,7 @@ def test_all_that_is_kept_of_a_session_holds_the_pelvis(
     assert played.worn["DEMO-pelvis"] is Site.PELVIS
     for is_identified in (False, True):
         folder = tmp_path / f"{is_identified}"
-        export_session(opened, stored.id, folder, DECODERS, lambda *_: None, is_identified=is_identified)
+        write_folder(opened, stored.id, folder, DECODERS, is_identified=is_identified)
         assert len(list(folder.rglob("pelvis.csv"))) == len(stored.recordings)
         session = read_session(folder)
         assert all(Site.PELVIS in recording.imu for recording in session.recordings)

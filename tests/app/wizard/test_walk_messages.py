@@ -8,7 +8,6 @@ from app.theme.notifier import ThemeNotifier
 from app.wizard.losses import NOTHING
 from app.wizard.visit import Visit
 from app.wizard.walk_messages import (
-    clock,
     few_strides_message,
     lacks_message,
     loose_message,
@@ -65,10 +64,6 @@ def test_only_what_is_short_of_a_spread_is_told() -> None:
     assert few_strides_message({Side.LEFT: 12}) == NOTHING
     assert few_strides_message({Side.LEFT: 12, Side.RIGHT: 4})[0] == "Only 4 right strides, 10 make a spread."
     assert few_strides_message({Side.LEFT: 9})[0] == "Only 9 left strides, 10 make a spread."
-
-
-def test_a_clock_shows_minutes_and_no_negative_time() -> None:
-    assert (clock(41.9), clock(605.0), clock(-3.0)) == ("0:41", "10:05", "0:00")
 
 
 def test_who_walks_without_foot_sensors_reads_why_nothing_is_counted(

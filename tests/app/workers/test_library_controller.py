@@ -24,7 +24,7 @@ from app.storage.library import Library
 from app.storage.opened import OpenedLibrary, held_alone, open_library
 from app.storage.slots import Cost
 from app.storage.stored import LibraryError, Operator, Role, StoredPatient
-from app.workers.background import Report
+from app.system.progress import Report
 from app.workers.library_controller import LibraryController
 from app.workers.library_state import Joined, LibraryPlace, OpenedState
 from app.workers.library_watch import LibraryWatch
