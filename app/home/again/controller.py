@@ -68,8 +68,10 @@ class AnalysingAgain(QObject):
     def bar(self) -> BarState:
         count = len(self.page.ticked)
         words = tr_n("Analyse {count} session", "Analyse {count} sessions", count).format(count=count)
-        folder = BarAction(tr("Into a folder, with a table"), icon=Icon.FOLDER, is_wished=False, is_enabled=bool(count))
-        return BarState(BarAction(words, icon=Icon.PLAY, is_enabled=bool(count)), others=(folder,))
+        analyse = BarAction(words, self.analyse, icon=Icon.PLAY, is_enabled=bool(count))
+        words = tr("Into a folder, with a table")
+        folder = BarAction(words, self._choose_folder, icon=Icon.FOLDER, is_wished=False, is_enabled=bool(count))
+        return BarState(analyse, others=(folder,))
 
     def begin(self, patient_id: UUID | None) -> None:
         """Show all sessions, with those of this patient ticked, else those that this version has not analysed."""
@@ -90,7 +92,7 @@ class AnalysingAgain(QObject):
         self._begin(tr("Analysing again"))
         self._controller.run_long(work, self._on_analysed, self._on_refused, self._on_progressed, self)
 
-    def choose_folder(self) -> None:
+    def _choose_folder(self) -> None:
         self._dialog = ask_for_new_folder(
             self.page.window(), tr("Results and a table of these sessions"), _proposed, self._on_folder
         )

@@ -47,9 +47,12 @@ class Questions(QObject):
         The bar may show something else.
     told
         What came of it, and what to do.
+    again_wished
+        Sessions are to be analysed again.
     """
 
     changed = Signal()
+    again_wished = Signal()
     told = Signal(str, str)
 
     def __init__(self, look: ThemeNotifier, settings: Settings, parent: QObject) -> None:
@@ -70,10 +73,11 @@ class Questions(QObject):
     @property
     def bar(self) -> BarState:
         """What can be done with what is shown."""
-        again = (BarAction(tr("Analyse sessions again"), icon=Icon.PLAY),)
+        again = (BarAction(tr("Analyse sessions again"), self.again_wished.emit, icon=Icon.PLAY),)
         if self.page.found is None:
             return BarState(quiet=again)
-        return BarState(BarAction(tr("Save as CSV"), tr("Ctrl S"), Icon.IMPORT, is_wished=False), quiet=again)
+        save = BarAction(tr("Save as CSV"), self.save, tr("Ctrl S"), Icon.IMPORT, is_wished=False)
+        return BarState(save, quiet=again)
 
     def begin(self) -> None:
         """Show the table that was asked last, where it is still there."""

@@ -101,8 +101,8 @@ class Importing(QObject):
         code = self.page.code.text.strip()
         words = tr("Import for {code}").format(code=code) if code else tr("Import")
         is_ready = bool(code) and (not self._is_draft or self._is_draft_ready)
-        others = (BarAction(tr("Leave this out")),) if self._waiting else ()
-        return BarState(BarAction(words, tr("Enter"), Icon.IMPORT, is_enabled=is_ready), quiet=others)
+        take_in = BarAction(words, self.take_in, tr("Enter"), Icon.IMPORT, is_enabled=is_ready)
+        return BarState(take_in, quiet=(BarAction(tr("Leave this out"), self.leave_out),) if self._waiting else ())
 
     def begin(self) -> None:
         """Show how to begin."""

@@ -32,6 +32,7 @@ from devices.simulation.walker import DEMONSTRATION, FreeMotion, Motion, Standin
 from tests.app.storage.library.folder_export import write_folder
 from tests.app.wizard.begun_visit import begin, record
 from tests.app.wizard.conftest import SPEED
+from tests.app.wizard.pressing import press
 
 HIPS = {hip_of(side) for side in Side}
 LIVE_SPEED = 4.0
@@ -184,7 +185,7 @@ def test_live_hips_are_thin_then_sure_and_a_silent_pelvis_costs_them_alone(
     page = step.page
     assert page.charts.hip.isVisible() is False  # the walks stand there until one is recorded
     with qtbot.waitSignal(visit.recordings.begun, timeout=10_000):
-        step.on_primary()
+        press(step)
     qtbot.waitUntil(lambda: set(page.live.hips) == set(Side), timeout=20_000)
     assert page.charts.hip.isVisible()
     assert page.live.hips[Side.LEFT].is_provisional
@@ -201,7 +202,7 @@ def test_live_hips_are_thin_then_sure_and_a_silent_pelvis_costs_them_alone(
     source.wake(pelvis)
     qtbot.waitUntil(lambda: page.notice.text.startswith("Pelvis is back"), timeout=20_000)
     with qtbot.waitSignal(visit.recordings.ended, timeout=20_000):
-        step.on_primary()
+        press(step)
     walk = visit.recordings.walks[-1]
     assert walk.read_back is not None
     assert Site.PELVIS in walk.read_back.imu
@@ -244,7 +245,7 @@ def test_live_standing_does_not_wait_for_a_silent_pelvis(
     qtbot.addWidget(step.page)
     looked.append(Looked(step))
     with qtbot.waitSignal(visit.recordings.ended, timeout=30_000):
-        step.on_primary()
+        press(step)
     assert set(visit.rests) == set(worn) - {"DEMO-pelvis"}
 
 

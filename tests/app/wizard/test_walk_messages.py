@@ -18,6 +18,7 @@ from app.wizard.walking.step import WalkingStep
 from core.body import LEG_SITES, Side, Site
 from core.samples import RecordingKind
 from tests.app.wizard.begun_visit import begin, record
+from tests.app.wizard.pressing import press
 
 FEET = frozenset((Site.LEFT_FOOT, Site.RIGHT_FOOT))
 ALL = frozenset(LEG_SITES)
@@ -78,9 +79,9 @@ def test_who_walks_without_foot_sensors_reads_why_nothing_is_counted(
     qtbot.addWidget(step.page)
     step.enter()
     with qtbot.waitSignal(visit.recordings.begun, timeout=10_000):
-        step.on_primary()
+        press(step)
     step.tick()
     assert step.page.notice.text.startswith("No foot sensors: strides are counted after the walk.")
     with qtbot.waitSignal(visit.recordings.ended, timeout=10_000):
-        step.on_primary()
+        press(step)
     step.leave()

@@ -27,6 +27,7 @@ from core.body import Site
 from core.results import Analysis
 from core.samples import RecordingKind, Session
 from tests.app.wizard.begun_visit import begin
+from tests.app.wizard.pressing import press
 
 WAIT_MS = 60_000  # on a busy machine
 
@@ -137,7 +138,7 @@ def test_what_leaves_without_the_name_is_shown_first_and_nothing_typed_but_what_
     visit.record.resume(library.sessions.get(imported.session_id))
     patients.change(patient, replace(patient.details, birth_year=1950, device="Qx1 knee", aids="Qx2 stick"))
     step.page.report.formats.choose(["xlsx", "fhir"])
-    step.on_primary()
+    press(step)
     dialog = dialog_of(qtbot, step)
     shown = dict(dialog.shown)
     assert shown["patient"] != patient.details.code
@@ -164,7 +165,7 @@ def test_what_leaves_without_the_name_is_shown_first_and_nothing_typed_but_what_
 
 def test_nothing_is_asked_where_no_file_leaves_without_the_name(qtbot: QtBot, step: ReportStep, visit: Visit) -> None:
     step.page.report.formats.choose(["csv", "rrd"])
-    step.on_primary()
+    press(step)
     assert step.dialog is not None
     assert step.page.findChild(LeavingDialog) is None
     assert visit.session is not None
@@ -185,7 +186,7 @@ def test_of_a_free_motion_alone_no_report_is_offered(step: ReportStep, visit: Vi
 
 def test_whoever_cancels_writes_nothing(qtbot: QtBot, step: ReportStep) -> None:
     step.page.report.formats.choose(["fhir"])
-    step.on_primary()
+    press(step)
     dialog = dialog_of(qtbot, step)
     dialog.cancel.click()
     qtbot.waitUntil(lambda: step.page.findChild(LeavingDialog) is None, timeout=WAIT_MS)
@@ -276,13 +277,14 @@ def test_an_earlier_visit_that_cannot_be_read_leaves_no_page_of_another_comparis
 def test_ctrl_s_saves_as_its_cap_says(qtbot: QtBot, visit: Visit, monkeypatch: pytest.MonkeyPatch) -> None:
     step = ReportStep(ThemeNotifier(), visit, visit.controller)
     qtbot.addWidget(step.page)
+    pressed = []
+    monkeypatch.setattr(step, "_save", lambda: pressed.append("save"))
     primary = step.bar().primary
     assert primary is not None
     assert primary.key == "Ctrl S"
-    pressed = []
-    monkeypatch.setattr(step, "on_primary", lambda: pressed.append("save"))
+    primary.run()
     assert step.on_intent(Intent(KeyAction.SAVE))
-    assert pressed == ["save"]
+    assert pressed == ["save", "save"]
     assert not step.on_intent(Intent(KeyAction.RUN))
 
 
