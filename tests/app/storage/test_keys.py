@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from app.storage import keys
+from app.storage.data_key import KEY_BYTES, Secret
 from app.storage.files import held, replace_file
 from app.storage.keys import (
     KeyRefusedError,
@@ -134,6 +135,29 @@ def test_the_file_holds_neither_key_nor_passphrase(slots: KeySlots, tmp_path: Pa
     assert OLD.encode() not in content
     assert recovery.encode() not in content
     assert (tmp_path / "keys.json").stat().st_mode & 0o077 == 0
+
+
+def test_what_is_made_of_a_passphrase_is_overwritten_once_it_was_used(
+    slots: KeySlots, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    own = "v\u00f6ier s\u00e4tz do f\u00fcr \u00fcs"
+    slots.create("hk", own)
+    wipe, wiped = Secret.wipe, list[bytes]()
+
+    def noted(secret: Secret) -> None:
+        wiped.append(bytes(secret))
+        wipe(secret)
+
+    monkeypatch.setattr(Secret, "wipe", noted)
+    data_key = slots.open("hk", own)
+    assert own.encode() in wiped
+    assert len([one for one in wiped if len(one) == KEY_BYTES and any(one)]) >= 2  # Argon2id's, and the slot's own
+    assert bytes(data_key) not in wiped
+    with memoryview(data_key) as where_it_stood, pytest.raises(BufferError):  # it cannot be cleared while it is seen
+        try:
+            data_key.wipe()
+        finally:
+            assert not any(where_it_stood)
 
 
 def test_a_slot_whose_words_were_changed_does_not_open(slots: KeySlots, tmp_path: Path) -> None:
