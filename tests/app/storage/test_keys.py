@@ -67,6 +67,27 @@ def test_a_passphrase_that_somebody_else_chose_is_marked_until_its_operator_choo
     assert slots.open("ab", OLD) == data_key
 
 
+def test_a_mark_that_is_taken_away_lets_nobody_in(slots: KeySlots, tmp_path: Path) -> None:
+    data_key, _ = slots.create("hk", OLD)
+    slots.add(data_key, "ab", NEW, is_given=True)
+    content = json.loads((tmp_path / "keys.json").read_bytes())
+    del content["given_passphrases"]
+    (tmp_path / "keys.json").write_text(json.dumps(content))
+    assert not slots.is_given("ab")
+    assert slots.open("ab", NEW) == data_key
+    with pytest.raises(KeyRefusedError, match="does not open"):
+        slots.open("ab", OLD)
+
+
+def test_a_guess_costs_three_passes_over_64_mib(tmp_path: Path) -> None:
+    KeySlots(tmp_path / "keys.json").create("hk", OLD)
+    slots = json.loads((tmp_path / "keys.json").read_bytes())["slots"]
+    assert {(slot["code"], slot["passes"], slot["memory_kib"]) for slot in slots} == {
+        ("hk", 3, 65536),
+        ("recovery", 3, 65536),
+    }
+
+
 def test_no_other_passphrase_code_or_recovery_key_opens(slots: KeySlots, tmp_path: Path) -> None:
     _, recovery = slots.create("hk", OLD)
     for code, passphrase in (("hk", NEW), ("hk", ""), ("xx", OLD), ("recovery", recovery)):
