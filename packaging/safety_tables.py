@@ -3,8 +3,8 @@
 What is written by hand stands in `packaging/safety/*.toml`: each requirement with the tests that hold it, each risk
 with the requirements that control it, each use error with the message it meets. From these come the tables beside
 them, in which every control leads to its tests. What does not fit together is printed, nothing is written then, and a
-test fails: a requirement without a test, a test, script or message that is not there, a risk without a control, a promise
-of the threat model or of SECURITY.md that no test holds.
+test fails: a requirement without a test, a test, script or message that is not there, a risk without a control, a
+promise of the threat model or of SECURITY.md that no test holds.
 """
 
 import ast

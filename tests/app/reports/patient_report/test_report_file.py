@@ -1,5 +1,6 @@
 """Where a report may stand, what it is made from, and the subcommand that makes one."""
 
+import os
 import re
 import shutil
 from dataclasses import replace
@@ -103,3 +104,17 @@ def test_what_is_typed_reaches_the_template_as_data_in_memory_and_nothing_there_
     assert "passwd" in options["sys_inputs"]["data"]
     assert re.findall(rb"\b(?:eval|read|plugin|csv|toml|xml|yaml|cbor)\(|#(?:include|import)\b", template) == []
     assert re.findall(rb"\b(?:image|json)\((?!bytes\()", template) == []
+
+
+def test_a_report_is_on_the_disk_before_it_takes_its_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    out, synced = tmp_path / "report.pdf", list[int]()
+    out.write_bytes(b"%PDF- before")
+
+    def noted(descriptor: int) -> None:
+        assert out.read_bytes() == b"%PDF- before"
+        synced.append(os.fstat(descriptor).st_size)
+
+    monkeypatch.setattr(os, "fsync", noted)
+    replace_report(b"%PDF- now", out)
+    assert synced == [9]
+    assert out.read_bytes() == b"%PDF- now"

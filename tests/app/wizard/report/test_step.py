@@ -19,7 +19,8 @@ from app.theme import ThemeNotifier
 from app.widgets.rail_row import StepState
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.report.leaving_dialog import LeavingDialog
-from app.wizard.report.step import PRINTED_PPI, ReportStep
+from app.wizard.report.printing import PRINTED_PPI
+from app.wizard.report.step import ReportStep
 from app.wizard.visit import Visit
 from app.workers.library_controller import LibraryController
 from core.analysis import analyse
