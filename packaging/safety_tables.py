@@ -207,7 +207,7 @@ def faults_of_promises(page: str, text: str) -> Iterator[str]:
     """What is promised in a table or list without a note of its tests, and notes without a test or a promise."""
     body = NOTES.sub("", text)
     notes, named = dict(NOTES.findall(text)), set(NOTE.findall(body))
-    yield from (f"{page}: no test holds: {promise}" for promise in _promises(body) if NOTE.search(promise) is None)
+    yield from (f"{page}: no test holds: {promise}" for promise in promises(body) if NOTE.search(promise) is None)
     yield from (f"{page}: there is no note {name}" for name in sorted(named - notes.keys()))
     yield from (f"{page}: nothing is promised by the note {name}" for name in sorted(notes.keys() - named))
     for name, note in notes.items():
@@ -217,7 +217,7 @@ def faults_of_promises(page: str, text: str) -> Iterator[str]:
         yield from _missing_scripts(page, SCRIPT.findall(note))
 
 
-def _promises(body: str) -> Iterator[str]:
+def promises(body: str) -> Iterator[str]:
     """Rows of tables with a column "held by", and the list of what is defended."""
     for table in re.findall(r"^\|.+\| held by \|\n\|[-|]+\|\n((?:\|.+\n)+)", body, re.MULTILINE):
         yield from table.splitlines()

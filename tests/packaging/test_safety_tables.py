@@ -78,8 +78,8 @@ def test_a_promise_that_no_test_holds_is_named(tables: ModuleType) -> None:
     row, silent = "| x | T: y | z | R-PRI-01 |", "test_a_server_that_falls_silent_amid_a_statement_is_given_up"
     assert list(tables.faults_of_promises("a page", model)) == []
     assert list(tables.faults_of_promises("a page", security)) == []
-    assert len(list(tables._promises(model))) > 40
-    assert len(list(tables._promises(security))) > 6
+    assert len(list(tables.promises(model))) > 40
+    assert len(list(tables.promises(security))) > 6
     wrong = {
         f"a page: no test holds: {row}": model.replace("| journals |", f"{row}\n| journals |"),
         "a page: there is no note nothing": model.replace("| R-PRI-04 [^audit] |", "| [^nothing] [^audit] |"),
