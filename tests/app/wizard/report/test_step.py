@@ -14,11 +14,12 @@ from app.exports.proposed_names import free_name, session_name
 from app.reports.patient.document import ReportPreview
 from app.storage.exchange import import_session
 from app.storage.operators import CLINIC
-from app.storage.stored import LibraryError
+from app.storage.stored import Action, LibraryError
 from app.theme.notifier import ThemeNotifier
 from app.widgets.rail_row import StepState
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.report.leaving_dialog import LeavingDialog
+from app.wizard.report.printing import PRINTED_PPI
 from app.wizard.report.step import ReportStep
 from app.wizard.visit import Visit
 from app.workers.library_controller import LibraryController
@@ -114,6 +115,26 @@ def test_a_file_that_was_not_written_is_named_with_its_reason(
     chosen(str(tmp_path / "results"))
     qtbot.waitUntil(lambda: step.state is StepState.DONE, timeout=WAIT_MS)
     assert told == [("Not every file was written.", lines[0])]
+
+
+def test_what_is_printed_is_in_the_audit_before_a_page_is_made(
+    qtbot: QtBot, step: ReportStep, visit: Visit, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    state, session = visit.controller.state, visit.session
+    assert state is not None
+    assert session is not None
+    noted: list[list[str]] = []
+
+    def pages(_preview: ReportPreview, _request: object, ppi: float) -> list[bytes]:
+        if ppi == PRINTED_PPI:  # else for the look before
+            noted.append([entry.action for entry in state.library.library.audit.entries(f"session:{session.id}")])
+        return []
+
+    monkeypatch.setattr(ReportPreview, "pages", pages)
+    qtbot.waitUntil(step.can_save, timeout=WAIT_MS)
+    step.printer.confirmed.emit()
+    qtbot.waitUntil(lambda: bool(noted), timeout=WAIT_MS)
+    assert noted[-1][-1] == Action.PRINT
 
 
 def dialog_of(qtbot: QtBot, step: ReportStep) -> LeavingDialog:
