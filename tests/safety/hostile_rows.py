@@ -101,8 +101,8 @@ class Outcome:
     def __str__(self) -> str:
         return (
             f"{self.changes} changes, of which {self.refused} refused by the server or of no row, {self.sentences} "
-            f"told in a sentence, {self.same} without effect, {self.shown} shown as they stand; {self.days} days of work, "
-            f"{len(self.faults)} faults"
+            f"told in a sentence, {self.same} without effect, {self.shown} shown as they stand; {self.days} days of "
+            f"work, {len(self.faults)} faults"
         )
 
 
