@@ -67,7 +67,8 @@ class _Below:
     """Passes each operation on to the folder below, unless it is told to refuse it."""
 
     def __init__(self, folder: Path, told: Path) -> None:
-        self._folder, self._told, self._writes = folder, told, 0
+        self._folder, self._told = folder, told
+        self._heard, self._writes = "", 0  # what was told, and the writes since
         self._libc = ctypes.CDLL(None, use_errno=True)
         for name in ("pread", "pwrite"):
             getattr(self._libc, name).argtypes = [c_int, c_void_p, c_size_t, c_int64]
@@ -82,10 +83,12 @@ class _Below:
     def _refuse(self, *, is_content: bool) -> None:
         """Raise what was told, once so many writes were let through."""
         try:
-            number, after = map(int, self._told.read_text().split())
+            told = self._told.read_text()
         except FileNotFoundError:
-            self._writes = 0
             return
+        if told != self._heard:
+            self._heard, self._writes = told, 0
+        number, after, _ = map(int, told.split())
         if is_content or number == EROFS:
             self._writes += 1
             if self._writes > after:
@@ -213,7 +216,7 @@ class FailingDisk:
     def fail(self, number: int, after: int = 0) -> None:
         """Refuse with this error, once so many writes were let through."""
         beside = self._told.with_suffix(".new")
-        beside.write_text(f"{number} {after}")
+        beside.write_text(f"{number} {after} {time.monotonic_ns()}")
         beside.replace(self._told)
 
     def mend(self) -> None:
