@@ -163,7 +163,7 @@ def test_what_was_saved_is_there_and_what_was_not_is_said(
 
 
 @REFUSED
-def test_a_backup_onto_it_is_refused_and_none_is_left(disk: FailingDisk, tmp_path: Path, number: int) -> None:
+def test_a_backup_onto_it_is_refused_and_none_is_half_there(disk: FailingDisk, tmp_path: Path, number: int) -> None:
     into, said, after = disk.folder / "backups", list[str](), 0
     into.mkdir()
     with made(tmp_path / "sound") as opened:
@@ -177,6 +177,8 @@ def test_a_backup_onto_it_is_refused_and_none_is_left(disk: FailingDisk, tmp_pat
             disk.mend()
             after += 1 + after // 4
             assert after < MOST_WRITES
+        (found,) = find_backups(into)  # whole, also where it was refused after it had its name
+        assert restore(found.folder, tmp_path / "restored", opened.data_key, "hk") == ()
     assert len(said) > 10
     assert {one.partition(" (")[0] for one in said} <= {
         "This folder cannot be written",
