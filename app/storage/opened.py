@@ -221,8 +221,10 @@ def _remove_unfinished(folder: Path) -> None:
     drawn = re.compile(rf"\.{re.escape(folder.name)}-[a-z0-9_]{{8}}")  # as `tempfile` draws names
     for left in folder.parent.glob(f".{glob.escape(folder.name)}-*"):
         if drawn.fullmatch(left.name) and (left / IN_USE).exists():
-            with suppress(BlockingIOError), held(left / IN_USE):  # another program may just be making it
-                shutil.rmtree(left)
+            with suppress(BlockingIOError, FileNotFoundError):  # another program may just be making or removing it
+                with held(left / IN_USE):
+                    pass
+                shutil.rmtree(left)  # not while its file is open: on a disk of the network it would not go
 
 
 @contextmanager

@@ -56,7 +56,7 @@ class ThemeNotifier(QObject):
 
         Qt itself would tell them in the order of their addresses, and what is laid out by hand measures its parts.
         """
-        style = app.theme.style()
+        style = app.style()
         if isinstance(style, ControlStyle):
             style.theme = self.theme
         else:
