@@ -12,9 +12,9 @@ import pytest
 import typst
 
 from app.cli.main import main
+from app.reports.patient.document import make_report
 from app.reports.patient.report_file import check_report_place, chosen_walks, replace_report, session_of
 from app.summary.request import AnalysedVisit, ReportRequest, default_walks
-from app.reports.patient.document import make_report
 from devices.files.refusal import FileRefusedError
 from devices.files.session_folder import write_session
 
