@@ -31,12 +31,12 @@ from app.storage.library import Library
 from app.storage.login_delay import LoginDelay
 from app.storage.slots import Cost
 from app.storage.stored import Operator, Role
+from app.system.progress import Report
 from app.system.settings import Scheme, Settings
 from app.theme.colours import DARK, LIGHT
 from app.theme.notifier import ThemeNotifier
 from app.wizard.keys import Intent, KeyAction
 from app.wording.translation import use_language
-from app.workers.background import Report
 from core.samples import Patient, Recording, RecordingKind, Session
 
 PASSPHRASE = "four short words here"
@@ -829,7 +829,7 @@ def test_where_the_environment_names_no_server_that_answers_it_is_said_and_tried
 def test_the_environment_leads_to_a_folder_of_its_own_unless_the_own_one_is_a_station(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("app.cli.library.platformdirs.user_data_path", lambda *_, **__: tmp_path)
+    monkeypatch.setattr("app.storage.layout.platformdirs.user_data_path", lambda *_, **__: tmp_path)
     assert default_folder() == tmp_path / "library"
     monkeypatch.setenv(DATABASE_VARIABLE, "postgresql://station@server/clinic")
     assert default_folder() == tmp_path / "clinic"

@@ -142,10 +142,12 @@ def _of_settings(page: Any, held: HeldLibrary) -> Iterator[str]:
 
 
 def _of_frame(wizard: "Wizard", visit: "Visit", held: HeldLibrary) -> Iterator[str]:
+    from app.wizard.step import StepId
+
     assert visit.session is not None
     ((code, birth_year, device),) = held.ask(PATIENT, visit.session.id.hex)
     header = wizard.shell.header
-    if wizard.step_number != 0:  # where it is being typed
+    if wizard.step_id is not StepId.PATIENT:  # where it is being typed
         if header.code.text() != code:
             yield f"the header names {header.code.text()!r}, the session is held as {code!r}'s"
         facts = header.facts.text()

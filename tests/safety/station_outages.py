@@ -78,7 +78,7 @@ class _Storm:
         self._moments = cycle(MOMENTS)
         self._server, self._rng = server, random.Random(seed)
         self._is_up = self._is_place_there = True
-        self._away = clinic.place.with_name("Export the data as files, then import them where they belong")
+        self._away = clinic.place.with_name("taken away")
         command = [sys.executable, "-m", "tests.safety.station_life"]
         root, pipe = Path(__file__).parents[2], subprocess.PIPE
         with (folder / "said").open("w") as said:

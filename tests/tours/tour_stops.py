@@ -288,7 +288,7 @@ BENCH: tuple[Stop, ...] = (  # three alignments of one prosthesis, by keys
     ),
     Stop("35a-c-walking", has_walked(STRIDES), ("press space",), patience_s=60.0),
     Stop("36-c-against-b", offers("Keep C"), ("press 3", "press shift+1"), lingers_s=3.0, patience_s=60.0),
-    Stop("37-c-against-a", offers("Return to A"), ("to Return to A", "press Return"), lingers_s=1.0),
+    Stop("37-c-against-a", offers("Return to A"), ("to Return to A", "press shift+Return"), lingers_s=1.0),
     Stop("38-back-to-a", says("Back to A"), ("press ctrl+z", "to Keep C", "press Return"), lingers_s=1.0),
     Stop("39-c-kept", offers("Results"), ("to Results", "press Return"), lingers_s=1.0),
     Stop("40-results", offers("Legs", "Data"), ("press ctrl+7",), lingers_s=1.0, patience_s=60.0),

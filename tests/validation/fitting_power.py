@@ -66,7 +66,7 @@ class Change:
 
 CHANGES: Mapping[str, Change] = {
     "foot angle": Change("° plantar", -15.0, 15.0, lambda x: ProsthesisSetting(plantar_deg=x)),
-    "foot shift": Change("mm posterior", -60.0, 60.0, lambda x: ProsthesisSetting(back_mm=x)),
+    "foot shift": Change(" mm back", -60.0, 60.0, lambda x: ProsthesisSetting(back_mm=x)),
     "knee stop": Change("°", 0.0, 12.0, lambda x: ProsthesisSetting(stop_deg=x)),
     "extension": Change(" x resistance, log", -1.5, 1.5, lambda x: ProsthesisSetting(extension=math.exp(x))),
     "stance resistance": Change(" of flexion", -1.0, 0.0, lambda x: ProsthesisSetting(stance_flexion=1.0 + x)),

@@ -457,7 +457,7 @@ def test_a_signal_in_the_middle_ends_with_three(session: Path, tmp_path: Path) -
 
 INTERRUPTED_IN_A_LIBRARY = """
 import os, signal, sys
-from app import cli
+from app.cli import main as cli
 def run(wanted):
     exec("os.kill(os.getpid(), signal.SIGINT)", {"os": os, "signal": signal})
 cli._run = run

@@ -211,7 +211,7 @@ def test_a_stopped_import_says_what_came_of_it_once_that_is_known(
     monkeypatch.setattr("app.home.importing.controller.import_session", held)
     home.importing.read([tmp_path / "visit"])
     qtbot.waitUntil(lambda: home.current is home.importing.page, timeout=WAIT_MS)
-    home.bar.primary_pressed.emit()
+    home.importing.take_in()
     home.working.stop_pressed.emit()
     assert "being stopped" in home.banner.text
     assert "added to the library" not in home.banner.text

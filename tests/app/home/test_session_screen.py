@@ -25,12 +25,13 @@ from app.results.result_page import (
     ResultPage,
 )
 from app.results.whole_page import BOTH, ORIENTATION, PUBLISHED, RESULT
+from app.system.progress import Report
 from app.theme.colours import DARK, LIGHT
 from app.theme.notifier import ThemeNotifier
 from app.widgets.findings_list import FindingRow
 from app.widgets.table import CellTable
 from app.widgets.table_cells import TextCell
-from app.workers.background import Report, Stopped, Work
+from app.workers.background import Stopped, Work
 from app.workers.opening import Opened
 from core.analysis import analyse
 from core.body import LEG_JOINTS, Joint, Side

@@ -26,8 +26,6 @@ from devices.simulation.walker_body import Tissue
 from tests.app.changed_analysis import recalibrated
 from tests.app.room import settle
 
-MINUS = "\N{MINUS SIGN}"
-
 
 @pytest.fixture(scope="module")
 def session() -> Session:

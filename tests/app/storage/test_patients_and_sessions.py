@@ -193,8 +193,6 @@ def test_of_two_who_change_at_once_the_second_is_told(
     with pytest.raises(ChangedMeanwhileError):
         library.recordings.change(walk, replace(WALK, condition="barefoot"))
     with pytest.raises(ChangedMeanwhileError):
-        library.sessions.correct_placement([walk], SWAPPED)
-    with pytest.raises(ChangedMeanwhileError):
         library.patients.delete(patient)
     with pytest.raises(ChangedMeanwhileError):
         library.sessions.delete(visit)
@@ -284,7 +282,8 @@ def test_a_corrected_placement_leaves_the_old_one_in_the_history(
 ) -> None:
     assert walk.placement is not None
     assert walk.placement.site_of == {"S1": Site.LEFT_SHANK, "S2": Site.LEFT_THIGH}
-    (corrected,) = library.sessions.correct_placement([walk], SWAPPED)
+    edited = library.edits.placement(visit.id, {walk.id: walk.placement.id}, [([walk.id], SWAPPED)])
+    (corrected,) = edited.stored.recordings
     assert corrected.placement is not None
     assert corrected.placement.sensors == SWAPPED
     again = library.sessions.get(visit.id)

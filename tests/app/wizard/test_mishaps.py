@@ -16,15 +16,16 @@ from app.storage.journal.disk import Trouble
 from app.storage.opened import OpenedLibrary
 from app.storage.shared_edits import SharedEdits
 from app.storage.stored import LibraryBusyError, LibraryError, RecordingState
+from app.system.progress import Report
 from app.theme.notifier import ThemeNotifier
 from app.wizard import wizard as wizard_module
 from app.wizard.free_motion.step import FreeMotionStep
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.standing.step import StandStillStep
+from app.wizard.step import StepId
 from app.wizard.visit import Visit
 from app.wizard.walking.step import WATCH_TICKS, WalkingStep
-from app.wizard.wizard import DEAF_S, FREE_MOTION, RESULTS, WALKING, Wizard
-from app.workers.background import Report
+from app.wizard.wizard import DEAF_S, Wizard
 from app.workers.library_controller import LibraryController
 from core.body import LEG_SITES, Site
 from core.samples import Patient, Recording, RecordingKind, Session
@@ -286,7 +287,7 @@ def test_a_demonstration_that_was_left_gives_its_patient_to_no_other_session(
     qtbot: QtBot, controller: LibraryController, wizard: Wizard
 ) -> None:
     wizard.begin(None)
-    wizard.steps[0].demonstration_wanted.emit()
+    wizard.steps[StepId.PATIENT].demonstration_wanted.emit()
     wizard.begin(None)  # before the library has answered
     asked(qtbot, controller, lambda _opened: None)
     assert wizard.visit is not None
@@ -410,7 +411,7 @@ def test_a_session_that_was_left_while_it_opened_does_not_open_in_the_next(
     wizard.begin(None)
     with qtbot.waitSignal(before.resumed, timeout=WAIT_MS):
         pass
-    assert wizard.current is not wizard.steps[RESULTS]
+    assert wizard.current is not wizard.steps[StepId.RESULTS]
     assert wizard.visit.session is None
 
 
@@ -448,9 +449,9 @@ def test_a_key_that_was_meant_for_the_page_before_does_nothing(wizard: Wizard, m
     now_s = 1000.0
     monkeypatch.setattr("app.wizard.wizard.time.monotonic", lambda: now_s)
     wizard.begin(None)
-    wizard._go_to(FREE_MOTION)
-    wizard.steps[FREE_MOTION].done.emit()
-    assert wizard.step_number == WALKING
+    wizard._go_to(StepId.FREE_MOTION)
+    wizard.steps[StepId.FREE_MOTION].done.emit()
+    assert wizard.step_id is StepId.WALKING
     wizard.act_on(Intent(KeyAction.RUN))
     assert heard == []
     wizard.act_on(Intent(KeyAction.UNDO))

@@ -17,7 +17,8 @@ from app.storage.exchange import import_session
 from app.storage.opened import OpenedLibrary
 from app.system.settings import Settings
 from app.theme.notifier import ThemeNotifier
-from app.wizard.wizard import RESULTS, WALKING, Wizard
+from app.wizard.step import StepId
+from app.wizard.wizard import Wizard
 from app.workers.library_controller import LibraryController
 from core.samples import Session
 from tests.safety.random_keys import play
@@ -61,8 +62,8 @@ def session_in_sight(qtbot: QtBot, wizard: Wizard, opened: OpenedLibrary) -> Any
     wizard.show_session(line.id)
     visit = wizard.visit
     assert visit is not None
-    qtbot.waitUntil(lambda: wizard.step_number == RESULTS and not visit.evaluation.is_busy, timeout=WAIT_MS)
-    wizard.go_to(WALKING)
+    qtbot.waitUntil(lambda: wizard.step_id is StepId.RESULTS and not visit.evaluation.is_busy, timeout=WAIT_MS)
+    wizard.go_to(StepId.WALKING)
     return SimpleNamespace(screens=SimpleNamespace(currentWidget=lambda: wizard), home=None, wizard=wizard)
 
 

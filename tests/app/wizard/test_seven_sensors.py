@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.storage.analysis_content import packed
-from app.storage.exchange import export_session, session_with_samples
+from app.storage.exchange import session_with_samples
 from app.theme.notifier import ThemeNotifier
 from app.wizard.free_motion.step import FreeMotionStep
 from app.wizard.sensors.replays import replay_of
@@ -29,8 +29,10 @@ from devices.decoders import DECODERS
 from devices.files.session_folder import read_session
 from devices.simulation.replay import ReplaySource
 from devices.simulation.walker import DEMONSTRATION, FreeMotion, Motion, Standing, Walk, simulate
+from tests.app.storage.library.folder_export import write_folder
 from tests.app.wizard.begun_visit import begin, record
 from tests.app.wizard.conftest import SPEED
+from tests.app.wizard.pressing import press
 
 HIPS = {hip_of(side) for side in Side}
 LIVE_SPEED = 4.0
@@ -128,7 +130,7 @@ def test_all_that_is_kept_of_a_session_holds_the_pelvis(
     assert played.worn["DEMO-pelvis"] is Site.PELVIS
     for is_identified in (False, True):
         folder = tmp_path / f"{is_identified}"
-        export_session(opened, stored.id, folder, DECODERS, lambda *_: None, is_identified=is_identified)
+        write_folder(opened, stored.id, folder, DECODERS, is_identified=is_identified)
         assert len(list(folder.rglob("pelvis.csv"))) == len(stored.recordings)
         session = read_session(folder)
         assert all(Site.PELVIS in recording.imu for recording in session.recordings)
@@ -183,7 +185,7 @@ def test_live_hips_are_thin_then_sure_and_a_silent_pelvis_costs_them_alone(
     page = step.page
     assert page.charts.hip.isVisible() is False  # the walks stand there until one is recorded
     with qtbot.waitSignal(visit.recordings.begun, timeout=10_000):
-        step.on_primary()
+        press(step)
     qtbot.waitUntil(lambda: set(page.live.hips) == set(Side), timeout=20_000)
     assert page.charts.hip.isVisible()
     assert page.live.hips[Side.LEFT].is_provisional
@@ -200,7 +202,7 @@ def test_live_hips_are_thin_then_sure_and_a_silent_pelvis_costs_them_alone(
     source.wake(pelvis)
     qtbot.waitUntil(lambda: page.notice.text.startswith("Pelvis is back"), timeout=20_000)
     with qtbot.waitSignal(visit.recordings.ended, timeout=20_000):
-        step.on_primary()
+        press(step)
     walk = visit.recordings.walks[-1]
     assert walk.read_back is not None
     assert Site.PELVIS in walk.read_back.imu
@@ -243,7 +245,7 @@ def test_live_standing_does_not_wait_for_a_silent_pelvis(
     qtbot.addWidget(step.page)
     looked.append(Looked(step))
     with qtbot.waitSignal(visit.recordings.ended, timeout=30_000):
-        step.on_primary()
+        press(step)
     assert set(visit.rests) == set(worn) - {"DEMO-pelvis"}
 
 

@@ -11,7 +11,7 @@ from pytestqt.qtbot import QtBot
 
 from app.theme.icons import Icon
 from app.theme.notifier import ThemeNotifier, load_fonts
-from app.widgets.action_bar import BarAction, BarState, RecordingNote
+from app.widgets.action_bar import BarState, RecordingNote
 from app.widgets.rail_row import RailForm, RailRow, StepState
 from app.widgets.sensor_strip import SensorStrip
 from app.widgets.sensor_tile import SensorTile
@@ -20,8 +20,10 @@ from app.widgets.step_rail import wizard_below
 from app.wizard import shell as shell_module
 from app.wizard.free_motion.page import FreeMotionPage
 from app.wizard.shell import StripMode, WizardShell
+from app.wizard.step import StepId
 from app.wording.translation import tr, use_language
 from core.body import LEG_SITES, Site
+from tests.app.idle_action import idle
 from tests.app.room import settle, words_cut
 
 RECORDING = ("Recording Alignment C", "Saved as it comes in. The space bar stops it, with a sound.")
@@ -50,20 +52,20 @@ def fine() -> dict[Site, SensorTile]:
 
 def stop_early() -> BarState:
     note = tr("Stopping now leaves the left knee with range only, without absolute angles.")
-    stop = BarAction(tr("Stop early"), tr("Space"), Icon.STOP, is_wished=False)
-    return BarState(stop, quiet=(BarAction(tr("Repeat one leg"), icon=Icon.REPEAT),), note=note)
+    stop = idle(tr("Stop early"), tr("Space"), Icon.STOP, is_wished=False)
+    return BarState(stop, quiet=(idle(tr("Repeat one leg"), icon=Icon.REPEAT),), note=note)
 
 
 def recording() -> BarState:
     title, note = (tr(words) for words in RECORDING)
     return BarState(
-        BarAction(tr("Stop walk"), tr("Space"), Icon.STOP), recording=RecordingNote(title, note, 17.0, has_sound=True)
+        idle(tr("Stop walk"), tr("Space"), Icon.STOP), recording=RecordingNote(title, note, 17.0, has_sound=True)
     )
 
 
 def reconnect() -> BarState:
-    wished = BarAction(tr("Reconnect R foot"), tr("Enter"), Icon.REPEAT)
-    return BarState(wished, others=(BarAction(tr("Continue without right ankle")),))
+    wished = idle(tr("Reconnect R foot"), tr("Enter"), Icon.REPEAT)
+    return BarState(wished, others=(idle(tr("Continue without right ankle")),))
 
 
 def filled(look: ThemeNotifier) -> WizardShell:
@@ -104,7 +106,7 @@ def shell(look: ThemeNotifier, qtbot: QtBot, monkeypatch: pytest.MonkeyPatch) ->
     qtbot.addWidget(shell)
     shell.resize(1280, 800)
     shell.show()
-    shell.show_page(0, Page())
+    shell.show_page(StepId.PATIENT, Page())
     settle()
     return shell
 
@@ -150,13 +152,13 @@ def test_a_page_is_told_its_room_in_px_of_the_design(shell: WizardShell, look: T
     assert page is not None
     assert told[-1] == (True, page.width() / 2, page.height() / 2)
     told.clear()
-    shell.show_page(1, Page())
+    shell.show_page(StepId.SENSORS, Page())
     assert told
 
 
 def test_a_question_above_the_gauges_pushes_none_out_of_sight(shell: WizardShell, look: ThemeNotifier) -> None:
     page = FreeMotionPage(look)
-    shell.show_page(7, page)
+    shell.show_page(StepId.PATIENT, page)
     page.ask("Both legs moved at once. Which leg has 0A31 on the shank?", "", ("Left", "Right"))
     settle()
     assert page.question.isVisible()
@@ -167,16 +169,16 @@ def test_a_question_above_the_gauges_pushes_none_out_of_sight(shell: WizardShell
 def test_a_page_with_nothing_to_press_leaves_the_focus_to_the_bar(shell: WizardShell, look: ThemeNotifier) -> None:
     page = SentencePage(look)
     page.show_sentence("The results are saved.")
-    shell.show_page(7, page)
+    shell.show_page(StepId.PATIENT, page)
     assert shell.focusWidget() is shell.bar.primary
     page.show_sentence("No walk is included yet.", button="Go to Walking")
-    shell.show_page(7, page)
+    shell.show_page(StepId.PATIENT, page)
     assert shell.focusWidget() is page.button
 
 
 def test_a_page_comes_into_sight_with_the_focus_where_reading_starts(shell: WizardShell) -> None:
     page = Page()
-    shell.show_page(3, page)
+    shell.show_page(StepId.FREE_MOTION, page)
     assert shell.page is page
     assert shell.focusWidget() is page.first
 
@@ -186,8 +188,8 @@ def test_the_page_that_was_there_fades_and_leaves_nothing(look: ThemeNotifier, q
     qtbot.addWidget(shell)
     shell.resize(900, 600)
     shell.show()
-    shell.show_page(0, Page())
-    shell.show_page(1, Page())
+    shell.show_page(StepId.PATIENT, Page())
+    shell.show_page(StepId.SENSORS, Page())
     qtbot.waitUntil(lambda: not shell._fade.isVisible(), timeout=2000)
 
 
@@ -369,7 +371,7 @@ def test_tab_goes_past_a_list_that_folds_out(shell: WizardShell) -> None:
     choice.view()  # Qt makes its window when it is first asked for
     for widget in (choice, button):
         column.addWidget(widget)
-    shell.show_page(1, page)  # Qt's warnings fail a test
+    shell.show_page(StepId.SENSORS, page)  # Qt's warnings fail a test
     choice.setFocus()
     QTest.keyClick(choice, Qt.Key.Key_Tab)
     assert button.hasFocus()

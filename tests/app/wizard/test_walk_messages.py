@@ -8,7 +8,6 @@ from app.theme.notifier import ThemeNotifier
 from app.wizard.losses import NOTHING
 from app.wizard.visit import Visit
 from app.wizard.walk_messages import (
-    clock,
     few_strides_message,
     lacks_message,
     loose_message,
@@ -19,6 +18,7 @@ from app.wizard.walking.step import WalkingStep
 from core.body import LEG_SITES, Side, Site
 from core.samples import RecordingKind
 from tests.app.wizard.begun_visit import begin, record
+from tests.app.wizard.pressing import press
 
 FEET = frozenset((Site.LEFT_FOOT, Site.RIGHT_FOOT))
 ALL = frozenset(LEG_SITES)
@@ -69,10 +69,6 @@ def test_only_what_is_short_of_a_spread_is_told() -> None:
     assert few_strides_message({Side.LEFT: 9})[0] == "Only 9 left strides; a standard deviation needs 10."
 
 
-def test_a_clock_shows_minutes_and_no_negative_time() -> None:
-    assert (clock(41.9), clock(605.0), clock(-3.0)) == ("0:41", "10:05", "0:00")
-
-
 def test_who_walks_without_foot_sensors_reads_why_nothing_is_counted(
     qtbot: QtBot, visit: Visit, worn: dict[str, Site], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -85,9 +81,9 @@ def test_who_walks_without_foot_sensors_reads_why_nothing_is_counted(
     qtbot.addWidget(step.page)
     step.enter()
     with qtbot.waitSignal(visit.recordings.begun, timeout=10_000):
-        step.on_primary()
+        press(step)
     step.tick()
     assert step.page.notice.text.startswith("No foot sensors: strides are counted after the walk.")
     with qtbot.waitSignal(visit.recordings.ended, timeout=10_000):
-        step.on_primary()
+        press(step)
     step.leave()

@@ -24,7 +24,7 @@ from app.storage.library import Library
 from app.storage.opened import OpenedLibrary, held_alone, open_library
 from app.storage.slots import Cost
 from app.storage.stored import LibraryError, Operator, Role, StoredPatient
-from app.workers.background import Report
+from app.system.progress import Report
 from app.workers.library_controller import LibraryController
 from app.workers.library_state import Joined, LibraryPlace, OpenedState
 from app.workers.library_watch import LibraryWatch
@@ -64,11 +64,20 @@ def test_the_passphrase_is_not_held_by_a_library_that_is_open(
 ) -> None:
     slots, own = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64)), "words that only this test types"
     slots.set_passphrase(slots.open("hk", PASSPHRASE), "hk", own)
-    for passphrase, signal in ((own, controller.opened), ("words of somebody else", controller.not_opened)):
-        with qtbot.waitSignal(signal, timeout=WAIT_MS):
-            controller.open(folder, passphrase, "hk")
+
+    def let_go_of(passphrase: str) -> None:
         # the thread may be about to let go of it
         qtbot.waitUntil(lambda text=passphrase: not is_held(text), timeout=WAIT_MS)  # type: ignore[misc]  # pytest-qt's types
+
+    for passphrase, signal in (("words of somebody else", controller.not_opened), (own, controller.opened)):
+        with qtbot.waitSignal(signal, timeout=WAIT_MS):
+            controller.open(folder, passphrase, "hk")
+        let_go_of(passphrase)
+    asker = Asker()
+    controller.lock()
+    controller.unlock("hk", own, None, asker.on_done, asker.on_failed, asker)
+    qtbot.waitUntil(lambda: bool(asker.results), timeout=WAIT_MS)
+    let_go_of(own)
 
 
 def is_held(text: str) -> bool:

@@ -43,6 +43,7 @@ def test_before_a_patient_is_deleted_it_is_said_what_goes_and_until_when_it_can_
     assert dialog.goes.text() == "This also deletes 3 sessions and 0 recordings."
     day = date((datetime.now().astimezone() + timedelta(days=30)).date())
     assert f"restore it in Settings until {day}" in dialog.until.text()
+    assert "Earlier backups keep it longer." in dialog.until.text()
     assert dialog.others.isHidden()  # nobody else was here
     QTest.keyClick(dialog, Qt.Key.Key_Return)
     QTest.keyClick(dialog, Qt.Key.Key_Escape)

@@ -19,9 +19,10 @@ from app.charts.stride_chart import StrideChart
 from app.exports.result_folder import write_results
 from app.reports.patient import comparison_page, curves_page, first_page, time_page
 from app.reports.patient.document import report_data
-from app.summary.numbers_in_words import MINUS, NOTHING, against_band, fixed, signed, spread
+from app.summary.numbers_in_words import NOTHING, against_band, fixed, signed, spread
 from app.summary.reference_bands import reference_curves, time_distance_classes
 from app.summary.request import AnalysedVisit, ReportRequest
+from app.wording.numbers import MINUS
 from core.body import Side
 from core.gait.spatiotemporal import MeanAndSd
 

@@ -328,4 +328,4 @@ def test_a_server_that_falls_silent_amid_a_statement_is_given_up(
         session.scalar(text("SELECT 1"))
     database.close()
     server.close()
-    assert time.monotonic() - began_s < PG_SILENT_S
+    assert time.monotonic() - began_s < PG_SILENT_S <= 30.0

@@ -1,6 +1,7 @@
 """A backup opens and holds everything, or there is none; a restored library is the one that was backed up."""
 
 import datetime
+import errno
 import json
 import os
 import shutil
@@ -11,11 +12,13 @@ from pathlib import Path
 from uuid import UUID
 
 import pytest
+import sqlcipher3.dbapi2 as sqlite
 
 from app.storage.backup import LIST, back_up, find_backups, remove_old_backups, restore
+from app.storage.files import held
 from app.storage.journal.reader import JournalReader
 from app.storage.keys import KeySlots
-from app.storage.layout import DATABASE, KEYS, RECORDINGS
+from app.storage.layout import DATABASE, IN_USE, KEYS, RECORDINGS
 from app.storage.opened import OpenedLibrary, held_alone, open_library
 from app.storage.stored import Action, LibraryError, StoredRecording
 from core.samples import Patient
@@ -265,3 +268,38 @@ def test_what_a_kill_left_of_a_restore_is_gone_at_the_next_start(
     restore(backup.folder, target, opened.data_key, "hk")
     with held_alone(target):
         assert list(tmp_path.glob(".rs-*")) == [somebodys]
+
+
+def test_a_restore_is_not_held_up_by_what_a_kill_left_where_an_open_file_does_not_go(
+    opened: OpenedLibrary, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As on a disk of the network, or on Windows."""
+    backup = back_up(opened, tmp_path / "backups")
+    left, remove = tmp_path / ".rs-abcdefgh", shutil.rmtree
+    left.mkdir()
+    (left / IN_USE).touch()
+
+    def remove_closed(folder: Path, *, ignore_errors: bool = False) -> None:
+        if (folder / IN_USE).exists():
+            try:
+                with held(folder / IN_USE):
+                    pass
+            except BlockingIOError:
+                raise OSError(errno.ENOTEMPTY, "Directory not empty") from None
+        remove(folder, ignore_errors=ignore_errors)
+
+    monkeypatch.setattr("shutil.rmtree", remove_closed)
+    restore(backup.folder, tmp_path / "rs", opened.data_key, "hk")
+    assert not left.exists()
+
+
+def test_a_disk_that_refuses_the_copy_of_the_database_is_said_and_nothing_is_left(
+    opened: OpenedLibrary, tmp_path: Path
+) -> None:
+    def refuse(share: float, _what: str) -> None:
+        if share:  # amid the copying of the database
+            raise sqlite.OperationalError("disk I/O error")
+
+    with pytest.raises(LibraryError, match=r"This folder cannot be written \(disk I/O error\)"):
+        back_up(opened, tmp_path / "backups", refuse)
+    assert list((tmp_path / "backups").iterdir()) == []

@@ -20,6 +20,7 @@ from devices.emulators.csv_lines import LineVoice
 from devices.emulators.transports import Emulation, PseudoTerminal
 from devices.live import SourceRefusedError
 from devices.transport.ports import PortInfo
+from tests.app.wizard.pressing import press
 
 
 def still(number: int) -> tuple[float, ...]:
@@ -77,7 +78,7 @@ def test_what_is_guessed_is_shown_with_what_comes_and_is_kept(
     assert primary is not None
     assert (primary.text, primary.is_enabled) == ("Use these columns", True)
     with qtbot.waitSignal(visit.refused, timeout=5000) as refused:
-        step.on_primary()
+        press(step)
     assert refused.args == ["Searched.", "again."]
     assert kept.known_columns() == {place: EMULATED, "/dev/other": EMULATED}
     assert not step.telling.is_on

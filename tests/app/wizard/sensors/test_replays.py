@@ -19,6 +19,7 @@ from app.workers.library_controller import LibraryController
 from core.body import LEG_SITES
 from core.samples import Patient, RecordingKind, SensorInfo, Session
 from devices.files.session_folder import write_session
+from tests.app.wizard.pressing import press
 from tests.safety.live_material import numbered, numbered_session
 
 
@@ -85,7 +86,7 @@ def test_a_session_of_the_library_is_chosen_by_code_and_date(
     assert bar.primary is not None
     assert (bar.primary.text, bar.primary.is_enabled) == ("Replay", True)
     with qtbot.waitSignal(visit.sensors.opened, timeout=10_000):
-        step.on_primary()
+        press(step)
     assert visit.sensors.site_of == {f"S-{site}": site for site in LEG_SITES}
     assert visit.sensors.choice is not None
     assert visit.sensors.choice.name == "Replay of P-7, 24 Oct 2026"

@@ -19,6 +19,7 @@ from core.body import Joint, Site
 from core.samples import RecordingKind
 from devices.simulation.replay import ReplaySource
 from tests.app.wizard.begun_visit import begin
+from tests.app.wizard.pressing import press
 
 SPACE = Intent(KeyAction.RUN)
 
@@ -127,7 +128,7 @@ def test_who_cannot_stand_is_not_recorded(qtbot: QtBot, step: StandStillStep, vi
     qtbot.waitUntil(lambda: not visit.recordings.is_recording, timeout=10_000)
     qtbot.waitUntil(lambda: visit.recordings.standing is None, timeout=10_000)
     with qtbot.waitSignal(step.done):
-        step.on_primary()
+        press(step)
     step.page.can_stand_pressed.emit()
     assert not visit.has_skipped_standing
     assert step.page.view.phase is StandPhase.READY

@@ -17,7 +17,6 @@ from app.theme.notifier import ThemeNotifier
 from app.widgets.table_cells import TextCell
 from app.wizard.visit import Visit
 from app.wizard.walking.bench import ChangeEntry, chain_of, next_walk
-from app.wizard.walking.bench_bar import bench_bar
 from app.wizard.walking.bench_control import Bench
 from app.wizard.walking.bench_differences import BenchDifferences
 from app.wizard.walking.bench_words import bench_answer
@@ -314,16 +313,6 @@ def test_a_discarded_walks_change_is_told_again_of_the_next(bench: Bench, visit:
     bench.discarded(walk)
     bench.counts_again(walk)
     assert bench.entry.parts == ()
-
-
-def test_the_bar_says_what_the_next_walk_is_walked_with(bench: Bench) -> None:
-    again = bench_bar(bench, None, "", "", can_start=True)
-    assert [one.text for one in again.others] == ["Return to A", "C again"]
-    bench.entry.step("turns", 1)
-    asked = bench_bar(bench, "C", "", "", can_start=True)
-    assert [one.text for one in asked.others] == ["Return to A", "Walk with D"]
-    assert asked.primary is not None
-    assert (asked.primary.text, asked.note) == ("Keep C", "")
 
 
 def test_no_bench_where_no_side_is_sound_or_nothing_was_walked(bench: Bench, visit: SimpleNamespace) -> None:
