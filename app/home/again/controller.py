@@ -198,5 +198,9 @@ def _proposed(place: Path) -> str:
 
 
 def _failed(count: int) -> str:
-    said = tr("{count} could not be analysed. The list shows why.")
+    said = tr_n(  # alike in English only
+        "{count} could not be analysed. The list shows why.",
+        "{count} could not be analysed. The list shows why.",
+        count,
+    )
     return said.format(count=count)
