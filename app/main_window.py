@@ -35,6 +35,7 @@ from app.theme.notifier import ThemeNotifier, load_fonts
 from app.widgets.accessible_role import tell_roles
 from app.widgets.focus_ring import FocusRing
 from app.widgets.folder_dialog import keep_no_visited_folders
+from app.widgets.grid import COMPACT_BELOW
 from app.wording.qt import qt_speaks
 from app.wording.translation import PURPOSE, tr, use_language
 from app.workers.background import Background
@@ -58,7 +59,6 @@ SWITCH_S = 0.001  # a frame needs Python several times, and waits so long each t
 IN_ANOTHER_LANGUAGE = 90  # what the event loop ends with where the window is to be opened anew
 PREPARE_AFTER_MS = 200  # the first frame goes before
 MAKE_EVERY_MS = 300  # of what is made before it is needed; what the user does comes between
-COMPACT_BELOW = (1180, 720)
 ACTIVITY = frozenset(
     (
         QEvent.Type.KeyPress,

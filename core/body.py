@@ -13,6 +13,10 @@ class Side(StrEnum):
     def other(self) -> "Side":
         return Side.RIGHT if self is Side.LEFT else Side.LEFT
 
+    @property
+    def letter(self) -> str:
+        return "L" if self is Side.LEFT else "R"
+
 
 class Segment(StrEnum):
     """A segment of the body: the pelvis, and those of the leg."""

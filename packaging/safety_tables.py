@@ -4,7 +4,8 @@
 requirements that control it, each use error with the message it meets. From these come the tables beside them, in
 which every control leads to its tests. They are made for reading and with every build, and are not committed. What
 does not fit together is printed, nothing is written then, and a test fails: a requirement without a test, a test,
-script or message that is not there, a risk without a control.
+script or message that is not there, a risk without a control, a promise of the threat model or of SECURITY.md that no
+test holds.
 """
 
 import ast
@@ -24,6 +25,10 @@ ID = re.compile(r"R-[A-Z]{2,3}-\d\d")
 TABLES = ("requirements.md", "risks.md", "use_errors.md")  # made here, and ignored by git
 MESSAGE = re.compile(r'(?m)^msgid(?:_plural)? ((?:".*"\n)+)')
 NODE = re.compile(r"tests/[\w/]+\.py::test_\w+")
+SCRIPT = re.compile(r"`python -m (tests[\w.]+)")
+NOTE = re.compile(r"\[\^([\w-]+)\]")  # beside a promise: which tests hold it
+NOTES = re.compile(r"^\[\^([\w-]+)\]: (.+(?:\n    .+)*)", re.MULTILINE)
+PROMISED = ("threat_model.md", "SECURITY.md")
 FILE = re.compile(r"\b(?:app|core|devices|packaging|resources|tests)/[\w/-]+\.(?:py|toml|md)\b")
 TO_COME = {"packaging/build.py"}  # of the installers
 MADE = "Made by `python packaging/safety_tables.py` from `{source}`, which is what to change.\n"
@@ -159,10 +164,7 @@ def faults_of_requirements(known: Sequence[Requirement], sources: set[str]) -> I
         tests = [found for test in one.tests if (found := find_test(test)) is not None]
         if all(test.needs_recordings or test.is_long for test in tests):
             yield f"{one.id}: no test of the default run holds it where the shared recordings are not at hand"
-        for run in one.runs:
-            place = ROOT / run.replace(".", "/")
-            if not place.with_suffix(".py").is_file() and not (place / "__main__.py").is_file():
-                yield f"{one.id}: there is no script {run}"
+        yield from _missing_scripts(one.id, one.runs)
 
 
 def faults_of_risks(entries: Sequence[Risk], known: set[str]) -> Iterator[str]:
@@ -197,6 +199,38 @@ def faults_of_pages(known: set[str]) -> Iterator[str]:
         gone = {file for file in FILE.findall(text) if not (ROOT / file).is_file()} - TO_COME
         yield from (f"{page.name}: there is no file {file}" for file in sorted(gone))
         yield from (f"{page.name}: there is no requirement {name}" for name in ID.findall(text) if name not in known)
+        if page.name in PROMISED:
+            yield from faults_of_promises(page.name, text)
+
+
+def faults_of_promises(page: str, text: str) -> Iterator[str]:
+    """What is promised in a table or list without a note of its tests, and notes without a test or a promise."""
+    body = NOTES.sub("", text)
+    notes, named = dict(NOTES.findall(text)), set(NOTE.findall(body))
+    yield from (f"{page}: no test holds: {promise}" for promise in promises(body) if NOTE.search(promise) is None)
+    yield from (f"{page}: there is no note {name}" for name in sorted(named - notes.keys()))
+    yield from (f"{page}: nothing is promised by the note {name}" for name in sorted(notes.keys() - named))
+    for name, note in notes.items():
+        tests = [found for test in NODE.findall(note) if (found := find_test(test)) is not None]
+        if all(test.needs_recordings or test.is_long for test in tests) is not note.endswith(LONG):
+            yield f"{page}: {name} is held by long tests alone where its note ends with{LONG}, and only there"
+        yield from _missing_scripts(page, SCRIPT.findall(note))
+
+
+def promises(body: str) -> Iterator[str]:
+    """Rows of tables with a column "held by", and the list of what is defended."""
+    for table in re.findall(r"^\|.+\| held by \|\n\|[-|]+\|\n((?:\|.+\n)+)", body, re.MULTILINE):
+        yield from table.splitlines()
+    _, _, after = body.partition("## What is defended\n")
+    defended, _, _ = after.partition("\n## ")
+    yield from (" ".join(item.split()) for item in re.split(r"^- ", defended, flags=re.MULTILINE)[1:])
+
+
+def _missing_scripts(whose: str, runs: Iterable[str]) -> Iterator[str]:
+    for run in runs:
+        place = ROOT / run.replace(".", "/")
+        if not place.with_suffix(".py").is_file() and not (place / "__main__.py").is_file():
+            yield f"{whose}: there is no script {run}"
 
 
 def _missing(whose: str, tests: Sequence[str]) -> Iterator[str]:

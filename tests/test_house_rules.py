@@ -265,6 +265,23 @@ def test_nothing_from_a_file_is_unpickled_run_or_unpacked() -> None:
     assert [place(file, line) for file in files for line in unsafe(nodes(file))] == []
 
 
+# what can call another computer, and the files that may: sensors, a clinic's server, workers of a batch
+NETWORKS = re.compile(
+    r"(socket|ssl|http|urllib\.request|ftplib|smtplib|webbrowser|requests|urllib3|httpx|aiohttp|websockets?|psycopg"
+    r"|fsspec|s3fs|boto3|distributed|bleak|pylsl|zeroconf|PySide6\.Qt(Network|WebSockets|WebEngine)\w*)(\.|$)"
+)
+CALLERS = {
+    *("bluetooth.py", "channels.py", "dot.py", "lsl.py", "networks.py", "search.py", "transports.py"),  # sensors
+    *("engine.py", "journal_store.py", "logins.py"),  # the clinic's server and shared place
+    *("executors.py", "task.py"),  # a batch's workers, by --dask
+}
+
+
+def test_what_can_call_another_computer_is_imported_by_known_files_only() -> None:
+    found = {file.name for file in python_files(*PACKAGES) for name, _ in imports(file) if NETWORKS.match(name)}
+    assert found == CALLERS
+
+
 ARRAYS = {"FloatArray", "IntArray", "BoolArray", "ComplexArray"}
 GIVES_NUMBERS = re.compile(r"\b(float|FloatArray|IntArray|BoolArray|ComplexArray)\b")
 

@@ -4,6 +4,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from app.wording.numbers import MINUS
 from app.wording.translation import capitalised, figure_text, later, name_of, tr
 from core.body import JointKind, Side
 from core.samples import FloatArray
@@ -43,12 +44,12 @@ def range_for(fixed_deg: tuple[float, float], curves: Iterable[FloatArray]) -> t
 
 
 def degrees_in_words(value: float | np.floating, decimals: int = 1) -> str:
-    return f"{figure_text(float(value), f'.{decimals}f')}°".replace("-", "\N{MINUS SIGN}")
+    return f"{figure_text(float(value), f'.{decimals}f')}°".replace("-", MINUS)
 
 
 def angle_in_words(value: float) -> str:
     """A label of an axis, in whole degrees; never minus zero."""
-    return f"{round(value)}".replace("-", "\N{MINUS SIGN}")
+    return f"{round(value)}".replace("-", MINUS)
 
 
 def part_in_words(side: Side, kind: JointKind) -> str:

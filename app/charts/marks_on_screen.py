@@ -75,7 +75,7 @@ def paint_gap_bars(painter: QPainter, theme: Theme, frame: Frame, gaps: Sequence
     painter.setFont(_font(theme, is_first=True))
     for gap, box in _gap_letters(theme, frame, gaps):
         painter.setPen(theme.text(gap.joint.side))
-        painter.drawText(_rect(box), AT_LEFT, gap.joint.side[0].upper())
+        painter.drawText(_rect(box), AT_LEFT, gap.joint.side.letter)
 
 
 def _gap_boxes(theme: Theme, frame: Frame, gaps: Sequence[Gap]) -> list[Box]:
@@ -98,7 +98,7 @@ def _gap_letters(theme: Theme, frame: Frame, gaps: Sequence[Gap]) -> list[tuple[
         if not of_side:
             continue
         longest = max(of_side, key=lambda gap: gap.last_percent - gap.first_percent)
-        bar, width = _gap_bar(theme, frame, longest), metrics.horizontalAdvance(side[0].upper()) + 1
+        bar, width = _gap_bar(theme, frame, longest), metrics.horizontalAdvance(side.letter) + 1
         left = bar.right + apart if bar.right + apart + width <= frame.right else bar.left - apart - width
         box = Box(left, frame.bottom - height, left + width, frame.bottom)
         obstacles = [other for _, other in letters] + [_gap_bar(theme, frame, gap) for gap in gaps]

@@ -105,7 +105,7 @@ def curves_of_walk(
         are_strides_shown = has_strides or (is_withheld and not is_mean_enough(len(cycle.strides_deg)))
         curves.append(
             StrideCurve(
-                letter=side[0].upper(),
+                letter=side.letter,
                 side=side,
                 angle_deg=cycle.mean.mean if is_shown else NOT_KNOWN,
                 toe_off_percent=cycle.toe_off_percent if is_shown else float("nan"),

@@ -2,16 +2,15 @@
 
 import argparse
 import json
-from collections.abc import Callable
 from datetime import datetime
 from pathlib import Path
 
 from app.cli.library import add_key_arguments, read_place, session_place
 from app.storage.layout import default_folder
 from app.system.logs import version_of
+from app.system.progress import Report
 from devices.files.refusal import FileRefusedError, one_line
 
-Report = Callable[[float, str], None]
 REPORT = "agreement.pdf"  # as app.reports.agreement.folder has it, whose imports take long
 MOST_SUMMARY_BYTES = 10_000_000
 

@@ -1,7 +1,7 @@
 """`gaitwright batch`: every session under a folder, or of the library, analysed, and one table over all of them."""
 
 import argparse
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -10,6 +10,7 @@ from urllib.parse import urlsplit
 from app.cli.library import add_key_arguments, opened_library
 from app.cli.progress import one_of, positive
 from app.storage.layout import default_folder
+from app.system.progress import Report
 from devices.files.refusal import FileRefusedError, one_line
 
 if TYPE_CHECKING:
@@ -21,8 +22,6 @@ LIBRARY = "library"  # the word, in place of a folder; a folder of this name is 
 METHODS = ("robust", "published")  # as core.results.Method has them, whose import would cost half a second here
 DEFAULT_TAU_S = 2.0
 HERE = frozenset(("localhost", "127.0.0.1", "::1"))
-
-Report = Callable[[float, str], None]
 
 
 def add_batch_arguments(parser: argparse.ArgumentParser) -> None:

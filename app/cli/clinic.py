@@ -11,8 +11,9 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
-from app.cli.library import Report, add_key_arguments, opened_library
+from app.cli.library import add_key_arguments, opened_library
 from app.storage.layout import DATABASE_VARIABLE, default_folder, own_folder
+from app.system.progress import Report
 
 if TYPE_CHECKING:
     from app.storage.clinic.moving import Moved

@@ -2,13 +2,14 @@
 
 import argparse
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.cli.library import add_key_arguments, read_place, session_place
 from app.storage.layout import default_folder
+from app.system.progress import Report
 from devices.files.refusal import FileRefusedError, one_line
 
 if TYPE_CHECKING:
@@ -27,8 +28,6 @@ FLAGS = {  # as core.verdicts.measurement_error has them
 }
 DAGGER = "†"
 DAGGER_MEANS = f"{DAGGER} The error rests on a figure of which the source could not be checked."
-
-Report = Callable[[float, str], None]
 
 
 def add_compare_arguments(parser: argparse.ArgumentParser) -> None:
@@ -117,7 +116,7 @@ def _table(comparison: "Comparison") -> Iterator[str]:
         yield f"{simulated}{_named(rows[0].part)} less {_named(comparison.against)}"
         yield f"  {'':5} {'':38} {'one':>9} {'other':>9} {'differs':>9} {'error':>7}"
         for row in rows:
-            side = "" if row.side is None else row.side[0].upper()
+            side = "" if row.side is None else row.side.letter
             found = row.difference
             figures = (row.value.mean, row.other.mean, found.difference)
             cells = " ".join(f"{_short(figure):>9}" for figure in figures)

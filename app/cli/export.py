@@ -1,12 +1,13 @@
 """`gaitwright export`: the results of a session for other programs, without names unless identity is asked for."""
 
 import argparse
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.cli.library import LibrarySession, add_key_arguments, opened_library, session_place
 from app.storage.layout import default_folder
+from app.system.progress import Report
 from devices.decoders import DECODERS
 from devices.files.refusal import FileRefusedError, one_line
 
@@ -16,8 +17,6 @@ if TYPE_CHECKING:
 FORMATS = ("xlsx", "c3d", "mot", "fhir", "bids-motion")  # as app.exports.exports has them, whose import takes long
 
 TYPED = ("device", "aids", "surface", "conditions", "changes")  # as app.storage.pseudonyms has it
-
-Report = Callable[[float, str], None]
 
 
 def add_export_arguments(parser: argparse.ArgumentParser) -> None:

@@ -1,10 +1,10 @@
 """`gaitwright import`: a recording of another program, added to a session folder."""
 
 import argparse
-from collections.abc import Callable
 from pathlib import Path
 
 from app.cli.progress import finding_lines, one_of, positive
+from app.system.progress import Report
 
 # as core.samples.RecordingKind and devices.files.formats have them, whose imports would cost half a second here
 KINDS = ("standing", "free_motion", "walking")
@@ -12,8 +12,6 @@ FORMATS = (
     *("xsens-mtmanager", "movella-dot", "xsens-mti", "ximu3", "shimmer", "mvnx", "apdm", "opensim", "bids-motion"),
     *("xdf", "matlab", "parquet", "csv"),
 )
-
-Report = Callable[[float, str], None]
 
 
 def add_import_arguments(parser: argparse.ArgumentParser) -> None:

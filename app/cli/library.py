@@ -9,13 +9,15 @@ import getpass
 import math
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 from uuid import UUID
 
+from app.system.progress import Report
+from app.wording.numbers import clock
 from devices.decoders import DECODERS
 from devices.files.refusal import FileRefusedError, one_line
 
@@ -27,8 +29,6 @@ if TYPE_CHECKING:
 PREFIX = "library:"
 WHO = "--operator"
 PASSPHRASE_FILE = "--passphrase-file"
-
-Report = Callable[[float, str], None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -195,7 +195,7 @@ def _recover_one(opened: "OpenedLibrary", one: "Interrupted", into: LibrarySessi
     if not recovered.recorded_s:
         return f"{told}: it was ended before anything was recorded."
     where = f"{PREFIX}{recovered.stored.session_id}"
-    return f"{told}: {_length(recovered.recorded_s)} was recovered. Look at it in {where}, then keep or discard."
+    return f"{told}: {clock(recovered.recorded_s, 2)} was recovered. Look at it in {where}, then keep or discard."
 
 
 def _adopt(opened: "OpenedLibrary", one: "Interrupted", into: LibrarySession | None, report: Report) -> str:
@@ -209,15 +209,15 @@ def _adopt(opened: "OpenedLibrary", one: "Interrupted", into: LibrarySession | N
         with suppress(LibraryError):  # the session that it says it is of is gone
             recovered = adopt_home(opened, one, report)
             where = f"{PREFIX}{recovered.stored.session_id}"
-            return f"{recovered.stored.details.name}: {_length(recovered.recorded_s)} was recovered into {where}."
+            return f"{recovered.stored.details.name}: {clock(recovered.recorded_s, 2)} was recovered into {where}."
     if into is None:
-        length = _length(one.recorded_s)
+        length = clock(one.recorded_s, 2)
         return f"- {length} recorded at {when} belongs to no session. Say to which with --into {PREFIX}ID."
     visit = opened.library.sessions.get(into.id)
     name = free_name(visit.details, RecordingKind.WALKING)
     told = Recording(name, RecordingKind.WALKING, folder_for(name), {})
     recovered = adopt(opened, one, into.id, told, report)
-    return f"{name}: {_length(recovered.recorded_s)} recorded at {when} was recovered into {into}."
+    return f"{name}: {clock(recovered.recorded_s, 2)} recorded at {when} was recovered into {into}."
 
 
 @contextmanager
@@ -253,8 +253,3 @@ def _passphrase(file: Path | None, library: Path) -> str:
         what = "there is no terminal to type the passphrase on"
         raise FileRefusedError(str(library), what, f"Name a file that holds it with {PASSPHRASE_FILE}")
     return getpass.getpass(f"Passphrase of {one_line(str(library))}: ")
-
-
-def _length(seconds: float) -> str:
-    minutes, rest = divmod(int(seconds), 60)
-    return f"{minutes:02d}:{rest:02d}"

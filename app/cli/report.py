@@ -1,7 +1,6 @@
 """`gaitwright report`: what goes into the patient's file, as a PDF."""
 
 import argparse
-from collections.abc import Callable
 from datetime import datetime
 from pathlib import Path
 
@@ -9,10 +8,9 @@ from app.cli.library import add_key_arguments, read_place, session_place
 from app.cli.progress import one_of
 from app.storage.layout import default_folder
 from app.system.logs import version_of
+from app.system.progress import Report
 
 PAPERS = ("a4", "letter")  # as app.reports.patient.request has them, whose import takes long
-
-Report = Callable[[float, str], None]
 
 
 def add_report_arguments(parser: argparse.ArgumentParser) -> None:

@@ -1,20 +1,16 @@
 """The patient of a visit, kept as it is typed."""
 
-import datetime
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 from enum import Enum, auto
-from functools import partial
-from uuid import UUID
 
 from PySide6.QtCore import QObject, QTimer, Signal
 
-from app.editing.question import EditQuestion, chosen_fields
-from app.editing.words import others_message
+from app.editing.edited_record import EditedRecord
 from app.storage.edited_fields import patient_fields, with_patient_fields
 from app.storage.opened import OpenedLibrary
 from app.storage.stored import StoredPatient
-from app.storage.three_way import Contest, Edited, Values, rebased
+from app.storage.three_way import Edited, Values, rebased
 from app.workers.library_controller import LibraryController
 from core.samples import Patient
 
@@ -31,34 +27,28 @@ class RecordPhase(Enum):
     UNREAD = auto()  # chosen from a list, and could not be read: what is held may be old
 
 
-class PatientRecord(QObject):
+class PatientRecord(EditedRecord[StoredPatient]):
     """`told` is what stands on the screen, `stored` what the library holds; the second follows the first.
 
     A new patient is made by `commit`, when the code has been typed wholly: half a code is nobody's. Whoever types
     another code over that of a patient with sessions means somebody else, and nobody is renamed.
     """
 
-    changed = Signal()
     read_anew = Signal()
     """What stands on the screen was old."""
     code_taken = Signal(str)
-    refused = Signal(str, str)
-    merged = Signal(str, str)
-    """What another station changed of the same patient meanwhile."""
-    asked = Signal(object)
-    """An EditQuestion: what both changed."""
 
     def __init__(
         self, controller: LibraryController, parent: QObject, refuses: Callable[[str], tuple[str, str]]
     ) -> None:
         """`refuses` says why a code cannot take the place of the patient's, and what to do; empty where it can."""
-        super().__init__(parent)
-        self._controller, self._refuses = controller, refuses
+        super().__init__(controller, parent)
+        self._refuses = refuses
         self.has_this_session_only = False
         """So another code is a correction of this patient's."""
         self.details = Patient()
         self.stored: StoredPatient | None = None
-        self._upon = Patient()
+        self._upon = patient_fields(self.details)
         """What was shown when `details` were typed."""
         self._sent: Values = {}
         self._phase = RecordPhase.SETTLED
@@ -87,12 +77,12 @@ class PatientRecord(QObject):
 
     def choose(self, stored: StoredPatient) -> None:
         self._phase = RecordPhase.OVERTAKEN if self.is_busy else RecordPhase.SETTLED
-        self._choose(stored)
+        self._show(stored)
 
     def choose_from_list(self, listed: StoredPatient) -> None:
         """Choose a patient as a list has it: the visit before may have changed what was told since it was read."""
         self._phase = RecordPhase.READING
-        self._choose(listed)
+        self._show(listed)
         self._read(listed)
 
     def edit(self, told: Patient) -> None:
@@ -118,8 +108,8 @@ class PatientRecord(QObject):
         self._phase = RecordPhase.BUSY
         stored, told = self.stored, self.details
         is_renamed = self.has_this_session_only
-        upon, said = patient_fields(self._upon), patient_fields(told)
-        self._sent = said
+        upon = self._upon
+        self._sent = said = patient_fields(told)
 
         def save(opened: OpenedLibrary) -> Edited[StoredPatient] | None:
             patients, edits = opened.library.patients, opened.library.edits
@@ -133,22 +123,20 @@ class PatientRecord(QObject):
             assert stored is not None
             return edits.patient(stored.id, upon, said)
 
-        self._controller.run(save, self._on_saved, self._on_refused, self)
+        self._run(save, self._on_saved)
 
-    def _choose(self, stored: StoredPatient) -> None:
-        self.stored, self.details, self._upon = stored, stored.details, stored.details
+    def _show(self, stored: StoredPatient) -> None:
+        self.stored, self.details, self._upon = stored, stored.details, patient_fields(stored.details)
         self.changed.emit()
 
     def _read(self, listed: StoredPatient) -> None:
         self._phase = RecordPhase.READING
-        self._controller.run(
-            lambda opened: opened.library.patients.get(listed.id), self._on_read, self._on_refused, self
-        )
+        self._run(lambda opened: opened.library.patients.get(listed.id), self._on_read)
 
     def _on_read(self, stored: StoredPatient) -> None:
         is_awaited, self._phase = self._may_be_old, RecordPhase.SETTLED
         if is_awaited and self.stored is not None:  # else another was chosen meanwhile
-            self._take(stored, patient_fields(self._upon))
+            self._take(stored, self._upon)
         else:
             self.changed.emit()
         if not self.is_saved:
@@ -173,40 +161,23 @@ class PatientRecord(QObject):
 
     def _take(self, stored: StoredPatient, upon: Values) -> None:
         """Go on from what the library holds; what was typed since `upon` stays typed."""
-        before, held = self.details, stored.details
-        shown, said = rebased(upon, patient_fields(before), patient_fields(held))
-        self.stored = stored
-        self._upon, self.details = with_patient_fields(held, shown), with_patient_fields(held, said)
-        if patient_fields(self.details) != patient_fields(before):
+        before = patient_fields(self.details)
+        self._upon, said = rebased(upon, before, patient_fields(stored.details))
+        self.stored, self.details = stored, with_patient_fields(stored.details, said)
+        if said != before:
             self.read_anew.emit()
         self.changed.emit()
 
-    def _ask(self, edited: Edited[StoredPatient]) -> None:
-        if edited.contests:
-            settle = partial(self._settle, edited.stored.id, edited.contests)
-            self.asked.emit(EditQuestion(edited.stored.details.code, edited.contests, settle))
+    def _called(self, stored: StoredPatient) -> str:
+        return stored.details.code
 
-    def _tell(self, edited: Edited[StoredPatient]) -> None:
-        if edited.others:
-            code, now = edited.stored.details.code, datetime.datetime.now().astimezone()
-            self.merged.emit(*others_message(code, edited.others, now))
-
-    def _settle(self, patient_id: UUID, contests: Sequence[Contest], fields: frozenset[str]) -> None:
-        """Save what was chosen of both sides."""
-        upon, said = chosen_fields(contests, fields)
-        if not said:
-            self.changed.emit()
-            return
-
-        def save(opened: OpenedLibrary) -> Edited[StoredPatient]:
-            return opened.library.edits.patient(patient_id, upon, said)
-
-        self._controller.run(save, self._on_settled, self._on_refused, self)
+    def _choose(self, stored: StoredPatient, upon: Values, said: Values) -> None:
+        self._run(lambda opened: opened.library.edits.patient(stored.id, upon, said), self._on_settled)
 
     def _on_settled(self, edited: Edited[StoredPatient]) -> None:
         self._ask(edited)
         if self.stored is not None and self.stored.id == edited.stored.id:
-            self._take(edited.stored, patient_fields(self._upon))
+            self._take(edited.stored, self._upon)
         self._tell(edited)
 
     def _end_work(self) -> None:
@@ -215,4 +186,4 @@ class PatientRecord(QObject):
 
     def _on_refused(self, what: str, remedy: str) -> None:
         self._end_work()
-        self.refused.emit(what, remedy)
+        super()._on_refused(what, remedy)

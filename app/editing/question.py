@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from app.storage.three_way import Contest, Values
+from app.storage.three_way import Contest
 
 Settle = Callable[[frozenset[str]], None]
 
@@ -18,9 +18,3 @@ class EditQuestion:
     subject: str
     contests: Sequence[Contest]
     settle: Settle
-
-
-def chosen_fields(contests: Sequence[Contest], fields: frozenset[str]) -> tuple[Values, Values]:
-    """Give what was shown in the question, and what is said now; a further change since then is asked anew."""
-    wanted = [contest for contest in contests if contest.field in fields]
-    return {one.field: one.theirs for one in wanted}, {one.field: one.mine for one in wanted}

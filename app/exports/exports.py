@@ -15,9 +15,10 @@ from app.exports.pseudonymised import Row, pseudonymised, what_leaves
 from app.storage.audit import about
 from app.storage.exchange import READ_BACK, session_with_samples
 from app.storage.journal.decoding import Decoders
-from app.storage.opened import OpenedLibrary, Report
+from app.storage.opened import OpenedLibrary
 from app.storage.pseudonyms import Pseudonyms, Typed
 from app.storage.stored import Action
+from app.system.progress import Report
 from app.wording.translation import filled
 from core.analysis import analyse
 from core.results import Analysis, RecordingAnalysis

@@ -28,6 +28,7 @@ from app.theme.icons import Icon
 from app.theme.notifier import ThemeNotifier
 from app.widgets.action_bar import ActionBar, BarAction, BarState
 from app.widgets.banner import Banner
+from app.widgets.grid import COMPACT_BELOW
 from app.widgets.rail_row import RailForm, RailRow, StepState
 from app.widgets.start_pages import WorkingPage
 from app.widgets.step_rail import StepRail, home_below
@@ -37,7 +38,6 @@ from app.wording.translation import place, tr
 from app.workers.library_controller import LibraryController
 from app.workers.library_state import OpenedState
 
-COMPACT_BELOW = (1180, 720)
 WIDE_FROM = 1800
 PATIENTS, DEMONSTRATION, IMPORT, QUESTIONS = range(4)
 
@@ -143,6 +143,7 @@ class Home(Themed):
         self._add_page(made.page)
         made.changed.connect(self._show)
         made.told.connect(self.banner.tell)
+        made.again_wished.connect(self._begin_again)
         self._fit()
         return made
 
@@ -244,7 +245,7 @@ class Home(Themed):
         self.patients.chosen.connect(self._show)
         self.patients.refused.connect(self.banner.tell)
         page.session_opened.connect(self.session_opened)
-        page.new_session_wished.connect(self._on_primary)
+        page.new_session_wished.connect(self._begin_session)
         page.new_patient_wished.connect(self._on_new_patient)
         page.demonstration_wished.connect(self.demonstration_wished)
         page.import_wished.connect(self._begin_import)
@@ -255,9 +256,7 @@ class Home(Themed):
         page.session_deleted.connect(self.deleting.session)
         self.rail.step_pressed.connect(self._on_rail_pressed)
         self.rail.below_pressed.connect(self._on_below_pressed)
-        self.bar.primary_pressed.connect(self._on_primary)
-        self.bar.quiet_pressed.connect(self._on_quiet)
-        self.bar.other_pressed.connect(self._on_other)
+        self.bar.pressed.connect(self._on_bar_pressed)
         self.bar.back_pressed.connect(self._on_back)
         self.importing.page.code_changed.connect(self._show)
         self.importing.page.changed.connect(self._show)
@@ -366,14 +365,14 @@ class Home(Themed):
             return self.goals.bar
         if self.current is not self.page:
             return BarState()
-        new = BarAction(tr("New patient"), tr("Ctrl N"), Icon.ADD)
+        new = BarAction(tr("New patient"), self._on_new_patient, tr("Ctrl N"), Icon.ADD)
         patient = self.patients.patient
         if self.page.is_empty:
             return BarState(note=tr("No session is running."), has_back=False)
         if patient is None:
             return BarState(quiet=(new,), has_back=False)
         words = tr("New session for {code}").format(code=patient.details.code)
-        begin = BarAction(words, tr("Enter"), Icon.PLAY)
+        begin = BarAction(words, self._begin_session, tr("Enter"), Icon.PLAY)
         note = "" if self.rail.form is RailForm.COMPACT else tr("No session is running.")
         return BarState(begin, quiet=(new,), note=note, has_back=False)
 
@@ -400,29 +399,12 @@ class Home(Themed):
         if self.current is self.page:
             self.session_wished.emit(None)
 
-    def _on_primary(self) -> None:
-        if self.current is self.importing.page:
-            self.importing.take_in()
-        elif self._is_asking:
-            self.questions.save()
-        elif self._is_again:
-            self.again.analyse()
-        elif self._has_goals:
-            self.goals.page.submit()
-        elif self.current is self.page and self.patients.patient is not None:
+    def _on_bar_pressed(self, action: BarAction) -> None:
+        action.run()
+
+    def _begin_session(self) -> None:
+        if self.current is self.page and self.patients.patient is not None:
             self.session_wished.emit(self.patients.patient)
-
-    def _on_quiet(self, _number: int) -> None:
-        if self.current is self.importing.page:
-            self.importing.leave_out()
-        elif self._is_asking:
-            self._begin_again()
-        else:
-            self._on_new_patient()
-
-    def _on_other(self, _number: int) -> None:
-        if self._is_again:
-            self.again.choose_folder()
 
     def _begin_again(self) -> None:
         """Show which sessions can be analysed again: those of the patient, where home shows one."""

@@ -2,12 +2,12 @@
 
 from dataclasses import dataclass
 
+from app.wording.numbers import MINUS
 from app.wording.translation import tr, tr_n
 from core.body import Side
 from core.targets import Target, TargetMeasure
 
 SHOWN_STRIDES = 10
-MINUS = "\N{MINUS SIGN}"
 NO_VALUE = "\N{EN DASH}"
 
 

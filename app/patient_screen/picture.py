@@ -10,7 +10,6 @@ from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QBrush, QColor, QFont, QFontMetricsF, QPainter, QPainterPath, QPen, QPolygonF
 
 from app.patient_screen.patient_view import (
-    MINUS,
     NO_VALUE,
     SHOWN_STRIDES,
     PatientView,
@@ -27,6 +26,7 @@ from app.theme.notifier import ThemeNotifier
 from app.theme.theme import Theme
 from app.widgets.chip import CHIP, paint_chip
 from app.widgets.text import MEDIUM, SEMIBOLD
+from app.wording.numbers import MINUS
 from app.wording.translation import tr
 from core.body import Side
 from core.targets import Target

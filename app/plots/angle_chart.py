@@ -12,6 +12,7 @@ from PySide6.QtWidgets import QStyleOptionGraphicsItem, QWidget
 from app.charts.axes import AXIS_WIDTH, RIGHT_MARGIN, range_for
 from app.plots.thinning import envelope, thin
 from app.theme.notifier import ThemeNotifier
+from app.wording.numbers import MINUS, clock
 from app.wording.translation import figure_text
 from core.body import Side
 from core.samples import FloatArray
@@ -184,7 +185,7 @@ class AngleChart(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no typ
 
 class AngleAxis(pg.AxisItem):  # type: ignore[misc]  # pyqtgraph has no types
     def tickStrings(self, values: list[float], _scale: float, _spacing: float) -> list[str]:
-        return [f"{value:.0f}".replace("-", "\N{MINUS SIGN}") for value in values]
+        return [f"{value:.0f}".replace("-", MINUS) for value in values]
 
 
 class _TimeAxis(pg.AxisItem):  # type: ignore[misc]  # pyqtgraph has no types
@@ -193,8 +194,8 @@ class _TimeAxis(pg.AxisItem):  # type: ignore[misc]  # pyqtgraph has no types
     def tickStrings(self, values: list[float], _scale: float, spacing: float) -> list[str]:
         if self.range[1] <= 120 or spacing < 1:
             decimals = max(0, int(np.ceil(-np.log10(spacing) - 1e-9)))
-            return [f"{figure_text(value, f'.{decimals}f')} s".replace("-", "\N{MINUS SIGN}") for value in values]
-        return [f"{int(value) // 60}:{int(value) % 60:02d}" for value in values]
+            return [f"{figure_text(value, f'.{decimals}f')} s".replace("-", MINUS) for value in values]
+        return [clock(value) for value in values]
 
 
 class _CurveItem(pg.GraphicsObject):  # type: ignore[misc]  # pyqtgraph has no types

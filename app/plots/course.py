@@ -260,7 +260,7 @@ class LaneRow:
         found = one.since_first
         if found is None or one.first is None or not math.isfinite(found.difference):
             return
-        who = f"{one.line.side[0].upper()} " if has_sides and one.line.side is not None else ""
+        who = f"{one.line.side.letter} " if has_sides and one.line.side is not None else ""
         said = tr("{change} since {day}").format(
             change=who + change_in_words(found, self.kind), day=day_of(one.first, visits)
         )

@@ -39,7 +39,6 @@ from app.summary.walk_figures import MAY_BE_MIRRORED, NO_HEIGHT, NO_ZERO, WITHHE
 from app.theme.icons import Icon
 from app.theme.notifier import ThemeNotifier
 from app.widgets.card import Card
-from app.widgets.chip import LETTERS
 from app.widgets.icons import IconMark
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.themed import Themed
@@ -307,9 +306,9 @@ class CycleFrame(Card):
         worn = {self.kind.of(side) for side in self.chart.cycles}
         for joint in sorted(worn, key=list(Joint).index):
             if joint not in against.joints:
-                said.append(tr("{side}: not measured in {walk}.").format(side=LETTERS[joint.side], walk=against.name))
+                said.append(tr("{side}: not measured in {walk}.").format(side=joint.side.letter, walk=against.name))
             elif not against.is_drawn(joint):
-                said.append(tr("{side}: not reported in {walk}.").format(side=LETTERS[joint.side], walk=against.name))
+                said.append(tr("{side}: not reported in {walk}.").format(side=joint.side.letter, walk=against.name))
         if has_other_zero and self.chart.beside:
             said.append(
                 tr("No common standing reference: compare range of motion and curve shape, not absolute angles.")
@@ -359,13 +358,13 @@ class CycleFrame(Card):
     def _notes(self, cycles: Mapping[Side, SideCycle], doubts: Mapping[Side, str]) -> list[str]:
         notes = []
         for why, what in DOUBTS.items():
-            sides = [LETTERS[side] for side in doubts if doubts[side] == why]
+            sides = [side.letter for side in doubts if doubts[side] == why]
             notes += [tr(what).format(sides=joined(sides))] if sides else []
         if self.chart.is_about_mean:
             notes.append(tr("0° is the mean of the gait cycle."))
         if not cycles:
             notes.append(nothing_in_words(self.kind))
-        empty = [LETTERS[s] for s, cycle in cycles.items() if not cycle.mean.n and s not in self.chart.withheld]
+        empty = [s.letter for s, cycle in cycles.items() if not cycle.mean.n and s not in self.chart.withheld]
         if empty:
             notes.append(tr("{sides}: no usable stride.").format(sides=joined(empty)))
         if self.chart.is_widened:

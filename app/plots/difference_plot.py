@@ -15,6 +15,7 @@ from app.widgets.chip import CHIP, paint_chip
 from app.widgets.painted_text import CENTRE, PaintedText
 from app.widgets.text import SEMIBOLD
 from app.widgets.themed import Themed
+from app.wording.numbers import MINUS
 from core.body import Side
 
 TITLE, ROW, GAP, AXIS = 26, 30, 8, 28
@@ -109,7 +110,7 @@ class DifferencePlot(Themed):
         for value in self._ticks():
             x, half = self.x_of(value), theme.px(24)
             box = QRectF(x - half, self.height() - theme.px(AXIS - TICK - 2), 2 * half, theme.px(AXIS - TICK - 2))
-            words = f"{value:+d}".replace("-", "\N{MINUS SIGN}") if value else "0"
+            words = f"{value:+d}".replace("-", MINUS) if value else "0"
             texts.append(PaintedText(words, box, theme.font(12), "ink2", CENTRE))
         return texts
 

@@ -12,6 +12,7 @@ from app.theme.notifier import ThemeNotifier
 from app.widgets.painted_text import CENTRE, LEFT, RIGHT, PaintedText
 from app.widgets.text import MEDIUM
 from app.widgets.themed import Themed
+from app.wording.numbers import MINUS
 from app.wording.translation import figure_text
 
 ROW, AXIS, GAP = 32, 44, 16  # px
@@ -165,7 +166,7 @@ class GroupPlot(Themed):
     def _figure(self, value: float) -> str:
         decimals = max(0, -math.floor(math.log10(self.axis[2]) + 1e-9))
         value = value if abs(value) > self.axis[2] * 1e-6 else 0.0
-        return figure_text(value, f".{decimals}f").replace("-", "\N{MINUS SIGN}")
+        return figure_text(value, f".{decimals}f").replace("-", MINUS)
 
     def _plot(self) -> tuple[float, float]:
         inset = self._look.theme.px(GAP)

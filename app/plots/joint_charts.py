@@ -25,6 +25,7 @@ from app.widgets.chip import SideKey
 from app.widgets.icons import IconMark
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.themed import Themed
+from app.wording.numbers import MINUS
 from app.wording.translation import figure_text, later, name_of, tr
 from core.body import Joint, JointKind, Side
 from core.results import SideGait
@@ -237,7 +238,7 @@ class JointCharts(Themed):
         length = self.knee.chart.whole_s[1] - self.knee.chart.whole_s[0]
         said = tr("Whole recording, {whole} s") if self.is_whole else tr("{first} to {last} s of {whole} s")
         shown = {"first": first, "last": last, "whole": length}
-        times = {name: figure_text(time_s, ".1f").replace("-", "\N{MINUS SIGN}") for name, time_s in shown.items()}
+        times = {name: figure_text(time_s, ".1f").replace("-", MINUS) for name, time_s in shown.items()}
         self.view_changed.emit(self.is_whole, said.format_map(times))
 
     def _on_look_changed(self) -> None:
@@ -313,7 +314,7 @@ class ChartFrame(Card):
 
     def read(self, row: int | None, time_s: float | None) -> None:
         """Show the values of sample `row`."""
-        self._moment.setText("" if time_s is None else f"{figure_text(time_s, '.2f')} s".replace("-", "\N{MINUS SIGN}"))
+        self._moment.setText("" if time_s is None else f"{figure_text(time_s, '.2f')} s".replace("-", MINUS))
         for side, value in self._values.items():
             curve = self.chart.curves.get(side)
             value.setText("" if row is None or curve is None else _reading(curve, row))

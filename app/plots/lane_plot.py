@@ -17,6 +17,7 @@ from app.theme.theme import Theme
 from app.widgets.painted_text import CENTRE, RIGHT, PaintedText
 from app.widgets.themed import Themed
 from app.wording.measures import least_span
+from app.wording.numbers import MINUS
 from app.wording.translation import figure_text
 from core.body import Side
 
@@ -152,7 +153,7 @@ class LanePlot(DatedPlot):
         texts, ticks = [], scale.ticks
         every = 1 if self.plot.height() / max(len(ticks) - 1, 1) >= 2 * half else 2
         for tick in ticks[::every]:
-            words = figure_text(tick if abs(tick) > 1e-9 else 0.0, f".{scale.decimals}f").replace("-", "\N{MINUS SIGN}")
+            words = figure_text(tick if abs(tick) > 1e-9 else 0.0, f".{scale.decimals}f").replace("-", MINUS)
             box = QRectF(0, self.y_of(tick) - half, theme.px(AXIS - 8), 2 * half)
             texts.append(PaintedText(words, box, theme.font(12), "ink2", RIGHT))
         return texts

@@ -13,7 +13,7 @@ from app.theme.icons import Icon
 from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
-from app.widgets.chip import CHIP, LETTERS, paint_chip
+from app.widgets.chip import CHIP, paint_chip
 from app.widgets.limb import limb_outline
 from app.widgets.segmented import Segmented
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
@@ -250,7 +250,7 @@ class _LegsPicture(Themed):
         ends = [point for point in points if math.isfinite(point.x())]
         painter.setFont(theme.font(14, SEMIBOLD))
         painter.setPen(theme.text(side))
-        painter.drawText(ends[-1] + QPointF(theme.px(8), -theme.px(2)), LETTERS[side])
+        painter.drawText(ends[-1] + QPointF(theme.px(8), -theme.px(2)), side.letter)
 
     def _paint_lanes(self, painter: QPainter, legs: MeanLegs) -> None:
         """Each foot's stance within one stride of the reference leg, and the cursor."""

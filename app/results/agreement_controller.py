@@ -18,9 +18,10 @@ from app.reports.agreement.pictures import pictures_of
 from app.reports.agreement.study import AgreementStudy, as_shown, study_of
 from app.results.agreement_page import AgreementPage
 from app.system.logs import version_of
+from app.system.progress import Report
 from app.widgets.folder_dialog import ask_for_files, ask_for_new_folder
 from app.wording.translation import filled, tr
-from app.workers.background import Background, Report, Work
+from app.workers.background import Background, Work
 from core.results import Analysis
 from devices.files.refusal import FileRefusedError
 

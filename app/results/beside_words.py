@@ -17,7 +17,6 @@ from app.summary.comparison import Compared, Comparison
 from app.summary.numbers_in_words import DAGGER, NOTHING, fixed, in_words, judged_in_words
 from app.summary.plain_text import shortened
 from app.theme.icons import Icon
-from app.widgets.chip import LETTERS
 from app.widgets.fact_strip import KeyFigure
 from app.widgets.table import TableColumn, TableRow
 from app.widgets.table_cells import CENTRE, EMPTY, RIGHT, ErrorStrip, TableCell, TextCell
@@ -106,7 +105,7 @@ def _sentence(row: Compared) -> str:
         else tr("{measure}: {size} more than {walk}, {value} versus {other}.")
     )
     return pattern.format(
-        measure=name if measure.is_of_walk else f"{LETTERS[row.side]} {name}",
+        measure=name if measure.is_of_walk else f"{row.side.letter} {name}",
         size=fixed(abs(change), decimals) + unit_behind(measure),
         walk=row.against.name,
         value=fixed(value, decimals),
@@ -119,7 +118,7 @@ def _in_short(row: Compared) -> str:
     if not row.is_told:
         return why_not_told(row)
     change = change_in_words(row.difference.difference, row.measure)
-    leg = "" if row.measure.is_of_walk else LETTERS[row.side]
+    leg = "" if row.measure.is_of_walk else row.side.letter
     return " ".join(filter(None, [leg, change, "" if leg else in_words(row.difference.judgement)]))
 
 
@@ -127,7 +126,7 @@ def _row(row: Compared) -> TableRow:
     found, measure = row.difference, row.measure
     weight = SEMIBOLD if row.exceeds else REGULAR
     name = tr(measure.name)
-    who = name if measure.is_of_walk else f"{LETTERS[row.side]} {name}"
+    who = name if measure.is_of_walk else f"{row.side.letter} {name}"
     values = [value_cell(*part.figure(measure, row.side), measure.decimals) for part in (row.part, row.against)]
     heads = (tr("this walk"), row.against.name)
     change = change_in_words(found.difference, measure) if row.is_told else ""

@@ -13,7 +13,6 @@ from app.plots.compared_chart import ComparedChart, ComparedFrame
 from app.plots.cycle_chart import CycleCharts
 from app.results.compared_card import ComparedCard, scrolling
 from app.results.compared_words import (
-    MINUS,
     conclusion,
     days_of,
     error_in_words,
@@ -30,7 +29,6 @@ from app.summary.reference_bands import NOBODY, bands_of, reference_curves, side
 from app.summary.visits import ComparedVisits, condition_in_words
 from app.theme.icons import Icon
 from app.theme.notifier import ThemeNotifier
-from app.widgets.chip import LETTERS
 from app.widgets.chips import Chips
 from app.widgets.choice import Choice
 from app.widgets.heard_order import hear_as_laid_out
@@ -38,6 +36,7 @@ from app.widgets.icons import IconMark
 from app.widgets.segmented import Segmented
 from app.widgets.text import Text
 from app.widgets.themed import Themed
+from app.wording.numbers import MINUS
 from app.wording.translation import later, tr
 from core.body import JointKind, Side
 from core.gait.cycles import POINTS
@@ -451,7 +450,7 @@ class ComparePage(Themed):
         worth = [row for row in sorted(told, key=side_weight) if row.difference.is_worth_a_sentence]
         said = conclusion([side_sentence(row, first, second) for row in worth], differences)
         self._say(said, parts[:1], is_marked=bool(worth))
-        title = f"{self._affected_words}: {LETTERS[first]} {MINUS} {LETTERS[second]}"
+        title = f"{self._affected_words}: {first.letter} {MINUS} {second.letter}"
         self.card.show_sides(self.side_rows, first, second, title, self.conclusion.text())
 
     def _fit_side_charts(self) -> None:

@@ -7,7 +7,6 @@ from app.plots.difference_plot import DifferenceGroup, DifferenceRow, Dot
 from app.results.compared_words import BRIEF, change_in_words, why_not_told
 from app.summary.comparison import Compared, Comparison, SideRow
 from app.summary.measures import Measure
-from app.widgets.chip import LETTERS
 from app.wording.translation import tr
 from core.body import Side
 
@@ -54,5 +53,5 @@ def _row_of_sides(row: SideRow, first: Side) -> DifferenceRow:
     if not row.is_told:
         return DifferenceRow(None, why_not_told(row), (), row.difference.error)
     found = row.difference
-    dot = Dot(LETTERS[first], found.difference, row.exceeds)
+    dot = Dot(first.letter, found.difference, row.exceeds)
     return DifferenceRow(None, change_in_words(found.difference, row.measure), (dot,), found.error)

@@ -5,19 +5,19 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from app.charts.cycles import is_mean_enough, is_spread_enough
-from app.results.compared_words import BRIEF, MINUS, change_in_words, days_of, error_in_figures
+from app.results.compared_words import BRIEF, change_in_words, days_of, error_in_figures
 from app.summary.comparison import Compared, Comparison, Contrast, SideRow
 from app.summary.conditions import Part
 from app.summary.goals import goal_mark
 from app.summary.numbers_in_words import DAGGER, NOTHING, fixed
 from app.summary.visit_trend import trend_of
 from app.theme.icons import Icon
-from app.widgets.chip import LETTERS
 from app.widgets.figures_table import CARE_MARK, FIGURE
 from app.widgets.table import TableColumn, TableRow
 from app.widgets.table_cells import EMPTY, RIGHT, TextCell
 from app.widgets.text import REGULAR, SEMIBOLD
 from app.widgets.trend_cell import TrendCell
+from app.wording.numbers import MINUS
 from app.wording.translation import figure_text, side_name, tr
 from app.wording.verdicts import verdict_word
 from core.body import Side
@@ -61,7 +61,7 @@ def has_brief_table(found: Comparison) -> bool:
 
 def side_table(rows: Sequence[SideRow], first: Side, second: Side) -> TableOfParts:
     """Every measure of both legs, their difference with its error, and symmetry."""
-    one, other = LETTERS[first], LETTERS[second]
+    one, other = first.letter, second.letter
     heads = [one, other, f"{one} {MINUS} {other}", tr("error"), tr("symmetry, %")]
     return _columns([head_cell(head) for head in heads], has_sides=False), [side_table_row(row, heads) for row in rows]
 
@@ -150,7 +150,7 @@ def _table_row(
 ) -> TableRow:
     """A row whose cells say which leg, measure and part they are of, for who hears one cell at a time."""
     chip = EMPTY if side is None else TextCell(side=side, spoken=side_name(side))
-    who = name if side is None else f"{LETTERS[side]} {name}"
+    who = name if side is None else f"{side.letter} {name}"
     said = (replace(cell, spoken=f"{who}, {head}: {cell.said}") for head, cell in zip(heads, cells, strict=True))
     return TableRow((chip, TextCell(name, small), *said))
 

@@ -8,7 +8,6 @@ from app.summary.error_sources import sources_in_words
 from app.summary.measures import Measure
 from app.summary.numbers_in_words import DAGGER, NOTHING, fixed, signed
 from app.summary.walk_figures import reason_in_words
-from app.widgets.chip import LETTERS
 from app.wording.dates import day_in_words
 from app.wording.recordings import name_in_words
 from app.wording.translation import capitalised, later, side_name, tr, within_sentence
@@ -17,7 +16,6 @@ from core.body import Joint, Side
 from core.verdicts.measurement_error import Difference, Judgement
 from core.verdicts.model import Verdict
 
-MINUS = "\N{MINUS SIGN}"
 BRIEF = ("knee_stance_to_swing_deg", "knee_while_loading_deg", "ankle_push_off_deg", "stance_percent")
 JUDGED = (Judgement.EXCEEDS_ERROR, Judgement.INSIDE_ERROR)
 MOST_SAID = 3  # sentences about differences; the table has all of them
@@ -29,7 +27,7 @@ UNVERIFIED = later("† based on a figure whose source could not be verified.")
 
 def part_in_words(part: Part, name: str) -> str:
     """A part's letter and name, and how many strides it has of each leg."""
-    strides = ", ".join(f"{LETTERS[side]} {part.strides(side)}" for side in part.sides)
+    strides = ", ".join(f"{side.letter} {part.strides(side)}" for side in part.sides)
     called = f"{part.letter} {name_in_words(name)}"
     return f"{called} · {strides}" if strides else called
 
@@ -117,8 +115,8 @@ def side_sentence(row: SideRow, first: Side, second: Side) -> str:
     return pattern.format(
         measure=tr(row.measure.name),
         change=change_in_words(row.difference.difference, row.measure),
-        first=LETTERS[first],
-        second=LETTERS[second],
+        first=first.letter,
+        second=second.letter,
         error=error_in_sentence(row),
     )
 

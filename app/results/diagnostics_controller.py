@@ -15,10 +15,11 @@ from app.results.found_page import FoundPage
 from app.storage.audit import about
 from app.storage.stored import Action, LibraryError
 from app.summary.diagnostics import write_diagnostics
+from app.system.progress import Report
 from app.widgets.folder_dialog import ask_for_new_folder
 from app.wording.recordings import ShownName, shown_names, with_shown_names
 from app.wording.translation import tr
-from app.workers.background import Background, Report, Work
+from app.workers.background import Background, Work
 from core.body import Joint
 from core.results import Analysis, JointCalibration, RecordingAnalysis
 from core.verdicts.diagnostics import JointDiagnostics, diagnostics_of

@@ -13,7 +13,6 @@ from app.summary.what_differs import LegsRow, what_differs
 from app.theme.icons import Icon
 from app.theme.notifier import ThemeNotifier
 from app.widgets.card import Card
-from app.widgets.chip import LETTERS
 from app.widgets.figures_table import CARE_MARK
 from app.widgets.table import CellTable, TableColumn, TableRow
 from app.widgets.table_cells import CENTRE, RIGHT, ErrorStrip, TableCell, TextCell
@@ -71,7 +70,7 @@ class DiffersCard(Card):
 
 def _columns(facts: Facts) -> list[TableColumn]:
     first, second = facts.first_and_second
-    less = f"{LETTERS[first]} \N{MINUS SIGN} {LETTERS[second]}"
+    less = f"{first.letter} \N{MINUS SIGN} {second.letter}"
     return [
         TableColumn(TextCell(tr("Largest differences"), weight=SEMIBOLD), share=3),
         *(TableColumn(_counted(facts, side), share=1) for side in Side),

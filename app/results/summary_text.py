@@ -52,7 +52,7 @@ def _of_row(row: Figure, goals: Sequence[Goal]) -> KeyFigure:
     elif row.with_care:
         note = verdict_word(Verdict.CARE)
     elif told:
-        note = ", ".join(f"{side[0].upper()} {fixed(mean, row.decimals)}" for side, mean in told.items())
+        note = ", ".join(f"{side.letter} {fixed(mean, row.decimals)}" for side, mean in told.items())
     elif row.band is not None:
         low, high = (fixed(edge, row.decimals) for edge in row.band)
         note = tr("ref. {low} to {high}").format(low=low, high=high)
@@ -78,9 +78,9 @@ def figures_in_short(facts: Facts) -> str:
 def strides_in_short(facts: Facts) -> str:
     """How many strides of each leg were used and left out, and for which reasons."""
     sides = facts.part.sides
-    used = ", ".join(f"{side[0].upper()} {facts.strides(side)}" for side in sides)
+    used = ", ".join(f"{side.letter} {facts.strides(side)}" for side in sides)
     if not used:
         return tr("No strides found.")
     out = {side: facts.part.reasons(side) for side in sides}
-    left_out = ", ".join(f"{side[0].upper()} {out[side].total() - out[side][Reason.USED]}" for side in sides)
+    left_out = ", ".join(f"{side.letter} {out[side].total() - out[side][Reason.USED]}" for side in sides)
     return tr("Strides used: {used}. Excluded: {left_out}.").format(used=used, left_out=left_out)

@@ -189,7 +189,7 @@ def _leg_labels(session: Session, sides: list[Side], *, has_pelvis: bool) -> Ite
                 yield Chunk.from_columns(f"/legs/{side}/{name}", indexes=[], columns=looks)
         hip_m = (0.0, aside_m if side is Side.LEFT else -aside_m, up_m)
         letter = rr.Points3D.columns(
-            positions=[hip_m], colors=colours, radii=[HIP_RADIUS_M], labels=[side[0].upper()], show_labels=[True]
+            positions=[hip_m], colors=colours, radii=[HIP_RADIUS_M], labels=[side.letter], show_labels=[True]
         )
         yield Chunk.from_columns(f"/legs/{side}/hip", indexes=[], columns=letter)
     yield _document("/about_legs", how_drawn(session, has_pelvis=has_pelvis))

@@ -18,8 +18,10 @@ import shutil
 from collections.abc import Callable, Iterable
 from contextlib import closing
 from dataclasses import dataclass, replace
+from errno import EIO
 from pathlib import Path
 
+import sqlcipher3.dbapi2 as sqlite
 from sqlalchemy import select
 from sqlalchemy.orm import Session as OrmSession
 
@@ -32,8 +34,9 @@ from app.storage.files import replace_file, sync_folder
 from app.storage.journal.header import JournalRefusedError, read_header
 from app.storage.layout import DATABASE, KEYS, RECORDINGS, SUFFIX
 from app.storage.library import Library, now_utc
-from app.storage.opened import OpenedLibrary, Report, made_beside
+from app.storage.opened import OpenedLibrary, made_beside
 from app.storage.stored import Action, AuditFault, Checkpoint, LibraryError
+from app.system.progress import Report
 from app.wording.translation import tr
 
 FORMAT = "gaitwright-backup/1"
@@ -207,7 +210,13 @@ class _Work:
 
 
 def _copy_database(library: Path, folder: Path, data_key: KeyMaterial | None, work: _Work) -> None:
-    """Copy page by page, as the library is at this moment, while others go on writing to it."""
+    """Copy page by page, as the library is at this moment, while others go on writing to it.
+
+    Raises
+    ------
+    OSError
+        The disk refuses it.
+    """
     source = sqlite_engine(library / DATABASE, data_key, creates=False)
     target = sqlite_engine(folder / DATABASE, data_key)
     try:
@@ -223,6 +232,8 @@ def _copy_database(library: Path, folder: Path, data_key: KeyMaterial | None, wo
 
             connection.backup(copy, pages=PAGES, progress=told)
             connection.execute("COMMIT")
+    except sqlite.Error as error:
+        raise OSError(EIO, str(error)) from None
     finally:
         source.dispose()
         target.dispose()  # the last one to close puts everything into the file itself

@@ -4,7 +4,7 @@ Samples become one journal per recording, one source per site; what `session.tom
 every bit of a float64, and every key and column, those that mean nothing to us included.
 """
 
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -17,8 +17,7 @@ from app.storage.journal.disk import ROOM, TOLD, Room, Trouble
 from app.storage.journal.header import RESTORE, JournalRefusedError
 from app.storage.journal.payloads import layout_of, with_keys
 from app.storage.journal.writer import JournalSummary, JournalWriter, State
-from app.storage.opened import OpenedLibrary, Report
-from app.storage.pseudonyms import Pseudonyms, Typed
+from app.storage.opened import OpenedLibrary
 from app.storage.recovery import Interrupted
 from app.storage.sessions import NO_LIMITS
 from app.storage.stored import (
@@ -32,12 +31,12 @@ from app.storage.stored import (
     StoredRecording,
     StoredSession,
 )
+from app.system.progress import Report
 from app.wording.translation import tr
 from core.body import Site
 from core.findings import Finding, Severity
 from core.samples import ImuBlock, Recording, SensorInfo, Session
 from devices.files.imports import folder_for
-from devices.files.session_folder import write_session
 from devices.files.session_toml import default_sensor
 from devices.files.site_files import write_site
 from devices.files.trial import SIMULATED_MARK
@@ -154,40 +153,6 @@ def recording_with_samples(
     imu = {site: replace(block, sensor=names.get(block.sensor, block.sensor)) for site, block in read.imu.items()}
     test = with_keys(read.test, ((mark.time_s, mark.text) for mark in decoded.marks))
     return replace(read, imu=imu, test=test), tuple(_file_findings(recording, decoded))
-
-
-def export_session(
-    opened: OpenedLibrary,
-    session_id: UUID,
-    folder: Path,
-    decoders: Decoders,
-    report: Report,
-    *,
-    kept: Collection[Typed] = (),
-    is_identified: bool = False,
-) -> None:
-    """Write a session as a session folder, pseudonymised or as it is; the audit says which before anything is written.
-
-    Pseudonymised, of what was typed freely only what is `kept` leaves.
-
-    Raises
-    ------
-    LibraryError
-        There is something in `folder`, there is no such session, or the export cannot be noted.
-    JournalRefusedError, OSError
-        As in `session_with_samples`, or the folder cannot be written.
-    """
-    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
-        raise LibraryError("This folder is not empty", "Choose an empty or new folder")
-    visit = opened.library.sessions.get(session_id)
-    subject = about("session", session_id)
-    typed = "all" if is_identified else ", ".join(sorted(kept))
-    opened.library.audit.note(Action.EXPORT, subject, format="session folder", is_identified=is_identified, typed=typed)
-    session = session_with_samples(opened, visit, decoders, report)
-    if not is_identified:
-        session = Pseudonyms(opened.library.pseudonyms_key).session(visit.patient_id, session, kept)
-    report(1.0, "writing")
-    write_session(session, folder)
 
 
 def export_orphan(opened: OpenedLibrary, orphan: Interrupted, folder: Path, decoders: Decoders, report: Report) -> None:

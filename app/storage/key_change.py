@@ -29,9 +29,10 @@ from app.storage.journal_headers import HEADERS_DUE, write_headers
 from app.storage.key_change_rest import remove_database, salt_of
 from app.storage.keys import KeySlots
 from app.storage.layout import DATABASE, KEYS, NEW_DATABASE, NEW_KEYS, RECORDINGS
-from app.storage.opened import OpenedLibrary, Report
+from app.storage.opened import OpenedLibrary
 from app.storage.recovery import find_interrupted
 from app.storage.stored import Action, LibraryBusyError, LibraryError
+from app.system.progress import Report
 from app.wording.translation import tr
 
 PIECE_BYTES = 1 << 20

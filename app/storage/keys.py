@@ -14,6 +14,7 @@ import unicodedata
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass, field
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -415,4 +416,8 @@ def _checked(passphrase: str, known: Iterable[str]) -> Secret:
 
 def _secret(passphrase: str) -> Secret:
     # the same letters from another keyboard may come as other code points
-    return Secret(unicodedata.normalize("NFKC", passphrase.strip()), "utf-8")
+    letters = [letter.encode() for letter in unicodedata.normalize("NFKC", passphrase.strip())]
+    secret = Secret(sum(map(len, letters)))
+    for place, byte in enumerate(chain.from_iterable(letters)):  # at once, it would be copied on the way
+        secret[place] = byte
+    return secret

@@ -4,7 +4,7 @@ import glob
 import re
 import shutil
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -24,9 +24,6 @@ from app.storage.layout import IN_USE, KEYS, RECORDINGS
 from app.storage.library import Library
 from app.storage.stored import LibraryError, Operator, StoredJournal
 from app.wording.translation import tr
-
-Report = Callable[[float, str], None]
-"""Called with the share done (0 to 1) and what is being done. What it raises ends the work."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -224,8 +221,10 @@ def _remove_unfinished(folder: Path) -> None:
     drawn = re.compile(rf"\.{re.escape(folder.name)}-[a-z0-9_]{{8}}")  # as `tempfile` draws names
     for left in folder.parent.glob(f".{glob.escape(folder.name)}-*"):
         if drawn.fullmatch(left.name) and (left / IN_USE).exists():
-            with suppress(BlockingIOError), held(left / IN_USE):  # another program may just be making it
-                shutil.rmtree(left)
+            with suppress(BlockingIOError, FileNotFoundError):  # another program may just be making or removing it
+                with held(left / IN_USE):
+                    pass
+                shutil.rmtree(left)  # not while its file is open: on a disk of the network it would not go
 
 
 @contextmanager

@@ -27,8 +27,9 @@ from app.storage.journal.header import (
 from app.storage.journal.payloads import Belonging, SourceEntry
 from app.storage.journal.reader import Damage, JournalReader, ReadReport
 from app.storage.journal.records import RECORD_MAGIC, Record, RecordKind, Seal
-from app.storage.opened import OpenedLibrary, Report
+from app.storage.opened import OpenedLibrary
 from app.storage.stored import LibraryError, RecordingState, StoredJournal, StoredRecording
+from app.system.progress import Report
 from app.wording.translation import tr
 from core.samples import Recording, RecordingKind
 from devices.files.imports import folder_for, free_name

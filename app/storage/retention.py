@@ -4,7 +4,8 @@ A journal opens with its own key only, which stands wrapped in its header and in
 the file is removed; after a kill in between the next start goes on.
 
 A clock that is wrong destroys nothing. Stations go by their server's. A library in a folder goes by its audit: a time
-without an entry counts for a week at most, and after such a time nothing is destroyed for a day.
+without an entry counts for a week at most, and as long as it ended less than a day ago for nothing. So a library that
+is used once a month destroys what was deleted half a year later.
 
 A disk that writes elsewhere (flash, snapshots) may keep the old bytes, and backups hold what was deleted until they are
 themselves removed, ninety days later (`app.storage.backup`). Whoever is asked to delete for good has to know that.
@@ -66,11 +67,11 @@ def overdue_before(opened: OpenedLibrary, now: datetime.datetime) -> datetime.da
     left, later = KEPT_DELETED, now
     for at in opened.library.audit.times():
         gap = max(later - at, datetime.timedelta(0))
-        if gap > UNUSED and now - later < SETTLED:
-            return None
-        if min(gap, UNUSED) >= left:
+        is_doubtful = gap > UNUSED and now - later < SETTLED
+        counted = datetime.timedelta(0) if is_doubtful else min(gap, UNUSED)
+        if counted >= left:
             return later - left
-        left, later = left - min(gap, UNUSED), min(at, later)
+        left, later = left - counted, min(at, later)
     return None
 
 

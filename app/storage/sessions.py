@@ -19,9 +19,8 @@ from app.storage.database.models import (
     RecordingRow,
     SessionRow,
 )
-from app.storage.database.values import SENSOR_FIELDS, SESSION_FIELDS, placement_of, stored_recording, stored_session
+from app.storage.database.values import SENSOR_FIELDS, SESSION_FIELDS, placement_of, stored_session
 from app.storage.edited_fields import SESSION_CORRECTABLE
-from app.storage.recordings import current_recording
 from app.storage.stored import (
     KEPT_DELETED,
     Action,
@@ -32,7 +31,6 @@ from app.storage.stored import (
     Placement,
     Role,
     SessionSummary,
-    StoredRecording,
     StoredSession,
 )
 from app.storage.unit_of_work import UnitOfWork
@@ -166,29 +164,6 @@ class Sessions:
             row = new_placement(self._unit, session, existing_session(session, session_id), sensors)
             note(self._unit, session, Action.EDIT, about("session", session_id), fields=["placement"])
             return placement_of(row)
-
-    def correct_placement(
-        self, recordings: Sequence[StoredRecording], sensors: Mapping[Site, PlacedSensor]
-    ) -> tuple[StoredRecording, ...]:
-        """Say which sensor was worn where in recordings of one visit that were made already; undone from the history.
-
-        Raises
-        ------
-        ChangedMeanwhileError
-            A recording is not what the library holds any more.
-        LibraryError
-            One sensor at two sites.
-        """
-        (session_id,) = {recording.session_id for recording in recordings}
-        with self._unit.writing(Role.CLINICIAN) as session:
-            visit = existing_session(session, session_id)
-            rows = [current_recording(session, recording) for recording in recordings]
-            placement = new_placement(self._unit, session, visit, sensors)
-            changes = [change for row in rows for change in differences(row, {"placement_id": placement.id})]
-            apply(self._unit, session, changes, visit.patient_id, session_id)
-            session.flush()
-            session.expire_all()
-            return tuple(stored_recording(row) for row in rows)
 
     def delete(self, visit: StoredSession) -> None:
         """Take a visit out of sight; it can be restored for 30 days."""

@@ -144,7 +144,7 @@ class SharedEdits:
         Raises
         ------
         LibraryError
-            As in `Sessions.correct_placement`, or the session was deleted.
+            One sensor at two sites, or the session was deleted.
         """
         with self._unit.writing(Role.CLINICIAN) as session:
             visit = existing_session(session, session_id)

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping
 
+from app.wording.numbers import MINUS
 from app.wording.translation import figure_text, tr
 from core.body import Side
 from core.gait.spatiotemporal import MeanAndSd
@@ -10,7 +11,6 @@ from core.verdicts.measurement_error import Z95, Difference, Judgement, Sigma
 from core.verdicts.model import Verdict
 from core.verdicts.norms import MIN_STRIDES_FOR_MEAN, MIN_STRIDES_FOR_SD
 
-MINUS = "\u2212"
 NOTHING = "–"
 DAGGER = "\u2020"
 CARE = "*"  # beside what is to be read with care

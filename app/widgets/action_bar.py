@@ -25,6 +25,7 @@ from app.widgets.grid import LEAST, NARROW_BELOW, side_margin
 from app.widgets.painted_text import PaintedText
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed
+from app.wording.numbers import clock
 from app.wording.translation import tr
 
 BAR = 72
@@ -39,9 +40,14 @@ Row = Sequence[QWidget]
 
 @dataclass(frozen=True, slots=True)
 class BarAction:
-    """`is_wished`: pressing it is what we want, so it is filled. `key` is what its cap shows."""
+    """What a button says, and what is done when it is pressed.
+
+    `run` is a bound method, not a new function each time: what is equal is not shown anew. `key` is what its cap shows.
+    `is_wished`: pressing it is what we want, so it is filled.
+    """
 
     text: str
+    run: Callable[[], object]
     key: str = ""
     icon: Icon | None = None
     is_wished: bool = True
@@ -71,14 +77,18 @@ class BarState:
 
 
 class ActionBar(Themed):
-    """Grows by a line where a narrow window or a long language leaves no room; nothing in it is ever cut."""
+    """Grows by a line where a narrow window or a long language leaves no room; nothing in it is ever cut.
+
+    Signals
+    -------
+    pressed
+        The BarAction that is to be run: whether it is, who shows it decides.
+    """
 
     accessible_role = QAccessible.Role.ToolBar
 
     back_pressed = Signal()
-    primary_pressed = Signal()
-    other_pressed = Signal(int)
-    quiet_pressed = Signal(int)
+    pressed = Signal(object)
     sound_pressed = Signal()
     recording_changed = Signal(bool)
 
@@ -97,7 +107,7 @@ class ActionBar(Themed):
         self._others: list[VerbButton] = []
         self.primary = VerbButton(look, self, is_primary=True)
         self.back.clicked.connect(self.back_pressed)
-        self.primary.clicked.connect(self.primary_pressed)
+        self.primary.clicked.connect(self._on_clicked)
         self.sound.clicked.connect(self.sound_pressed)
         self._show()
 
@@ -172,13 +182,14 @@ class ActionBar(Themed):
         recording = state.recording
         is_inverse = recording is not None
         had_focus = any(button.hasFocus() for button in self.tab_order)
-        self._keep_enough(self._quiet, len(state.quiet), self._on_quiet_clicked)
-        self._keep_enough(self._others, len(state.others), self._on_other_clicked)
+        self._keep_enough(self._quiet, len(state.quiet))
+        self._keep_enough(self._others, len(state.others))
         sound = None
         if recording is not None:
-            on = recording.has_sound
-            sound = BarAction(tr("Sound on") if on else tr("Sound off"), "", Icon.SOUND if on else Icon.SOUND_OFF)
-        back = BarAction(tr("Back"), "", Icon.BACK) if state.has_back and not is_inverse else None
+            words, icon = (tr("Sound on"), Icon.SOUND) if recording.has_sound else (tr("Sound off"), Icon.SOUND_OFF)
+            sound = BarAction(words, self.sound_pressed.emit, icon=icon)
+        has_back = state.has_back and not is_inverse
+        back = BarAction(tr("Back"), self.back_pressed.emit, icon=Icon.BACK) if has_back else None
         self.back.show_verb(back, ButtonKind.SECONDARY, is_inverse)
         self.sound.show_verb(sound, ButtonKind.QUIET, is_inverse)
         for k, (button, verb) in enumerate(zip(self._quiet, _padded(state.quiet, len(self._quiet)), strict=True)):
@@ -198,10 +209,10 @@ class ActionBar(Themed):
         if had_focus and not any(button.hasFocus() for button in self.tab_order):
             self.focus()
 
-    def _keep_enough(self, buttons: list["VerbButton"], count: int, slot: Callable[[], None]) -> None:
+    def _keep_enough(self, buttons: list["VerbButton"], count: int) -> None:
         while len(buttons) < count:
             button = VerbButton(self._look, self)
-            button.clicked.connect(slot)
+            button.clicked.connect(self._on_clicked)
             buttons.append(button)
             for before, after in pairwise(self.buttons):
                 QWidget.setTabOrder(before, after)
@@ -291,15 +302,17 @@ class ActionBar(Themed):
             text.setGeometry(box.left(), top, box.width(), height)
             top += height
 
-    def _on_other_clicked(self) -> None:
-        self.other_pressed.emit(next(k for k, one in enumerate(self._others) if one is self.sender()))
-
-    def _on_quiet_clicked(self) -> None:
-        self.quiet_pressed.emit(next(k for k, one in enumerate(self._quiet) if one is self.sender()))
+    def _on_clicked(self) -> None:
+        button = self.sender()
+        assert isinstance(button, VerbButton)
+        self.pressed.emit(button.verb)
 
     def _on_look_changed(self) -> None:
         self._colour()
         self._arrange()
+
+
+_NOTHING = BarAction("", lambda: None)
 
 
 class VerbButton(Button):
@@ -308,13 +321,13 @@ class VerbButton(Button):
     Attributes
     ----------
     verb
-        What it does; its key holds though there may be no room for the cap.
+        What it does, nothing while it is hidden; its key holds though there may be no room for the cap.
     """
 
     def __init__(self, look: ThemeNotifier, parent: QWidget, is_primary: bool = False) -> None:
         super().__init__(look, "", parent=parent)
         self._is_primary = is_primary
-        self.verb = BarAction("")
+        self.verb = _NOTHING
         self.hide()
 
     @property
@@ -323,9 +336,9 @@ class VerbButton(Button):
 
     def show_verb(self, verb: BarAction | None, kind: ButtonKind, is_inverse: bool) -> None:
         self.setVisible(verb is not None)
+        self.verb = verb or _NOTHING
         if verb is None:
             return
-        self.verb = verb
         height = STOP_HEIGHT if is_inverse and self._is_primary else HEIGHT
         self.set_face(kind=kind, icon=verb.icon, key=verb.key, is_inverse=is_inverse, height=height)
         self.setText(verb.text)
@@ -364,7 +377,7 @@ class _Clock(QWidget):
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
 
     def show_elapsed(self, elapsed_s: float) -> None:
-        time = clock_time(elapsed_s)
+        time = clock(elapsed_s, 2)
         if time != self._time:
             self._time = time
             self.setAccessibleName(tr("Recording, {time}").format(time=time))
@@ -391,12 +404,6 @@ class _Clock(QWidget):
 
     def _text_left(self) -> int:
         return self._look.theme.px(36)
-
-
-def clock_time(elapsed_s: float) -> str:
-    """Give a time as minutes and seconds: "04:06"."""
-    minutes, seconds = divmod(int(max(elapsed_s, 0.0)), 60)
-    return f"{minutes:02d}:{seconds:02d}"
 
 
 def _without_time(state: BarState) -> BarState:

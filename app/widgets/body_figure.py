@@ -10,7 +10,6 @@ from PySide6.QtWidgets import QSizePolicy, QWidget
 from app.theme.notifier import ThemeNotifier
 from app.theme.theme import Theme
 from app.widgets.body_shapes import BARE_LEGS, LEGS, WHOLE, body_shapes
-from app.widgets.chip import LETTERS
 from app.widgets.text import SEMIBOLD
 from app.wording.translation import name_of, tr
 from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site
@@ -206,7 +205,7 @@ class BodyFigure(QWidget):
             painter.setPen(theme.text(side))
             painter.setFont(letter)
             box = QRectF(x - half / 2, max(middle.y() - theme.px(24), 0), half, theme.px(48))
-            painter.drawText(box, Qt.AlignmentFlag.AlignCenter, LETTERS[side])
+            painter.drawText(box, Qt.AlignmentFlag.AlignCenter, side.letter)
             if not is_small:
                 painter.setPen(QColor(theme.colours.ink2))
                 painter.setFont(note)

@@ -12,7 +12,6 @@ from core.body import Side
 
 CHIP = 20
 LINE = 24
-LETTERS = {Side.LEFT: "L", Side.RIGHT: "R"}
 
 
 def paint_chip(painter: QPainter, rect: QRectF, side: Side, theme: Theme) -> None:
@@ -36,7 +35,7 @@ def paint_chip(painter: QPainter, rect: QRectF, side: Side, theme: Theme) -> Non
         painter.drawRoundedRect(rect.adjusted(half, half, -half, -half), radius, radius)
         painter.setPen(colour)
     painter.setFont(theme.font(CHIP * 0.65, SEMIBOLD))
-    painter.drawText(rect, Qt.AlignmentFlag.AlignCenter, LETTERS[side])
+    painter.drawText(rect, Qt.AlignmentFlag.AlignCenter, side.letter)
     painter.restore()
 
 

@@ -11,6 +11,7 @@ from app.widgets.table import TableColumn, TableRow
 from app.widgets.table_cells import RIGHT, TextCell
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD
 from app.wording.body import joint_name
+from app.wording.numbers import MINUS
 from app.wording.translation import figure_text, later, name_of, tr
 from core.body import Joint
 from core.hip.results import HipAngle, HipIdentification
@@ -123,7 +124,7 @@ def _direction(found: JointCalibration) -> Fact:
 def _lag(found: JointCalibration | HipIdentification) -> Fact:
     if abs(found.lag_s) < SHORTEST_LAG_S:
         return Fact(tr("none"))
-    return Fact(f"{found.lag_s * 1000:+.0f} ms".replace("-", "\N{MINUS SIGN}"))
+    return Fact(f"{found.lag_s * 1000:+.0f} ms".replace("-", MINUS))
 
 
 def _zero(found: JointCalibration) -> Fact:
@@ -137,7 +138,7 @@ def _zero(found: JointCalibration) -> Fact:
 
 
 def _degrees(angle_rad: float) -> str:
-    return f"{figure_text(math.degrees(angle_rad), '.1f')}°".replace("-", "\N{MINUS SIGN}")
+    return f"{figure_text(math.degrees(angle_rad), '.1f')}°".replace("-", MINUS)
 
 
 def _heading(found: HipIdentification) -> Fact:

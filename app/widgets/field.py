@@ -25,6 +25,7 @@ from app.widgets.chip import paint_chip
 from app.widgets.icons import IconMark
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD, Text
 from app.widgets.themed import Themed
+from app.wording.numbers import MINUS
 from app.wording.translation import short_figure, tr, within_sentence
 from core.body import Side
 
@@ -262,9 +263,7 @@ class NumberField(Field):
         )
         unit = self._box.unit
         space = "" if unit in ("", "°", "%") else " "
-        low, high = (
-            short_figure(limit, self.decimals).replace("-", "\N{MINUS SIGN}") for limit in (self.low, self.high)
-        )
+        low, high = (short_figure(limit, self.decimals).replace("-", MINUS) for limit in (self.low, self.high))
         self.set_wrong(wanted.format(low=low, high=f"{high}{space}{unit}"))
 
 
@@ -349,7 +348,7 @@ class _Box(QLineEdit):
 def _number(text: str, decimals: int) -> float | None:
     """Give the number a clinician wrote, rounded as it is stored; None where it is none."""
     try:
-        number = float(text.strip().replace(",", ".").replace("\N{MINUS SIGN}", "-"))
+        number = float(text.strip().replace(",", ".").replace(MINUS, "-"))
     except ValueError:
         return None
     if not math.isfinite(number) or (decimals == 0 and number != round(number)):

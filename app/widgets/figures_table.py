@@ -5,10 +5,10 @@ from collections.abc import Mapping, Sequence
 
 from app.charts.cycles import is_mean_enough, is_spread_enough
 from app.summary.walk_figures import Figure
-from app.widgets.chip import LETTERS
 from app.widgets.table import TableColumn, TableRow
 from app.widgets.table_cells import CENTRE, EMPTY, RIGHT, TextCell
 from app.widgets.text import SEMIBOLD
+from app.wording.numbers import MINUS
 from app.wording.translation import capitalised, figure_text, later, side_name, tr, tr_n, within_sentence
 from app.wording.verdicts import verdict_word
 from core.body import Side
@@ -17,7 +17,6 @@ from core.verdicts.model import Verdict
 
 FIGURE = 15  # px of the letters of a value
 BAND_HEAD = later("ref. ±1 SD")
-MINUS = "\N{MINUS SIGN}"
 CARE_MARK = "*"  # behind what is to be read with care
 
 
@@ -42,7 +41,7 @@ def figure_rows(rows: Sequence[str | Figure]) -> list[TableRow]:
 def _side_head(side: Side, strides: Mapping[Side, int]) -> TextCell:
     count = strides.get(side)
     words = tr_n("{count} stride", "{count} strides", count).format(count=count) if count is not None else ""
-    return TextCell(words, align=RIGHT, size=12, tone="ink2", side=side, spoken=f"{LETTERS[side]}, {words}")
+    return TextCell(words, align=RIGHT, size=12, tone="ink2", side=side, spoken=f"{side.letter}, {words}")
 
 
 def _figure_cells(row: Figure, heading: str) -> tuple[TextCell, ...]:

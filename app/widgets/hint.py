@@ -10,6 +10,7 @@ from app.theme.icons import Icon, paint_icon
 from app.theme.notifier import ThemeNotifier
 from app.theme.theme import CARD_RADIUS
 from app.widgets.text import MEDIUM, SEMIBOLD
+from app.wording.numbers import clock
 from app.wording.translation import tr
 
 HEIGHT, COMPACT_HEIGHT, LARGE_HEIGHT = 112, 84, 144
@@ -55,8 +56,7 @@ class HintBand(QWidget):
 
     def show_elapsed(self, elapsed_s: float | None, usual_s: float) -> None:
         """Show whole seconds; None while nothing is recorded."""
-        whole = int(elapsed_s or 0.0)
-        elapsed = "" if elapsed_s is None else f"{whole // 60:02d}:{whole % 60:02d}"
+        elapsed = "" if elapsed_s is None else clock(elapsed_s, 2)
         usual = tr("usually {seconds:.0f} s").format(seconds=usual_s)
         if (elapsed, usual) != (self._elapsed, self._usual):
             self._elapsed, self._usual = elapsed, usual

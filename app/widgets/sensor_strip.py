@@ -8,7 +8,6 @@ from PySide6.QtWidgets import QSizePolicy
 
 from app.theme.notifier import ThemeNotifier
 from app.widgets.body_figure import paint_legs
-from app.widgets.chip import LETTERS
 from app.widgets.grid import LEAST, side_margin
 from app.widgets.painted_text import CENTRE, PaintedText
 from app.widgets.sensor_tile import SensorTile, marks
@@ -101,7 +100,7 @@ class SensorStrip(Themed):
         if self._is_from_behind:
             at = {Side.LEFT: self._legs.left(), Side.RIGHT: self._legs.right() - width}
         return [
-            PaintedText(LETTERS[side], QRectF(x, self._legs.top(), width, height), font, f"{side}_text", CENTRE)
+            PaintedText(side.letter, QRectF(x, self._legs.top(), width, height), font, f"{side}_text", CENTRE)
             for side, x in at.items()
         ]
 

@@ -5,9 +5,9 @@ from PySide6.QtGui import QColor, QFontMetrics, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from app.theme.notifier import ThemeNotifier
-from app.widgets.action_bar import clock_time
 from app.widgets.painted_text import RIGHT, PaintedText
 from app.widgets.text import SEMIBOLD
+from app.wording.numbers import clock
 from app.wording.translation import tr
 
 TARGET_S = 300  # from the first sensor to the first stride
@@ -28,7 +28,7 @@ class Stopwatch(QWidget):
         if self.accessibleName() and int(elapsed_s) == self._elapsed_s:
             return
         self._elapsed_s = int(max(elapsed_s, 0.0))
-        self.setAccessibleName(f"{clock_time(self._elapsed_s)}, {self._words()}")
+        self.setAccessibleName(f"{clock(self._elapsed_s, 2)}, {self._words()}")
         self.update()
 
     def set_compact(self, is_compact: bool) -> None:
@@ -50,7 +50,7 @@ class Stopwatch(QWidget):
         return [
             PaintedText(self._words(), QRectF(0, top, words, height), theme.font(12), "ink2", RIGHT),
             PaintedText(
-                clock_time(self._elapsed_s),
+                clock(self._elapsed_s, 2),
                 QRectF(self.width() - time, 0, time, self.height()),
                 theme.font(self._time_size(), SEMIBOLD),
                 align=RIGHT,
@@ -94,7 +94,7 @@ class Stopwatch(QWidget):
         said = [tr("{minutes} min target exceeded"), tr("of {minutes} min target")]
         widest = max(small.horizontalAdvance(words.format(minutes=minutes)) for words in said)
         large = QFontMetrics(theme.font(self._time_size(), SEMIBOLD))
-        time = max(large.horizontalAdvance("00:00"), large.horizontalAdvance(clock_time(self._elapsed_s)))
+        time = max(large.horizontalAdvance("00:00"), large.horizontalAdvance(clock(self._elapsed_s, 2)))
         return max(widest + theme.px(2), theme.px(LINE)), time + theme.px(2)
 
     def _refresh(self) -> None:

@@ -9,7 +9,7 @@ from PySide6.QtGui import QColor, QFont, QFontMetrics, QPainter
 
 from app.theme.icons import Icon, paint_icon
 from app.theme.theme import Theme
-from app.widgets.chip import CHIP, LETTERS, paint_chip
+from app.widgets.chip import CHIP, paint_chip
 from app.widgets.text import REGULAR
 from core.body import Side
 
@@ -84,7 +84,7 @@ class TextCell(TableCell):
 
     @property
     def words(self) -> str:
-        letter = LETTERS[self.side] if self.side is not None else ""
+        letter = self.side.letter if self.side is not None else ""
         return " ".join(filter(None, [letter, self.text.replace("\n", " "), self.small]))
 
     @property

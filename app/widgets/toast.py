@@ -54,7 +54,7 @@ class Toast(Themed):
     def offer(self, what: str) -> None:
         """Say what was done; what was said before can no longer be undone from here."""
         self._text.setText(what)
-        self.button.show_verb(BarAction(tr("Undo"), tr("Ctrl Z")), ButtonKind.QUIET, is_inverse=True)
+        self.button.show_verb(BarAction(tr("Undo"), self.undo, tr("Ctrl Z")), ButtonKind.QUIET, is_inverse=True)
         self.setAccessibleName(what)
         self._fit()
         self.show()

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject, Signal
 
 from app.storage.kept_analyses import bare, is_same_question
+from app.system.progress import Report
 from app.wording.translation import tr
-from app.workers.background import Background, Report, Work
+from app.workers.background import Background, Work
 from core.analysis import analyse
 from core.body import Joint, Side
 from core.calibration.validity import spans_of_validity

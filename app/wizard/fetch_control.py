@@ -61,8 +61,8 @@ class FetchControl(QObject):
     def bar(self) -> BarState | None:
         """What can be done about it; None: nothing has to be."""
         if self.has_failed:
-            again = BarAction(tr("Fetch again"), tr("Enter"), Icon.REPEAT)
-            return BarState(primary=again, others=(BarAction(tr("Fetch later"), is_wished=False),))
+            again = BarAction(tr("Fetch again"), self.go_on, tr("Enter"), Icon.REPEAT)
+            return BarState(primary=again, others=(BarAction(tr("Fetch later"), self.put_off, is_wished=False),))
         return BarState(note=tr("The walk is being fetched.")) if self.is_fetching else None
 
     @property
@@ -71,7 +71,7 @@ class FetchControl(QObject):
         count = len(self._recordings.in_sensors)
         if not count or not self._is_put_off or self.is_fetching:
             return None
-        return BarAction(tr_n("Fetch {count} walk", "Fetch {count} walks", count).format(count=count))
+        return BarAction(tr_n("Fetch {count} walk", "Fetch {count} walks", count).format(count=count), self.go_on)
 
     def go_on(self) -> None:
         """Fetch what failed, or was put off."""

@@ -6,7 +6,7 @@ from app.acquisition.heartbeat import Standstill
 from app.storage.journal.disk import TOLD, Trouble
 from app.storage.journal.writer import SLOW_S, JournalStatus, State
 from app.wizard.losses import NOTHING, Message
-from app.wizard.walk_messages import clock
+from app.wording.numbers import clock
 from app.wording.translation import tr, tr_n
 
 ENDS = frozenset((Trouble.NO_ROOM, Trouble.DISK_FULL, Trouble.DISK_GONE))  # with these the journal has closed itself

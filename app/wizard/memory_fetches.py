@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject, Signal
 
 from app.acquisition.recorder import Recorder
+from app.system.progress import Report
 from app.wording.translation import filled, tr
-from app.workers.background import Background, Report
+from app.workers.background import Background
 from devices.live import SourceRefusedError
 
 if TYPE_CHECKING:

@@ -88,7 +88,7 @@ class SessionRecordings(QObject):
         """What is in the sensors' memories still."""
         self._edits = RecordingEdits(controller, self.find, self.called, self)
         self._edits.saved.connect(self._on_saved)
-        self._edits.settled.connect(self.changed)
+        self._edits.changed.connect(self.changed)
         self._edits.refused.connect(self.refused)
         self._edits.merged.connect(self.merged)
         self._edits.asked.connect(self.asked)

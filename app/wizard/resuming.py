@@ -14,7 +14,7 @@ from app.storage.stored import Limits, RecordingState, ResultKind, StoredPatient
 from app.summary.course import Course, course_of
 from app.summary.course_lanes import CourseVisit
 from app.summary.report_dates import date_of
-from app.workers.background import Report
+from app.system.progress import Report
 from core.analysis import analyse
 from core.body import LEG_JOINTS
 from core.calibration.rest import rest_of

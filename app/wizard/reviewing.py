@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject, QTimer, Signal
 
 from app.review.viewer import Viewer, ViewerRefusedError, default_root, viewer_program, why_not
+from app.system.progress import Report
 from app.wording.translation import tr
-from app.workers.background import Background, Report
+from app.workers.background import Background
 
 if TYPE_CHECKING:
     from core.results import Analysis

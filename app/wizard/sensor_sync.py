@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Signal
 
+from app.system.progress import Report
 from app.widgets.sensors_progress import LineState, ProgressShown, SensorLine
 from app.wording.translation import filled, later, tr
-from app.workers.background import Background, Report
+from app.workers.background import Background
 from devices.dot.synchronising import NotSynchronisedError, SyncFailure, SyncStage
 from devices.live import SourceLostError, SourceRefusedError
 

@@ -9,7 +9,7 @@ from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWi
 
 from app.theme.motion import duration_ms
 from app.theme.notifier import ThemeNotifier
-from app.widgets.action_bar import ActionBar
+from app.widgets.action_bar import ActionBar, BarState
 from app.widgets.banner import Banner
 from app.widgets.grid import COMPACT_BELOW, CONTENT, LEAST, WIDE_FROM, side_margin
 from app.widgets.header import Header
@@ -19,6 +19,7 @@ from app.widgets.sensor_strip import SensorStrip
 from app.widgets.step_rail import StepRail
 from app.widgets.themed import Themed
 from app.widgets.toast import Toast
+from app.wizard.step import StepId
 
 FADE_MS = 120
 LEAST_PAGE = 40
@@ -52,7 +53,7 @@ class WizardShell(Themed):
         super().__init__()
         self._look, self._strip_mode, self._is_compact = look, StripMode.HIDDEN, False
         self._is_low = False
-        self._by_index: dict[int, QWidget] = {}
+        self._by_step: dict[StepId, QWidget] = {}
         self.rail = StepRail(look)
         self.header = Header(look, has_mark=False)
         self.strip = SensorStrip(look)
@@ -81,25 +82,25 @@ class WizardShell(Themed):
         return self._pages.currentWidget()
 
     @property
-    def pages(self) -> dict[int, QWidget]:
-        """Those that are made, by their step's number."""
-        return dict(self._by_index)
+    def pages(self) -> dict[StepId, QWidget]:
+        """Those that are made."""
+        return dict(self._by_step)
 
-    def add_page(self, index: int, page: QWidget) -> None:
-        """Take in a page; one that had the same index is given up."""
-        if (before := self._by_index.get(index)) is page:
+    def add_page(self, step: StepId, page: QWidget) -> None:
+        """Take in a page; one that the step had before is given up."""
+        if (before := self._by_step.get(step)) is page:
             return
         if before is not None:
             self._pages.removeWidget(before)
             before.deleteLater()
-        self._by_index[index] = page
+        self._by_step[step] = page
         self._pages.addWidget(page)
 
-    def show_page(self, index: int, page: QWidget | None = None) -> None:
+    def show_page(self, step: StepId, page: QWidget | None = None) -> None:
         """Go to a page, which is taken in if it is new. The focus goes where its reading starts."""
         if page is not None:
-            self.add_page(index, page)
-        page = self._by_index[index]
+            self.add_page(step, page)
+        page = self._by_step[step]
         if page is not self.page:
             self._fade.begin()
             self._scroll.setUpdatesEnabled(False)  # until the page has its size, else its charts are painted at each
@@ -112,13 +113,14 @@ class WizardShell(Themed):
         self._focus_page()
 
     def clear_pages(self) -> None:
-        """Let go of all pages."""
+        """Let go of all pages, and of what the bar does for them."""
+        self.bar.show_state(BarState())
         self._fade.end()
-        for page in self._by_index.values():
+        for page in self._by_step.values():
             self._pages.removeWidget(page)
             page.hide()
             page.deleteLater()
-        self._by_index.clear()
+        self._by_step.clear()
         self.header.fold.setChecked(False)  # what one session looked at is no wish of the next
 
     def set_strip_mode(self, mode: StripMode) -> None:

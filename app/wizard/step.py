@@ -1,6 +1,7 @@
 """What is every step of the wizard? A page, a row in the rail, a bar of actions, and what keys do meanwhile."""
 
-from typing import TYPE_CHECKING
+from enum import Enum, auto
+from typing import TYPE_CHECKING, ClassVar
 
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QWidget
@@ -12,6 +13,18 @@ from app.wizard.keys import Intent
 
 if TYPE_CHECKING:
     from app.wizard.visit import Visit
+
+
+class StepId(Enum):
+    """The steps in their order; the value is the number that goes there with Ctrl."""
+
+    PATIENT = auto()
+    SENSORS = auto()
+    STAND_STILL = auto()
+    FREE_MOTION = auto()
+    WALKING = auto()
+    RESULTS = auto()
+    REPORT = auto()
 
 
 class Step(QObject):
@@ -26,16 +39,18 @@ class Step(QObject):
     told
         What happened, and what follows or what to do: for the banner. Empty: the last word no longer holds.
     jumped
-        Another step, by its number from 0, is where to go on.
+        Another step, by its StepId, is where to go on.
     offered
         Something was done that can be undone: what, for the toast; `undo` takes it back.
     demonstration_wanted
         A visit of the demonstration's patient is to begin in place of this one.
     """
 
+    id: ClassVar[StepId]
+
     changed = Signal()
     done = Signal()
-    jumped = Signal(int)
+    jumped = Signal(object)
     told = Signal(str, str)
     offered = Signal(str)
     demonstration_wanted = Signal()
@@ -106,16 +121,8 @@ class Step(QObject):
         """Called 30 times a second while it is in sight: show what is live."""
 
     def bar(self) -> BarState:
+        """What can be done now: each action says what it does, and does it."""
         raise NotImplementedError
-
-    def on_primary(self) -> None:
-        """The primary action, by mouse or Enter."""
-
-    def on_other(self, number: int) -> None:
-        """One of the actions left of the primary one."""
-
-    def on_quiet(self, number: int) -> None:
-        """One of the quiet actions after Back."""
 
     def on_intent(self, intent: Intent) -> bool:
         """A key that the frame does not know what to do with; returns whether it meant something here."""

@@ -19,6 +19,7 @@ from app.editing.question import EditQuestion
 from app.editing.session import SessionRecord, current_time
 from app.editing.session_recording import SessionRecording
 from app.storage.stored import StoredSession
+from app.system.progress import Report
 from app.wizard.evaluation import Evaluation
 from app.wizard.fetch_control import FetchControl
 from app.wizard.kept_results import KeptResults
@@ -37,7 +38,7 @@ from app.wizard.reviewing import Reviewing
 from app.wizard.worn_corrections import WornCorrections
 from app.wizard.worn_sensors import SourceChoice, WornSensors
 from app.wording.translation import tr
-from app.workers.background import Background, Report
+from app.workers.background import Background
 from app.workers.library_controller import LibraryController
 from core.body import Joint, Side, Site
 from core.samples import Recording, RecordingKind, Session
@@ -417,8 +418,7 @@ class Visit(QObject):
             if is_news:
                 self.deleted_elsewhere.emit(*deletion_message(self.patient.details.code, by))
             return
-        is_settled = self.record.is_settled and self.recordings.is_idle
-        if self.session is None or not is_settled:
+        if self.session is None or self.record.is_busy or not self.recordings.is_idle:
             return
         here = [(one.id, one.stored.details, one.stored.placement) for one in self.recordings.every]
         there = [(one.id, one.details, one.placement) for one in found.recordings if one.state in USABLE]

@@ -4,6 +4,7 @@ from collections.abc import Collection, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from app.wizard.losses import NOTHING, Message
+from app.wording.numbers import clock
 from app.wording.translation import capitalised, name_of, tr
 from core.body import Joint, Segment, Side, Site
 from core.calibration.strap import Slip
@@ -123,9 +124,3 @@ def few_strides_message(counts: Mapping[Side, int]) -> Message:
         said = tr("Only {left} left strides; a standard deviation needs {wanted}.")
     what = said.format(left=left, right=right, wanted=STRIDES_FOR_SPREAD)
     return what, tr("Record another walk, or continue without a standard deviation.")
-
-
-def clock(seconds: float) -> str:
-    """ "0:41" """
-    minutes, rest = divmod(max(0, int(seconds)), 60)
-    return f"{minutes}:{rest:02d}"

@@ -1,6 +1,7 @@
 """The wizard: seven steps, one at a time, jumped between at will, and what is always in sight round them."""
 
 import time
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Protocol, runtime_checkable
 from uuid import UUID
 
@@ -11,7 +12,7 @@ from app.editing.question import EditQuestion
 from app.system import sounds
 from app.system.settings import Settings
 from app.theme.notifier import ThemeNotifier
-from app.widgets.action_bar import BarState
+from app.widgets.action_bar import BarAction, BarState
 from app.widgets.rail_row import RailRow, StepState
 from app.wizard.asked_edits import AskedEdits
 from app.wizard.free_motion.step import FreeMotionStep
@@ -24,7 +25,7 @@ from app.wizard.sensors.sources import choices
 from app.wizard.sensors.step import SensorsStep
 from app.wizard.shell import StripMode, WizardShell
 from app.wizard.standing.step import StandStillStep
-from app.wizard.step import Step
+from app.wizard.step import Step, StepId
 from app.wizard.visit import DEMO, Visit
 from app.wizard.walking.step import WalkingStep
 from app.wizard.worn_tiles import worn_tiles
@@ -38,7 +39,6 @@ if TYPE_CHECKING:
     from app.storage.opened import OpenedLibrary
     from app.storage.stored import StoredPatient
 
-PATIENT, SENSORS, STAND_STILL, FREE_MOTION, WALKING, RESULTS, REPORT = range(7)
 TICK_MS = 33
 PREPARE_MS = 400  # between one page that is made ahead and the next: what the user does comes first
 DEAF_S = 0.4  # after a page turned by itself; a hand that was on its way arrives, one that answers takes longer
@@ -66,8 +66,8 @@ class Wizard(QWidget):
         self._visit: Visit | None = None
         self._demonstration: Visit | None = None  # that waits for its patient
         self._closing: list[Visit] = []  # their threads end by themselves
-        self._steps: list[Step] = []
-        self._current = PATIENT
+        self._steps: dict[StepId, Step] = {}
+        self._current = StepId.PATIENT
         self._ticks = 0
         self._to_resume: UUID | None = None  # a session that waits for what visits before still save
         self._deaf_until_s = 0.0
@@ -94,14 +94,14 @@ class Wizard(QWidget):
         return self._steps[self._current] if self._steps else None
 
     @property
-    def step_number(self) -> int:
-        """Of the step that is in sight, from 0."""
+    def step_id(self) -> StepId:
+        """Of the step that is in sight."""
         return self._current
 
     @property
-    def steps(self) -> tuple[Step, ...]:
+    def steps(self) -> Mapping[StepId, Step]:
         """All of the visit, in their order; none while there is no visit."""
-        return tuple(self._steps)
+        return self._steps
 
     @property
     def to_prepare(self) -> tuple[Step, ...]:
@@ -119,7 +119,7 @@ class Wizard(QWidget):
         visit.begin_stopwatch()
         if patient is not None:
             visit.patient.choose_from_list(patient)
-        self._go_to(PATIENT)
+        self._go_to(StepId.PATIENT)
 
     def show_session(self, session_id: UUID) -> None:
         """Look at what came of a session, or go on with it where nothing has come of it yet."""
@@ -150,9 +150,9 @@ class Wizard(QWidget):
             self._listen_no_more(self._visit)
             self._visit.close()
             self._closing.append(self._visit)
-        for step in self._steps:
+        for step in self._steps.values():
             step.deleteLater()
-        self._visit, self._demonstration, self._steps, self._to_prepare = None, None, [], []
+        self._visit, self._demonstration, self._steps, self._to_prepare = None, None, {}, []
         self.shell.clear_pages()
 
     def _forget_closed(self) -> None:
@@ -172,18 +172,16 @@ class Wizard(QWidget):
 
     def _connect(self) -> None:
         shell = self.shell
-        shell.rail.step_pressed.connect(self.go_to)
+        shell.rail.step_pressed.connect(self._on_rail_pressed)
         shell.rail.below_pressed.connect(self._on_below_pressed)
         shell.bar.back_pressed.connect(self._on_back)
-        shell.bar.primary_pressed.connect(self._on_primary_pressed)
-        shell.bar.other_pressed.connect(self._on_other)
-        shell.bar.quiet_pressed.connect(self._on_quiet)
+        shell.bar.pressed.connect(self._on_bar_pressed)
         shell.bar.sound_pressed.connect(self._on_sound_pressed)
         shell.toast.undone.connect(self._on_undo)
         shell.banner.acted.connect(self._on_new_state_wished)
         shell.room_changed.connect(self._on_room_changed)
         self._keys.pressed.connect(self.act_on)
-        self._keys.bar_pressed.connect(self._on_bar_key)
+        self._keys.bar_pressed.connect(shell.bar.press)
         self._timer.timeout.connect(self._on_tick)
         self._timer.timeout.connect(self._on_resume_due)
         self._preparing.timeout.connect(self._on_prepare)
@@ -195,7 +193,7 @@ class Wizard(QWidget):
         visit = Visit(self._controller, choices(), self)
         self._visit = visit
         look = self._look
-        self._steps = [
+        steps = (
             PatientStep(look, visit, self),
             SensorsStep(look, visit, self),
             StandStillStep(look, visit, self),
@@ -203,8 +201,9 @@ class Wizard(QWidget):
             WalkingStep(look, visit, self),
             ResultsStep(look, visit, self),
             ReportStep(look, visit, self._controller, self),
-        ]
-        for step in self._steps:
+        )
+        self._steps = {step.id: step for step in steps}
+        for step in steps:
             step.changed.connect(self._on_step_changed)
             step.done.connect(self._on_step_done)
             step.jumped.connect(self.go_to)
@@ -221,9 +220,9 @@ class Wizard(QWidget):
         visit.asked.connect(self._on_asked)
         visit.recordings.troubled.connect(self._on_troubled)
         visit.recordings.begun.connect(self.shell.banner.hide)
-        self._current = PATIENT
+        self._current = StepId.PATIENT
         self._timer.start()
-        self._to_prepare = [*self._steps]
+        self._to_prepare = [*steps]
         self._preparing.start()
         return visit
 
@@ -241,22 +240,22 @@ class Wizard(QWidget):
         visit.recordings.troubled.disconnect(self._on_troubled)
         visit.recordings.begun.disconnect(self.shell.banner.hide)
 
-    def go_to(self, number: int) -> None:
+    def go_to(self, goal: StepId) -> None:
         """Go to a step, if it can be entered and the current one left; else say why not."""
-        if not self._steps or number == self._current:
+        if not self._steps or goal is self._current:
             return
-        if reason := self._steps[self._current].cannot_leave or self._steps[number].cannot_enter:
+        if reason := self._steps[self._current].cannot_leave or self._steps[goal].cannot_enter:
             self._tell(reason, "")
             return
         self.shell.banner.hide()
         self._steps[self._current].leave()  # which may have something to say over the next
-        self._go_to(number)
+        self._go_to(goal)
 
-    def _go_to(self, number: int) -> None:
-        step = self._steps[number]
-        self._current = number
+    def _go_to(self, goal: StepId) -> None:
+        step = self._steps[goal]
+        self._current = goal
         self._turn(step.page)
-        self.shell.show_page(number, step.page)
+        self.shell.show_page(goal, step.page)
         step.enter()
         self._show()
 
@@ -265,8 +264,8 @@ class Wizard(QWidget):
         if self._visit is None or not self._steps:
             return
         rows = []
-        for number, step in enumerate(self._steps):
-            state = StepState.CURRENT if number == self._current else step.state
+        for step in self._steps.values():
+            state = StepState.CURRENT if step.id is self._current else step.state
             rows.append(RailRow(step.title, step.note, state))
         self.shell.rail.show_rows(tuple(rows))
         folds = self._steps[self._current].folds_sensors
@@ -309,7 +308,7 @@ class Wizard(QWidget):
 
     def _watch_recording(self) -> None:
         """Say what befalls a recording, as the counters have it by now; on its page a walk says it itself."""
-        if self._visit is None or not self.is_recording or self._current == WALKING:
+        if self._visit is None or not self.is_recording or self._current is StepId.WALKING:
             self._told_of_recording = NOTHING
             return
         recordings, sensors = self._visit.recordings, self._visit.sensors
@@ -328,7 +327,7 @@ class Wizard(QWidget):
             self._preparing.stop()
             return
         step = self._to_prepare[0]
-        self.shell.add_page(self._steps.index(step), step.page)
+        self.shell.add_page(step.id, step.page)
         if not step.prepare():
             del self._to_prepare[0]
 
@@ -345,7 +344,7 @@ class Wizard(QWidget):
             return
         match intent.action:
             case KeyAction.STEP:
-                self.go_to(intent.number - 1)
+                self.go_to(StepId(intent.number))
             case KeyAction.PRIMARY:
                 self.press_primary()
             case KeyAction.BACK:
@@ -365,28 +364,21 @@ class Wizard(QWidget):
             case KeyAction.USUAL_SIZE:
                 self._look.grow(0)
 
-    def _on_bar_key(self, key: str) -> None:
-        if not self._has_just_turned():
-            self.shell.bar.press(key)
-
     def _has_just_turned(self) -> bool:
         """Whether the page turned by itself a moment ago: what is pressed now was meant for the one before."""
         return time.monotonic() < self._deaf_until_s
 
-    def _on_primary_pressed(self) -> None:
+    def _on_bar_pressed(self, action: BarAction) -> None:
         if not self._has_just_turned():
-            self.press_primary()
+            action.run()
 
     def press_primary(self) -> None:
         """Do what the bar's main button says, where it can be pressed."""
-        if self._steps and (verb := self._bar().primary) is not None and verb.is_enabled:
-            self._steps[self._current].on_primary()
+        if self._steps and (action := self._bar().primary) is not None and action.is_enabled:
+            action.run()
 
-    def _on_other(self, number: int) -> None:
-        self._steps[self._current].on_other(number)
-
-    def _on_quiet(self, number: int) -> None:
-        self._steps[self._current].on_quiet(number)
+    def _on_rail_pressed(self, number: int) -> None:
+        self.go_to([*StepId][number])
 
     def _on_sound_pressed(self) -> None:
         self._settings.has_sound = not sounds.is_on()
@@ -404,8 +396,8 @@ class Wizard(QWidget):
             page.set_from_behind(self._settings.is_from_behind)
 
     def _on_back(self) -> None:
-        if self._current > PATIENT:
-            self.go_to(self._current - 1)
+        if self._current is not StepId.PATIENT:
+            self.go_to(StepId(self._current.value - 1))
         else:
             self.leave()
 
@@ -439,7 +431,7 @@ class Wizard(QWidget):
             visit.patient.choose(stored)
         else:
             visit.patient.edit(Patient(code=DEMO_PATIENT))
-        self._steps[PATIENT].enter()
+        self._steps[StepId.PATIENT].enter()
         self._show()
 
     def _on_below_pressed(self, key: str) -> None:
@@ -461,10 +453,10 @@ class Wizard(QWidget):
         self._show()
 
     def _on_step_done(self) -> None:
-        if self.sender() is self.current and self._current < REPORT:
-            if self._current in (STAND_STILL, FREE_MOTION):  # which end by themselves
+        if self.sender() is self.current and self._current is not StepId.REPORT:
+            if self._current in (StepId.STAND_STILL, StepId.FREE_MOTION):  # which end by themselves
                 self._deaf_until_s = time.monotonic() + DEAF_S
-            self.go_to(self._current + 1)
+            self.go_to(StepId(self._current.value + 1))
 
     def _on_visit_changed(self) -> None:
         self._show()
@@ -501,7 +493,8 @@ class Wizard(QWidget):
         gone_words = self._controller.gone_words
         is_gone_at_rest = not self.is_recording and gone_words == (what, then)
         is_told_otherwise = gone_words is None and not self.shell.banner.isHidden()
-        if self._current != WALKING or is_gone_at_rest or is_told_otherwise:  # else a walk's page says it itself
+        is_elsewhere = self._current is not StepId.WALKING  # there a walk's page says it itself
+        if is_elsewhere or is_gone_at_rest or is_told_otherwise:
             self._tell(what, then)
 
     def _on_resumed(self) -> None:
@@ -509,9 +502,9 @@ class Wizard(QWidget):
         self.shell.banner.hide()
         walks = self._visit.recordings.walks if self._visit is not None else ()
         if not walks:
-            self._go_to(SENSORS)
+            self._go_to(StepId.SENSORS)
         else:
-            self._go_to(RESULTS if all(walk.is_decided for walk in walks) else WALKING)
+            self._go_to(StepId.RESULTS if all(walk.is_decided for walk in walks) else StepId.WALKING)
 
     def _on_room_changed(self, is_compact: bool, width: float, height: float) -> None:
         page = self.current.page if self.current is not None else None
@@ -528,11 +521,11 @@ def _demonstration_patient(opened: "OpenedLibrary") -> "StoredPatient | None":
 
 
 _STRIP = {
-    PATIENT: StripMode.FOLDED,
-    SENSORS: StripMode.HIDDEN,
-    STAND_STILL: StripMode.SHOWN,
-    FREE_MOTION: StripMode.SHOWN,
-    WALKING: StripMode.SHOWN,
-    RESULTS: StripMode.FOLDED,
-    REPORT: StripMode.FOLDED,
+    StepId.PATIENT: StripMode.FOLDED,
+    StepId.SENSORS: StripMode.HIDDEN,
+    StepId.STAND_STILL: StripMode.SHOWN,
+    StepId.FREE_MOTION: StripMode.SHOWN,
+    StepId.WALKING: StripMode.SHOWN,
+    StepId.RESULTS: StripMode.FOLDED,
+    StepId.REPORT: StripMode.FOLDED,
 }

@@ -1,16 +1,16 @@
 """Who wore what in recordings that are kept, said anew: left and right swapped, or all since strapped on."""
 
 from collections.abc import Mapping, Sequence
-from functools import partial
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 from uuid import UUID
 
 from PySide6.QtCore import QObject, Signal, Slot
 
-from app.editing.question import EditQuestion
+from app.editing.edited_record import EditedRecord
 from app.editing.session_recording import SessionRecording
-from app.storage.stored import PlacedSensor, StoredSession
-from app.storage.three_way import Edited
+from app.storage.stored import PlacedSensor, StoredRecording, StoredSession
+from app.storage.three_way import Edited, Values
 from app.wizard.recordings import SessionRecordings
 from app.wizard.resuming import read_recordings
 from app.wizard.worn_sensors import WornSensors
@@ -23,31 +23,34 @@ if TYPE_CHECKING:
 
 Worn = tuple[Sequence[UUID], Mapping[Site, PlacedSensor]]
 """Recordings, and who wore what in them."""
-_Corrected = tuple[Edited[StoredSession], tuple[SessionRecording, ...], Sequence[Worn]]
+Seen = Mapping[UUID, UUID | None]
+"""By recording the placement as it was shown."""
 
 
-class WornCorrections(QObject):
+@dataclass(frozen=True, slots=True)
+class Corrected:
+    """The session as the library has it now, and what was said of its recordings."""
+
+    session: StoredSession
+    worn: Sequence[Worn]
+
+
+class WornCorrections(EditedRecord[Corrected]):
     """One correction is made at a time; what is asked for meanwhile is made after it.
 
     Signals
     -------
     corrected
         The session and its recordings, read anew.
-    refused
-        What the library refused, and what to do; nothing is corrected.
-    asked
-        An EditQuestion: another station said it otherwise meanwhile.
     """
 
     corrected = Signal(object, object)
-    refused = Signal(str, str)
-    asked = Signal(object)
 
     def __init__(
         self, controller: LibraryController, sensors: WornSensors, recordings: SessionRecordings, parent: QObject
     ) -> None:
-        super().__init__(parent)
-        self._controller, self._sensors, self._recordings = controller, sensors, recordings
+        super().__init__(controller, parent)
+        self._sensors, self._recordings = sensors, recordings
         self._is_busy = self._must_swap = False
         self._next: Mapping[Site, PlacedSensor] | None = None  # to be placed after what is being corrected
         self._once_ended: Mapping[Site, PlacedSensor] | None = None
@@ -99,35 +102,29 @@ class WornCorrections(QObject):
             placed, self._once_ended = self._once_ended, None
             self._place(placed)
 
-    def _seen(self) -> dict[UUID, UUID | None]:
-        """By recording the placement as the screen has it."""
-        stored = [recording.stored for recording in self._recordings.every]
-        return {one.id: one.placement.id if one.placement is not None else None for one in stored}
+    def _seen(self) -> Seen:
+        return _placements([recording.stored for recording in self._recordings.every])
 
-    def _correct(
-        self, worn: Sequence[Worn], seen: Mapping[UUID, UUID | None], placed: Mapping[Site, PlacedSensor] | None = None
-    ) -> None:
+    def _correct(self, worn: Sequence[Worn], seen: Seen, placed: Mapping[Site, PlacedSensor] | None = None) -> None:
         """Say who wore what in recordings, seen as they were; `placed`: also for what is recorded next."""
         if self._recordings.session is None:
             return
         session_id, self._is_busy = self._recordings.session.id, True
 
-        def correct(opened: "OpenedLibrary") -> _Corrected:
+        def correct(opened: "OpenedLibrary") -> tuple[Edited[Corrected], tuple[SessionRecording, ...]]:
             if placed is not None:
                 opened.library.sessions.place(session_id, placed)
             edited = opened.library.edits.placement(session_id, seen, worn)
-            return edited, read_recordings(opened, edited.stored), worn
+            return Edited(Corrected(edited.stored, worn), edited.contests), read_recordings(opened, edited.stored)
 
-        self._controller.run(correct, self._on_corrected, self._on_refused, self)
+        self._run(correct, self._on_corrected)
 
-    def _on_corrected(self, corrected: _Corrected) -> None:
+    def _on_corrected(self, answer: tuple[Edited[Corrected], tuple[SessionRecording, ...]]) -> None:
         """Show what came of it; swapped again meanwhile, it is swapped again."""
-        edited, recordings, worn = corrected
+        edited, recordings = answer
         self._is_busy = False
-        self.corrected.emit(edited.stored, recordings)
-        if edited.contests:
-            settle = partial(self._settle, worn, self._seen())
-            self.asked.emit(EditQuestion(tr("The session"), edited.contests, settle))
+        self.corrected.emit(edited.stored.session, recordings)
+        self._ask(edited)
         must_swap, placed = self._must_swap, self._next
         self._must_swap, self._next = False, None
         if placed is not None:
@@ -135,14 +132,20 @@ class WornCorrections(QObject):
         if must_swap:
             self.swap_sides()
 
-    def _settle(self, worn: Sequence[Worn], seen: Mapping[UUID, UUID | None], fields: frozenset[str]) -> None:
-        if fields:
-            self._correct(worn, seen)
+    def _called(self, stored: Corrected) -> str:
+        return tr("The session")
+
+    def _choose(self, stored: Corrected, upon: Values, said: Values) -> None:
+        self._correct(stored.worn, _placements(stored.session.recordings))
 
     def _on_refused(self, what: str, remedy: str) -> None:
         self._is_busy = self._must_swap = False
         self._next = None
-        self.refused.emit(what, remedy)
+        super()._on_refused(what, remedy)
+
+
+def _placements(recordings: Sequence[StoredRecording]) -> Seen:
+    return {one.id: one.placement.id if one.placement is not None else None for one in recordings}
 
 
 def opposite(site: Site) -> Site:

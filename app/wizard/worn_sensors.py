@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject, Signal
 
 from app.storage.stored import PlacedSensor
+from app.system.progress import Report
 from app.widgets.sensor_tile import SILENT_FROM_S
 from app.wizard.sensor_sync import SensorSync
 from app.wording.translation import capitalised, filled, later, name_of, tr
-from app.workers.background import Background, Report, Work
+from app.workers.background import Background, Work
 from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site, hip_of
 from core.placement.labels import groups_of
 from core.samples import SensorInfo

@@ -2,10 +2,10 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 
+from app.wording.numbers import MINUS
 from app.wording.translation import capitalised, figure_text, later, tr, within_sentence
 from core.alignment import AlignmentChange, NetChange, PartChange, ProsthesisPart, net_of
 
-MINUS = "\N{MINUS SIGN}"
 EIGHTHS = ("", "⅛", "¼", "⅜", "½", "⅝", "¾", "⅞")
 NAMES = {
     ProsthesisPart.FOOT_FRONT_SCREW: later("Foot, anterior screw"),

@@ -5,6 +5,7 @@ A sentence comes from what was measured: without a time no time is told, without
 
 import math
 
+from app.wording.numbers import clock
 from app.wording.translation import figure_text, joined, later, name_of, tr, tr_n
 from core.timed.found import NotMeasured, TimedTest
 from core.timed.protocols import DEFINITIONS, KnownError, PlannedTest, TimedProtocol
@@ -73,7 +74,7 @@ def reason_words(reason: NotMeasured) -> str:
 
 def seconds(value: float) -> str:
     """A time as it is told: "8.9 s", "2:00"."""
-    return f"{int(value) // 60}:{int(value) % 60:02d}" if value >= 100.0 else f"{figure_text(value, '.1f')} s"
+    return clock(value) if value >= 100.0 else f"{figure_text(value, '.1f')} s"
 
 
 def result_sentence(test: TimedTest) -> str:

@@ -6,14 +6,14 @@ from time import monotonic
 
 from PySide6.QtCore import QObject, QThread, Signal
 
+from app.system.progress import Report
+
 PROGRESS_EVERY_S = 0.05  # faster than anybody reads; more would keep the screen from anything else
 
 _log = logging.getLogger(__name__)
 
-Report = Callable[[float, str], None]
-"""Called by the work with the share done (0 to 1) and what is being done. Raises `Stopped` once nobody waits for it."""
-
 Work = Callable[[Report], object]
+"""Its `Report` raises `Stopped` once nobody waits for the work."""
 
 
 class Stopped(Exception):  # noqa: N818  being stopped is no error

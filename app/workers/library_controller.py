@@ -16,8 +16,9 @@ from weakref import WeakMethod, ref
 
 from PySide6.QtCore import QObject, Signal
 
+from app.system.progress import Report
 from app.wording.translation import tr, tr_n
-from app.workers.background import Background, Report
+from app.workers.background import Background
 from app.workers.jobs import Failed, Job, JobThread, nothing, weak
 from app.workers.library_state import Closed, Joined, LibraryPlace, NotOpened, OpenedState, Reopened, Unlocked
 from app.workers.refusals import Refusal, nothing_open, refusal_of

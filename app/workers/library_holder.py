@@ -28,8 +28,8 @@ from app.storage.recovery import find_interrupted
 from app.storage.rollback import Rollback, SeenLibraries
 from app.storage.root import GONE
 from app.storage.stored import LibraryError, Operator, Role, ServerSilentError
+from app.system.progress import Report
 from app.wording.translation import tr
-from app.workers.background import Report
 from app.workers.library_opening import demonstration, let_keyring_remember, tidy
 from app.workers.library_state import Closed, Joined, LibraryPlace, NotOpened, OpenedState, Reopened, Unlocked
 from app.workers.refusals import NothingOpenError, Refusal, nothing_open, refusal_of

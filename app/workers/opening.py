@@ -8,8 +8,9 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from app.system.progress import Report
 from app.wording.translation import tr
-from app.workers.background import Report, Work
+from app.workers.background import Work
 
 if TYPE_CHECKING:
     from core.results import Analysis

@@ -10,7 +10,7 @@ import gc
 import sys
 from importlib import import_module
 
-from app.workers.background import Report
+from app.system.progress import Report
 
 # in the order in which they are needed
 MODULES = (

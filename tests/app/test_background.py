@@ -7,7 +7,8 @@ import pytest
 from PySide6.QtCore import QThread
 from pytestqt.qtbot import QtBot
 
-from app.workers.background import Background, Report, Stopped
+from app.system.progress import Report
+from app.workers.background import Background, Stopped
 
 WAIT_S = 5.0
 

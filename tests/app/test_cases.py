@@ -83,7 +83,7 @@ def xdf(case: Case, thigh: str = "thigh", shank: str = "shank") -> Outcome:
 def xdf_stamps_step_back(case: Case) -> None:
     outcome = xdf(case)
     assert outcome.code == 2
-    assert 'thigh, sample 801: "time" steps back from 7.99 to 7.5' in outcome.text
+    assert 'thigh, sample 801: "time" goes back from 7.99 to 7.5' in outcome.text
     assert not case.out.exists()
 
 
@@ -109,7 +109,7 @@ def xdf_one_name_one_source(case: Case) -> None:
 def ximu3_restarted(case: Case) -> None:
     outcome = case.import_two(thigh="lt", shank="ls")
     assert outcome.code == 2
-    assert "line 902: Timestamp (us) steps back from 8990000 to 500000" in outcome.text
+    assert "line 902: Timestamp (us) goes back from 8990000 to 500000" in outcome.text
     assert "repeat" not in outcome.text
 
 

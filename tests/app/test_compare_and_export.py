@@ -200,7 +200,7 @@ def test_export_writes_the_formats_asked_for(
     ]
     assert "3 files, pseudonymised." in capsys.readouterr().out
     assert main(["export", str(folders[1]), "--as", "mot", "--out", str(out)]) == 2
-    assert "something here already" in capsys.readouterr().err
+    assert "this already exists and is not an empty folder" in capsys.readouterr().err
     shutil.rmtree(out)
     assert main(["export", str(folders[1]), "--as", "mot", "--keep", "device,mood", "--out", str(out)]) == 2
     assert "mood is not among what is typed" in capsys.readouterr().err
@@ -224,4 +224,4 @@ def test_export_says_what_would_leave_and_writes_nothing(
     assert "Nothing was written." in said[0]
     assert list(tmp_path.iterdir()) == listed
     assert main(["export", str(folders[1]), "--as", "xlsx", "--identified", "--preview"]) == 2
-    assert "with identity all leaves" in capsys.readouterr().err
+    assert "identified data are exported unchanged" in capsys.readouterr().err

@@ -39,7 +39,7 @@ WALK = "walk 1"
 SIDES = ("left", "right")
 FIGURES = {  # what a person calls it, its column
     "knee range": "knee_range_deg",
-    "knee swing peak": "knee_swing_peak_deg",
+    "knee peak flexion, swing": "knee_swing_peak_deg",
     "knee peak time": "knee_swing_peak_percent",
     "ankle range": "ankle_range_deg",
     "ankle dorsiflexion": "ankle_stance_dorsiflexion_deg",
@@ -86,10 +86,10 @@ STOOD, WALKED = Standing(), Walk(WALK, strides=16)
 STIFF = replace(WALKED, change=GaitChange(knee_deg=-7.0), changed_side=Side.LEFT)  # of 14 deg, so that 7 are left
 LATE = {site: 0.1 for site in LEG_SITES if site.side is Side.RIGHT}
 CASES = {
-    "no zero": Case(
+    "no standing reference": Case(
         WalkerSettings(seed=4, recordings=(WALKED,)),
         {"* swing peak": WITHHELD, "* dorsiflexion": WITHHELD, "* curve": SHAPE},
-        "No zero was set",
+        "There is no standing reference, so absolute angles are not reported",
     ),
     "sign unknown": Case(
         WalkerSettings(seed=4, recordings=(STOOD, STIFF), stiff_knee_side=Side.LEFT),
@@ -106,7 +106,7 @@ CASES = {
     "two clocks": Case(
         WalkerSettings(seed=4, recordings=(STOOD, WALKED), clock_late_s=LATE),
         {"* step time": WITHHELD},
-        "the legs' clocks differ",
+        "Left and right sensors are not synchronised: the left step takes",
     ),
     "two strides": Case(  # of the right leg; the left made three
         WalkerSettings(seed=4, recordings=(STOOD, replace(WALKED, strides=4))),
@@ -154,7 +154,7 @@ def rows_of(path: Path) -> list[dict[str, str]]:
 
 CSV_STATUS = {  # which column of status a figure stands under
     "knee range": "knee_shape_status",
-    "knee swing peak": "knee_height_status",
+    "knee peak flexion, swing": "knee_height_status",
     "ankle range": "ankle_shape_status",
     "ankle dorsiflexion": "ankle_height_status",
     "stance": "timing_status",
@@ -315,7 +315,12 @@ def in_mot(out: Path) -> dict[str, str]:
     Where none is left there is no file, and the export says why.
     """
     if not (out / "walk_1" / "angles.mot").exists():
-        return dict.fromkeys(CURVES, SHAPE if "No zero was set" in words_of_mot(out) else WITHHELD)
+        return dict.fromkeys(
+            CURVES,
+            SHAPE
+            if "There is no standing reference, so absolute angles are not reported" in words_of_mot(out)
+            else WITHHELD,
+        )
     head, body = (out / "walk_1" / "angles.mot").read_text(encoding="ascii").split("endheader\n")
     names = body.splitlines()[0].split("\t")
     comments = dict(line.split(" is ", 1) for line in head.splitlines() if line.split(" is ")[0] in MOT)
@@ -324,7 +329,7 @@ def in_mot(out: Path) -> dict[str, str]:
         coordinate = next(coordinate for coordinate, of in MOT.items() if of == joint)
         where, status = comments[coordinate].split(":")[0].split(", ")
         assert (where == "here") == (coordinate in names)
-        assert where in ("here", "left out")
+        assert where in ("here", "excluded")
         said[name] = status if coordinate in names else SHAPE if status == "no_zero" else WITHHELD
     return said
 

@@ -31,12 +31,12 @@ from app.storage.library import Library
 from app.storage.login_delay import LoginDelay
 from app.storage.slots import Cost
 from app.storage.stored import Operator, Role
+from app.system.progress import Report
 from app.system.settings import Scheme, Settings
 from app.theme.colours import DARK, LIGHT
 from app.theme.notifier import ThemeNotifier
 from app.wizard.keys import Intent, KeyAction
 from app.wording.translation import use_language
-from app.workers.background import Report
 from core.samples import Patient, Recording, RecordingKind, Session
 
 PASSPHRASE = "four short words here"
@@ -181,7 +181,7 @@ def test_a_recovery_key_that_was_never_typed_back_is_asked_for_until_it_is(
         log_in.passphrase.set_text(PASSPHRASE)
         QTest.keyClick(log_in.passphrase.line_edit, Qt.Key.Key_Return)
         qtbot.waitUntil(page.later.isVisible, timeout=WAIT_MS)
-        assert "nobody has typed it back" in words_in_sight(window)
+        assert "It is the only way to open the library if the passphrase is forgotten" in words_in_sight(window)
         assert key not in words_in_sight(window)
         if put_off:
             page.later.click()
@@ -408,7 +408,9 @@ def test_the_wait_after_wrong_passphrases_outlives_the_program(qtbot: QtBot, ope
     delay = LoginDelay(folder, time.monotonic)
     for _ in range(6):
         with suppress(KeyRefusedError), delay.trying("hk"):
-            raise KeyRefusedError("This passphrase does not open the library", "Type it again")
+            raise KeyRefusedError(
+                "This passphrase does not open the library", "Enter it again, or use the recovery key"
+            )
     window = open_window(folder)
     assert window.entry is not None
     page = window.entry.log_in
@@ -438,7 +440,7 @@ def test_five_minutes_without_anybody_cover_the_library(qtbot: QtBot, open_windo
     window.lock()
     assert window.is_covered
     assert SECRET_CODE not in words_in_sight(window)
-    assert "nobody worked here for five minutes" in words_in_sight(window)
+    assert "Locked after five minutes without activity" in words_in_sight(window)
     for key in (Qt.Key.Key_O, Qt.Key.Key_D):
         QTest.keyClick(window, key, Qt.KeyboardModifier.ControlModifier)
     assert window.is_covered
@@ -698,7 +700,7 @@ def test_a_library_that_was_here_and_is_missing_is_not_made_anew(
     )
     assert page.missing_lead.text() == said
     page.show_missing(str(folder), 2)
-    assert "2 recordings are kept on this computer until their library is back." in page.missing_lead.text()
+    assert "2 recordings stay on this computer until their library is back." in page.missing_lead.text()
     assert page.look_again.isVisible()
     assert not page.make.isVisible()
     assert page.look_again.hasFocus()
@@ -765,7 +767,7 @@ def test_what_a_visit_that_was_left_recorded_while_it_was_gone_is_in_its_session
     writer.stop()
     with qtbot.waitSignal(home.recovering.recovered, timeout=WAIT_MS):
         elsewhere.rename(folder)
-    assert home.banner.text == "The library is back. 1 recording that was made meanwhile is in it now."
+    assert home.banner.text == "The library is back. 1 recording made meanwhile was added."
     home.banner.dismiss.click()
     assert home.banner.isHidden()
     assert [one.details.name for one in library.sessions.get(session_id).recordings] == ["walk 1"]
@@ -798,14 +800,14 @@ def test_what_comes_home_under_the_cover_is_in_its_session_after_the_passphrase(
             writer.mark(Belonging(session_id, told).text())
         with qtbot.waitSignal(window.controller.back, timeout=WAIT_MS):
             elsewhere.rename(folder)
-        assert page.banner.text == "The library is back. 1 recording that was made meanwhile is in it now."
+        assert page.banner.text == "The library is back. 1 recording made meanwhile was added."
     assert len(list(state.library.recordings.glob("*.journal"))) == 2
     assert not state.library.data_key
     with qtbot.waitSignal(home.recovering.recovered, timeout=WAIT_MS):
         page.passphrase.set_text(PASSPHRASE)
         QTest.keyClick(page.passphrase.line_edit, Qt.Key.Key_Return)
     assert not window.is_covered
-    assert home.banner.text == "The library is back. 1 recording that was made meanwhile is in it now."
+    assert home.banner.text == "The library is back. 1 recording made meanwhile was added."
     assert sorted(one.details.name for one in library.sessions.get(session_id).recordings) == ["walk 1", "walk 2"]
 
 
@@ -817,7 +819,7 @@ def test_where_the_environment_names_no_server_that_answers_it_is_said_and_tried
     assert window.entry is not None
     page = window.entry.join
     qtbot.waitUntil(page.isVisible, timeout=WAIT_MS)
-    assert "no address of a PostgreSQL server" in page.lead.text()
+    assert "This is not the address of a PostgreSQL server" in page.lead.text()
     page.again.click()
     assert window.entry.waiting.isVisible()
     qtbot.waitUntil(page.isVisible, timeout=WAIT_MS)
@@ -827,7 +829,7 @@ def test_where_the_environment_names_no_server_that_answers_it_is_said_and_tried
 def test_the_environment_leads_to_a_folder_of_its_own_unless_the_own_one_is_a_station(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("app.cli.library.platformdirs.user_data_path", lambda *_, **__: tmp_path)
+    monkeypatch.setattr("app.storage.layout.platformdirs.user_data_path", lambda *_, **__: tmp_path)
     assert default_folder() == tmp_path / "library"
     monkeypatch.setenv(DATABASE_VARIABLE, "postgresql://station@server/clinic")
     assert default_folder() == tmp_path / "clinic"

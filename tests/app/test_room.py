@@ -22,7 +22,10 @@ class Painted(QWidget):
 def parts(look: ThemeNotifier) -> list[QWidget]:
     field = QLineEdit()
     field.setPlaceholderText("kept out of exports")
-    options = [("mean", "Mean cycle", "all strides"), ("walk", "Whole walk", "second by second")]
+    options = [
+        ("mean", "Mean cycle", "There are no averages; correct this and record the walk again"),
+        ("walk", "Whole walk", "second by second"),
+    ]
     return [
         Text(look, "The patient faces you"),
         Text(look, "Unreasonableness is one word", wraps=True),

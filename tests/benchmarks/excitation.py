@@ -92,7 +92,7 @@ def stopped_calibrations(seed: int) -> Iterator[Stopped]:
         motion.value,
         tissue.value,
         "biased sensors" if is_biased else "good sensors",
-        "clocks apart" if is_late else "one clock",
+        "clocks apart" if is_late else "same clock",
         "3-10 s" if stop_s < 10 else "10-25 s",
     )
     simulated = simulate(settings)

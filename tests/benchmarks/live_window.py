@@ -122,6 +122,7 @@ def _session(
     from app.wizard.free_motion.step import FreeMotionStep
     from app.wizard.results.step import ResultsStep
     from app.wizard.sensors.page import Way
+    from app.wizard.step import StepId
 
     assert window.home is not None
     window.home.session_wished.emit(window.home.patients.patient)
@@ -129,7 +130,7 @@ def _session(
     assert wizard is not None
     yield _after(PAUSE_S)
     yield lambda: wizard.visit is not None and wizard.visit.patient.stored is not None
-    wizard.go_to(1)
+    wizard.go_to(StepId.SENSORS)
     yield _after(PAUSE_S)
     visit = wizard.visit
     assert visit is not None
@@ -137,19 +138,19 @@ def _session(
     yield lambda: visit.sensors.acquisition is not None
     yield _after(4.0)
     _Watch.listen()
-    wizard.steps[1].page.way_chosen.emit(Way.MOTION)  # type: ignore[attr-defined]  # it is the sensors page
+    wizard.steps[StepId.SENSORS].page.way_chosen.emit(Way.MOTION)  # type: ignore[attr-defined]  # it is the sensors page
     yield _after(PAUSE_S)
-    wizard.go_to(2)
+    wizard.go_to(StepId.STAND_STILL)
     yield _after(PAUSE_S)
     wizard.press_primary()
-    yield lambda: wizard.step_number == 3
-    free = wizard.steps[3]
+    yield lambda: wizard.step_id is StepId.FREE_MOTION
+    free = wizard.steps[StepId.FREE_MOTION]
     assert isinstance(free, FreeMotionStep)
-    yield lambda: wizard.step_number == 4 or free.labels._side.asked is not None
-    if wizard.step_number == 3:
+    yield lambda: wizard.step_id is StepId.WALKING or free.labels._side.asked is not None
+    if wizard.step_id is StepId.FREE_MOTION:
         yield _after(PAUSE_S)
         free.page.answered.emit(0)
-    yield lambda: wizard.step_number == 4
+    yield lambda: wizard.step_id is StepId.WALKING
     yield lambda: not visit.evaluation.is_busy
     yield _after(PAUSE_S)
     wizard.press_primary()
@@ -159,7 +160,8 @@ def _session(
     done: list[int] = []
     visit.evaluation.done.connect(lambda: done.append(1))
     watch = _Watch(wizard)
-    yield _asking_again(wizard.steps[4], _after(wanted.seconds)) if wanted.analyses else _after(wanted.seconds)
+    wait = _after(wanted.seconds)
+    yield _asking_again(wizard.steps[StepId.WALKING], wait) if wanted.analyses else wait
     measured |= watch.end() | {"analyses": len(done)}
     if bench is not None:
         window.screens.setCurrentWidget(wizard)
@@ -168,12 +170,12 @@ def _session(
     yield lambda: not visit.recordings.is_recording and not visit.recordings.is_stopping
     yield _after(PAUSE_S)
     visit.recordings.keep(visit.recordings.walks[-1], True)
-    wizard.go_to(5)
-    results = wizard.steps[5]
+    wizard.go_to(StepId.RESULTS)
+    results = wizard.steps[StepId.RESULTS]
     assert isinstance(results, ResultsStep)
     yield lambda: results._shown is not None and not visit.evaluation.is_busy
     yield _after(2 * PAUSE_S)
-    wizard.go_to(6)
+    wizard.go_to(StepId.REPORT)
     yield _after(PAUSE_S)
     wizard.leave()
     yield _after(2 * PAUSE_S)

@@ -232,7 +232,7 @@ def main() -> None:
     wanted = parser.parse_args()
     trials = [*simulated_trials(range(wanted.seeds)), *hinge_trials()]
     if all(trial.truth.is_clock_shared for trial in trials):
-        print("GAITWRIGHT_TEST_DATA is not set: the mechanical hinge is left out.", file=sys.stderr)
+        print("GAITWRIGHT_TEST_DATA is not set: the mechanical hinge is excluded.", file=sys.stderr)
     base, long = (list(simulated_trials(range(1), minutes, KNEE_ONLY)) for minutes in (1.0, LONG_MINUTES))
     with QmtAxes() as qmt:
         methods = contenders(qmt)

@@ -105,7 +105,7 @@ def test_a_sensor_that_was_left_streaming_is_found_again(tmp_path: Path) -> None
 def test_a_port_in_use_says_so(emulated: list[PortInfo]) -> None:
     holding = SerialPort(emulated[0])
     holding.open()
-    with pytest.raises(SourceRefusedError, match="is used by another program"):
+    with pytest.raises(SourceRefusedError, match="is in use by another program"):
         SerialPort(emulated[0]).open()
     holding.close()
 
@@ -150,9 +150,7 @@ def test_streams_of_motion_are_found_and_others_say_why_not(
     assert search([], free_port()).sensors == ()  # nobody asked
     found = search_streams("127.0.0.1")
     assert [(one.driver, one.name, one.count) for one in found.sensors] == [("lsl", "Consensys", 1)]
-    assert [str(one.refusal).partition(". ")[0] for one in found.passed] == [
-        "The stream no units does not tell its units"
-    ]
+    assert [str(one.refusal).partition(". ")[0] for one in found.passed] == ["The stream no units gives no units"]
 
 
 def test_where_there_is_no_network_no_port_is_opened(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -182,7 +180,7 @@ def test_a_port_without_permission_names_the_group(monkeypatch: pytest.MonkeyPat
     (tmp_path / "port").touch()
     monkeypatch.setattr(ports_module, "Serial", refuse)
     monkeypatch.setattr(sys, "platform", "linux")
-    with pytest.raises(SourceRefusedError, match="only be used by members of the group") as refused:
+    with pytest.raises(SourceRefusedError, match="Only members of the group") as refused:
         SerialPort(PortInfo(str(tmp_path / "port"))).open()
     assert "usermod -aG" in refused.value.remedy
 

@@ -131,7 +131,7 @@ def test_who_is_not_understood_is_no_sensor(
     found = found_at(make, monkeypatch)
     assert found.sensors == ()
     (passed,) = found.passed
-    assert "No sensor was heard at script" in str(passed.refusal)
+    assert "No signal from a sensor at script" in str(passed.refusal)
 
 
 def test_a_port_that_cannot_be_opened_says_why(clock: TickingClock, monkeypatch: pytest.MonkeyPatch) -> None:

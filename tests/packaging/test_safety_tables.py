@@ -85,6 +85,28 @@ def test_a_use_error_without_a_message_is_named(tables: ModuleType) -> None:
         assert list(tables.faults_of_use_errors([changed])) == [fault]
 
 
+def test_a_promise_that_no_test_holds_is_named(tables: ModuleType) -> None:
+    model = (tables.SAFETY / "threat_model.md").read_text(encoding="utf-8")
+    security = (tables.ROOT / "SECURITY.md").read_text(encoding="utf-8")
+    row, silent = "| x | T: y | z | R-PRI-01 |", "test_a_server_that_falls_silent_amid_a_statement_is_given_up"
+    assert list(tables.faults_of_promises("a page", model)) == []
+    assert list(tables.faults_of_promises("a page", security)) == []
+    assert len(list(tables.promises(model))) > 40
+    assert len(list(tables.promises(security))) > 6
+    wrong = {
+        f"a page: no test holds: {row}": model.replace("| journals |", f"{row}\n| journals |"),
+        "a page: there is no note nothing": model.replace("| R-PRI-04 [^audit] |", "| [^nothing] [^audit] |"),
+        "a page: nothing is promised by the note more": f"{model}[^more]: `{tables.NODE.findall(model)[0]}`\n",
+        "a page: silent is held by long tests alone where its note ends with (long), and only there": model.replace(
+            f"{silent}` (long)", f"{silent}`"
+        ),
+        "a page: there is no script tests.safety.nothing": model.replace("tests.safety.bombs", "tests.safety.nothing"),
+        "a page: no test holds: Everything.": security.replace("defended\n\n", "defended\n\n- Everything.\n", 1),
+    }
+    for fault, changed in wrong.items():
+        assert list(tables.faults_of_promises("a page", changed)) == [fault]
+
+
 def test_each_test_bears_the_requirements_that_it_holds(request: pytest.FixtureRequest, tables: ModuleType) -> None:
     """Of the tests that were collected with this one: by the whole run, of all."""
     held = {(test, one.id) for one in tables.requirements() for test in one.tests}

@@ -29,6 +29,7 @@ from app.theme.notifier import load_fonts
 from app.wizard.sensors.dot_form import DotChoice
 from app.wizard.sensors.sources import SEARCH
 from app.wizard.sensors.step import SensorsStep
+from app.wizard.step import StepId
 from core.body import LEG_JOINTS, LEG_SITES, Site
 from core.samples import FloatArray, RecordingKind
 from devices.clocks.host_clock import host_time_ns
@@ -62,8 +63,11 @@ class DotWindowSession(WindowSession):
         for letter in code:
             self.press(Qt.Key(ord(letter)))
         self.press(Qt.Key.Key_Return)
-        self.wait(lambda: self.wizard.step_number == 1 and self.visit.session is not None, "sensors' step")
-        sensors, step = self.visit.sensors, self.wizard.steps[1]
+        self.wait(
+            lambda: self.wizard.step_id is StepId.SENSORS and self.visit.session is not None,
+            "sensors' step",
+        )
+        sensors, step = self.visit.sensors, self.wizard.steps[StepId.SENSORS]
         assert isinstance(step, SensorsStep)
         sensors.search(next(source for source in self.visit.choices if source.key == SEARCH))
         self.wait(lambda: step.setup.is_on, "the sensors that were heard")

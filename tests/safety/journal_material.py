@@ -7,6 +7,7 @@ from uuid import UUID
 
 import numpy as np
 
+from app.storage.data_key import KeyMaterial
 from app.storage.journal.disk import Room
 from app.storage.journal.payloads import layout_of
 from app.storage.journal.reader import Damage, JournalReader, ReadReport
@@ -39,7 +40,9 @@ WALKER = SourceInfo("walker", "1", sensors=NAMES, is_simulated=True)
 LINES = SourceInfo("lines", "1", serial="port-1", sensors=("line",), settings={"rate_hz": RATE_HZ})
 
 
-def record_some(folder: Path, data_key: bytes | None, *, recording_id: UUID = ID, rounds: int = 20) -> JournalSummary:
+def record_some(
+    folder: Path, data_key: KeyMaterial | None, *, recording_id: UUID = ID, rounds: int = 20
+) -> JournalSummary:
     """A whole journal: per round one sample of each of six sensors and one line; on every tenth a mark."""
     with JournalWriter.create(folder, recording_id, data_key, room=NO_ROOM_ASKED) as journal:
         walker, lines = journal.source(WALKER, LAYOUT), journal.source(LINES)

@@ -22,7 +22,7 @@ from pathlib import Path
 import numpy as np
 
 from app.storage.backup import back_up
-from app.storage.exchange import export_session, import_session, session_with_samples
+from app.storage.exchange import import_session, session_with_samples
 from app.storage.journal.disk import Room
 from app.storage.opened import create_library, open_library
 from app.storage.recovery import find_interrupted, recover
@@ -30,6 +30,7 @@ from app.storage.stored import Operator, Role
 from app.system.logs import start_logging
 from core.body import Site
 from core.samples import ImuBlock, Patient, Recording, RecordingKind, SensorInfo, Session
+from tests.app.storage.library.folder_export import write_folder
 
 ROOT = Path(__file__).parents[2]
 STEM = "Kowalczyk"  # of all names, so that one search finds any of them
@@ -91,7 +92,7 @@ def work(folder: Path) -> None:
         name = NAMES[number % len(NAMES)]
         session = replace(named_session(name), patient=Patient(code=f"{name}-{number}"))
         imported = import_session(opened, session, silent, room=ANY_ROOM)
-        export_session(opened, imported.session_id, folder / "exports" / str(number), {}, silent)
+        write_folder(opened, imported.session_id, folder / "exports" / str(number), {})
         try:
             (folder / name).read_bytes()
         except OSError:

@@ -36,6 +36,7 @@ from app.system.settings import Settings
 from app.theme.notifier import ThemeNotifier, load_fonts
 from app.wizard.sensors.sources import COLUMNS, SEARCH
 from app.wizard.sensors.step import SensorsStep
+from app.wizard.step import StepId
 from app.wizard.visit import Visit
 from app.wizard.wizard import Wizard
 from app.workers.library_controller import LibraryController
@@ -193,7 +194,10 @@ class WindowSession:
         for letter in code:
             self.press(Qt.Key(ord(letter)))
         self.press(Qt.Key.Key_Return)
-        self.wait(lambda: self.wizard.step_number == 1 and self.visit.session is not None, "sensors' step")
+        self.wait(
+            lambda: self.wizard.step_id is StepId.SENSORS and self.visit.session is not None,
+            "sensors' step",
+        )
         sources = self.visit.choices
         assert not any(source.is_simulated for source in sources), "they would not be kept of this patient"
         if kind == "csv":
@@ -208,9 +212,9 @@ class WindowSession:
 
     def tell_columns(self) -> None:
         """Say what the columns of lines of numbers mean, as the page guesses it."""
-        step = self.wizard.steps[1]
+        step = self.wizard.steps[StepId.SENSORS]
         assert isinstance(step, SensorsStep)
-        self.wait(lambda: any(source.key == COLUMNS for source in self.visit.choices), "lines of numbers")
+        self.wait(lambda: any(source.key == COLUMNS for source in self.visit.choices), "text lines (CSV)")
         step.page.source_chosen.emit(COLUMNS)
         self.wait(lambda: step.telling.columns is not None, "columns")
         self.linger(1.0)
@@ -262,13 +266,18 @@ def lead(session: WindowSession, kind: str, ask: Callable[[RecordingKind], float
     session.linger(2.0)
     look(session, shots, f"{kind}-sensors")
     wizard.press_primary()
-    session.wait(lambda: wizard.step_number == 2, "standing step")
+    session.wait(lambda: wizard.step_id is StepId.STAND_STILL, "standing step")
     session.press(Qt.Key.Key_Space)
-    session.wait(lambda: visit.recordings.standing is not None and wizard.step_number == 3, "free motion step")
+    session.wait(
+        lambda: visit.recordings.standing is not None and wizard.step_id is StepId.FREE_MOTION, "free motion step"
+    )
     session.wait(lambda: visit.recordings.is_recording, "free motion")
-    while wizard.step_number == 3:
+    while wizard.step_id is StepId.FREE_MOTION:
         ends_s = time.monotonic() + ask(RecordingKind.FREE_MOTION)
-        session.wait(lambda: wizard.step_number != 3 or time.monotonic() > ends_s - 0.5, "walking step")  # noqa: B023  # it waits at once
+        session.wait(
+            lambda: wizard.step_id is not StepId.FREE_MOTION or time.monotonic() > ends_s - 0.5,  # noqa: B023  # it waits at once
+            "walking step",
+        )
     session.wait(lambda: time.monotonic() > ends_s, "standing still")
     session.before_walks()
     for number in range(walks):
@@ -284,7 +293,7 @@ def lead(session: WindowSession, kind: str, ask: Callable[[RecordingKind], float
         session.press(Qt.Key.Key_K)
         session.linger(0.5)
     session.press(Qt.Key.Key_Return)
-    session.wait(lambda: wizard.step_number == 5, "results")
+    session.wait(lambda: wizard.step_id is StepId.RESULTS, "results")
     session.wait(lambda: has_evaluated(visit, walks), "results' figures")
     look(session, shots, f"{kind}-results")
     analysis = visit.evaluation.analysis

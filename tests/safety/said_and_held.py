@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 READ_BACK = "('closed', 'recovered')"
 KEPT = re.compile(r"(\d+) kept")
-STOOD = re.compile(r"([\d.]+) s, zero set")
+STOOD = re.compile("([\\d.]+) s, standing reference")
 WORN = re.compile(r"(\d) of 6 worn")
 SAVED_AS = re.compile(r"Saved as (.+)\. Saving again asks where\.")
 RECOVERED_ONE = re.compile(r"\d+:\d\d of (.+) was recovered\.")
@@ -142,10 +142,12 @@ def _of_settings(page: Any, held: HeldLibrary) -> Iterator[str]:
 
 
 def _of_frame(wizard: "Wizard", visit: "Visit", held: HeldLibrary) -> Iterator[str]:
+    from app.wizard.step import StepId
+
     assert visit.session is not None
     ((code, birth_year, device),) = held.ask(PATIENT, visit.session.id.hex)
     header = wizard.shell.header
-    if wizard.step_number != 0:  # where it is being typed
+    if wizard.step_id is not StepId.PATIENT:  # where it is being typed
         if header.code.text() != code:
             yield f"the header names {header.code.text()!r}, the session is held as {code!r}'s"
         facts = header.facts.text()
@@ -238,7 +240,7 @@ def _of_results(wizard: "Wizard", visit: "Visit", held: HeldLibrary) -> Iterator
     if frame is None or visit.session is None or visit.evaluation.is_busy:
         return
     walks = held.ask(WALKS, visit.session.id.hex)
-    if frame.currentWidget() is frame.sentence and "No walk is kept" in frame.sentence._what.text():
+    if frame.currentWidget() is frame.sentence and "No walk is included yet" in frame.sentence._what.text():
         if any(row[2] for row in walks):
             yield f"the results say that no walk is kept, held are {[row[0] for row in walks if row[2]]}"
         return

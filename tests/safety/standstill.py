@@ -69,7 +69,7 @@ def faults_of(told: dict[str, object], seconds: float) -> list[str]:
     words = told["words"]
     if told["troubles"]:
         faults.append(f"blamed the disk: {told['troubles']}")
-    if not isinstance(words, list) or len(words) != 1 or not words[0].startswith("Gaitwright stood still for"):
+    if not isinstance(words, list) or len(words) != 1 or not words[0].startswith("Gaitwright stalled for"):
         return [*faults, f"{words} of a standstill of {seconds} s"]
     if told["lost"] and "Samples were lost" not in words[0]:
         faults.append(f"{words[0]!r} where the journal lacks {told['lost']}")

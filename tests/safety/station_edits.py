@@ -17,7 +17,15 @@ from pathlib import Path
 from uuid import UUID
 
 from app.storage.opened import open_library
-from app.storage.stored import ChangedMeanwhileError, LibraryError, StoredPatient, StoredRecording, StoredSession
+from app.storage.stored import (
+    ChangedMeanwhileError,
+    LibraryError,
+    PlacedSensor,
+    StoredPatient,
+    StoredRecording,
+    StoredSession,
+)
+from core.samples import SensorInfo
 from tests.safety.clinic_material import CODES, OPERATORS, PASSPHRASE, Clinic, Row, read_lines, rows_of
 
 FIELDS = {"patients": ("height_m", "aids"), "sessions": ("notes",), "recordings": ("condition", "is_kept", "note")}
@@ -191,9 +199,16 @@ class Editor:
     def _placement_corrected(self) -> Row:
         visit = self._visit()
         one = self._rng.choice(visit.recordings)
-        (now,) = self._library.sessions.correct_placement([one], visit.placements[-1].sensors)
-        done = edited("recordings", one.id, now.version, [about_session(visit.id)])
-        return done | {"corrections": 1, "placements": 1}
+        seen = {one.id: one.placement.id if one.placement is not None else None}
+        sensors = visit.placements[-1].sensors
+        worn = {**sensors, self._rng.choice(list(sensors)): PlacedSensor(self._word, SensorInfo())}
+        try:
+            now = self._library.edits.placement(visit.id, seen, [([one.id], worn)])
+        except LibraryError as refusal:  # the session was deleted
+            raise ChangedMeanwhileError(refusal.what, refusal.remedy) from refusal
+        times = 2 if now.contests else 1  # made and taken back: somebody else was quicker
+        row, subject = ("recordings", str(one.id)), about_session(visit.id)
+        return {"bumped": [row] * times, "audits": [subject] * times, "corrections": times, "placements": 1}
 
 
 def about_patient(row: UUID) -> str:

@@ -76,10 +76,13 @@ def sessions() -> Iterator[tuple[str, ReportRequest]]:
 
     yield "demonstration", of(base, analysis)
     yield "letter", of(base, analysis, paper="letter")
-    yield "no zero", of(base, recalibrated(analysis, LEG_JOINTS, zero=ZeroKind.NONE))
+    yield "no standing reference", of(base, recalibrated(analysis, LEG_JOINTS, zero=ZeroKind.NONE))
     yield "axis with care", of(base, recalibrated(analysis, LEG_JOINTS, axis_sd_rad=math.radians(8.0)))
-    yield "ankle withheld", of(base, recalibrated(analysis, [Joint.LEFT_ANKLE], axis_sd_rad=math.radians(11.0)))
-    yield "knee withheld", of(base, recalibrated(analysis, [Joint.RIGHT_KNEE], is_same_joint=False, sign_margin=1.05))
+    yield "ankle not reported", of(base, recalibrated(analysis, [Joint.LEFT_ANKLE], axis_sd_rad=math.radians(11.0)))
+    yield (
+        "knee not reported",
+        of(base, recalibrated(analysis, [Joint.RIGHT_KNEE], is_same_joint=False, sign_margin=1.05)),
+    )
     yield "sign unclear", of(base, recalibrated(analysis, [Joint.LEFT_KNEE], is_sign_certain=False))
     yield "clocks unknown", of(base, recalibrated(analysis, LEG_JOINTS, lag_sd_s=None, is_clock_shared=False))
     yield "two strides", of(base, with_few_strides(analysis, left=2, right=2))

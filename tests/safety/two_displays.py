@@ -149,7 +149,9 @@ def _set_up(one: StationOnScreen, two: StationOnScreen, server: Server, place: P
             ),
         ),
         Stop("12-to-be-moved", says("Several workstations"), ("press space",)),
-        Stop("13-moved", says("compared row by row"), ("press Escape",), patience_s=PATIENCE_S),
+        Stop(
+            "13-moved", says("are on the clinic's server, checked row by row"), ("press Escape",), patience_s=PATIENCE_S
+        ),
         Stop("14-home", offers("New patient")),
     )
     two.lead(
@@ -157,11 +159,18 @@ def _set_up(one: StationOnScreen, two: StationOnScreen, server: Server, place: P
         Stop("11-wrong", at("JoinPage"), ("type nowhere", "press Return")),
         Stop(
             "12-refused",
-            lambda seen: any("no address" in name for name in (*seen.words, *seen.controls)),
+            lambda seen: any(
+                "This is not the address of a PostgreSQL server" in name for name in (*seen.words, *seen.controls)
+            ),
             ("press ctrl+a", f"type {server.address}"),
         ),
         Stop("13-typed", at("JoinPage"), ("press Return",)),
-        Stop("13a-place", says("The server names this storage"), ("press Return",), patience_s=PATIENCE_S),
+        Stop(
+            "13a-place",
+            says("The server gives this storage for the recordings"),
+            ("press Return",),
+            patience_s=PATIENCE_S,
+        ),
         Stop("14-log-in", says("The clinic's library on"), (f"type {PASSPHRASE}", "press Return")),
         Stop("15-home", offers("New patient"), patience_s=PATIENCE_S),
     )
@@ -228,7 +237,7 @@ def _lose_the_server(one: StationOnScreen, two: StationOnScreen, server: Server,
         Stop("52-patient", at_step("PatientStep"), ("click Put on sensors",)),
         Stop("53-source", at_step("SensorsStep"), ("press Return",), lingers_s=1.0),
         Stop("53b-sensors", offers("Detect from movement"), placed, lingers_s=5.0),
-        Stop("53c-placed", says("All six are worn"), ("press Return",), lingers_s=1.0),
+        Stop("53c-placed", says("All six are assigned and connected"), ("press Return",), lingers_s=1.0),
         Stop("54-stand-still", at_step("StandStillStep"), ("press space",), lingers_s=1.0),
         Stop("55-standing", is_recording, lingers_s=1.0),
         Stop("56-free-motion", lambda seen: at_step("FreeMotionStep")(seen) and seen.is_recording, lingers_s=7.0),
@@ -238,15 +247,15 @@ def _lose_the_server(one: StationOnScreen, two: StationOnScreen, server: Server,
     began_s = time.monotonic()
     server.stop()
     slowest_s = _watch(one, AWAY_S)
-    one.lead(Stop("59-away", lambda seen: any("does not answer" in one for one in (seen.banner, *seen.words))))
-    two.lead(Stop("60-away", lambda seen: any("does not answer" in one for one in (seen.banner, *seen.words))))
+    one.lead(Stop("59-away", lambda seen: any("does not respond" in one for one in (seen.banner, *seen.words))))
+    two.lead(Stop("60-away", lambda seen: any("does not respond" in one for one in (seen.banner, *seen.words))))
     one.application.hand("key", "space")
     walked_s = time.monotonic() - began_s
     slowest_s = max(slowest_s, _watch(one, 5.0))
     one.lead(Stop("60-stopped", lambda seen: not seen.says("Stop walk")))
     server.start()
     one.lead(
-        Stop("61-back", lambda seen: not any("does not answer" in one for one in (seen.banner, *seen.words))),
+        Stop("61-back", lambda seen: not any("does not respond" in one for one in (seen.banner, *seen.words))),
         Stop("62-asked", offers("Keep 1"), ("press k",), patience_s=PATIENCE_S, lingers_s=2.0),
         Stop("63-kept", offers("Results"), ("press Return",), patience_s=PATIENCE_S),
         Stop("64-results", offers("Legs", "Data"), patience_s=PATIENCE_S, lingers_s=2.0),

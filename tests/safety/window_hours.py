@@ -22,6 +22,7 @@ from PySide6.QtWidgets import QApplication
 
 from app.acquisition.acquisition import Acquisition
 from app.main_window import MainWindow
+from app.wizard.step import StepId
 from core.body import LEG_SITES
 from core.samples import ImuBlock, RecordingKind
 from devices.simulation.replay import DEMONSTRATION_SESSION, ReplaySource
@@ -48,18 +49,18 @@ def lead(application: QApplication, window: MainWindow) -> "tuple[Wizard, Visit]
     visit = wizard.visit
     assert visit is not None
     wait(application, lambda: visit.patient.stored is not None)
-    wizard.go_to(1)
+    wizard.go_to(StepId.SENSORS)
     wait(application, lambda: visit.session is not None)
     visit.sensors.search(visit.choices[0])
     wait(application, lambda: visit.sensors.acquisition is not None)
     linger(application, 4.0)
     assert visit.sensors.acquisition is not None
     visit.sensors.assign_all(dict(zip(visit.sensors.acquisition.sensors, LEG_SITES, strict=True)))
-    wizard.go_to(2)
+    wizard.go_to(StepId.STAND_STILL)
     linger(application, 0.5)
     wizard.press_primary()
-    wait(application, lambda: wizard.step_number == 3)
-    wait(application, lambda: wizard.step_number == 4, 3 * PATIENCE_S)
+    wait(application, lambda: wizard.step_id is StepId.FREE_MOTION)
+    wait(application, lambda: wizard.step_id is StepId.WALKING, 3 * PATIENCE_S)
     wait(application, lambda: not visit.evaluation.is_busy)
     wizard.press_primary()
     wait(application, lambda: wizard.is_recording)

@@ -18,6 +18,7 @@ from PySide6.QtWidgets import QApplication
 
 from app.acquisition.acquisition import Acquisition
 from app.main_window import MainWindow
+from app.wizard.step import StepId
 from core.body import LEG_SITES
 from devices.simulation.replay import ReplaySource
 from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
@@ -39,14 +40,14 @@ def make_visit(application: QApplication, window: MainWindow) -> None:
     visit: Visit | None = wizard.visit
     assert visit is not None
     wait(application, lambda: visit.patient.stored is not None)
-    wizard.go_to(1)
+    wizard.go_to(StepId.SENSORS)
     wait(application, lambda: visit.session is not None)
     visit.sensors.search(visit.choices[0])
     wait(application, lambda: visit.sensors.acquisition is not None)
     assert visit.sensors.acquisition is not None
     visit.sensors.assign_all(dict(zip(visit.sensors.acquisition.sensors, LEG_SITES, strict=True)))
     linger(application, LISTENS_S)
-    for step in (2, 4, 5, 6):
+    for step in (StepId.STAND_STILL, StepId.WALKING, StepId.RESULTS, StepId.REPORT):
         wizard.go_to(step)
         linger(application, LISTENS_S / 2)
     wizard.leave()

@@ -30,6 +30,7 @@ from app.wizard.keys import Intent, KeyAction
 from app.wizard.report.step import ReportStep
 from app.wizard.results.step import ResultsStep
 from app.wizard.sensors import sources
+from app.wizard.step import StepId
 from app.wizard.worn_sensors import SourceChoice
 from core.body import LEG_SITES, Joint, Side, Site
 from core.samples import RecordingKind
@@ -69,18 +70,18 @@ class Guide:
         assert window.wizard.visit is not None
         self.wizard, self.visit = window.wizard, window.wizard.visit
         self._wait(lambda: self.visit.patient.stored is not None)
-        self.wizard.go_to(1)
+        self.wizard.go_to(StepId.SENSORS)
         self._wait(lambda: self.visit.session is not None)
         self.visit.sensors.search(self.visit.choices[0])
         self._wait(lambda: len(self.visit.sensors.status) == len(sites))
         assert self.visit.sensors.acquisition is not None
         self.acquisition = self.visit.sensors.acquisition
         self.visit.sensors.assign_all(dict(zip(self.acquisition.sensors, sites, strict=True)))
-        self.wizard.go_to(2)
+        self.wizard.go_to(StepId.STAND_STILL)
         self._wait(lambda: self.visit.session is not None and bool(self.visit.session.placements))
         self._record(RecordingKind.STANDING, 6.0)
         self._record(RecordingKind.FREE_MOTION, WALKED_S)
-        self.wizard.go_to(4)
+        self.wizard.go_to(StepId.WALKING)
 
     def walk(self) -> None:
         """Record a walk, and answer nothing."""
@@ -100,7 +101,7 @@ class Guide:
 
     def correct(self) -> None:
         """Leave a stride out, name a condition, turn a sign, and let the second walk not count."""
-        self.wizard.go_to(5)
+        self.wizard.go_to(StepId.RESULTS)
         self._wait(lambda: self.visit.evaluation.analysis is not None and not self.visit.evaluation.is_busy)
         first, second = self.visit.recordings.walks
         step = self._results
@@ -112,7 +113,7 @@ class Guide:
         linger(self._application, 0.5)
 
     def comment(self) -> None:
-        self.wizard.go_to(6)
+        self.wizard.go_to(StepId.REPORT)
         page = self._report.page.report
         self._wait(page.isVisible)
         QTest.keyClicks(page.comment, COMMENT)
@@ -157,11 +158,11 @@ class Guide:
 
     @property
     def _results(self) -> ResultsStep:
-        return next(step for step in self.wizard.steps if isinstance(step, ResultsStep))
+        return next(step for step in self.wizard.steps.values() if isinstance(step, ResultsStep))
 
     @property
     def _report(self) -> ReportStep:
-        return next(step for step in self.wizard.steps if isinstance(step, ReportStep))
+        return next(step for step in self.wizard.steps.values() if isinstance(step, ReportStep))
 
     def _wait(self, until: Callable[[], bool]) -> None:
         wait(self._application, until)

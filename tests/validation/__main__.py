@@ -152,7 +152,7 @@ def experiment_table(people: int) -> Iterator[str]:
 
 def why_table(people: int) -> Iterator[str]:
     """The sound knee against the bones, which only a simulation knows."""
-    yield "| Skin | Sensors against bones | Markers against bones | Sensors against markers |"
+    yield "| Skin | Sensors vs bones | Markers vs bones | Sensors vs markers |"
     yield "|---|---|---|---|"
     for tissue, words in ((Tissue.REAL, "as of people who walk"), (Tissue.SOFT, "a third to a fifth of it")):
         with tempfile.TemporaryDirectory(prefix="gaitwright-validation-") as folder:

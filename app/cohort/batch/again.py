@@ -13,12 +13,12 @@ from app.storage.analysis_content import packed
 from app.storage.journal.header import JournalRefusedError
 from app.storage.kept_analyses import bare
 from app.storage.stored import LibraryError
+from app.system.progress import Report
 from app.wording.translation import tr
 from core.analysis import analyse
 from core.samples import Session
 from devices.files.refusal import FileRefusedError
 
-Report = Callable[[float, str], None]
 Keep = Callable[[bytes], None]
 
 

@@ -1,17 +1,15 @@
 """What `analyse` writes of a session: one function, so that a batch writes the same bytes."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 
 from app.exports.result_folder import LOG, write_results
 from app.system.logs import version_of
+from app.system.progress import Report
 from core.analysis import analyse
 from core.results import Analysis, Method
 from core.samples import Session
-
-Report = Callable[[float, str], None]
 
 
 @dataclass(frozen=True, slots=True)

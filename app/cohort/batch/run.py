@@ -15,13 +15,13 @@ from app.cohort.batch.sources import SessionSource
 from app.cohort.batch.spread import WorkerLostError, Workers, finished
 from app.cohort.batch.table import write_tables
 from app.cohort.batch.task import BatchTask, SessionOutcome, analyse_task, key_of, making_of, summary_digest
+from app.system.progress import Report
 from app.system.tables import typed_cell, write_table
 from devices.files.refusal import FileRefusedError, one_line
 
 FAILURES = "failures.csv"
 WATCHED = 50  # sessions that the rate is told from: it may change within a batch
 
-Report = Callable[[float, str], None]
 Work = Callable[[BatchTask], SessionOutcome]
 
 

@@ -13,6 +13,7 @@ from app.cohort.batch.again import AgainResult, analyse_again
 from app.cohort.batch.executors import of_this_computer, processors
 from app.home.again.analyse_again_page import AgainLine, AnalyseAgainPage
 from app.storage.kept_analyses import algorithm
+from app.system.progress import Report
 from app.theme.icons import Icon
 from app.theme.notifier import ThemeNotifier
 from app.widgets.action_bar import BarAction, BarState
@@ -20,7 +21,6 @@ from app.widgets.folder_dialog import ask_for_new_folder
 from app.wizard.resuming import session_to_analyse
 from app.wording.patients import when
 from app.wording.translation import tr, tr_n
-from app.workers.background import Report
 from app.workers.library_controller import LibraryController
 
 if TYPE_CHECKING:
@@ -68,10 +68,10 @@ class AnalysingAgain(QObject):
     def bar(self) -> BarState:
         count = len(self.page.ticked)
         words = tr_n("Analyse {count} session", "Analyse {count} sessions", count).format(count=count)
-        folder = BarAction(
-            tr("Analyse to a folder, with table"), icon=Icon.FOLDER, is_wished=False, is_enabled=bool(count)
-        )
-        return BarState(BarAction(words, icon=Icon.PLAY, is_enabled=bool(count)), others=(folder,))
+        analyse = BarAction(words, self.analyse, icon=Icon.PLAY, is_enabled=bool(count))
+        words = tr("Analyse to a folder, with table")
+        folder = BarAction(words, self._choose_folder, icon=Icon.FOLDER, is_wished=False, is_enabled=bool(count))
+        return BarState(analyse, others=(folder,))
 
     def begin(self, patient_id: UUID | None) -> None:
         """Show all sessions, with those of this patient ticked, else those that this version has not analysed."""
@@ -92,7 +92,7 @@ class AnalysingAgain(QObject):
         self._begin(tr("Analysing again"))
         self._controller.run_long(work, self._on_analysed, self._on_refused, self._on_progressed, self)
 
-    def choose_folder(self) -> None:
+    def _choose_folder(self) -> None:
         self._dialog = ask_for_new_folder(
             self.page.window(), tr("Choose a folder for results and table"), _proposed, self._on_folder
         )
@@ -198,7 +198,7 @@ def _proposed(place: Path) -> str:
 
 
 def _failed(count: int) -> str:
-    said = tr_n(
+    said = tr_n(  # alike in English only
         "{count} could not be analysed. The list shows why.",
         "{count} could not be analysed. The list shows why.",
         count,

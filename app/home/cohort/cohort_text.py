@@ -10,9 +10,8 @@ from app.cohort.study.groups import (
     GroupRow,
 )
 from app.cohort.study.measures import measure_words
+from app.wording.numbers import MINUS
 from app.wording.translation import figure_text, joined, tr, tr_n, within_sentence
-
-MINUS = "\N{MINUS SIGN}"
 
 
 def grouping_word(grouping: Grouping) -> str:

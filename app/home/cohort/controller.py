@@ -11,13 +11,14 @@ from app.cohort.study.found_csv import write_csv
 from app.cohort.study.groups import GroupAnswer, Grouping, GroupQuestion, answer, groupings_of, measures_of, table_of
 from app.cohort.study.parameter_table import PARQUET, ParameterTable
 from app.home.cohort.cohort_page import QuestionsPage
+from app.system.progress import Report
 from app.system.settings import Settings
 from app.theme.icons import Icon
 from app.theme.notifier import ThemeNotifier
 from app.widgets.action_bar import BarAction, BarState
 from app.widgets.folder_dialog import ask_for_new_file
 from app.wording.translation import filled, tr
-from app.workers.background import Background, Report, Work
+from app.workers.background import Background, Work
 from devices.files.refusal import FileRefusedError
 
 _log = logging.getLogger(__name__)
@@ -46,9 +47,12 @@ class Questions(QObject):
         The bar may show something else.
     told
         What came of it, and what to do.
+    again_wished
+        Sessions are to be analysed again.
     """
 
     changed = Signal()
+    again_wished = Signal()
     told = Signal(str, str)
 
     def __init__(self, look: ThemeNotifier, settings: Settings, parent: QObject) -> None:
@@ -69,10 +73,11 @@ class Questions(QObject):
     @property
     def bar(self) -> BarState:
         """What can be done with what is shown."""
-        again = (BarAction(tr("Analyse sessions again"), icon=Icon.PLAY),)
+        again = (BarAction(tr("Analyse sessions again"), self.again_wished.emit, icon=Icon.PLAY),)
         if self.page.found is None:
             return BarState(quiet=again)
-        return BarState(BarAction(tr("Save as CSV"), tr("Ctrl S"), Icon.IMPORT, is_wished=False), quiet=again)
+        save = BarAction(tr("Save as CSV"), self.save, tr("Ctrl S"), Icon.IMPORT, is_wished=False)
+        return BarState(save, quiet=again)
 
     def begin(self) -> None:
         """Show the table that was asked last, where it is still there."""

@@ -58,7 +58,7 @@ class GoalsOfPatient(QObject):
 
     @property
     def bar(self) -> BarState:
-        return BarState(BarAction(tr("Add this goal"), tr("Enter"), Icon.CHECK))
+        return BarState(BarAction(tr("Add this goal"), self.page.submit, tr("Enter"), Icon.CHECK))
 
     def begin(self, patient: "StoredPatient") -> None:
         """Show what was agreed with a patient."""

@@ -12,12 +12,12 @@ from PySide6.QtWidgets import QFileDialog
 from app.home.importing.import_page import ImportPage
 from app.importing.untrusted_files import gather_foreign, read_foreign_session, read_foreign_trial
 from app.storage.exchange import import_session
+from app.system.progress import Report
 from app.theme.icons import Icon
 from app.theme.notifier import ThemeNotifier
 from app.widgets.action_bar import BarAction, BarState
 from app.widgets.folder_dialog import ask_for_files, ask_for_folder
 from app.wording.translation import tr, tr_n
-from app.workers.background import Report
 from app.workers.library_controller import LibraryController
 from devices.files.refusal import FileRefusedError
 from devices.files.trial import PROGRAMS, SESSION
@@ -101,8 +101,8 @@ class Importing(QObject):
         code = self.page.code.text.strip()
         words = tr("Import for {code}").format(code=code) if code else tr("Import")
         is_ready = bool(code) and (not self._is_draft or self._is_draft_ready)
-        others = (BarAction(tr("Skip this one")),) if self._waiting else ()
-        return BarState(BarAction(words, tr("Enter"), Icon.IMPORT, is_enabled=is_ready), quiet=others)
+        take_in = BarAction(words, self.take_in, tr("Enter"), Icon.IMPORT, is_enabled=is_ready)
+        return BarState(take_in, quiet=(BarAction(tr("Skip this one"), self.leave_out),) if self._waiting else ())
 
     def begin(self) -> None:
         """Show how to begin."""

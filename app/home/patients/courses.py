@@ -7,8 +7,8 @@ from uuid import UUID
 from PySide6.QtCore import QObject, Signal
 
 from app.home.patients.reading import compute_courses
+from app.system.progress import Report
 from app.wording.translation import tr, tr_n
-from app.workers.background import Report
 from app.workers.library_controller import LibraryController
 
 if TYPE_CHECKING:

@@ -14,10 +14,10 @@ from app.summary.course import Course
 from app.summary.course_lanes import CourseVisit
 from app.summary.course_words import LatestVisit, NextStep, next_step, undecided_step
 from app.summary.goals import reached_at
+from app.system.progress import Report
 from app.widgets.line_list import SessionLine
 from app.wizard.resuming import current_courses, read_analysed
 from app.wording.patients import day_of_session, time_of_session
-from app.workers.background import Report
 from core.goals import Goal, held
 
 if TYPE_CHECKING:

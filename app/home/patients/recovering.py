@@ -15,13 +15,13 @@ from app.storage.exchange import export_orphan, was_exported
 from app.storage.journal.header import JournalRefusedError
 from app.storage.recovery import adopt_home, find_interrupted, recover
 from app.storage.stored import LibraryError, LibraryFaultError, RecordingState
+from app.system.progress import Report
 from app.widgets.banner import Banner
 from app.widgets.folder_dialog import ask_for_folder
 from app.wizard.walk_messages import recovery_costs
 from app.wording.patients import length
 from app.wording.recordings import shown_names
 from app.wording.translation import capitalised, tr, tr_n
-from app.workers.background import Report
 from app.workers.library_controller import LibraryController
 from app.workers.library_state import OpenedState
 from devices.decoders import DECODERS

@@ -13,9 +13,9 @@ from app.storage.clinic.handing_over import count_waiting
 from app.storage.clinic.moving import BEFORE, bring_back
 from app.storage.clinic.station import shown_address
 from app.storage.opened import OpenedLibrary
+from app.system.progress import Report
 from app.widgets.folder_dialog import ask_for_folder
 from app.wording.translation import tr, tr_n
-from app.workers.background import Report
 from app.workers.library_controller import LibraryController
 from app.workers.library_state import OpenedState
 

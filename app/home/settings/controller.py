@@ -23,13 +23,13 @@ from app.storage.keys import KeyRefusedError, KeySlots
 from app.storage.opened import slots_of
 from app.storage.operators import CLINIC
 from app.storage.stored import KEPT_DELETED, Operator, Role
+from app.system.progress import Report
 from app.system.settings import Scheme, Settings
 from app.theme.notifier import ThemeNotifier
 from app.widgets.folder_dialog import ask_for_folder
 from app.wording.dates import date
 from app.wording.patients import person, when
 from app.wording.translation import tr
-from app.workers.background import Report
 from app.workers.library_controller import LibraryController
 from app.workers.library_opening import BACKUP_FOLDER
 from app.workers.library_state import OpenedState

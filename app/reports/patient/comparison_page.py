@@ -141,7 +141,7 @@ def _parts_table(comparison: Comparison) -> Block:
             worst(found.height.verdict for found in joints),
             worst(part.verdicts.leg(side).timing.verdict for side in part.sides),
         )
-        strides = ", ".join(f"{side[0].upper()}\u00a0{part.strides(side)}" for side in part.sides)
+        strides = ", ".join(f"{side.letter}\u00a0{part.strides(side)}" for side in part.sides)
         rows.append(
             [
                 Cell(part.letter, picture=panels.pair_swatch(part.letter, looks)),

@@ -317,10 +317,6 @@ def _margin(margin: float) -> str:
     return fixed(margin, 2)
 
 
-def _apart(centres_apart_m: float | None) -> str:
-    return NOTHING if centres_apart_m is None else f"{fixed(100 * centres_apart_m, 0)} cm"
-
-
 def _cm(centre_m: FloatArray) -> str:
     return f"{fixed(100 * float(np.linalg.norm(centre_m)), 0)} cm"
 

@@ -161,7 +161,7 @@ def _dot_and_word(verdict: Verdict) -> tuple[dict[str, object], str]:
 
 def curves(facts: Facts, comparison: Comparison | None) -> dict[str, object]:
     """A panel for each joint that was measured, the band laid at the height of its curve, with its figures beside."""
-    counts = {side[0].upper(): facts.strides(side) for side in facts.gait}
+    counts = {side.letter: facts.strides(side) for side in facts.gait}
     said = [
         tr("Mean of strides, {counts}; each leg over its own gait cycle, 0 and 100 % initial contact.").format(
             counts=", ".join(f"{letter} n = {n}" for letter, n in counts.items())

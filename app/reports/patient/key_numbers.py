@@ -36,7 +36,7 @@ def key_numbers(facts: Facts, comparison: Comparison | None) -> list[Block]:
     columns = [
         Column(tr("Measure"), "1fr", is_number=False),
         *(Column(facts.counted(side)) for side in Side),
-        Column(f"{one[0].upper()} − {other[0].upper()}"),
+        Column(f"{one.letter} − {other.letter}"),
         Column(tr("Error")),
         Column(tr("Reference")),
         Column(tr("L above, R below, ± half the error"), "48mm", is_number=False),

@@ -56,9 +56,9 @@ def peaks_table(facts: Facts) -> list[Block]:
     columns = [
         Column(tr("Measure, °"), "1fr", is_number=False),
         *(_side_column(facts, side) for side in Side),
-        Column(f"{one[0].upper()} − {other[0].upper()}"),
+        Column(f"{one.letter} − {other.letter}"),
         Column(tr("Error")),
-        Column(tr("{one} − {other} is").format(one=one[0].upper(), other=other[0].upper()), is_number=False),
+        Column(tr("{one} − {other} is").format(one=one.letter, other=other.letter), is_number=False),
         Column(tr("Ref. [1]")),
         Column(tr("Against reference"), "27mm", is_number=False),
     ]
@@ -77,7 +77,7 @@ def _head_of_heights(facts: Facts, kind: JointKind) -> str:
     """With how far each leg's whole curve lies from the band."""
     title = tr(ANGLES[kind])
     offsets = [
-        f"{side[0].upper()}\u00a0{signed(offset, 1)}°"
+        f"{side.letter}\u00a0{signed(offset, 1)}°"
         for side in Side
         if math.isfinite(offset := facts.offset_deg(side, kind))
     ]

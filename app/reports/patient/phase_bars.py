@@ -66,7 +66,7 @@ def phase_bars(phases: Mapping[Side, Phases]) -> Picture:
     said = []
     for row, (side, found) in enumerate(phases.items()):
         y, at = TOP + ROW * row, 0.0
-        parts.append(badge(6, y + BAR / 2, side[0].upper(), side, COLOURS[side]))
+        parts.append(badge(6, y + BAR / 2, side.letter, side, COLOURS[side]))
         for number, lasts in enumerate(found.lasts):
             parts += _bar(x(at), y, x(at + lasts) - x(at), number, side)
             words = f"{names[number]} {fixed(lasts, 0)} %".strip()

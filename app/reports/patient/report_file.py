@@ -116,6 +116,8 @@ def replace_report(pdf: bytes, out: Path) -> None:
     try:
         with os.fdopen(handle, "wb") as file:
             file.write(pdf)
+            file.flush()
+            os.fsync(file.fileno())
         Path(beside).replace(out)
     except BaseException:
         Path(beside).unlink(missing_ok=True)

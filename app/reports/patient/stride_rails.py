@@ -114,7 +114,7 @@ def stride_rail(facts: Facts, kind: str) -> Picture:
                 parts.append(line(ends_x[0], y(mean), ends_x[1], y(mean), PAPER.ink, 0.9, DASHES[side]))
             ends.append((y(means[1]), side, f"{fixed(means[0], 1)} → {fixed(means[1], 1)}°"))
     for height, side, words in _apart(ends):
-        parts.append(badge(right + 10, height, side[0].upper(), side, COLOURS[side]))
+        parts.append(badge(right + 10, height, side.letter, side, COLOURS[side]))
         parts.append(text(right + 18, height + 2.4, words, 6.8))
     if facts.is_simulated:
         parts.append(text(right, 8, tr("SIMULATED"), 6.6, anchor="end", weight=600))

@@ -66,7 +66,7 @@ def time_distance_table(facts: Facts) -> list[Block]:
     columns = [
         Column(tr("Measure"), "1fr", is_number=False),
         *(Column(facts.counted(side)) for side in Side),
-        Column(f"{one[0].upper()} − {other[0].upper()}"),
+        Column(f"{one.letter} − {other.letter}"),
         Column(tr("Error")),
         Column(tr("Ref. [2]")),
         Column(tr("Against reference"), "37mm", is_number=False),
@@ -208,8 +208,8 @@ def _phases(facts: Facts) -> list[Block]:
         return []
     columns = [
         Column(tr("Rocker"), "1fr", is_number=False),
-        *(Column(tr("{letter}: duration, %").format(letter=side[0].upper())) for side in phases),
-        *(Column(tr("{letter}: ankle motion, °").format(letter=side[0].upper())) for side in phases),
+        *(Column(tr("{letter}: duration, %").format(letter=side.letter)) for side in phases),
+        *(Column(tr("{letter}: ankle motion, °").format(letter=side.letter)) for side in phases),
     ]
     names = (
         tr("Heel: contact to foot flat"),

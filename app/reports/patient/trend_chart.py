@@ -115,7 +115,7 @@ def _line(
             tips = " ".join(f"{px:.2f},{py:.2f}" for px, py in corners)
             parts.append(f'<polygon points="{tips}" fill="{PAPER.ink}"/>')
         else:
-            parts.append(badge(at, y(one.value), side[0].upper(), side, colour, 7.6))
+            parts.append(badge(at, y(one.value), side.letter, side, colour, 7.6))
     return parts
 
 

@@ -206,7 +206,7 @@ def _table(lines: Sequence[TrendLine], visits: int) -> Block:
     for line in lines:
         _, decimals = unit_and_decimals(line.column)
         values = {one.visit: one.value for one in line.values}
-        cells: list[Cell | str] = [_name(line.column), line.side[0].upper() if line.side is not None else ""]
+        cells: list[Cell | str] = [_name(line.column), line.side.letter if line.side is not None else ""]
         for visit in shown:
             is_withheld = visit in values and not math.isfinite(values[visit])
             cells.append(tr("not reported") if is_withheld else fixed(values.get(visit, math.nan), decimals))

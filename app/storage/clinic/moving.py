@@ -29,10 +29,11 @@ from app.storage.database.models import AuditRow, JournalRow, PatientRow, Record
 from app.storage.database.schema import bring_up_to_date
 from app.storage.files import replace_file, sync_folder
 from app.storage.layout import CACHE, DATABASE, KEYS, MOVING, RECORDINGS, STATION, SUFFIX
-from app.storage.opened import OpenedLibrary, Report, made_beside
+from app.storage.opened import OpenedLibrary, made_beside
 from app.storage.recovery import find_interrupted
 from app.storage.root import ID_SETTING
 from app.storage.stored import Action, LibraryError, RecordingState
+from app.system.progress import Report
 from app.wording.translation import tr
 
 BEFORE = "library-before-the-server.db"  # what was the folder's database

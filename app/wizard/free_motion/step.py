@@ -13,7 +13,7 @@ from app.system import sounds
 from app.system.sounds import Sound
 from app.theme.icons import Icon
 from app.theme.notifier import ThemeNotifier
-from app.widgets.action_bar import BarState
+from app.widgets.action_bar import BarAction, BarState
 from app.widgets.gauge import CLOSED
 from app.widgets.hint import Hint
 from app.widgets.rail_row import StepState
@@ -30,12 +30,11 @@ from app.wizard.free_motion.hints import (
     unplaced_hint,
 )
 from app.wizard.free_motion.label_questions import LabelQuestions
-from app.wizard.free_motion.motion_bar import BarFacts, motion_bar
 from app.wizard.free_motion.motion_shown import gauge_faces, hip_faces, sensor_marks
 from app.wizard.free_motion.page import FreeMotionFace, FreeMotionPage
 from app.wizard.free_motion.side_question import SILENT
 from app.wizard.keys import Intent, KeyAction
-from app.wizard.step import Step
+from app.wizard.step import Step, StepId
 from app.wording.translation import tr
 from core.body import Joint, Side, Site
 from core.live.free_motion import FreeMotionState
@@ -44,7 +43,6 @@ from core.samples import RecordingKind
 if TYPE_CHECKING:
     from app.wizard.visit import Visit
 
-SENSORS = 1  # the step that says who wears what
 SETTLED_MS = 2000  # enough motion: time to see it, and to say otherwise
 TICKS = 3  # of 30 Hz: ten looks a second
 KIND = RecordingKind.FREE_MOTION
@@ -64,6 +62,8 @@ class FreeMotionStep(Step):
 
     Whoever leaves it before its end loses nothing: what has moved counts, unless another is in force already.
     """
+
+    id = StepId.FREE_MOTION
 
     def __init__(self, look: ThemeNotifier, visit: "Visit", parent: QObject | None = None) -> None:
         super().__init__(look, visit, parent)
@@ -172,47 +172,32 @@ class FreeMotionStep(Step):
         self._show()
 
     def bar(self) -> BarState:
-        price = price_of_stopping(self._motion, self._visit.prosthetic_sides, can_move=not self._is_played)
-        return motion_bar(
-            BarFacts(
-                is_recording=self._is_recording,
-                has_moved=self._has_moved,
-                is_in_doubt=self.labels.is_in_doubt,
-                is_unplaced=self._is_unplaced,
-                is_done=self._is_done,
-                is_played=self._is_played,
-                has_played=bool(self._plays_s),
-                price=price,
-            ),
-            self._repeatable,
-        )
-
-    def on_primary(self) -> None:
+        enter, space = tr("Enter"), tr("Space")
+        again = BarAction(tr("Record again"), self._begin, space, Icon.REPEAT, is_wished=False)
+        stop = BarAction(tr("Stop early"), self._stop, space, Icon.STOP, is_wished=False)
+        check = BarAction(tr("Check positions"), self._check_positions, "P")
+        left = BarAction(tr("Repeat left"), self._repeat_left, "L", Icon.REPEAT)
+        right = BarAction(tr("Repeat right"), self._repeat_right, "R", Icon.REPEAT)
+        repeat = tuple(left if side is Side.LEFT else right for side in self._repeatable)
         if self.labels.is_in_doubt:
-            self._use_detected()
-        elif self._is_recording:
-            self._stop()
-        elif self._has_moved:
-            self.done.emit()
-        else:
-            self._begin()
-
-    def on_other(self, number: int) -> None:
+            use = BarAction(tr("Use detected positions"), self._use_detected, enter, Icon.CHECK)
+            return BarState(primary=use, others=(stop if self._is_recording else again,), quiet=(check,))
+        if not self._is_recording and not self._has_moved:
+            begin = BarAction(tr("Start free motion"), self._begin, space, Icon.PLAY)
+            return BarState(primary=begin, quiet=(check,) if self._is_unplaced else ())
+        leave = self._stop if self._is_recording else self.done.emit
+        go_on = BarAction(tr("Continue to walking"), leave, enter, Icon.NEXT)
         if not self._is_recording:
-            self._begin()
-            return
-        if self.labels.is_in_doubt:
-            self._stop()
-            return
-        self._then, self._again_side = AfterRecording.ANOTHER, self._repeated
-        self._motion = self._replaced or FreeMotionState()
-        self._visit.recordings.stop(is_kept=False)
-
-    def on_quiet(self, number: int) -> None:
-        if self.labels.is_in_doubt or (self._is_unplaced and not self._is_recording):
-            self.jumped.emit(SENSORS)
-        else:
-            self._repeat(self._repeatable[number])
+            return BarState(primary=go_on, others=(again,), quiet=repeat)
+        price = price_of_stopping(self._motion, self._visit.prosthetic_sides, can_move=not self._is_played)
+        if self._is_done:
+            return BarState(primary=go_on, quiet=repeat, note=price or tr("Continues automatically."))
+        if self._is_played and not self._plays_s:
+            return BarState(primary=go_on)
+        if self._is_played:
+            anew = replace(again, run=self._record_anew, key="")
+            return BarState(primary=go_on, others=(anew,), note=price)
+        return BarState(primary=stop, quiet=repeat, note=price)
 
     def undo(self) -> None:
         if self._worn_before:
@@ -390,6 +375,18 @@ class FreeMotionStep(Step):
         elif self._has_moved and any(site.side is side for site in self._visit.sensors.site_of.values()):
             self._begin(side)
 
+    def _repeat_left(self) -> None:
+        self._repeat(Side.LEFT)
+
+    def _repeat_right(self) -> None:
+        self._repeat(Side.RIGHT)
+
+    def _record_anew(self) -> None:
+        """Give up what is being recorded, for another."""
+        self._then, self._again_side = AfterRecording.ANOTHER, self._repeated
+        self._motion = self._replaced or FreeMotionState()
+        self._visit.recordings.stop(is_kept=False)
+
     def _stop(self) -> None:
         self._settled.stop()
         self._then = AfterRecording.NEXT_STEP
@@ -443,6 +440,9 @@ class FreeMotionStep(Step):
     def _on_leg_named(self) -> None:
         if self._unplaced is not None:
             self._unplaced.name_leg(self.labels.named)
+
+    def _check_positions(self) -> None:
+        self.jumped.emit(StepId.SENSORS)
 
     def _use_detected(self) -> None:
         """Wear the sensors where the motion puts them: what was recorded is derived again, and the step goes on."""

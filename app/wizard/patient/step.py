@@ -12,7 +12,7 @@ from app.widgets.action_bar import BarAction, BarState
 from app.widgets.rail_row import StepState
 from app.wizard.patient.cards import LastVisit
 from app.wizard.patient.page import PatientDraft, PatientPage
-from app.wizard.step import Step
+from app.wizard.step import Step, StepId
 from app.wording.dates import date
 from app.wording.translation import name_of, tr
 from core.body import LEG_JOINTS, Side
@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 
 class PatientStep(Step):
     """Goes on once the library has the patient, not before: what is recorded next belongs to somebody."""
+
+    id = StepId.PATIENT
 
     def __init__(self, look: ThemeNotifier, visit: "Visit", parent: QObject | None = None) -> None:
         super().__init__(look, visit, parent)
@@ -89,9 +91,10 @@ class PatientStep(Step):
         if self._taken_code:
             note = tr("Not saved: {code} is another patient's code.").format(code=self._taken_code)
         can_go_on = has_code and not self._taken_code
-        return BarState(primary=BarAction(tr("Attach sensors"), tr("Enter"), is_enabled=can_go_on), note=note)
+        go_on = BarAction(tr("Attach sensors"), self._go_on, tr("Enter"), is_enabled=can_go_on)
+        return BarState(primary=go_on, note=note)
 
-    def on_primary(self) -> None:
+    def _go_on(self) -> None:
         patient = self._visit.patient
         if not patient.details.code:
             self.page.focus()
@@ -212,7 +215,7 @@ class PatientStep(Step):
             self._visit.record.set_zero(joint, zero_rad)
         if self._last.placements:
             self._visit.placement_before = self._last.placements[-1].site_of
-        self.on_primary()
+        self._go_on()
 
 
 def _about(patient: Patient) -> str:

@@ -22,6 +22,7 @@ from app.summary.course_lanes import CourseVisit
 from app.summary.report_dates import day
 from app.summary.request import AnalysedVisit, ReportRequest, default_walks
 from app.system.logs import version_of
+from app.system.progress import Report
 from app.theme.icons import Icon
 from app.theme.notifier import ThemeNotifier
 from app.widgets.action_bar import BarAction, BarState
@@ -33,9 +34,9 @@ from app.wizard.report.leaving_dialog import LeavingDialog
 from app.wizard.report.page import ReportPage
 from app.wizard.report.printing import PRINTED_PPI, ReportPrinter
 from app.wizard.resuming import course_to, courses_before, read_analysed
-from app.wizard.step import Step
+from app.wizard.step import Step, StepId
 from app.wording.translation import capitalised, filled, tr
-from app.workers.background import Report, Work
+from app.workers.background import Work
 from app.workers.library_controller import LibraryController
 from core.samples import RecordingKind
 from devices.decoders import DECODERS
@@ -55,6 +56,8 @@ OTHERS = ("xlsx", "c3d", "mot", "fhir")
 
 
 class ReportStep(Step):
+    id = StepId.REPORT
+
     def __init__(
         self, look: ThemeNotifier, visit: "Visit", controller: LibraryController, parent: QObject | None = None
     ) -> None:
@@ -117,15 +120,16 @@ class ReportStep(Step):
         self._visit.preview.stop()
 
     def bar(self) -> BarState:
-        save = BarAction(tr("Save the report"), tr("Ctrl S"), Icon.FOLDER, is_enabled=self.can_save())
-        put = BarAction(tr("Print"), tr("Ctrl P"), Icon.PRINT, is_wished=False, is_enabled=self.can_save())
+        can_save = self.can_save()
+        save = BarAction(tr("Save the report"), self._save, tr("Ctrl S"), Icon.FOLDER, is_enabled=can_save)
+        put = BarAction(tr("Print"), self.print, tr("Ctrl P"), Icon.PRINT, is_wished=False, is_enabled=can_save)
         if self.saved is None:
             return BarState(primary=save, others=(put,), note=tr("Shows the patient code only, no name."))
         note = tr("Saved as {folder}. Saving again asks for the folder.").format(folder=self.saved.name)
-        show = BarAction(tr("Open the folder"), is_wished=False)
+        show = BarAction(tr("Open the folder"), self._open_folder, is_wished=False)
         return BarState(primary=replace(save, is_wished=False), others=(put, show), note=note)
 
-    def on_primary(self) -> None:
+    def _save(self) -> None:
         if not self.can_save() or self.is_saving:
             return
         self.page.report.flush()
@@ -156,15 +160,13 @@ class ReportStep(Step):
         told = self._visit.session.details
         return free_name(place, session_name(told.patient.code, told.started))
 
-    def on_other(self, number: int) -> None:
-        if number == 0:
-            self.print()
-        elif self.saved is not None:
+    def _open_folder(self) -> None:
+        if self.saved is not None:
             QDesktopServices.openUrl(QUrl.fromLocalFile(str(self.saved)))
 
     def on_intent(self, intent: Intent) -> bool:
         if intent.action is KeyAction.SAVE:
-            self.on_primary()
+            self._save()
             return True
         if intent.action is KeyAction.PRINT:
             self.print()

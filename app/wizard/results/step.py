@@ -23,11 +23,10 @@ from app.widgets.page_stack import PageStack
 from app.widgets.rail_row import StepState
 from app.widgets.sentence_page import SentencePage
 from app.widgets.start_pages import WorkingPage
-from app.wizard.keys import Intent
-from app.wizard.keys import KeyAction as KeyAction
+from app.wizard.keys import Intent, KeyAction
 from app.wizard.results.stride_choice import StrideChoice
 from app.wizard.resuming import course_to, courses_before
-from app.wizard.step import Step
+from app.wizard.step import Step, StepId
 from app.wording.recordings import shown_names, where_shown
 from app.wording.translation import capitalised, name_of, place, tr
 from core.body import LEG_JOINTS, Joint
@@ -43,9 +42,6 @@ if TYPE_CHECKING:
     from core.samples import Session
 
 
-FREE_MOTION = 3  # the step in which a joint is found anew
-
-
 class Shown(Enum):
     """Which part of the step somebody asked for."""
 
@@ -55,6 +51,8 @@ class Shown(Enum):
 
 
 class ResultsStep(Step):
+    id = StepId.RESULTS
+
     def __init__(self, look: ThemeNotifier, visit: "Visit", parent: QObject | None = None) -> None:
         super().__init__(look, visit, parent)
         self._frame: _ResultsFrame | None = None
@@ -115,27 +113,22 @@ class ResultsStep(Step):
     def bar(self) -> BarState:
         if self._shown is None or not self._kept_walks:
             return BarState()
-        if self._part is Shown.BEHIND:
-            return BarState(primary=BarAction(tr("Go to the report"), tr("Enter"), Icon.CHEVRON), has_back=False)
-        quiet: tuple[BarAction, ...] = ()
-        if self._part is not Shown.CORRECTIONS:
-            quiet = (BarAction(tr("Correct"), icon=Icon.REPEAT), BarAction(tr("Review in Rerun"), icon=Icon.PLAY))
-        note = self.page.results().band_words if self._part is Shown.RESULTS else ""
-        return BarState(primary=BarAction(tr("Go to the report"), tr("Enter"), Icon.CHEVRON), quiet=quiet, note=note)
+        go_on = BarAction(tr("Go to the report"), self.done.emit, tr("Enter"), Icon.CHEVRON)
+        if self._part is not Shown.RESULTS:
+            return BarState(primary=go_on, has_back=self._part is not Shown.BEHIND)
+        correct = BarAction(tr("Correct"), self._correct, icon=Icon.REPEAT)
+        review = BarAction(tr("Review in Rerun"), self._review, icon=Icon.PLAY)
+        return BarState(primary=go_on, quiet=(correct, review), note=self.page.results().band_words)
 
-    def on_primary(self) -> None:
-        if self.bar().primary is not None:
-            self.done.emit()
+    def _correct(self) -> None:
+        self._part = Shown.CORRECTIONS
+        self._show()
+        self.page.correct().focus()
 
-    def on_quiet(self, number: int) -> None:
-        if number == 0 and self.bar().quiet:
-            self._part = Shown.CORRECTIONS
-            self._show()
-            self.page.correct().focus()
-        elif number == 1 and self.bar().quiet:
-            evaluation = self._visit.evaluation
-            if evaluation.session is not None and evaluation.analysis is not None:
-                self._visit.reviewing.show(evaluation.session, evaluation.analysis)
+    def _review(self) -> None:
+        evaluation = self._visit.evaluation
+        if evaluation.session is not None and evaluation.analysis is not None:
+            self._visit.reviewing.show(evaluation.session, evaluation.analysis)
 
     def on_intent(self, intent: Intent) -> bool:
         if intent.action not in (KeyAction.BACK, KeyAction.LEAVE):
@@ -179,7 +172,7 @@ class ResultsStep(Step):
                 results.told.connect(self.changed)
                 results.quality.how_found.clicked.connect(self._ask)
                 results.quality.agreement.clicked.connect(self._compare)
-                results.quality.repeat_wished.connect(lambda _side: self.jumped.emit(FREE_MOTION))
+                results.quality.repeat_wished.connect(lambda _side: self.jumped.emit(StepId.FREE_MOTION))
                 results.compare.visits_wished.connect(self._visit.read_earlier)
                 results.strides.turned.connect(self._strides.turn)
                 results.strides.all_wanted.connect(self._strides.take_all_in)
@@ -418,7 +411,7 @@ class ResultsStep(Step):
             self.page.working.show_progress(share, words[:1].upper() + words[1:])
 
     def _on_sentence_pressed(self) -> None:
-        self.jumped.emit(4)
+        self.jumped.emit(StepId.WALKING)
 
 
 class _ResultsFrame(PageStack):

@@ -20,10 +20,10 @@ from devices.live import SourceLostError, SourceRefusedError
 
 if TYPE_CHECKING:
     from app.acquisition.dot_fleet import HeardDot
+    from app.system.progress import Report
     from app.widgets.sensors_progress import SensorsProgress
     from app.wizard.sensors.dot_form import DotForm
     from app.wizard.worn_sensors import SourceChoice, WornSensors
-    from app.workers.background import Report
     from devices.dot.source import DotGroup
 
 LISTENS_S = 0.1  # so often it is looked whether somebody wants something of the sensors
@@ -155,31 +155,27 @@ class DotSetup(QObject):
             return BarState()
         count = len(self._worn)
         if self._recording:
-            stop = BarAction(tr("Stop these recordings"), tr("Enter"), Icon.STOP, is_enabled=not self._is_stopping)
+            words, can_stop = tr("Stop these recordings"), not self._is_stopping
+            stop = BarAction(words, self._want_stop, tr("Enter"), Icon.STOP, is_enabled=can_stop)
             return BarState(primary=stop, note=tr("Their recordings stay in the sensor memory."))
         if self._failed and len(self._failed) < count:
-            again = BarAction(tr("Try again"), tr("Enter"), Icon.REPEAT)
+            again = BarAction(tr("Try again"), self._synchronise, tr("Enter"), Icon.REPEAT)
             without = tr("Continue without {sensors}").format(sensors=", ".join(self._failed))
-            return BarState(primary=again, others=(BarAction(without, is_wished=False),))
+            return BarState(primary=again, others=(BarAction(without, self._leave_out_failed, is_wished=False),))
         words = tr("Use this sensor")
         if count != 1:
             words = tr_n("Synchronise {count} sensor", "Synchronise {count} sensors", count).format(count=count)
         return BarState(
-            primary=BarAction(words, tr("Enter"), is_enabled=count > 0),
+            primary=BarAction(words, self._synchronise, tr("Enter"), is_enabled=count > 0),
             note="" if count else tr("Tick the sensors that are worn."),
         )
 
-    def on_primary(self) -> None:
-        if self.is_synchronising or self._is_stopping:
-            return
-        if self._recording:
-            self._is_stopping = True
-            self._wanted.append(self._stop_recordings)
-            self._show()
-        elif self._worn:
-            self._synchronise()
+    def _want_stop(self) -> None:
+        self._is_stopping = True
+        self._wanted.append(self._stop_recordings)
+        self._show()
 
-    def leave_out_failed(self) -> None:
+    def _leave_out_failed(self) -> None:
         """Go on without those that did not follow."""
         assert self._fleet is not None
         self._worn -= {number for number, dot in enumerate(self._fleet.dots) if dot.name in self._failed}

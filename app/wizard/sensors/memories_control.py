@@ -6,6 +6,7 @@ it was said what that is and what of it is kept, and the button was pressed once
 
 import datetime
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -24,10 +25,10 @@ from devices.live import SourceLostError, SourceRefusedError
 if TYPE_CHECKING:
     from app.storage.opened import OpenedLibrary
     from app.storage.stored import StoredRecording
+    from app.system.progress import Report
     from app.widgets.sensors_progress import SensorsProgress
     from app.wizard.sensors.memories_form import MemoriesForm
     from app.wizard.visit import Visit
-    from app.workers.background import Report
 
 Asked = Callable[[DotMemories, Callable[[str], None], Callable[[], None]], object]
 
@@ -113,41 +114,24 @@ class MemoriesControl(QObject):
             return self._fetch.bar() or BarState()
         if self.is_busy:
             return BarState()
+        back = BarAction(tr("Back to the sensors"), self.leave)
         if self._error is not None:
-            again = BarAction(tr("Try again"), tr("Enter"), Icon.REPEAT)
-            return BarState(primary=again, quiet=(BarAction(tr("Back to the sensors")),))
+            again = BarAction(tr("Try again"), self._look, tr("Enter"), Icon.REPEAT)
+            return BarState(primary=again, quiet=(back,))
         if not self._held:
-            return BarState(primary=BarAction(tr("Back to the sensors"), tr("Enter")))
-        words = tr("Erase sensor memory")
+            return BarState(primary=replace(back, key=tr("Enter")))
+        erase = BarAction(tr("Erase sensor memory"), self._warn, is_wished=False)
         if self._is_warned:
             words = tr("Erase now, losing unsaved data") if self._unkept else tr("Erase now")
-        back, erase = tr("Back to the sensors"), (BarAction(words, is_wished=False),)
+            erase = BarAction(words, self._erase, is_wished=False)
         if self._chosen is None:
-            return BarState(primary=BarAction(back, tr("Enter"), is_wished=False), others=erase)
-        return BarState(primary=BarAction(tr("Fetch walk"), tr("Enter")), others=erase, quiet=(BarAction(back),))
+            return BarState(primary=replace(back, key=tr("Enter"), is_wished=False), others=(erase,))
+        fetch = BarAction(tr("Fetch walk"), self._fetch_chosen, tr("Enter"))
+        return BarState(primary=fetch, others=(erase,), quiet=(back,))
 
-    def on_primary(self) -> None:
-        if self._is_fetching:
-            if self._fetch.has_failed:
-                self._fetch.go_on()
-        elif self.is_busy:
-            return
-        elif self._error is not None:
-            self._look()
-        elif (chosen := self._chosen) is not None:
-            self._fetch_again(*chosen)
-        else:
-            self.leave()
-
-    def on_other(self) -> None:
-        if self._is_fetching:
-            if self._fetch.has_failed:
-                self._fetch.put_off()
-        elif self.is_busy or not self._held or self._form is None:
-            return
-        elif self._is_warned:
-            self._erase()
-        else:
+    def _warn(self) -> None:
+        """Say what would be lost by erasing."""
+        if self._form is not None:
             self._is_warned = True
             self._form.tell(*_warning(self._held, self._unkept, self._lacking))
             self.changed.emit()
@@ -242,12 +226,12 @@ class MemoriesControl(QObject):
         self._visit.sensors.asking.start(work)
         self._show()
 
-    def _fetch_again(self, held: HeldRecording, row: "StoredRecording") -> None:
+    def _fetch_chosen(self) -> None:
         """Into a recording of its own, which begins when that did; what was begun first holds nothing."""
-        acquisition = self._visit.sensors.acquisition
-        assert acquisition is not None
-        assert self._memories is not None
-        self._is_fetching = True
+        acquisition, chosen = self._visit.sensors.acquisition, self._chosen
+        if acquisition is None or self._memories is None or chosen is None:
+            return
+        self._is_fetching, (held, row) = True, chosen
         told, left = row.details, self._memories.left(held)
         self._visit.recordings.begin(
             acquisition, told.kind, told.condition, told.alignment, told.test, fetched=(left, told.started)

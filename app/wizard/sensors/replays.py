@@ -15,9 +15,9 @@ from app.acquisition.acquisition import Acquisition
 from app.importing.untrusted_files import read_foreign_session
 from app.storage.exchange import session_with_samples
 from app.storage.stored import LibraryError, SessionSummary
+from app.system.progress import Report
 from app.wizard.worn_sensors import SourceChoice
 from app.wording.translation import tr
-from app.workers.background import Report
 from app.workers.library_controller import LibraryController
 from devices.decoders import DECODERS
 from devices.simulation.replay import ReplaySource, names_of

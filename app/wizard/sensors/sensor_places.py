@@ -20,7 +20,7 @@ from PySide6.QtWidgets import QSizePolicy, QWidget
 from app.theme.notifier import ThemeNotifier
 from app.theme.theme import CARD_RADIUS, CONTROL_RADIUS
 from app.widgets.body_figure import SENTENCE_ROOM, BodyFigure, SensorMark
-from app.widgets.chip import LETTERS, paint_chip
+from app.widgets.chip import paint_chip
 from app.widgets.painted_text import RIGHT, PaintedText
 from app.widgets.text import MEDIUM, SEMIBOLD
 from app.widgets.themed import Themed
@@ -335,7 +335,7 @@ class _Tile(DraggedButton):
         if side is not None and place.is_flashing:  # the legs' hues do not stand out on dark; the letter does
             painter.setPen(QColor(ink))
             painter.setFont(theme.font(14, SEMIBOLD))
-            painter.drawText(where, Qt.AlignmentFlag.AlignCenter, LETTERS[side])
+            painter.drawText(where, Qt.AlignmentFlag.AlignCenter, side.letter)
         elif side is not None:
             paint_chip(painter, where, side, theme)
         for text in self.painted_texts():

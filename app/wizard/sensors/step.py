@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject
 
+from app.theme.icons import Icon
 from app.theme.notifier import ThemeNotifier
 from app.widgets.action_bar import BarAction, BarState
 from app.widgets.rail_row import StepState
@@ -16,15 +17,14 @@ from app.wizard.sensors.estimator import PlacingEstimator
 from app.wizard.sensors.memories_control import MemoriesControl
 from app.wizard.sensors.page import SensorsPage, Way
 from app.wizard.sensors.sensor_row import SensorRow
-from app.wizard.sensors.sensors_bar import sensors_bar
 from app.wizard.sensors.source_pages import SourceOption
 from app.wizard.sensors.sources import SEARCH, WITH_PELVIS
 from app.wizard.sensors.stored_replay import StoredReplay
 from app.wizard.sensors.trace_values import TRACE_S, TraceValues
-from app.wizard.step import Step
+from app.wizard.step import Step, StepId
 from app.wizard.worn_sensors import SourceChoice
-from app.wording.translation import tr
-from core.body import Site
+from app.wording.translation import name_of, tr
+from core.body import LEG_JOINTS, LEG_SITES, Site
 
 if TYPE_CHECKING:
     from app.acquisition.acquisition import SensorStatus
@@ -36,6 +36,8 @@ TRACE_TICKS, ROW_TICKS = 3, 8  # of 30 a second: traces ten times a second, rows
 
 class SensorsStep(Step):
     """The library is told who wears what when the step is left, and only if that is news."""
+
+    id = StepId.SENSORS
 
     def __init__(self, look: ThemeNotifier, visit: "Visit", parent: QObject | None = None) -> None:
         super().__init__(look, visit, parent)
@@ -186,8 +188,47 @@ class SensorsStep(Step):
             self._show_rows()
 
     def bar(self) -> BarState:
-        bar = self._bar()
-        return replace(bar, quiet=(BarAction(tr("Sensor memory")),)) if self._may_ask_memories else bar
+        if self.telling.is_on:
+            is_whole = self.telling.columns is not None
+            use = BarAction(tr("Use these columns"), self._use_columns, tr("Enter"), is_enabled=is_whole)
+            return BarState(primary=use)
+        if self.setup.is_on or self.setup.is_synchronising:
+            return self.setup.bar()
+        if self.memories.is_on:
+            return self.memories.bar()
+        if self.stored.is_on:
+            return self.stored.bar()
+        quiet = (BarAction(tr("Sensor memory"), self.memories.begin),) if self._may_ask_memories else ()
+        return replace(self._of_open(), quiet=quiet)
+
+    def _of_open(self) -> BarState:
+        """What can be done with the sensors that are open, or why the session cannot go on with them yet."""
+        sensors, silent, enter = self._visit.sensors, self._silent_site, tr("Enter")
+        if sensors.are_in_memory:
+            back = BarAction(tr("Return to live"), self.setup.set_back, enter, is_wished=False)
+            return BarState(primary=back, note=tr("The sensors are ready for walks. They send no live data."))
+        if sensors.acquisition is None:
+            return BarState(note="" if sensors.is_searching else tr("Choose where to search for sensors."))
+        if reason := self._visit.cannot_record:
+            other = BarAction(tr("Choose other sensors"), self._choose_others, enter, Icon.REPEAT)
+            words = tr("Start with a demonstration patient")
+            demonstration = BarAction(words, self.demonstration_wanted.emit, is_wished=False)
+            return BarState(primary=other, others=(demonstration,), note=reason)
+        go_on = BarAction(tr("Stand still"), self.done.emit, enter)
+        if silent is not None:
+            words = tr("Reconnect {site}").format(site=name_of(silent))
+            again = BarAction(words, self._reconnect, enter, Icon.REPEAT)
+            joints = (*LEG_JOINTS, *sensors.hips)
+            lost = tr(" and ").join(name_of(one) for one in joints if silent in (one.proximal, one.distal))
+            without = replace(go_on, text=tr("Continue without {joints}").format(joints=lost), key="", is_wished=False)
+            return BarState(primary=again, others=(without,) if sensors.joints else ())
+        if sensors.is_left_to_motion:
+            return BarState(primary=go_on, note=tr("Sensor positions are detected in the free motion."))
+        if not sensors.joints:
+            note = tr("Two sensors at one joint are needed: thigh and shank, or shank and foot.")
+            return BarState(primary=replace(go_on, is_enabled=False), note=note)
+        is_whole = set(LEG_SITES) <= sensors.sensor_at.keys()  # a pelvis is for whoever wants hips
+        return BarState(primary=replace(go_on, is_wished=is_whole), note=sensors.price_of_missing())
 
     @property
     def _is_asking(self) -> bool:
@@ -199,53 +240,6 @@ class SensorsStep(Step):
     def _may_ask_memories(self) -> bool:
         is_free = self._visit.recordings.ongoing is None and self._visit.session is not None
         return self._visit.sensors.dots is not None and is_free and not self._is_asking
-
-    def _bar(self) -> BarState:
-        if self.telling.is_on:
-            is_whole = self.telling.columns is not None
-            return BarState(primary=BarAction(tr("Use these columns"), tr("Enter"), is_enabled=is_whole))
-        if self.setup.is_on or self.setup.is_synchronising:
-            return self.setup.bar()
-        if self.memories.is_on:
-            return self.memories.bar()
-        if self.stored.is_on:
-            return self.stored.bar()
-        return sensors_bar(self._visit, self._silent_site)
-
-    def on_primary(self) -> None:
-        if self.telling.is_on:
-            self._use_columns()
-        elif self.setup.is_on:
-            self.setup.on_primary()
-        elif self.memories.is_on:
-            self.memories.on_primary()
-        elif self.stored.is_on:
-            self.stored.on_primary()
-        elif self._visit.sensors.are_in_memory:
-            self.setup.set_back()
-        elif self._visit.cannot_record:
-            self._on_stop_pressed()
-            self.page.focus()
-        elif self._silent_site is not None:
-            self._reconnect()
-        elif self._visit.sensors.acquisition is not None:
-            self.done.emit()
-
-    def on_other(self, number: int) -> None:
-        if self.setup.is_on:
-            self.setup.leave_out_failed()
-        elif self.memories.is_on:
-            self.memories.on_other()
-        elif self._visit.cannot_record:
-            self.demonstration_wanted.emit()
-        else:
-            self.done.emit()
-
-    def on_quiet(self, number: int) -> None:
-        if self.memories.is_on:
-            self.memories.leave()
-        elif self._may_ask_memories:
-            self.memories.begin()
 
     def on_intent(self, intent: Intent) -> bool:
         if intent.action is KeyAction.LABEL:
@@ -448,6 +442,10 @@ class SensorsStep(Step):
         if was_live:
             self.setup.set_back()
         self._show_asked()
+
+    def _choose_others(self) -> None:
+        self._on_stop_pressed()
+        self.page.focus()
 
     def _use_columns(self) -> None:
         """Remember what is told, and search again: all that is known is heard then."""

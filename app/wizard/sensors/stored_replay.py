@@ -84,9 +84,10 @@ class StoredReplay(QObject):
         if self.reading:
             return BarState()
         is_any = self._form is not None and self._form.session is not None
-        return BarState(primary=BarAction(tr("Replay"), tr("Enter"), Icon.PLAY, is_enabled=is_any))
+        replay = BarAction(tr("Replay"), self._replay_chosen, tr("Enter"), Icon.PLAY, is_enabled=is_any)
+        return BarState(primary=replay)
 
-    def on_primary(self) -> None:
+    def _replay_chosen(self) -> None:
         if self._form is not None and not self.reading and (session := self._form.session) is not None:
             self._replay(session)
 

@@ -16,7 +16,7 @@ from app.widgets.rail_row import StepState
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.standing.estimator import StandingEstimator
 from app.wizard.standing.page import StandPhase, StandStillPage, StandStillView
-from app.wizard.step import Step
+from app.wizard.step import Step, StepId
 from app.wording.translation import tr
 from core.body import LEG_JOINTS, Joint, Site
 from core.live.standing import WANTED_S
@@ -32,6 +32,8 @@ SLACK_S = 0.1
 
 class StandStillStep(Step):
     """The movement is shown from the first moment; the count and its recording begin at a word."""
+
+    id = StepId.STAND_STILL
 
     def __init__(self, look: ThemeNotifier, visit: "Visit", parent: QObject | None = None) -> None:
         super().__init__(look, visit, parent)
@@ -127,24 +129,15 @@ class StandStillStep(Step):
 
     def bar(self) -> BarState:
         space, enter = tr("Space"), tr("Enter")
-        again = BarAction(tr("Restart count"), space, Icon.REPEAT, is_wished=False)
-        go_on = BarAction(tr("Continue to free motion"), enter, Icon.NEXT)
+        again = BarAction(tr("Restart count"), self._start, space, Icon.REPEAT, is_wished=False)
+        go_on = BarAction(tr("Continue to free motion"), self._go_on, enter, Icon.NEXT)
         if self._phase is StandPhase.COUNTING:
             return BarState(primary=again, note=tr("Continues automatically when done."))
         if self._phase is StandPhase.DONE:
             return BarState(primary=go_on, others=(again,))
         if self._phase is StandPhase.SKIPPED:
             return BarState(primary=go_on)
-        return BarState(primary=BarAction(tr("Start count"), space, Icon.PLAY))
-
-    def on_primary(self) -> None:
-        if self._phase in (StandPhase.DONE, StandPhase.SKIPPED):
-            self._go_on()
-        else:
-            self._start()
-
-    def on_other(self, number: int) -> None:
-        self._start()
+        return BarState(primary=BarAction(tr("Start count"), self._start, space, Icon.PLAY))
 
     def on_intent(self, intent: Intent) -> bool:
         if intent.action is not KeyAction.RUN or self._phase is StandPhase.SKIPPED:

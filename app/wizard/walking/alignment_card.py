@@ -19,7 +19,8 @@ from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.themed import Themed
 from app.wizard.walking.bench import ChangeEntry
 from app.wizard.walking.stepper import Stepper
-from app.wording.alignment import MINUS, change_in_words, direction_words, part_name, turns_words
+from app.wording.alignment import change_in_words, direction_words, part_name, turns_words
+from app.wording.numbers import MINUS
 from app.wording.translation import figure_text, tr
 from core.alignment import FIGURES, MOST_TEXT, ProsthesisPart
 from core.body import Side

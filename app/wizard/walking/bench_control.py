@@ -67,6 +67,11 @@ class Bench(QObject):
         """Whether it stands in the place of the walks, while none is recorded."""
         return self.is_wished and self.is_offered
 
+    def turn(self) -> None:
+        """Show it, or all walks in its place."""
+        self.is_wished = not self.is_wished
+        self.changed.emit()
+
     @property
     def chain(self) -> AlignmentChain:
         return chain_of([one.details for one in self._visit.recordings.every], self._returned_to)

@@ -10,7 +10,7 @@ from app.charts.axes import ANKLE_DEG, KNEE_DEG, degrees_in_words
 from app.plots.phase_lanes import Swatch
 from app.theme.notifier import ThemeNotifier
 from app.widgets.card import Card
-from app.widgets.chip import LETTERS, SideKey
+from app.widgets.chip import SideKey
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.wizard.walking.live_lanes import LiveLanes
 from app.wizard.walking.live_strip import LiveStrip
@@ -99,13 +99,13 @@ class WalkingCharts(Card):
 
     def _say_provisional(self, sides: list[Side]) -> None:
         words = tr("{sides} provisional") if self._is_compact else tr("{sides} provisional until five strides")
-        said = words.format(sides=", ".join(LETTERS[side] for side in sides)) if sides else ""
+        said = words.format(sides=", ".join(side.letter for side in sides)) if sides else ""
         if said != self._provisional.text():
             self._provisional.setText(said)
 
     def _say_of_hips(self, provisional: list[Side], are_known: bool) -> None:
         words = tr("{sides} provisional") if self._is_compact else tr("{sides} provisional until calibrated by walking")
-        said = words.format(sides=", ".join(LETTERS[side] for side in provisional)) if provisional else ""
+        said = words.format(sides=", ".join(side.letter for side in provisional)) if provisional else ""
         if not are_known:
             said = tr("not known yet") if self._is_compact else tr("not known before the first strides")
         if said != self._hip_note.text():

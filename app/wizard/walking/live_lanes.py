@@ -16,7 +16,7 @@ from app.charts.axes import AXIS_WIDTH, RIGHT_MARGIN
 from app.plots.phase_lanes import BETWEEN, GAP_PX, LANE, paint_phase
 from app.theme.notifier import ThemeNotifier
 from app.theme.theme import CHIP_RADIUS
-from app.widgets.chip import CHIP, LETTERS, paint_chip
+from app.widgets.chip import CHIP, paint_chip
 from app.widgets.text import MEDIUM
 from app.widgets.themed import Themed
 from app.wizard.walking.live_strip import SHOWN_S
@@ -152,7 +152,7 @@ class LiveLanes(Themed):
         c = theme.colours
         right = (picture.columns if end_s is None else picture.x_of(end_s)) / ratio
         left = max(left, 0.0)
-        said = tr("{side} foot: no signal").format(side=LETTERS[side])
+        said = tr("{side} foot: no signal").format(side=side.letter)
         painter.setFont(theme.font(12, MEDIUM))
         wanted = painter.fontMetrics().horizontalAdvance(said) + theme.px(16)
         if end_s is None:

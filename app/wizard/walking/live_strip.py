@@ -18,7 +18,6 @@ from PySide6.QtWidgets import QWidget
 from app.charts.axes import AXIS_WIDTH, RIGHT_MARGIN, range_for
 from app.plots.angle_chart import AngleAxis
 from app.theme.notifier import ThemeNotifier
-from app.widgets.chip import LETTERS
 from app.widgets.text import MEDIUM
 from app.wizard.walking.readout import LiveTrace
 from app.wizard.walking.scrolling_picture import ScrollingPicture
@@ -352,7 +351,7 @@ class _History(QWidget):
         taken: list[tuple[float, float]] = []
         for span in self.missing:
             left, right = (end / ratio for end in self._ends(span, picture))
-            said = tr("{side} missing").format(side=LETTERS[span.side])
+            said = tr("{side} missing").format(side=span.side.letter)
             wanted = metrics.horizontalAdvance(said) + px(16)
             left = max(left, 0.0)
             if right - left < wanted:

@@ -26,9 +26,12 @@ class MemoryControl(QObject):
         Something else is shown, or can be done.
     lives
         The sensors send again what they measure, as was asked.
+    done
+        No further walk is wanted.
     """
 
     changed = Signal()
+    done = Signal()
     lives = Signal()
 
     def __init__(self, visit: "Visit", parent: QObject) -> None:
@@ -88,10 +91,10 @@ class MemoryControl(QObject):
             return fetched
         has_failed = bool(self._visit.sensors.sync.failure[0])
         words = tr("Try again") if has_failed else tr("Prepare the sensors")
-        ready = BarAction(words, tr("Enter"), Icon.REPEAT if has_failed else None)
-        others = [BarAction(tr("Record walks live"), is_wished=False)]
+        ready = BarAction(words, self._make_ready, tr("Enter"), Icon.REPEAT if has_failed else None)
+        others = [BarAction(tr("Record walks live"), self.send_live, is_wished=False)]
         if any(recording.details.is_kept for recording in recordings.walks):
-            others.append(BarAction(tr("Results"), is_wished=False, icon=Icon.NEXT))
+            others.append(BarAction(tr("Results"), self.done.emit, icon=Icon.NEXT, is_wished=False))
         return BarState(primary=ready, others=tuple(others))
 
     def quiet(self, *, wants_live: bool) -> BarAction | None:
@@ -102,33 +105,12 @@ class MemoryControl(QObject):
         if (later := self.fetch.later) is not None:
             return later
         if sensors.dots is not None and sensors.dots.record_hz is None and sensors.are_loose:
-            return BarAction(tr("Synchronise again"))
-        return BarAction(tr("Record walks live"), is_wished=False) if wants_live and sensors.are_in_memory else None
+            return BarAction(tr("Synchronise again"), self.send_live)
+        is_wish = wants_live and sensors.are_in_memory
+        return BarAction(tr("Record walks live"), self.send_live, is_wished=False) if is_wish else None
 
-    def on_quiet(self) -> None:
-        """The action of `quiet`."""
-        if self.fetch.later is not None:
-            self.fetch.go_on()
-        else:
-            self.send_live()
-
-    def on_primary(self) -> None:
-        """The primary action of `bar`."""
-        if self.is_synchronising:
-            return
-        if self.fetch.has_failed:
-            self.fetch.go_on()
-        elif self._must_be_made_ready:
-            self._synchronise(SyncPurpose.MEMORIES)
-
-    def on_other(self, number: int) -> bool:
-        """One of the others of `bar`; whether the walks are done with."""
-        if self.fetch.has_failed:
-            self.fetch.put_off()
-            return False
-        if number == 0:
-            self.send_live()
-        return number == 1
+    def _make_ready(self) -> None:
+        self._synchronise(SyncPurpose.MEMORIES)
 
     def send_live(self) -> None:
         """Measure walks live, as everything else."""
@@ -152,7 +134,7 @@ class MemoryControl(QObject):
         """Do what takes a moment only: where they are on one clock at this rate, they stop sending."""
         dots = self._visit.sensors.dots
         if dots is not None and self._must_be_made_ready and dots.record_hz and dots.are_one_at(dots.record_hz):
-            self._synchronise(SyncPurpose.MEMORIES)
+            self._make_ready()
 
     @property
     def _must_be_made_ready(self) -> bool:

@@ -14,7 +14,7 @@ from app.widgets.action_bar import BarState
 from app.widgets.rail_row import StepState
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.losses import NOTHING
-from app.wizard.step import Step
+from app.wizard.step import Step, StepId
 from app.wizard.walk_messages import no_foot_message
 from app.wizard.walking.bench_control import Bench
 from app.wizard.walking.live_preview import LivePreview
@@ -25,7 +25,7 @@ from app.wizard.walking.walk_labels import label_after, labels_for
 from app.wizard.walking.walk_notice import WalkNotice, asked_walk
 from app.wizard.walking.walk_rows import facts_of, ongoing_walk, rows_of
 from app.wizard.walking.walk_start import WalkStart
-from app.wizard.walking.walking_bar import QuietAction, WalkingBar
+from app.wizard.walking.walking_bar import WalkingBar
 from app.wording.translation import tr
 from core.samples import RecordingKind
 from core.targets import TargetTally, with_tallies
@@ -36,11 +36,12 @@ if TYPE_CHECKING:
     from app.wizard.walking.page import WalkingPage
     from app.wizard.walking.readout import WalkingReadout
 
-STAND_STILL = 2  # the step that sensors strapped anew begin with
 WATCH_TICKS = 3  # of 30 a second: sensors are looked at ten times a second
 
 
 class WalkingStep(Step):
+    id = StepId.WALKING
+
     def __init__(self, look: ThemeNotifier, visit: "Visit", parent: QObject | None = None) -> None:
         super().__init__(look, visit, parent)
         self._page: WalkingPage | None = None
@@ -59,12 +60,12 @@ class WalkingStep(Step):
         self._timed = TimedControl(visit, self)
         self.memory = MemoryControl(visit, self)
         self.memory.lives.connect(self._on_lives)
+        self.memory.done.connect(self.done)
         for part in (self.bench, self._timed, self.memory):
             part.changed.connect(self._show)
         self._preview = LivePreview(visit, self)
         self._preview.renewed.connect(self._timed.watch)
         self._next = WalkStart(visit, self.memory, self._timed)
-        self._bar = WalkingBar(visit, self._next, self.bench, self._timed, self.memory)
         visit.recordings.begun.connect(self._on_begun)
         visit.recordings.ended.connect(self._on_ended)
         visit.recordings.changed.connect(self._show)
@@ -91,7 +92,7 @@ class WalkingStep(Step):
             page.restrapped_pressed.connect(self._on_restrapped_pressed)
             page.memory.stop_pressed.connect(self.memory.stop)
             self.feedback = PatientFeedback(self._look, self._visit, page.patient_controls, self)
-            self.feedback.run_wished.connect(self._run)
+            self.feedback.run_wished.connect(self.run)
             self._preview.renewed.connect(self.feedback.watch)
         return self._page
 
@@ -174,7 +175,7 @@ class WalkingStep(Step):
         self._ticks += 1
         self.page.show_test(self._timed.view())
         if self._timed.tick():
-            self._stop()
+            self.stop()
         is_live = self._ongoing is not None and not self._visit.sensors.are_in_memory
         feedback = self.feedback if self.feedback is not None and self.feedback.is_open else None
         view = self._preview.look() if is_live or feedback is not None else None
@@ -188,52 +189,34 @@ class WalkingStep(Step):
                 feedback.count(self._preview.shown.strides)
 
     def bar(self) -> BarState:
-        return self._bar.state(self._label)
+        bar = WalkingBar(self, self._visit, self._next, self.bench, self._timed, self.memory)
+        return bar.state(self._label)
 
-    def on_primary(self) -> None:
-        is_recording = self._visit.recordings.is_recording
-        if self._bar.has_memory:
-            self.memory.on_primary()
-        elif self.bench.is_shown and self._asked is not None and not is_recording:
-            self._keep_at_bench(self._asked)
-        elif self._has_kept and self._asked is None and not is_recording:
-            self.done.emit()
-        else:
-            self._run()
+    # what its bar does
 
-    def on_other(self, number: int) -> None:
-        if self._bar.has_memory:
-            if self.memory.on_other(number):
-                self.done.emit()
-        elif self._timed.is_running:
-            self._stop()
-        elif self.bench.is_shown and number < len(self.bar().others) - 1:
-            if said := self.bench.return_to_first():
-                self._kept = self._discarded = None
-                self._label = self.bench.returned_to
-                self._show()
-                self.offered.emit(said)
-        else:
-            self._run()
+    def go_on(self) -> None:
+        self.done.emit()
 
-    def on_quiet(self, number: int) -> None:
-        match dict(enumerate(self._bar.quiet)).get(number):
-            case QuietAction.BENCH:
-                self.bench.is_wished = not self.bench.is_wished
-                self._show()
-            case QuietAction.DISCARD if self._asked is not None:
-                self._keep(self._asked, is_kept=False)
-            case QuietAction.MEMORY:
-                self.memory.on_quiet()
-            case QuietAction.PATIENT_SCREEN:
-                self._toggle_patient_screen()
+    def return_to_first(self) -> None:
+        """Say that the prosthesis is put back to where it began."""
+        if said := self.bench.return_to_first():
+            self._kept = self._discarded = None
+            self._label = self.bench.returned_to
+            self._show()
+            self.offered.emit(said)
 
-    def _toggle_patient_screen(self) -> None:
+    def toggle_patient_screen(self) -> None:
         if self.feedback is not None:
             self.feedback.toggle()
 
-    def _keep_at_bench(self, recording: "SessionRecording") -> None:
-        """Keep it: what is changed next is changed from it. It can be taken back for a while."""
+    def discard(self) -> None:
+        if self._asked is not None:
+            self._keep(self._asked, is_kept=False)
+
+    def keep_at_bench(self) -> None:
+        """Keep the latest walk: what is changed next is changed from it. It can be taken back for a while."""
+        if (recording := self._asked) is None:
+            return
         self.bench.settle_return()
         self._discarded, self._kept = None, recording.id
         self._keep(recording, is_kept=True)
@@ -243,15 +226,15 @@ class WalkingStep(Step):
         feedback = self.feedback
         match intent.action:
             case KeyAction.RUN:
-                self._run()
+                self.run()
             case KeyAction.NEXT_TEST if not self._visit.recordings.is_recording:
                 self._timed.choose_next()
             case KeyAction.LEAVE if self._timed.is_running:
-                self._stop()
+                self.stop()
             case KeyAction.KEEP if self._asked is not None:
                 self._keep(self._asked, is_kept=True)
             case KeyAction.DISCARD if self._asked is not None:
-                self._keep(self._asked, is_kept=False)
+                self.discard()
             case KeyAction.LABEL if self.bench.is_shown and not self._visit.recordings.is_recording:
                 self.bench.choose(intent.number - 1, is_beside=False)
             case KeyAction.SECOND_LABEL if self.bench.is_shown and not self._visit.recordings.is_recording:
@@ -259,7 +242,7 @@ class WalkingStep(Step):
             case KeyAction.LABEL:
                 self.page.choose_digit(intent.number)
             case KeyAction.PATIENT_SCREEN:
-                self._toggle_patient_screen()
+                self.toggle_patient_screen()
             case KeyAction.FULL_SCREEN if feedback is not None:
                 feedback.toggle_full_screen()
             case KeyAction.LEAVE if feedback is not None and feedback.is_open:
@@ -283,11 +266,11 @@ class WalkingStep(Step):
 
     # recording
 
-    def _run(self) -> None:
+    def run(self) -> None:
         """Start, or stop; between walks, keep the last one and start the next."""
         if self._ongoing is not None and not self._visit.recordings.is_stopping:
             if not self._timed.press():
-                self._stop()
+                self.stop()
         elif self._next.is_possible:
             if self._asked is not None:
                 self._keep(self._asked, is_kept=True)
@@ -313,7 +296,7 @@ class WalkingStep(Step):
             self.feedback.begin_walk()
         self.page.focus()
 
-    def _stop(self) -> None:
+    def stop(self) -> None:
         view = self._at_stop = self._preview.shown
         if self.feedback is not None and (walk := self._ongoing) is not None:
             self._tallies[walk.details.name] = self.feedback.end_walk()
@@ -473,10 +456,10 @@ class WalkingStep(Step):
         if self._must_restrap:
             self.memory.go_live()  # standing and free motion are measured live
         else:
-            self.jumped.emit(STAND_STILL)
+            self.jumped.emit(StepId.STAND_STILL)
 
     @Slot()
     def _on_lives(self) -> None:
         if self._must_restrap:
             self._must_restrap = False
-            self.jumped.emit(STAND_STILL)
+            self.jumped.emit(StepId.STAND_STILL)

@@ -7,6 +7,7 @@ from PySide6.QtWidgets import QSizePolicy, QWidget
 from app.theme.notifier import ThemeNotifier
 from app.widgets.painted_text import CENTRE, LEFT, PaintedText
 from app.widgets.text import MEDIUM, SEMIBOLD
+from app.wording.numbers import MINUS
 from app.wording.translation import tr
 
 CAPTION, BOX, END = 18, 44, 32
@@ -53,7 +54,7 @@ class Stepper(QWidget):
         more = QRectF(box.right() - end, box.top(), end, box.height())
         return [
             PaintedText(self.caption, caption, theme.font(12), "ink2", LEFT),
-            PaintedText("\N{MINUS SIGN}", less, sign, "ink", CENTRE),
+            PaintedText(MINUS, less, sign, "ink", CENTRE),
             PaintedText(self.value, box.adjusted(end, 0, -end, 0), theme.font(14, SEMIBOLD), "ink", CENTRE),
             PaintedText("+", more, sign, "ink", CENTRE),
         ]

@@ -16,6 +16,7 @@ from app.widgets.icons import IconMark
 from app.widgets.painted_text import CENTRE, LEFT, RIGHT, PaintedText
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.themed import Themed
+from app.wording.numbers import clock
 from app.wording.timed_tests import end_words, name_of_test, reason_words, start_words
 from app.wording.translation import capitalised, figure_text, joined, name_of, tr
 from core.body import Side
@@ -56,7 +57,7 @@ def time_text(elapsed_s: float) -> str:
     """Seconds with a tenth below `LONG_S`, from then on minutes and seconds."""
     if elapsed_s < LONG_S:
         return figure_text(math.floor(10.0 * elapsed_s + 1e-6) / 10.0, ".1f")
-    return f"{int(elapsed_s) // 60}:{int(elapsed_s) % 60:02d}"
+    return clock(elapsed_s)
 
 
 def status_words(state: TimedViewState) -> str:
@@ -331,7 +332,7 @@ class _Course(Themed):
             if share <= 1.0:
                 box = QRectF(inner.left() + share * inner.width() - px(12), under.top(), px(24), under.height())
                 tone = "left_text" if side is Side.LEFT else "right_text"
-                found.append(PaintedText(_LETTERS[side], box, theme.font(17, SEMIBOLD), tone, CENTRE))
+                found.append(PaintedText(side.letter, box, theme.font(17, SEMIBOLD), tone, CENTRE))
         return found
 
     def _on_look_changed(self) -> None:
@@ -378,6 +379,3 @@ def _middle_words(state: TimedViewState) -> str:
         return laps
     left_s = max(0, math.ceil(definition.duration_s - state.elapsed_s))
     return tr("{lap}, {minutes}:{seconds:02d} left").format(lap=laps, minutes=left_s // 60, seconds=left_s % 60)
-
-
-_LETTERS = {Side.LEFT: "L", Side.RIGHT: "R"}

@@ -4,9 +4,9 @@ import math
 from typing import TYPE_CHECKING
 
 from app.storage.stored import RecordingState
-from app.wizard.walk_messages import clock
 from app.wizard.walking.walk_list import WalkRow, WalkState
 from app.wizard.walking.walk_notice import length_s, strides_of
+from app.wording.numbers import clock
 from app.wording.translation import tr
 from core.body import Side
 from core.samples import RecordingKind
@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from app.editing.session_recording import Ongoing, SessionRecording
     from app.wizard.recordings import SessionRecordings
     from app.wizard.visit import Visit
-
-LETTERS = {Side.LEFT: "L", Side.RIGHT: "R"}
 
 
 def ongoing_walk(recordings: "SessionRecordings") -> "Ongoing | None":
@@ -55,7 +53,7 @@ def facts_of(visit: "Visit", recording: "SessionRecording", cadence_steps_min: f
     strides = strides_of(visit, recording)
     said = []
     if strides:
-        counts = ", ".join(f"{letter} {strides[side]}" for side, letter in LETTERS.items() if side in strides)
+        counts = ", ".join(f"{side.letter} {strides[side]}" for side in Side if side in strides)
         said.append(tr("Strides: {counts}").format(counts=counts))
     if math.isfinite(cadence_steps_min):
         said.append(tr("{cadence:.0f} steps/min").format(cadence=cadence_steps_min))

@@ -1,70 +1,69 @@
 """What can be done on the Walking step, as the bar below it says: while a walk is recorded, and between two walks."""
 
+import math
+from collections.abc import Iterator
 from dataclasses import replace
-from enum import Enum, auto
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from app.system import sounds
 from app.theme.icons import Icon
 from app.widgets.action_bar import BarAction, BarState, RecordingNote
-from app.wizard.walking.bench_bar import bench_bar
 from app.wizard.walking.bench_control import Bench
 from app.wizard.walking.memory_control import MemoryControl
-from app.wizard.walking.timed_bar import timed_bar
 from app.wizard.walking.timed_control import TimedControl
 from app.wizard.walking.walk_notice import asked_walk
 from app.wizard.walking.walk_rows import ongoing_walk
 from app.wizard.walking.walk_start import WalkStart
 from app.wording.timed_tests import name_of_test
 from app.wording.translation import capitalised, tr, within_sentence
+from core.timed.protocols import DEFINITIONS
 
 if TYPE_CHECKING:
     from app.editing.session_recording import Ongoing
     from app.wizard.visit import Visit
 
 
-class QuietAction(Enum):
-    """What one of the quiet actions does."""
+class Walks(Protocol):
+    """What the step does when an action is pressed; what else is done, the parts do that it is joined of."""
 
-    BENCH = auto()  # shows the bench, or all walks in its place
-    DISCARD = auto()  # the walk that waits to be kept
-    MEMORY = auto()  # what the sensors' memories have to offer
-    PATIENT_SCREEN = auto()
+    def run(self) -> None: ...
+    def stop(self) -> None: ...
+    def go_on(self) -> None: ...
+    def keep_at_bench(self) -> None: ...
+    def discard(self) -> None: ...
+    def return_to_first(self) -> None: ...
+    def toggle_patient_screen(self) -> None: ...
 
 
 class WalkingBar:
     """Knows the visit and what is joined to it, and no page."""
 
     def __init__(
-        self, visit: "Visit", start: WalkStart, bench: Bench, timed: TimedControl, memory: MemoryControl
+        self, walks: Walks, visit: "Visit", start: WalkStart, bench: Bench, timed: TimedControl, memory: MemoryControl
     ) -> None:
-        self._visit, self._start = visit, start
+        self._walks, self._visit, self._start = walks, visit, start
         self._bench, self._timed, self._memory = bench, timed, memory
 
     def state(self, label: str) -> BarState:
         """All of the bar; `label`: what the next walk is called."""
-        return replace(self._state(label), quiet=tuple(self.quiet.values()))
+        return replace(self._state(label), quiet=tuple(self._quiet()))
 
-    @property
-    def quiet(self) -> dict[QuietAction, BarAction]:
-        """The quiet actions in their order, by what they do."""
-        offered: dict[QuietAction, BarAction] = {}
-        is_between = not self._visit.recordings.is_recording and not self.has_memory
+    def _quiet(self) -> Iterator[BarAction]:
+        is_between = not self._visit.recordings.is_recording and not self._has_memory
         if is_between and self._bench.is_shown:
-            offered[QuietAction.BENCH] = BarAction(tr("Walks"))
+            yield BarAction(tr("Walks"), self._bench.turn)
             if asked_walk(self._visit.recordings) is not None:
-                offered[QuietAction.DISCARD] = BarAction(tr("Exclude"), "D")
+                yield BarAction(tr("Exclude"), self._walks.discard, "D")
         elif is_between:
             if self._bench.is_offered:
-                offered[QuietAction.BENCH] = BarAction(tr("Alignment"))
+                yield BarAction(tr("Alignment"), self._bench.turn)
             if (memory := self._memory.quiet(wants_live=self._timed.planned is not None)) is not None:
-                offered[QuietAction.MEMORY] = memory
+                yield memory
         if not self._bench.is_shown and not self._timed.is_running:  # the bench has no room for it; the key is there
-            offered[QuietAction.PATIENT_SCREEN] = BarAction(tr("Patient screen"), "F8")
-        return offered
+            yield BarAction(tr("Patient screen"), self._walks.toggle_patient_screen, "F8")
 
     @property
-    def has_memory(self) -> bool:
+    def _has_memory(self) -> bool:
         """Whether the bar is about the sensors' memories: nothing else can be done then."""
         visit, recordings = self._visit, self._visit.recordings
         is_between = not recordings.is_recording or recordings.is_stopping
@@ -76,7 +75,7 @@ class WalkingBar:
         walk = ongoing_walk(recordings)
         if walk is not None and not recordings.is_stopping:
             return self._of_walk(walk)
-        if self.has_memory:
+        if self._has_memory:
             return self._memory.bar() or BarState()
         if walk is not None:
             return BarState(primary=self._start_action, note=tr("The walk is being loaded."))
@@ -84,19 +83,16 @@ class WalkingBar:
             said = f"{capitalised(recordings.called(recordings.ongoing.details.name))}: {tr('being loaded')}"
             return BarState(primary=self._start_action, note=said)
         if self._bench.is_shown:
-            asked = asked_walk(recordings)
-            letter = None if asked is None else recordings.shown_names[asked.details.name].letter
-            note = self._start.missing_now or self._armed(self._bench.next_walk()[0])
-            return bench_bar(self._bench, letter, self._test_words, note, self._start.is_possible)
+            return self._at_bench()
         return self._between_walks(label)
 
     def _of_walk(self, walk: "Ongoing") -> BarState:
         acquisition, recordings = self._visit.sensors.acquisition, self._visit.recordings
         elapsed_s = 0.0 if acquisition is None else max(0.0, acquisition.now_s - walk.began_s)
         if self._timed.is_running:
-            return timed_bar(self._timed, elapsed_s)
+            return self._of_test(elapsed_s)
         return BarState(
-            primary=BarAction(tr("Stop walk"), tr("Space"), Icon.STOP),
+            primary=BarAction(tr("Stop walk"), self._walks.run, tr("Space"), Icon.STOP),
             recording=RecordingNote(
                 tr("Recording {walk}").format(walk=recordings.called(walk.details.name)),
                 " ".join(filter(None, [self._saved(), tr("The space bar stops it, with a sound.")])),
@@ -105,6 +101,58 @@ class WalkingBar:
             ),
             has_back=False,
         )
+
+    def _of_test(self, elapsed_s: float) -> BarState:
+        """While a timed test runs: end it, or break it off."""
+        readout = self._timed.readout
+        assert readout is not None
+        definition = DEFINITIONS[readout.planned.protocol]
+        if math.isfinite(self._timed.end_s):
+            verb = tr("Stop") if readout.planned.end_key_s is not None else tr("End at the tape")
+            note = tr("The test is over; recording stops shortly.")
+            verb = verb if definition.length_m is not None else tr("Stop")
+        elif not readout.has_begun:
+            verb, note = (
+                tr("Start the clock"),
+                tr("The clock starts with the patient's movement. Space or a clicker starts it manually."),
+            )
+        elif definition.length_m is not None:
+            verb = tr("End at the tape")
+            said = tr("Press Space at the end of the tape. The distance then counts as {length:.2f} m.")
+            note = said.format(length=definition.length_m)
+        else:
+            verb, note = (
+                tr("End the test"),
+                tr("Space or a clicker ends the test now. Otherwise it ends automatically."),
+            )
+        return BarState(
+            primary=BarAction(verb, self._walks.run, tr("Space"), Icon.STOP),
+            others=(BarAction(tr("Cancel"), self._walks.stop, tr("Esc"), is_wished=False),),
+            recording=RecordingNote(
+                tr("Recording the full test: {test}").format(test=name_of_test(readout.planned.protocol)),
+                note,
+                elapsed_s,
+                sounds.is_on(),
+            ),
+            has_back=False,
+        )
+
+    def _at_bench(self) -> BarState:
+        """Between two walks: walk on, keep, return to where it began."""
+        chain, is_new = self._bench.chain, bool(self._bench.entry.parts)
+        letter = chain.next_letter if is_new else chain.letters.get(chain.base, "")
+        words = (tr("Walk with {letter}") if is_new else tr("Repeat {letter}")).format(letter=letter)
+        others = [replace(self._start_action, text=self._test_words or words, is_wished=False)]
+        if chain.way_back(chain.first):
+            words = tr("Return to {letter}").format(letter=chain.letters.get(chain.first, ""))
+            others.insert(0, BarAction(words, self._walks.return_to_first, icon=Icon.REPEAT, is_wished=False))
+        primary = self._results_action
+        if (asked := asked_walk(self._visit.recordings)) is not None:
+            letter = self._visit.recordings.shown_names[asked.details.name].letter
+            words = tr("Include {letter}").format(letter=letter)
+            primary = BarAction(words, self._walks.keep_at_bench, tr("Enter"), Icon.CHECK)
+        note = self._start.missing_now or self._armed(self._bench.next_walk()[0])
+        return BarState(primary=primary, others=tuple(others), note=note)
 
     def _between_walks(self, label: str) -> BarState:
         """Where there is no bench."""
@@ -116,9 +164,8 @@ class WalkingBar:
             both = replace(start, text=words, is_wished=False)
             return BarState(primary=both, note=missing or self._timed.next_words(label))
         if any(recording.details.is_kept for recording in recordings.walks):
-            results = BarAction(tr("Results"), "", Icon.NEXT)
-            note = missing or self._armed(label)
-            return BarState(primary=results, others=(replace(start, is_wished=False),), note=note)
+            others = (replace(start, is_wished=False),)
+            return BarState(primary=self._results_action, others=others, note=missing or self._armed(label))
         note = self._timed.next_words(label)
         if not recordings.has_moved:
             note = tr("Without free motion, joint angles are uncertain or missing.")
@@ -127,7 +174,11 @@ class WalkingBar:
     @property
     def _start_action(self) -> BarAction:
         words = self._test_words or tr("Start walk")
-        return BarAction(words, tr("Space"), Icon.PLAY, is_enabled=self._start.is_possible)
+        return BarAction(words, self._walks.run, tr("Space"), Icon.PLAY, is_enabled=self._start.is_possible)
+
+    @property
+    def _results_action(self) -> BarAction:
+        return BarAction(tr("Results"), self._walks.go_on, icon=Icon.NEXT)
 
     @property
     def _test_words(self) -> str:

@@ -18,12 +18,13 @@ from app.results.found_page import FoundPage
 from app.results.result_page import ANSWER, COMPARE, STRIDES, WHOLE, ResultPage
 from app.theme.icons import Icon
 from app.theme.notifier import ThemeNotifier
-from app.widgets.action_bar import BarAction, BarState, RecordingNote
+from app.widgets.action_bar import BarState, RecordingNote
 from app.widgets.rail_row import RailRow, StepState
 from app.widgets.sensor_tile import SensorTile
 from app.widgets.step_rail import wizard_below
 from app.wizard.report.page import ReportPage
 from app.wizard.shell import StripMode, WizardShell
+from app.wizard.step import StepId
 from app.wizard.visit import Visit
 from app.wizard.walking.bench_control import Bench
 from app.wizard.walking.page import WalkingPage
@@ -42,6 +43,7 @@ from core.timed.protocols import PlannedTest, TimedProtocol
 from core.verdicts.diagnostics import diagnostics_of
 from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
 from tests.app.changed_analysis import visit_of
+from tests.app.idle_action import idle
 from tests.app.results.filled_pages import PAGES
 from tests.app.wizard.walking.bench_material import bench_visit
 
@@ -160,58 +162,59 @@ def patient_screen(look: ThemeNotifier) -> QWidget:
     return window
 
 
+WITH_TILES = (StepId.STAND_STILL, StepId.FREE_MOTION, StepId.WALKING)
 # which step a page belongs to, and how it is made
-FRAMED: dict[str, tuple[int, Make]] = {
-    "patient": (0, PAGES["patient"]),
-    "sensors": (1, PAGES["sensors"]),
-    "no sensors": (1, PAGES["no sensors"]),
-    "stored sessions": (1, PAGES["stored sessions"]),
-    "ready to stand": (2, PAGES["ready to stand"]),
-    "cannot stand": (2, PAGES["cannot stand"]),
-    "free motion": (3, PAGES["free motion"]),
-    "nothing walked": (4, PAGES["nothing walked"]),
-    "recording": (4, PAGES["recording"]),
-    "asking": (4, PAGES["asking"]),
-    "bench": (4, bench),
-    "timed test": (4, timed),
-    "timed result": (4, timed_result),
-    "answer": (5, results(ANSWER)),
-    "legs": (5, results(ANSWER, "legs")),
-    "whole walk": (5, results(WHOLE)),
-    "strides": (5, results(STRIDES)),
-    "compare": (5, results(COMPARE)),
-    "all figures": (5, results(ANSWER, "figures")),
-    "what can be read": (5, results(ANSWER, "door")),
-    "engineering figures": (5, results(ANSWER, "door", "engineering")),
-    "how it was found": (5, how_it_was_found),
-    "beside optics": (5, beside_optics),
-    "nothing beside optics": (5, nothing_beside_optics),
-    "correcting": (5, correcting),
-    "report": (6, report),
+FRAMED: dict[str, tuple[StepId, Make]] = {
+    "patient": (StepId.PATIENT, PAGES["patient"]),
+    "sensors": (StepId.SENSORS, PAGES["sensors"]),
+    "no sensors": (StepId.SENSORS, PAGES["no sensors"]),
+    "stored sessions": (StepId.SENSORS, PAGES["stored sessions"]),
+    "ready to stand": (StepId.STAND_STILL, PAGES["ready to stand"]),
+    "cannot stand": (StepId.STAND_STILL, PAGES["cannot stand"]),
+    "free motion": (StepId.FREE_MOTION, PAGES["free motion"]),
+    "nothing walked": (StepId.WALKING, PAGES["nothing walked"]),
+    "recording": (StepId.WALKING, PAGES["recording"]),
+    "asking": (StepId.WALKING, PAGES["asking"]),
+    "bench": (StepId.WALKING, bench),
+    "timed test": (StepId.WALKING, timed),
+    "timed result": (StepId.WALKING, timed_result),
+    "answer": (StepId.RESULTS, results(ANSWER)),
+    "legs": (StepId.RESULTS, results(ANSWER, "legs")),
+    "whole walk": (StepId.RESULTS, results(WHOLE)),
+    "strides": (StepId.RESULTS, results(STRIDES)),
+    "compare": (StepId.RESULTS, results(COMPARE)),
+    "all values": (StepId.RESULTS, results(ANSWER, "figures")),
+    "what can be read": (StepId.RESULTS, results(ANSWER, "door")),
+    "engineering details": (StepId.RESULTS, results(ANSWER, "door", "engineering")),
+    "how it was found": (StepId.RESULTS, how_it_was_found),
+    "beside optics": (StepId.RESULTS, beside_optics),
+    "nothing beside optics": (StepId.RESULTS, nothing_beside_optics),
+    "correcting": (StepId.RESULTS, correcting),
+    "report": (StepId.REPORT, report),
 }
 
 
 def framed(look: ThemeNotifier, name: str) -> WizardShell:
     """Give a page in its frame; it is fitted to its room when the frame is shown."""
-    number, make = FRAMED[name]
+    step, make = FRAMED[name]
     shell, page = WizardShell(look), make(look)
     shell.room_changed.connect(partial(_fit, page))
-    states = [StepState.DONE if k < number else StepState.TODO for k in range(len(STEPS))]
-    states[number] = StepState.CURRENT
+    states = [StepState.DONE if one.value < step.value else StepState.TODO for one in StepId]
+    states[[*StepId].index(step)] = StepState.CURRENT
     shell.rail.show_rows(tuple(RailRow(tr(title), "", state) for title, state in zip(STEPS, states, strict=True)))
     shell.rail.show_below(wizard_below())
     shell.header.show_session("P-0147", tr("1968, male · left prosthetic"), is_simulated=True)
     shell.header.show_elapsed(301.0)
     tile = partial(SensorTile, name="0A22", battery=0.84, rate_hz=100.0, lost_share=0.0, silent_s=0.0)
     shell.strip.show_tiles({site: tile(site, is_moving=True, is_worn=True) for site in LEG_SITES})
-    shell.set_strip_mode(StripMode.SHOWN if number in (2, 3, 4) else StripMode.FOLDED)
+    shell.set_strip_mode(StripMode.SHOWN if step in WITH_TILES else StripMode.FOLDED)
     note = tr("Stopping now leaves the left knee with range only, without absolute angles.")
-    stop = BarAction(tr("Stop early"), tr("Space"), Icon.STOP, is_wished=False)
-    shell.bar.show_state(BarState(stop, quiet=(BarAction(tr("Repeat one leg"), icon=Icon.REPEAT),), note=note))
+    stop = idle(tr("Stop early"), tr("Space"), Icon.STOP, is_wished=False)
+    shell.bar.show_state(BarState(stop, quiet=(idle(tr("Repeat one leg"), icon=Icon.REPEAT),), note=note))
     if name == "recording":
         recorded = RecordingNote(tr("Recording {walk}").format(walk="3"), "", 24.0, has_sound=True)
-        shell.bar.show_state(BarState(BarAction(tr("Stop walk"), tr("Space"), Icon.STOP), recording=recorded))
-    shell.show_page(number, page)
+        shell.bar.show_state(BarState(idle(tr("Stop walk"), tr("Space"), Icon.STOP), recording=recorded))
+    shell.show_page(step, page)
     return shell
 
 

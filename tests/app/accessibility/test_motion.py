@@ -20,6 +20,7 @@ from app.theme import motion
 from app.theme.notifier import ThemeNotifier
 from app.theme.theme import Theme
 from app.wizard.shell import WizardShell
+from app.wizard.step import StepId
 
 WAIT_MS = 2000
 
@@ -101,8 +102,8 @@ def test_pages_of_a_visit_fade_into_each_other_unless_less_motion_is_asked_for(
     qtbot.addWidget(shell)
     shell.resize(1280, 800)
     shell.show()
-    for number in range(2):
-        shell.show_page(number, QWidget())
+    for step in (StepId.PATIENT, StepId.SENSORS):
+        shell.show_page(step, QWidget())
     fades = [one for one in shell.findChildren(QWidget) if type(one).__name__ == "_Fade"]
     assert len(fades) == 1
     assert fades[0].isVisible() is not is_less

@@ -27,8 +27,8 @@ FILLED_IN = re.compile(
         [
             *("Shoes", "Barefoot", "Aids", "Device", "Alignment [A-C](, B, C)?", "Replay", "batch of 2026"),
             *(r"male · left prosthetic", r"3 sessions", r"3 recordings", r"Serial ports", "Repeat one leg"),
-            *("The clinic's server does not answer", "Change direction.", "Stopping now .* absolute angles."),
-            *("there is no column acc_x_m_s2.", "Write the file as FORMATS says it."),
+            *("The clinic's server does not respond", "Change direction.", "Stopping now .* absolute angles."),
+            *("column acc_x_m_s2. is missing", "Write the file as FORMATS says it."),
         ]
     )
 )

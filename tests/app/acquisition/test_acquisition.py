@@ -220,7 +220,7 @@ def block(clock: Clock, sensor: str, first: int, count: int = 5, **more: object)
 def test_two_sensors_of_one_name_are_refused_and_all_is_closed() -> None:
     sources = [Scripted(SourceInfo("one", "1", sensors=("left",)), []) for _ in range(2)]
     acquisition = Acquisition(sources)
-    with pytest.raises(SourceRefusedError, match="Two sensors are called left"):
+    with pytest.raises(SourceRefusedError, match="Two sensors have the name left"):
         acquisition.start()
     assert [source.closings for source in sources] == [1, 1]
 

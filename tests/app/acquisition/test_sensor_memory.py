@@ -143,7 +143,7 @@ def test_what_cannot_be_had_is_a_gap_that_is_said_by_number(radio: VirtualRadio,
     assert session.files.results["DOT 0002"].is_complete
     steps = np.diff(session.block(0).time_s)
     assert np.round(steps[[299, 896]] / np.median(steps)).tolist() == [4, 2]
-    with pytest.raises(DotRefusedError, match="samples that were not fetched"):
+    with pytest.raises(DotRefusedError, match="has data that were not fetched"):
         session.erase()
     assert session.dots[0].memory.files
     session.erase(may_lack=True)
@@ -184,7 +184,7 @@ def test_a_sensor_that_goes_away_while_it_is_fetched_is_named_and_goes_on_later(
     assert list(failed) == ["DOT 0001"]
     assert isinstance(failed["DOT 0001"], SourceLostError)
     assert list(session.files.results) == ["DOT 0002"]
-    with pytest.raises(DotRefusedError, match="not known to be kept"):
+    with pytest.raises(DotRefusedError, match="is not confirmed as saved"):
         session.erase()
     radio.pass_s(300.0)
     sent = session.dots[0].memory.exported
@@ -209,7 +209,7 @@ def test_nothing_is_written_to_a_sensor_that_records_but_what_asks_for_its_state
         assert source.read(lambda _data: None) == ()
         assert not source.identify(source.sensor.name)
         source.close()
-    with pytest.raises(SourceRefusedError, match="recording in its memory"):
+    with pytest.raises(SourceRefusedError, match="is recording to its memory"):
         session.group.synchronise()
     session.group.end()
     radio.pass_s(4.0)
@@ -348,10 +348,10 @@ def test_it_is_erased_only_once_it_is_in_the_journal_and_that_is_confirmed(radio
     session = MemorySession(radio, tmp_path, [DotFaults()])
     session.record(5.0)
     session.fetch()
-    with pytest.raises(DotRefusedError, match="not known to be kept"):  # nobody has looked
+    with pytest.raises(DotRefusedError, match="is not confirmed as saved"):  # nobody has looked
         session.erase()
     assert session.close() == {"DOT 0001": True}
-    with pytest.raises(DotRefusedError, match="not known to be kept"):
+    with pytest.raises(DotRefusedError, match="is not confirmed as saved"):
         session.erase(is_confirmed=False)
     assert session.dots[0].memory.files
     session.erase()
@@ -366,7 +366,7 @@ def test_a_journal_that_lacks_what_came_keeps_the_memory(radio: VirtualRadio, tm
     whole = path.read_bytes()
     path.write_bytes(whole[: len(whole) // 2])  # a disk that lies
     assert session.files.look_into((path,), KEY) == {"DOT 0001": False}
-    with pytest.raises(DotRefusedError, match="not known to be kept"):
+    with pytest.raises(DotRefusedError, match="is not confirmed as saved"):
         session.erase()
     assert session.dots[0].memory.files
 

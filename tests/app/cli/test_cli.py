@@ -202,7 +202,7 @@ def test_without_a_screen_the_window_says_so(
     for name in ("DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM"):
         monkeypatch.delenv(name, raising=False)
     assert main([]) == 2
-    assert "no screen" in refusal(capsys)
+    assert "rrd from the results on a computer that has one" in refusal(capsys)
 
 
 def test_on_a_terminal_progress_is_one_line_that_renews_itself(
@@ -329,7 +329,7 @@ def test_a_place_that_cannot_be_written_is_refused(
 ) -> None:
     (tmp_path / "file").write_text("mine")
     assert analyse(session, tmp_path / "file" / "out") == 2
-    assert "cannot be written" in refusal(capsys)
+    assert "is not writable" in refusal(capsys)
 
 
 def test_a_full_disk_leaves_the_old_results(
@@ -457,7 +457,7 @@ def test_a_signal_in_the_middle_ends_with_three(session: Path, tmp_path: Path) -
 
 INTERRUPTED_IN_A_LIBRARY = """
 import os, signal, sys
-from app import cli
+from app.cli import main as cli
 def run(wanted):
     exec("os.kill(os.getpid(), signal.SIGINT)", {"os": os, "signal": signal})
 cli._run = run

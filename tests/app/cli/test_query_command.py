@@ -53,7 +53,7 @@ def test_the_columns_are_listed(path: Path, capsys: pytest.CaptureFixture[str]) 
         (["COPY parameters TO 'x.csv'"], "COPY is not answered here"),
         ([], "nothing is asked"),
         ([COUNT, "--columns"], "at once"),
-        ([COUNT, "--out", "{table}"], "is no CSV file"),
+        ([COUNT, "--out", "{table}"], "this already exists and is not a CSV file"),
         ([COUNT, "--out", "{folder}"], "this is a folder"),
     ],
 )

@@ -146,7 +146,7 @@ def _knee_is_replaced(reading: PatientReading) -> None:
     assert rises == sorted(rises, reverse=True)
     step = reading.next_step(NOW)
     assert step is not None
-    assert step.sentence.startswith("write the report of ")
+    assert step.sentence.startswith("write the report for")
 
 
 def _is_after_stroke(reading: PatientReading) -> None:

@@ -65,7 +65,7 @@ def test_the_first_sheet_tells_who_was_measured_and_how(book: Any) -> None:
         "birth year": 1950,
         "sex": "female",
         "height, m": 1.68,
-        "mass, kg": 71.5,
+        "weight, kg": 71.5,
         "device": "barfuß",
         "aids": "one stick",
         "affected side": "left",
@@ -86,7 +86,7 @@ def test_what_was_not_typed_has_no_row(visit: tuple[Session, Analysis], tmp_path
     write_spreadsheet(replace(session, patient=Patient(), surface=""), analysis, tmp_path / "some.xlsx")
     rows = openpyxl.load_workbook(tmp_path / "some.xlsx")["About"].iter_rows(values_only=True)
     names = {row[0] for row in rows}
-    assert names.isdisjoint({"patient", "birth year", "sex", "height, m", "mass, kg", "device", "aids", "surface"})
+    assert names.isdisjoint({"patient", "birth year", "sex", "height, m", "weight, kg", "device", "aids", "surface"})
     assert {"session", "operator", "notes", "method", "software", "use"} <= names
 
 

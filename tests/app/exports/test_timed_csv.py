@@ -117,10 +117,10 @@ def test_the_report_has_a_page_of_tests_where_there_were_some(visit: AnalysedVis
     assert "2-minute walk: 132 m, 1.10 m/s." in str(timed_page(whole, facts_of(whole)))
     said = str(timed_page(request, facts_of(request)))
     for words in (
-        "2-minute walk: no distance can be told.",
+        "2-minute walk: distance not measured.",
         "First third 1.10 m/s, last third 1.05 m/s.",
         "1 pause, 3.5 s.",
-        "The distance is not told",
+        "Distance not reported",
         "Third 3",
         "Lap 2",
         "start: first step after 1 s of standing still",

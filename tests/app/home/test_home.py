@@ -113,7 +113,7 @@ def test_a_session_is_opened_by_a_click_and_by_enter(qtbot: QtBot, home: Home) -
 def test_a_deleted_patient_comes_back_by_undo(qtbot: QtBot, home: Home) -> None:
     delete_patient(qtbot, home)
     qtbot.waitUntil(lambda: codes(home) == ["P-0147"], timeout=WAIT_MS)
-    assert home.toast.text == "P-0163 is deleted, for good in 30 days."
+    assert home.toast.text == "P-0163 is deleted, permanently in 30 days."
     home.toast.undo()
     qtbot.waitUntil(lambda: codes(home) == ["P-0163", "P-0147"], timeout=WAIT_MS)
     assert home.bar.primary.text() == "New session for P-0163"
@@ -164,7 +164,7 @@ def test_of_two_deletions_the_last_comes_back_by_its_keys_also_from_the_search(q
     QTest.keyClick(home.page.sessions, Qt.Key.Key_Delete)
     delete_patient(qtbot, home)
     qtbot.waitUntil(lambda: codes(home) == ["P-0147"], timeout=WAIT_MS)
-    assert home.toast.text == "P-0163 is deleted, for good in 30 days."
+    assert home.toast.text == "P-0163 is deleted, permanently in 30 days."
     home.page.search.setFocus()
     home.page.search.insert("0")  # what may be taken back here, too
     QTest.keyClick(home.page.search, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
@@ -211,7 +211,7 @@ def test_a_stopped_import_says_what_came_of_it_once_that_is_known(
     monkeypatch.setattr("app.home.importing.controller.import_session", held)
     home.importing.read([tmp_path / "visit"])
     qtbot.waitUntil(lambda: home.current is home.importing.page, timeout=WAIT_MS)
-    home.bar.primary_pressed.emit()
+    home.importing.take_in()
     home.working.stop_pressed.emit()
     assert "being stopped" in home.banner.text
     assert "added to the library" not in home.banner.text
@@ -315,7 +315,7 @@ def test_a_recovered_walk_is_asked_for_at_every_start_until_it_is_decided(
     home = new_home(qtbot, controller, settings)
     open_library(qtbot, controller, home, folder)
     qtbot.waitUntil(home.banner.isVisible, timeout=WAIT_MS)
-    asked = "walk 3 of P-0163 was recovered earlier, and nobody has said yet whether it is kept."
+    asked = "walk 3 of P-0163 was recovered earlier and still awaits a decision."
     assert home.banner.text == f"{asked} Look at it, then keep or discard."
     qtbot.waitUntil(lambda: [one.needs_look for one in lines(home)] == [True, False], timeout=WAIT_MS)
     qtbot.waitUntil(lambda: [one.id for one in sessions(home) if one.needs_look] == [session_id], timeout=WAIT_MS)
@@ -346,7 +346,7 @@ def test_several_recovered_walks_are_asked_for_together(
     home = new_home(qtbot, controller, settings)
     open_library(qtbot, controller, home, folder)
     qtbot.waitUntil(home.banner.isVisible, timeout=WAIT_MS)
-    assert home.banner.text.startswith("2 walks were recovered earlier, and nobody has said yet whether they are kept.")
+    assert home.banner.text.startswith("2 walks were recovered earlier and still await a decision.")
 
 
 def any_needs_look(home: Home) -> bool:
@@ -387,7 +387,7 @@ def test_what_the_library_did_not_answer_for_goes_into_its_session_or_out(
     assert "of walk 3 was recorded while the library did not answer. It is in its session now." in home.banner.text
     qtbot.waitUntil(lambda: any(line.needs_look for line in sessions(home)), timeout=WAIT_MS)
     home.banner.dismiss.click()
-    assert home.banner.text.startswith("2 recordings, 00:00 in all, belong to no session.")
+    assert home.banner.text.startswith("2 recordings, 00:00 in total, are not assigned to a session.")
     assert home.banner.act.text() == "Export"
     home.recovering.export(tmp_path / "out")
     qtbot.waitUntil(lambda: "2 recordings were exported." in home.banner.text, timeout=WAIT_MS)
@@ -483,7 +483,9 @@ def test_an_older_state_of_the_library_is_said_and_an_administrator_may_accept_i
     assert said.startswith("This library is older than when this computer saw it last. What was done from entry 5 to 9")
     button = home.notices.rollback.findChildren(Button)[0]
     assert button.isVisible() is (role is Role.ADMINISTRATOR)
-    assert ("Tell an administrator" in said) is (role is Role.CLINICIAN)
+    assert ("Inform an administrator, who can check this and accept it if a backup was restored" in said) is (
+        role is Role.CLINICIAN
+    )
     if role is Role.ADMINISTRATOR:
         button.click()
         qtbot.waitUntil(lambda: not home.notices.rollback.isVisible(), timeout=WAIT_MS)
@@ -497,9 +499,17 @@ def test_what_became_of_work_without_the_server_is_said_and_of_other_libraries_n
     home.show_library(state)
     assert not away.isVisible()
     for changed, begins, ends in (
-        ({"is_away": True}, "You are working offline, without the clinic's server.", "known again by their codes."),
+        (
+            {"is_away": True},
+            "You are working offline, without the clinic's server.",
+            "They move to the server at the first login after it responds again",
+        ),
         ({"brought_from_away": 1}, "1 session that was made without", "on it now."),
-        ({"still_away": Refusal("It is full.", "Ask.")}, "Sessions that were made without", "It is full. Ask."),
+        (
+            {"still_away": Refusal("It is full.", "Ask.")},
+            "Offline sessions are still on this computer only",
+            "It is full. Ask.",
+        ),
     ):
         home.show_library(replace(state, **changed))
         assert away.isVisible()
@@ -534,7 +544,9 @@ def test_an_operator_is_removed_with_a_change_of_the_key_and_comes_back_with_a_n
     qtbot.waitUntil(lambda: page.operators.rows.count() == 2, timeout=WAIT_MS)
     shutil.copy(folder / KEYS, folder.parent / "old.json")
     row()[0].click()
-    assert "Backups that were made before keep their old key" in page.operators.leaving_words.text()
+    assert (
+        "Earlier backups keep their old key: anyone who has one can still read it with the old passphrase"
+    ) in page.operators.leaving_words.text()
     page.operators.keep.click()
     assert not page.operators.remove.isVisible()
     row()[0].click()

@@ -71,7 +71,7 @@ def test_the_course_of_the_patient_who_is_chosen_stands_beside_the_list(qtbot: Q
     card = home.page.panel.course
     assert [visit.course is not None for visit in card.visits] == [True, False, True, True, True]
     assert "Walking speed, Shoes: 0.71 metres per second on 20 Jun" in card.accessibleDescription()
-    assert "1 visit is not computed yet." in card.note.text()
+    assert "1 visit is not calculated yet." in card.note.text()
     lines = [line for line in home.page.sessions.lines if isinstance(line, SessionLine)]
     assert [(line.amount, line.state) for line in lines] == [
         ("24 strides", "report not saved"),
@@ -158,7 +158,7 @@ def test_what_is_next_of_a_patient(tmp_path: Path) -> None:
         first = add_visit(library, patient.id, 0, course_of_visit(0, is_knee_withheld=True))
         assert said() == "left knee could not be read on 20 Jun: see why."
         second = add_visit(library, patient.id, 1, course_of_visit(1))
-        assert said() == "write the report of 11 Jul."
+        assert said() == "write the report for 11 Jul."
         library.audit.note(Action.EXPORT, about("session", second), format=REPORT_FORMAT, is_document=True)
         assert said() == ""
         now = day_and_time("2026-09-12T09:00:00")

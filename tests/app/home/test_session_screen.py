@@ -25,12 +25,13 @@ from app.results.result_page import (
     ResultPage,
 )
 from app.results.whole_page import BOTH, ORIENTATION, PUBLISHED, RESULT
+from app.system.progress import Report
 from app.theme.colours import DARK, LIGHT
 from app.theme.notifier import ThemeNotifier
 from app.widgets.findings_list import FindingRow
 from app.widgets.table import CellTable
 from app.widgets.table_cells import TextCell
-from app.workers.background import Report, Stopped, Work
+from app.workers.background import Stopped, Work
 from app.workers.opening import Opened
 from core.analysis import analyse
 from core.body import LEG_JOINTS, Joint, Side
@@ -361,10 +362,10 @@ def test_the_table_says_how_each_joint_was_found(results: ResultPage) -> None:
     every = [(r, c) for r in range(6) for c in range(5)]
     heard = {at: str(model.index(*at).data(Qt.ItemDataRole.AccessibleTextRole)) for at in every}
     marked = {(2, 3), (3, 4), (5, 2), (5, 4)}
-    assert {cell for cell, said in heard.items() if said.endswith(", look at it")} == marked
+    assert {cell for cell, said in heard.items() if said.endswith("needs checking")} == marked
     cells = [(at, model.cell(model.index(*at))) for at in heard]
     assert {at for at, cell in cells if isinstance(cell, TextCell) and cell.mark is not None} == marked
-    assert heard[3, 4] == "right ankle, Direction: uncertain, look at it"
+    assert heard[3, 4] == "right ankle, Direction: uncertain, needs checking"
     assert "1.3" in model.index(2, 1).data(Qt.ItemDataRole.ToolTipRole)
 
 

@@ -58,7 +58,6 @@ def readers_called(file: Path) -> list[tuple[str, str]]:
 
 def test_nothing_of_the_application_reads_foreign_files_by_itself() -> None:
     found = {place for file in (ROOT / "app").rglob("*.py") for place in readers_called(file)}
-    found -= {("app/storage/exchange.py", "")}  # writes exports into new folders
     assert found == OWN
 
 

@@ -120,7 +120,7 @@ def test_the_files_know_their_day_better_than_somebody_who_types_it() -> None:
 
 def test_two_sensors_at_one_site_are_refused() -> None:
     (draft,) = drafts_of([("walk", trial(named("a", "b")))])
-    with pytest.raises(FileRefusedError, match="left_foot is there twice"):
+    with pytest.raises(FileRefusedError, match="left_foot is given twice"):
         session_of(draft, [RecordingKind.WALKING], {"S0": Site.LEFT_FOOT, "S1": Site.LEFT_FOOT})
 
 

@@ -245,7 +245,7 @@ def test_the_mean_curves_are_told_in_words(charts: CycleCharts) -> None:
     charts.show_cycles({Joint.LEFT_KNEE: cycle(12)}, {}, is_simulated=True)
     told = charts.knee.chart.accessibleDescription()
     assert told == "Simulated. Left knee, mean of 12: 0.0° at 0 % to 60.0° at 72 %, toe-off at 60 %."
-    assert charts.knee.chart.accessibleName() == "Knee over one stride"
+    assert charts.knee.chart.accessibleName() == "Knee over one gait cycle"
 
 
 def test_simulated_stands_on_both_charts_and_only_then(charts: CycleCharts, look: ThemeNotifier) -> None:
@@ -294,7 +294,7 @@ def test_a_difference_inside_the_error_is_grey(charts: CycleCharts, look: ThemeN
     (place,) = chart.places()
     found = chart.grab().toImage().pixelColor(round(place.bar_x - 0.5), round((place.top + place.bottom) / 2))
     assert is_like(found, look.theme.colours.control)
-    assert "larger than the measurement error" not in charts.knee.in_words()
+    assert "beyond measurement error" not in charts.knee.in_words()
 
 
 def test_marks_stand_on_curves_that_are_drawn_alone_two_at_most_and_for_one_walk(charts: CycleCharts) -> None:

@@ -34,7 +34,7 @@ def page(qtbot: QtBot, look: ThemeNotifier) -> HomePage:
     page.show_patients([patient(158), patient(147)])
     page.show_patient("P-0158", "1961, female · left affected · left knee replaced")
     lines = [session(number, "Shoes; Shoes, stick", "report not saved") for number in range(5)]
-    page.show_sessions(lines, VISITS, NextStep("write the report of 14 Nov.", "Open", UUID(int=4)))
+    page.show_sessions(lines, VISITS, NextStep("write the report for 14 Nov.", "Open", UUID(int=4)))
     with qtbot.waitExposed(page):
         page.show()
     return page
@@ -50,7 +50,7 @@ def test_what_has_changed_stands_beside_the_lanes(page: HomePage) -> None:
     assert "1.12\N{NO-BREAK SPACE}m/s" in found
     assert "+0.41 since 20 Jun" in found
     assert "larger than error (0.20 †)" in found
-    assert "last visit +0.06, inside error" in found
+    assert "since last visit +0.06, inside error" in found
     assert "49°" in found
     assert page.panel.count.text() == "5 visits · Shoes, stick: 3"
     assert page.panel.next.text() == "Next: write the report of 14 Nov."
@@ -108,7 +108,7 @@ def test_visits_that_are_not_computed_are_computed_on_wish(qtbot: QtBot, page: H
     visits = [*VISITS[:-1], CourseVisit(VISITS[-1].id, VISITS[-1].day, None)]
     page.show_sessions((), visits)
     assert card.compute.isVisible()
-    assert "1 visit is not computed yet." in card.note.text()
+    assert "1 visit is not calculated yet." in card.note.text()
     with qtbot.waitSignal(page.computing_wished):
         QTest.mouseClick(card.compute, Qt.MouseButton.LeftButton)
 

@@ -43,7 +43,7 @@ def test_arrows_step_through_the_stride_and_each_leg_has_its_own_place(legs: Mov
     QTest.keyClick(legs, Qt.Key.Key_Left, Qt.KeyboardModifier.ShiftModifier)
     QTest.keyClick(legs, Qt.Key.Key_Left, Qt.KeyboardModifier.ShiftModifier)
     assert legs.percent == pytest.approx(91.0)
-    assert legs.accessibleDescription() == "91 % of the left stride"
+    assert legs.accessibleDescription() == "91 % of the left gait cycle"
 
 
 def test_another_place_is_another_picture(legs: MovingLegs) -> None:
@@ -68,9 +68,11 @@ def test_space_plays_and_stops_and_out_of_sight_nothing_plays(qtbot: QtBot, legs
 def test_clocks_that_do_not_agree_are_said_and_no_legs_say_why(legs: MovingLegs) -> None:
     assert "clocks" not in legs.note.text()
     legs.show_legs(MeanLegs({side: leg() for side in Side}, Side.LEFT))
-    assert "The clocks of both legs are not known to agree" in legs.note.text()
+    assert "Left and right sensors are not synchronised: legs are drawn half a gait cycle apart" in legs.note.text()
     legs.show_legs(None)
-    assert legs.note.text().startswith("Legs are drawn where a thigh was heard")
+    assert legs.note.text().startswith(
+        "Legs are drawn where a thigh sensor was received and a knee has an absolute angle"
+    )
     assert legs.places == {}
     legs.turn()
     assert not legs.is_playing

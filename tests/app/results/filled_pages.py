@@ -64,7 +64,7 @@ def log_in(look: ThemeNotifier) -> QWidget:
 
 def joining(look: ThemeNotifier) -> QWidget:
     page = JoinPage(look)
-    page.refuse(tr("The clinic's server does not answer"), is_place=False)
+    page.refuse(tr("The clinic's server does not respond"), is_place=False)
     return page
 
 

@@ -73,10 +73,10 @@ def test_pages_are_shown_and_saved_as_the_command_saves_them(
 ) -> None:
     reference = write_reference(tmp_path / "walk 1.csv", rows_of(walked[2], "walk 1"))
     controller.compare([reference])
-    assert words(page).startswith("Looking for these walks in walk 1.csv.")
+    assert words(page).startswith("Searching for these walks in walk 1.csv.")
     qtbot.waitUntil(lambda: page.sheets.count > 1, timeout=30_000)
     assert page.save.isVisible()
-    assert page.note.text() == "Not compared, as nothing fits them: walk 2."
+    assert page.note.text() == "Not compared, no matching recording: walk 2."
     asked: list[tuple[Path, Callable[[], None]]] = []
     controller.writing.connect(lambda folder, write: asked.append((folder, write)))
     page.save.click()
@@ -139,9 +139,9 @@ def test_walks_are_called_as_on_the_screen_and_pages_are_drawn_finer_in_a_larger
     controller.show(replace(session, recordings=named), replace(analysis))
     controller.compare([write_reference(tmp_path / "walk 1.csv", rows_of(truth, "walk 1"))])
     qtbot.waitUntil(lambda: page.sheets.count > 1, timeout=30_000)
-    assert page.note.text() == "Not compared, as nothing fits them: B AFO."
+    assert page.note.text() == "Not compared, no matching recording: B AFO."
     coarse, count = page.sheets.pages[0].width, page.sheets.count
     page.resize(1400, 680)
     qtbot.waitUntil(lambda: page.sheets.pages[0].width > coarse, timeout=30_000)
     assert page.sheets.count == count
-    assert page.note.text() == "Not compared, as nothing fits them: B AFO."
+    assert page.note.text() == "Not compared, no matching recording: B AFO."

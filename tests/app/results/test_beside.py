@@ -26,8 +26,6 @@ from devices.simulation.walker_body import Tissue
 from tests.app.changed_analysis import recalibrated
 from tests.app.room import settle
 
-MINUS = "\N{MINUS SIGN}"
-
 
 @pytest.fixture(scope="module")
 def session() -> Session:
@@ -83,9 +81,9 @@ def words_beside(page: ResultPage) -> list[str]:
 
 def test_another_walk_is_offered_with_its_condition_and_the_shown_one_is_not(page: ResultPage) -> None:
     offered = [page.beside.itemText(row) for row in range(page.beside.count())]
-    assert offered == ["Versus reference", "Legs only", "Beside B AFO", "Versus last visit"]
+    assert offered == ["Versus reference", "Legs only", "Versus B AFO", "Versus last visit"]
     show(page, "walk 2")
-    assert page.beside.itemText(2) == "Beside A shoes"
+    assert page.beside.itemText(2) == "Versus A shoes"
 
 
 def test_the_other_walk_is_drawn_thin_and_named(page: ResultPage, analysis: Analysis, session: Session) -> None:
@@ -154,8 +152,8 @@ def test_the_marks_are_those_of_the_change(page: ResultPage, analysis: Analysis,
 @pytest.mark.parametrize(
     ("typed", "title", "head"),
     [
-        ("AFO", "Beside B AFO", "B AFO"),
-        ("AFO with a carbon spring and a wedge", "Beside B AFO with a carbon spring…", "B AFO with a carbon…"),
+        ("AFO", "Versus B AFO", "B AFO"),
+        ("AFO with a carbon spring and a wedge", "Versus B AFO with a carbon spring…", "B AFO with a carbon…"),
     ],
 )
 def test_a_long_name_is_cut_in_the_table_and_whole_where_it_is_read_aloud(
@@ -179,7 +177,7 @@ def test_a_withheld_joint_has_no_thin_curve_and_no_difference(
     choose(page, "walk 2")
     knee, ankle = page.cycles.charts.frames
     assert [curve.side for curve in knee.chart.described.beside] == [Side.RIGHT]
-    assert words_beside(page) == ["Thin: B AFO. L: withheld in B AFO.", "Thin: B AFO."]
+    assert words_beside(page) == ["Thin: B AFO. L: not reported in B AFO.", "Thin: B AFO."]
     assert [curve.side for curve in ankle.chart.described.beside] == list(Side)
     alone = walks_alone(gated, session.recordings)
     found = beside_walk(alone["walk 1"], alone["walk 2"], is_simulated=True)
@@ -245,9 +243,7 @@ def test_the_sentence_is_of_what_stands_beside_and_never_of_the_legs(page: Resul
     of_legs = page.answer.text
     choose(page, "walk 2")
     assert page.answer.text.startswith("Walking speed: 0.39\N{NO-BREAK SPACE}m/s more than B AFO, ")
-    assert (
-        "Larger than its error (0.08\N{NO-BREAK SPACE}m/s\N{DAGGER})." in page.answer.text
-    )  # of two walks, unverified
+    assert "Beyond measurement error (±0.08\N{NO-BREAK SPACE}m/s†)." in page.answer.text  # of two walks, unverified
     assert of_legs not in page.answer.text
     show(page, "walk 2")
     choose(page, "walk 1")
@@ -275,7 +271,7 @@ def test_where_no_change_can_be_told_as_one_that_is_said(analysis: Analysis, ses
         return beside_walk(alone["walk 1"], alone["walk 2"], is_simulated=True)
 
     inside, beyond = Judgement.INSIDE_ERROR, Judgement.EXCEEDS_ERROR
-    none = "No change from B AFO is larger than its error."
+    none = "All judged changes from B AFO are within measurement error."
     assert told(found(), judgement=inside, is_worth_a_sentence=False) == none
     near = "No change from B AFO is far larger than its error. The table marks those that exceed it."
     assert told(found(), judgement=beyond, is_worth_a_sentence=False) == near

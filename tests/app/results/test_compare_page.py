@@ -115,7 +115,7 @@ def test_a_walk_is_called_in_the_boxes_of_results_as_its_condition_is_in_the_com
     assert [chip.split(" · ")[0] for chip in chips] == ["A barefoot", "B AFO"]
     walks = [row for row in range(page.beside.count()) if isinstance(page.beside.itemData(row), str)]
     assert page.recordings.currentData() == "walk 3"  # of the latest condition
-    assert [page.beside.itemText(row) for row in walks] == ["Beside A barefoot", "Beside A2 barefoot"]
+    assert [page.beside.itemText(row) for row in walks] == ["Versus A barefoot", "Versus A2 barefoot"]
 
 
 def test_a_walk_that_gets_another_condition_stays_on_the_screen_under_its_new_name(
@@ -364,7 +364,7 @@ def test_one_condition_after_the_other_is_chosen_on_the_screen(
     words = [compare.kinds.itemText(k) for k in range(compare.kinds.count())]
     assert words[1:3] == ["Visits, A", "Visits, B"]
     assert (compare.kind, compare.card.title.text()) == (Contrast.VISITS, "Change from 1, A")
-    assert "Not compared, for want of a walk of this condition: June." in compare.conclusion.text()
+    assert "Not compared, no walk in this condition: June." in compare.conclusion.text()
     compare.kinds.setCurrentIndex(2)
     assert (compare.kind, compare.card.title.text()) == (Contrast.VISITS, "Change from 1, B")
     assert compare.comparison is not None
@@ -438,8 +438,8 @@ def test_visits_without_a_common_condition_are_not_compared_and_that_is_said(
     visits = [walked("May", analysis, session, walk_1="A", walk_2=""), walked("July", analysis, session, walk_1="B")]
     compare.show_visits(visits_by_condition(visits), conditions_in_words(visits))
     assert compare.nothing.text() == (
-        "This visit has no condition in common with an earlier one, so they are not compared. "
-        "May: A, no condition stated. July: B. “Any visits and conditions” compares two that you choose."
+        "This visit shares no condition with an earlier visit, so they are not compared. May: A, no "
+        "condition stated. July: B. “Any visits and conditions” compares any two you choose."
     )
     assert not compare.card.plot.isVisible()
     assert compare.kinds.itemText(compare.kinds.currentIndex()) == "Visits"
@@ -483,7 +483,7 @@ def test_between_legs_only_what_is_worth_a_sentence_is_said(
     assert quiet == "All judged differences are within measurement error."
     loud = shown(page, bent_more(analysis, 20.0), session, Contrast.SIDES)
     assert "Knee range \N{MINUS SIGN}" in loud
-    assert "L against R: larger than its error (" in loud
+    assert "L vs R: larger than its error (" in loud
     ankle = shown(page, bent_more(analysis, 20.0, Joint.RIGHT_ANKLE), session, Contrast.SIDES)
     assert "Ankle range of motion" not in ankle  # its error is borrowed: the table marks it, no sentence says it
     assert ankle == "Some differences are beyond measurement error, none clearly. The table marks them."
@@ -498,7 +498,7 @@ def test_between_walks_only_what_is_worth_a_sentence_is_said(
     said = [row for row in found.rows if row.is_told and row.difference.is_worth_a_sentence]
     quiet = [row for row in found.rows if row.is_told and not row.difference.is_worth_a_sentence]
     assert quiet
-    assert page.compare.conclusion.text().count("larger than its error (") == min(len(said), 3)
+    assert page.compare.conclusion.text().count("beyond measurement error (±") == min(len(said), 3)
     few = replace(found, parts=(found.parts[0], found.parts[0]))
     assert not any(row.difference.is_worth_a_sentence for row in few.rows)
 
@@ -543,7 +543,7 @@ def test_an_error_that_could_not_be_verified_bears_a_dagger_in_the_table(
     shown(page, analysis, session, Contrast.SIDES)
     rows = {name: cells for _, name, *cells in table_words(page)}
     assert rows["Ankle range of motion"][2].endswith(" \N{DAGGER}")
-    assert "\N{DAGGER} rests on a figure" in page.compare.error.text()
+    assert "† based on a figure whose source could not be verified" in page.compare.error.text()
     assert "The ankle uses the knee's error figure." in page.compare.error.text()
     assert "sensor attachment" in page.compare.error.text()
     shown(page, analysis, session, Contrast.CONDITIONS)
@@ -572,7 +572,7 @@ def test_what_is_withheld_stands_in_no_comparison(page: ResultPage, analysis: An
     shown(page, doubtful, session, Contrast.CONDITIONS)
     frame = page.compare.frames[Side.RIGHT, JointKind.ANKLE]
     assert frame.chart.curves == ()
-    assert "A: withheld. The two sensors do not move as neighbours" in frame.note
+    assert "A: not reported. The two sensors do not move as neighbours" in frame.note
     assert len(page.compare.frames[Side.LEFT, JointKind.ANKLE].chart.curves) == 2
     assert "withheld" not in page.compare.frames[Side.LEFT, JointKind.ANKLE].note
 
@@ -649,7 +649,7 @@ def measures(page: ResultPage) -> set[str]:
     return {row.cells[1].words for row in page.compare.card.table.cells.rows}
 
 
-NONE_LARGER = "No change to visit 3 is larger than its error."
+NONE_LARGER = "All judged changes to visit 3 are within measurement error."
 
 
 def test_of_visits_the_change_to_the_latest_is_said_and_marked(
@@ -678,8 +678,7 @@ def test_what_the_table_alone_marks_is_said_to_be_marked_there(
     """An ankle's error is borrowed, so that no sentence speaks of it."""
     ankle = bent_more(analysis, 30.0, Joint.RIGHT_ANKLE)
     assert visits_shown(page, session, (analysis, analysis, ankle)) == (
-        "No change to visit 3 is so much larger than its error that it is said here; the table marks those that are "
-        "larger."
+        "Some changes to visit 3 are beyond measurement error, none clearly. The table marks them."
     )
     assert marked(page) == [(Side.RIGHT, "Ankle range of motion")]
     assert visits_shown(page, session, (analysis, ankle, analysis)) == NONE_LARGER
@@ -690,7 +689,7 @@ def test_where_nothing_of_the_latest_visit_is_judged_that_is_said(
     page: ResultPage, analysis: Analysis, session: Session
 ) -> None:
     few = with_few_strides(analysis, left=5, right=5)
-    assert visits_shown(page, session, (analysis, analysis, few)) == "No change to visit 3 could be judged."
+    assert visits_shown(page, session, (analysis, analysis, few)) == "The changes to visit 3 could not be judged."
     assert visits_shown(page, session, (analysis, few, analysis)) == NONE_LARGER
     page.compare.chips.choose(["1"])
     page.compare.chips.turned.emit()

@@ -170,9 +170,9 @@ def test_the_door_leads_to_what_can_be_read_and_back(page: ResultPage, analysis:
     assert page.cycles.isVisible()
     assert not page.leave_behind()
     show(page, recalibrated(analysis, [Joint.LEFT_ANKLE], axis_sd_rad=np.deg2rad(11.0)))
-    assert page.door.words == "Left ankle: withheld. Record free motion, or move longer and in more directions."
+    assert page.door.words == "Left ankle: not reported. Record free motion, or move longer and in more directions."
     page.door.click()
-    assert page.quality.first.text() == "3 of 4 joints can be read. Withheld: left ankle."
+    assert page.quality.first.text() == "3 of 4 joints are reported. Not reported: left ankle."
 
 
 def test_beside_leads_to_another_comparison_only_where_there_is_one(page: ResultPage) -> None:
@@ -199,9 +199,9 @@ def test_the_tables_hold_the_figures_of_the_strides_used(page: ResultPage, analy
     peaks = raw_values(gait, "knee_swing_peak_deg")[used]
     stance = gait.strides.stance_percent[used]
     rows = rows_of(page)
-    assert rows["Swing peak"][1] == f"{np.mean(peaks):.1f} ± {np.std(peaks, ddof=1):.1f}"
+    assert rows["Peak flexion, swing"][1] == f"{np.mean(peaks):.1f} ± {np.std(peaks, ddof=1):.1f}"
     assert rows["Stance %"][1] == f"{np.mean(stance):.1f} ± {np.std(stance, ddof=1):.1f}"
-    assert rows["Swing peak"][2] == ""  # at 0.95 m/s the curves of 1.25 m/s are no comparison
+    assert rows["Peak flexion, swing"][2] == ""  # at 0.95 m/s the curves of 1.25 m/s are no comparison
     assert rows[""][1] == f"R, {np.count_nonzero(used)} strides"
 
 
@@ -209,12 +209,12 @@ def test_under_ten_strides_no_spread_is_shown_and_under_three_no_mean(page: Resu
     table = page.cycles.peaks.table
     for count, has_spread, words in ((10, True, ""), (9, False, "*"), (2, False, "withheld")):
         show(page, with_few_strides(analysis, left=count, right=count))
-        cell = table.cells.rows[row_named(table, "Swing peak")].cells[1]
+        cell = table.cells.rows[row_named(table, "Peak flexion, swing")].cells[1]
         assert isinstance(cell, TextCell)
         assert ("±" in cell.small) is has_spread, count
         assert cell.small.endswith(words), count
         assert bool(cell.text) is (count > 2), count
-    assert "L and R: under 3 strides, so without a mean." in page.cycles.peaks.note.text()
+    assert "L and R: fewer than 3 strides, no mean." in page.cycles.peaks.note.text()
 
 
 def test_a_cell_is_heard_with_its_joint_side_and_unit(page: ResultPage) -> None:
@@ -235,12 +235,12 @@ def test_a_cell_is_heard_with_its_joint_side_and_unit(page: ResultPage) -> None:
 def test_a_cell_to_be_read_with_care_says_so_to_who_hears_it(page: ResultPage, analysis: Analysis) -> None:
     show(page, recalibrated(analysis, [Joint.LEFT_KNEE], axis_sd_rad=np.deg2rad(8.0)))
     model = page.cycles.peaks.table.cells
-    swing = row_named(page.cycles.peaks.table, "Swing peak")
+    swing = row_named(page.cycles.peaks.table, "Peak flexion, swing")
     heard = [str(model.data(model.index(swing, k), Qt.ItemDataRole.AccessibleTextRole)) for k in (1, 2)]
-    assert heard[0].endswith("°, read with care")
+    assert heard[0].endswith("°, caution")
     assert heard[1].endswith("°")
-    assert rows_of(page)["Swing peak"][0].endswith(" *")
-    assert "* read with care." in page.cycles.peaks.note.text()
+    assert rows_of(page)["Peak flexion, swing"][0].endswith(" *")
+    assert "*: caution." in page.cycles.peaks.note.text()
     chips = page.cycles.charts.knee.chips
     assert {side: chip.verdict for side, chip in chips.items()} == {Side.LEFT: Verdict.CARE, Side.RIGHT: Verdict.READ}
     assert page.door.words.startswith("Left knee: read with care. The joint's axis is known to 8.0° only")
@@ -254,7 +254,7 @@ def test_the_source_of_the_band_and_both_speeds_are_printed(page: ResultPage, an
     for part in ("24 young adults", "treadmill", "1.25 m/s", "Fukuchi", "2018", "This walk: 1.20"):
         assert part in told
     assert "32 of 42 adults, 24 young and 18 older" in page.cycles.time_distance.note.text()
-    assert rows_of(page)["Swing peak"][2] == "59 to 66"
+    assert rows_of(page)["Peak flexion, swing"][2] == "59 to 66"
     assert rows_of(page)["Range"][2] == ""
 
 
@@ -288,7 +288,7 @@ def test_a_band_of_other_ages_says_so(page: ResultPage, analysis: Analysis) -> N
 def test_a_prosthetic_leg_has_no_band(page: ResultPage, analysis: Analysis) -> None:
     walk = at_speed(analysis, 1.2)
     show(page, with_prostheses(walk, Side.RIGHT), who=GROWN)
-    assert "The band is for the left leg alone." in page.cycles.band_words
+    assert "The reference applies to the left leg only." in page.cycles.band_words
     show(page, with_prostheses(walk, *Side), who=GROWN)
     assert NO_SIDE in page.cycles.band_words
     assert page.cycles.charts.knee.chart.band is None
@@ -299,8 +299,8 @@ def test_a_prosthetic_leg_has_no_band(page: ResultPage, analysis: Analysis) -> N
 def test_the_same_doubt_stands_in_chart_and_table(page: ResultPage, analysis: Analysis) -> None:
     show(page, recalibrated(analysis, [Joint.LEFT_KNEE], is_sign_certain=False))
     assert page.cycles.charts.knee.note.startswith("L: sign unsure.")
-    assert rows_of(page)["Swing peak"][0] == "sign unclear"
-    assert "sign unclear" not in rows_of(page)["Swing peak"][1]
+    assert rows_of(page)["Peak flexion, swing"][0] == "sign unclear"
+    assert "sign unclear" not in rows_of(page)["Peak flexion, swing"][1]
 
 
 def test_a_withheld_ankle_has_no_number_and_no_curve_and_says_what_to_do(page: ResultPage, analysis: Analysis) -> None:
@@ -343,7 +343,7 @@ def test_the_answer_stands_over_the_mean_cycle_and_nothing_scrolls_for_it(page: 
     show(page, changed(analysis, gait={}))
     page.view.choose(WHOLE)
     assert page.answer.isVisible()
-    assert page.answer.text.startswith("Nothing can be read of this walk")
+    assert page.answer.text.startswith("No results for this walk: no stride was found from a foot or shank sensor")
 
 
 @pytest.mark.parametrize("room", [(1064.0, 672.0), (1150.0, 640.0)])  # of windows of 1280 x 800 and 1366 x 768
@@ -385,7 +385,7 @@ def test_without_a_zero_marks_stand_on_the_curves_as_they_are_drawn(
 
 def test_where_heights_alone_are_withheld_no_joint_is_called_so(page: ResultPage, analysis: Analysis) -> None:
     show(page, recalibrated(analysis, LEG_JOINTS, zero=ZeroKind.NONE))
-    assert page.door.words.startswith("Height of all joints: withheld.")
+    assert page.door.words.startswith("Absolute angle of all joints: withheld.")
     show(page, recalibrated(analysis, LEG_JOINTS, is_same_joint=False, sign_margin=1.05))
     assert page.door.words.startswith("All joints: withheld.")
 

@@ -126,7 +126,7 @@ def test_where_nothing_is_kept_nothing_can_be_left_out(
     assert page.strides.turn.isHidden()
     assert strides.accessibleDescription() == ""
     assert mark.data(Qt.ItemDataRole.CheckStateRole) is None
-    assert "import this session first" in page.strides.note.text()
+    assert "Strides can be excluded only in the library" in page.strides.note.text()
     page.show_visit(AnalysedVisit(session, analysis), can_choose=True)
     assert not page.strides.turn.isHidden()
     assert mark.data(Qt.ItemDataRole.CheckStateRole) is not None

@@ -154,7 +154,7 @@ def test_a_curve_lies_where_what_may_be_said_of_it_lets_it(
     (layout,) = RrdReader(path).blueprints()
     shown = "".join(str(c.to_record_batch().to_pydict()) for c in RrdReader(path).stream(store=layout))
     assert "/withheld" not in shown
-    assert "'What may be read'" in shown
+    assert "'What is ambiguous: read'" in shown
 
 
 def test_once_a_strap_slipped_a_curve_is_withheld(tmp_path: Path) -> None:
@@ -394,7 +394,7 @@ def test_the_panel_says_what_is_withheld_why_and_that_it_is_grey(
 ) -> None:
     text = panel_of(WALKED, doubtful(walk[1], **said), tmp_path / "session.rrd")
     assert row in text
-    assert ("The left leg and foot are grey." in text) == is_grey
+    assert ("The left leg and foot are shown in grey." in text) == is_grey
     assert "The right" not in text
 
 
@@ -404,14 +404,14 @@ def test_a_foot_alone_is_grey_where_only_its_ankle_is_no_pose(walk: tuple[Path, 
     doubted = replace(recording, verdicts=replace(recording.verdicts, joints=said))
     text = panel_of(WALKED, replace(walk[1], recordings=(doubted,)), tmp_path / "session.rrd")
     assert "- **Right ankle: no zero.** The right foot is grey." in text
-    assert "leg and foot are grey" not in text
+    assert "leg and foot are shown in grey" not in text
 
 
 def test_the_panel_says_when_a_strap_slipped(walk: tuple[Path, Analysis], tmp_path: Path) -> None:
     (recording,) = walk[1].recordings
     slipped = replace(walk[1], recordings=(replace(recording, slipped_from_s={Side.RIGHT: 3.25}),))
     text = panel_of(WALKED, slipped, tmp_path / "session.rrd")
-    assert "A strap of the right leg slipped: from 3.2 s on its curves are withheld, the leg is grey." in text
+    assert "Strap moved on the right leg. From 3.2 s its curves are not reported; the leg is grey." in text
     assert "the left leg slipped" not in text
     for joint in (Joint.RIGHT_KNEE, Joint.LEFT_KNEE):
         time_s, _ = curve(tmp_path / "session.rrd", f"/angles/{joint}/phases/swing", "walking_1")
@@ -432,7 +432,7 @@ def test_a_view_is_called_withheld_where_no_walk_shows_its_curve(walk: tuple[Pat
     withheld = doubtful(walk[1], shape=BAD)
     free = replace(walk[1].recordings[0], kind=RecordingKind.FREE_MOTION)
     both = replace(withheld, recordings=(free, *withheld.recordings))
-    assert name_of_view(both, Joint.LEFT_KNEE) == "left knee: withheld"
+    assert name_of_view(both, Joint.LEFT_KNEE) == "left knee: not reported"
     assert name_of_view(both, Joint.RIGHT_KNEE) == "right knee: flexion, °"
 
 

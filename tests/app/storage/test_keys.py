@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from app.storage import keys
+from app.storage.data_key import KEY_BYTES, Secret
 from app.storage.files import held, replace_file
 from app.storage.keys import (
     KeyRefusedError,
@@ -59,11 +60,32 @@ def test_a_passphrase_that_somebody_else_chose_is_marked_until_its_operator_choo
     assert slots.is_given("ab")
     changed = slots.sealed_anew(data_key, bytes(32), ("hk", "ab"))
     assert changed.content["given_passphrases"] == ["ab"]
-    with pytest.raises(KeyRefusedError, match="somebody else chose"):
+    with pytest.raises(KeyRefusedError, match="Another person chose this passphrase"):
         slots.set_passphrase(data_key, "ab", f" {NEW} ")
     slots.set_passphrase(data_key, "ab", OLD)
     assert not slots.is_given("ab")
     assert slots.open("ab", OLD) == data_key
+
+
+def test_a_mark_that_is_taken_away_lets_nobody_in(slots: KeySlots, tmp_path: Path) -> None:
+    data_key, _ = slots.create("hk", OLD)
+    slots.add(data_key, "ab", NEW, is_given=True)
+    content = json.loads((tmp_path / "keys.json").read_bytes())
+    del content["given_passphrases"]
+    (tmp_path / "keys.json").write_text(json.dumps(content))
+    assert not slots.is_given("ab")
+    assert slots.open("ab", NEW) == data_key
+    with pytest.raises(KeyRefusedError, match="does not open"):
+        slots.open("ab", OLD)
+
+
+def test_a_guess_costs_three_passes_over_64_mib(tmp_path: Path) -> None:
+    KeySlots(tmp_path / "keys.json").create("hk", OLD)
+    slots = json.loads((tmp_path / "keys.json").read_bytes())["slots"]
+    assert {(slot["code"], slot["passes"], slot["memory_kib"]) for slot in slots} == {
+        ("hk", 3, 65536),
+        ("recovery", 3, 65536),
+    }
 
 
 def test_no_other_passphrase_code_or_recovery_key_opens(slots: KeySlots, tmp_path: Path) -> None:
@@ -90,7 +112,7 @@ def test_operators_come_and_go_but_the_last_one_stays(slots: KeySlots) -> None:
     slots.remove("hk")
     with pytest.raises(KeyRefusedError, match="does not open"):
         slots.open("hk", OLD)
-    with pytest.raises(KeyRefusedError, match="last operator"):
+    with pytest.raises(KeyRefusedError, match="The last user's key cannot be removed"):
         slots.remove("ab")
 
 
@@ -104,7 +126,7 @@ def test_a_new_recovery_key_ends_the_old_one(slots: KeySlots) -> None:
 
 @pytest.mark.parametrize("passphrase", ["short", "          ", ""])
 def test_short_passphrases_are_refused(slots: KeySlots, passphrase: str) -> None:
-    with pytest.raises(KeyRefusedError, match="letters or more"):
+    with pytest.raises(KeyRefusedError, match="characters are needed"):
         slots.create("hk", passphrase)
     assert not slots.exists
 
@@ -134,6 +156,28 @@ def test_the_file_holds_neither_key_nor_passphrase(slots: KeySlots, tmp_path: Pa
     assert OLD.encode() not in content
     assert recovery.encode() not in content
     assert (tmp_path / "keys.json").stat().st_mode & 0o077 == 0
+
+
+def test_what_is_made_of_a_passphrase_is_overwritten_once_it_was_used(
+    slots: KeySlots, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    own = "v\u00f6ier s\u00e4tz do f\u00fcr \u00fcs"
+    slots.create("hk", own)
+    wipe, wiped = Secret.wipe, list[bytes]()
+
+    def noted(secret: Secret) -> None:
+        wiped.append(bytes(secret))
+        wipe(secret)
+
+    monkeypatch.setattr(Secret, "wipe", noted)
+    data_key = slots.open("hk", own)
+    assert own.encode() in wiped
+    assert len([one for one in wiped if len(one) == KEY_BYTES and any(one)]) >= 2  # Argon2id's, and the slot's own
+    assert bytes(data_key) not in wiped
+    with memoryview(data_key) as where_it_stood:
+        with pytest.raises(BufferError):  # it is not cleared while it is seen
+            data_key.wipe()
+        assert not any(where_it_stood)
 
 
 def test_a_slot_whose_words_were_changed_does_not_open(slots: KeySlots, tmp_path: Path) -> None:
@@ -266,6 +310,6 @@ def test_a_change_that_another_program_holds_up_for_long_is_refused(
 ) -> None:
     data_key, _ = slots.create("hk", OLD)
     monkeypatch.setattr(keys, "BUSY_S", 0.1)
-    with held(tmp_path / "keys.json.lock"), pytest.raises(KeyRefusedError, match="Somebody else"):
+    with held(tmp_path / "keys.json.lock"), pytest.raises(KeyRefusedError, match="Another user"):
         slots.add(data_key, "ab", NEW)
     slots.add(data_key, "ab", NEW)

@@ -35,7 +35,9 @@ def started(folder: Path, clock: Clock) -> LoginDelay:
 def try_wrong(delay: LoginDelay, code: str, count: int = 1) -> None:
     for _ in range(count):
         with pytest.raises(KeyRefusedError), delay.trying(code):
-            raise KeyRefusedError("This passphrase does not open the library", "Type it again")
+            raise KeyRefusedError(
+                "This passphrase does not open the library", "Enter it again, or use the recovery key"
+            )
 
 
 def test_wrong_passphrases_make_the_next_try_wait(tmp_path: Path, clock: Clock) -> None:

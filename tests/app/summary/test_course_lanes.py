@@ -120,8 +120,8 @@ def test_a_visit_that_is_not_computed_is_no_point_and_is_counted() -> None:
     visits = [visit(1, shoes()), visit(2, None), visit(3, shoes())]
     found = lanes(visits)
     assert [[point.visit for point in line.points] for one in found for line in one.lines] == [[0, 2]] * 3
-    assert nothing_between(visits) == "1 visit is not computed yet."
-    assert nothing_between([visit(1, None), visit(2, None)]) == "2 visits are not computed yet."
+    assert nothing_between(visits) == "1 visit is not calculated yet."
+    assert nothing_between([visit(1, None), visit(2, None)]) == "2 visits are not calculated yet."
     assert visit_in_words(1, found, visits) == "20 Mar. not computed yet."
 
 
@@ -181,7 +181,7 @@ def difference(
         (difference(Judgement.INSIDE_ERROR, is_unverified=True), "inside error (9.2 †)"),
         (
             difference(Judgement.INSIDE_ERROR, sources=(ErrorSource.CHANCE, ErrorSource.SPEED)),
-            "inside error (9.2; the speed differs)",
+            "inside error (9.2; different speed)",
         ),
         (difference(Judgement.NO_PUBLISHED_FIGURE, math.nan), "not judged"),
         (difference(Judgement.TOO_FEW_STRIDES, math.nan), "too few strides to judge"),
@@ -208,14 +208,14 @@ def test_what_is_next_is_the_first_that_holds() -> None:
     recovered = undecided_step(UUID(int=7), datetime.date(2026, 11, 2))
     gated_and_unwritten = latest(90, Joint.LEFT_KNEE, has_report=False)
     assert next_step(recovered, gated_and_unwritten, TODAY) == NextStep(
-        "keep or discard the walk of 2 Nov.", "Look", UUID(int=7)
+        "include or exclude the walk of 2 Nov.", "Look", UUID(int=7)
     )
     assert undecided_step(UUID(int=7), None).sentence == "include or exclude the last walk."
     assert next_step(None, latest(1, Joint.LEFT_KNEE, Joint.LEFT_ANKLE, has_report=False), TODAY) == NextStep(
         "left knee and left ankle could not be read on 22 Nov: see why.", "Look", UUID(int=1)
     )
     assert next_step(None, latest(90, has_report=False), TODAY) == NextStep(
-        "write the report of 25 Aug.", "Open", UUID(int=1)
+        "write the report for 25 Aug.", "Open", UUID(int=1)
     )
     assert next_step(None, latest(56), TODAY) == NextStep("the last visit was 8 weeks ago.")
     assert next_step(None, latest(55), TODAY) is None

@@ -169,7 +169,7 @@ def test_goals_are_called_by_whose_they_are_and_by_their_limit() -> None:
         "goal 1.20\u00a0m/s",
         "goal L 55°",
     ]
-    assert wanted(apart) == "at most 2.5\u00a0% apart"
+    assert wanted(apart) == "difference at most 2.5\N{NO-BREAK SPACE}%"
     assert goal_in_words(right) == "Stance, right: at most 62\u00a0%"
     assert goal_in_words(speed) == "Walking speed: at least 1.20\u00a0m/s"
     assert spoken_value("cadence_steps_min", "104") == "104 steps per minute"

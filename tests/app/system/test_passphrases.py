@@ -41,14 +41,14 @@ def test_passphrases_are_judged_by_how_long_they_hold(passphrase: str, expected:
         ("hijklmnopqrstu", "follow each other"),
         ("zse45rdxcvgy7", "side by side"),
         ("24.12.1968", "a date or a year"),
-        ("q9x vv zt b", "too few letters"),
+        ("q9x vv zt b", "It is too short for the characters it uses"),
     ],
 )
 def test_a_refusal_says_why_and_what_to_do(passphrase: str, why: str) -> None:
     what, remedy = refusal_of_passphrase(passphrase, SHORTEST)
     assert why in what
     assert "could guess it within" in what
-    assert remedy.startswith("Take four or five words")
+    assert remedy.startswith("Use four or five unrelated words")
     assert strength_in_words(passphrase, SHORTEST) == f"{what}. {remedy}."
 
 

@@ -1,5 +1,10 @@
 """The action bar: what is filled, what is told, the inverse bar, and focus that is never lost."""
 
+import gc
+import weakref
+from dataclasses import replace
+from functools import partial
+
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QColor
@@ -9,10 +14,11 @@ from pytestqt.qtbot import QtBot
 from app.theme.colours import LIGHT
 from app.theme.icons import Icon
 from app.theme.notifier import ThemeNotifier, load_fonts
-from app.widgets.action_bar import ActionBar, BarAction, BarState, RecordingNote, clock_time
+from app.widgets.action_bar import ActionBar, BarAction, BarState, RecordingNote
+from tests.app.idle_action import idle
 from tests.app.room import settle, words_cut
 
-STOP = BarAction("Stop walk", "Space", Icon.STOP)
+STOP = idle("Stop walk", "Space", Icon.STOP)
 
 
 def recording(elapsed_s: float = 0.0, has_sound: bool = True) -> BarState:
@@ -34,38 +40,49 @@ def ground(bar: ActionBar) -> QColor:
 
 
 def test_a_verb_is_filled_only_if_pressing_it_is_wished(bar: ActionBar) -> None:
-    bar.show_state(BarState(BarAction("Continue to walking", "Enter")))
+    bar.show_state(BarState(idle("Continue to walking", "Enter")))
     assert bar.primary.is_filled
-    bar.show_state(BarState(BarAction("Stop early", "Space", is_wished=False)))
+    bar.show_state(BarState(idle("Stop early", "Space", is_wished=False)))
     assert not bar.primary.is_filled
 
 
 def test_each_verb_tells_that_it_was_pressed(bar: ActionBar, qtbot: QtBot) -> None:
-    quiet = (BarAction("Repeat one leg"), BarAction("Swap"))
-    bar.show_state(BarState(BarAction("Go on"), others=(BarAction("Keep"), BarAction("Discard")), quiet=quiet))
-    told: list[tuple[str, int]] = []
-    bar.back_pressed.connect(lambda: told.append(("back", 0)))
-    bar.primary_pressed.connect(lambda: told.append(("primary", 0)))
-    bar.other_pressed.connect(lambda k: told.append(("other", k)))
-    bar.quiet_pressed.connect(lambda k: told.append(("quiet", k)))
+    quiet = (idle("Repeat one leg"), idle("Swap"))
+    bar.show_state(BarState(idle("Go on"), others=(idle("Keep"), idle("Discard")), quiet=quiet))
+    told: list[str] = []
+    bar.back_pressed.connect(lambda: told.append("Back"))
+    bar.pressed.connect(lambda action: told.append(action.text))
     for button in (bar.back, *bar.quiet, *bar.others, bar.primary):
         QTest.mouseClick(button, Qt.MouseButton.LeftButton)
-    assert told == [("back", 0), ("quiet", 0), ("quiet", 1), ("other", 0), ("other", 1), ("primary", 0)]
+    assert told == ["Back", "Repeat one leg", "Swap", "Keep", "Discard", "Go on"]
+
+
+def test_a_button_does_what_it_says_also_where_the_words_stay_and_the_deed_does_not(bar: ActionBar) -> None:
+    done: list[str] = []
+    bar.pressed.connect(lambda action: action.run())
+    for deed in ("left", "right"):
+        bar.show_state(BarState(BarAction("Repeat one leg", partial(done.append, deed))))
+        bar.primary.click()
+    assert done == ["left", "right"]
+    kept = weakref.ref(bar.primary.verb.run)
+    bar.show_state(BarState())
+    gc.collect()
+    assert kept() is None, "whoever is gone is not held by a button that nobody sees"
 
 
 def test_words_of_a_screen_reader_follow_the_verb(bar: ActionBar) -> None:
-    bar.show_state(BarState(BarAction("Keep 18 strides", "K")))
-    assert bar.primary.accessibleName() == "Keep 18 strides"
+    bar.show_state(BarState(idle("Include 18 strides", "K")))
+    assert bar.primary.accessibleName() == "Include 18 strides"
     assert bar.primary.accessibleDescription() == "Key K"
-    bar.show_state(BarState(BarAction("Write report")))
+    bar.show_state(BarState(idle("Write report")))
     assert bar.primary.accessibleName() == "Write report"
     assert bar.primary.accessibleDescription() == ""
 
 
 def test_a_verb_that_is_off_cannot_be_pressed(bar: ActionBar) -> None:
-    told: list[int] = []
-    bar.primary_pressed.connect(lambda: told.append(1))
-    bar.show_state(BarState(BarAction("Stand still", is_enabled=False), note="Two sensors are still to be placed."))
+    told: list[BarAction] = []
+    bar.pressed.connect(told.append)
+    bar.show_state(BarState(replace(idle("Stand still"), is_enabled=False), note="Two sensors are still to be placed."))
     QTest.mouseClick(bar.primary, Qt.MouseButton.LeftButton)
     assert told == []
 
@@ -73,12 +90,12 @@ def test_a_verb_that_is_off_cannot_be_pressed(bar: ActionBar) -> None:
 def test_the_bar_is_inverse_while_recording_and_at_no_other_time(bar: ActionBar) -> None:
     told: list[bool] = []
     bar.recording_changed.connect(told.append)
-    bar.show_state(BarState(BarAction("Start walk")))
+    bar.show_state(BarState(idle("Start walk")))
     assert ground(bar) == QColor(LIGHT.surface)
     bar.show_state(recording())
     assert ground(bar) == QColor(LIGHT.inv)
     assert bar.back.isHidden()
-    bar.show_state(BarState(BarAction("Start walk")))
+    bar.show_state(BarState(idle("Start walk")))
     assert ground(bar) == QColor(LIGHT.surface)
     assert told == [True, False]
 
@@ -102,21 +119,21 @@ def test_the_bell_tells_whether_it_is_on(bar: ActionBar, qtbot: QtBot) -> None:
 
 
 def test_without_back_the_first_quiet_verb_stands_in_its_place(bar: ActionBar) -> None:
-    bar.show_state(BarState(BarAction("Go on"), quiet=(BarAction("New patient"),)))
+    bar.show_state(BarState(idle("Go on"), quiet=(idle("New patient"),)))
     back = bar.back.x()
-    bar.show_state(BarState(BarAction("Go on"), quiet=(BarAction("New patient"),), has_back=False))
+    bar.show_state(BarState(idle("Go on"), quiet=(idle("New patient"),), has_back=False))
     assert bar.quiet[0].x() == back
 
 
 def test_the_focus_goes_to_the_primary_verb_where_its_button_goes(bar: ActionBar) -> None:
-    bar.show_state(BarState(BarAction("Keep"), others=(BarAction("Discard"),)))
+    bar.show_state(BarState(idle("Keep"), others=(idle("Discard"),)))
     bar.others[0].setFocus()
-    bar.show_state(BarState(BarAction("Start walk")))
+    bar.show_state(BarState(idle("Start walk")))
     assert bar.focusWidget() is bar.primary
 
 
 def test_a_button_keeps_the_focus_when_its_word_is_another(bar: ActionBar) -> None:
-    bar.show_state(BarState(BarAction("Start walk", "Space")))
+    bar.show_state(BarState(idle("Start walk", "Space")))
     bar.primary.setFocus()
     bar.show_state(recording())
     assert bar.focusWidget() is bar.primary
@@ -125,9 +142,7 @@ def test_a_button_keeps_the_focus_when_its_word_is_another(bar: ActionBar) -> No
 @pytest.mark.parametrize("width", [1064, 896, 736, 368])
 @pytest.mark.parametrize("note", ["", "Stopping now leaves the left knee with range only, without absolute angles."])
 def test_nothing_is_cut_and_nothing_overlaps(bar: ActionBar, width: int, note: str) -> None:
-    state = BarState(
-        BarAction("Reconnect R foot", "Enter"), (BarAction("Go on without"),), (BarAction("Repeat one leg"),), note
-    )
+    state = BarState(idle("Reconnect R foot", "Enter"), (idle("Continue without"),), (idle("Repeat one leg"),), note)
     bar.show_state(state)
     bar.resize(width, bar.height())
     settle()
@@ -137,15 +152,10 @@ def test_nothing_is_cut_and_nothing_overlaps(bar: ActionBar, width: int, note: s
     assert not any(one.intersects(other) for k, one in enumerate(boxes) for other in boxes[:k])
 
 
-@pytest.mark.parametrize(("elapsed_s", "shown"), [(0.0, "00:00"), (59.99, "00:59"), (246.0, "04:06"), (-1.0, "00:00")])
-def test_a_time_is_minutes_and_seconds(elapsed_s: float, shown: str) -> None:
-    assert clock_time(elapsed_s) == shown
-
-
 def test_a_double_click_is_one_press(bar: ActionBar) -> None:
-    bar.show_state(BarState(BarAction("Start walk", "Space", Icon.PLAY)))
-    pressed: list[None] = []
-    bar.primary_pressed.connect(lambda: pressed.append(None))
+    bar.show_state(BarState(idle("Start walk", "Space", Icon.PLAY)))
+    pressed: list[BarAction] = []
+    bar.pressed.connect(pressed.append)
     QTest.mouseClick(bar.primary, Qt.MouseButton.LeftButton)
     QTest.mouseDClick(bar.primary, Qt.MouseButton.LeftButton)  # as the second of the two arrives
     assert len(pressed) == 1

@@ -41,7 +41,7 @@ STATES = [
     (tile(battery=0.11), TileState.LOW_BATTERY, "charge soon · 11 %"),
     (tile(lost_share=0.024), TileState.LOSS, "2.4 % lost"),
     (tile(lost_share=0.01), TileState.FINE, "100 Hz · 1.0 % lost"),
-    (tile(silent_s=3.4, lost_share=0.2, battery=0.05), TileState.SILENT, "silent 3 s"),
+    (tile(silent_s=3.4, lost_share=0.2, battery=0.05), TileState.SILENT, "no signal 3 s"),
     (tile(silent_s=9.0, is_worn=False), TileState.NOT_WORN, "not used"),
     (replace(tile(is_worn=False), is_awaited=True), TileState.NOT_WORN, "found later"),
 ]
@@ -191,10 +191,10 @@ def test_the_button_says_in_one_sentence_how_the_sensors_are() -> None:
     foot, thigh = tile(silent_s=3.2), tile(Site.LEFT_THIGH, battery=0.1)
     unused = tile(Site.LEFT_FOOT, is_worn=False)
     assert sentence({}) == "No sensors yet"
-    assert sentence(fine()) == "6 sensors, all heard"
-    assert sentence(fine() | {Site.LEFT_FOOT: unused}) == "5 sensors, all heard"
+    assert sentence(fine()) == "6 sensors, all connected"
+    assert sentence(fine() | {Site.LEFT_FOOT: unused}) == "5 sensors, all connected"
     assert sentence(fine() | {FOOT: foot}) == "R foot: silent 3 s"
-    assert sentence(fine() | {FOOT: foot, Site.LEFT_THIGH: thigh}) == "2 of 6 sensors want a look"
+    assert sentence(fine() | {FOOT: foot, Site.LEFT_THIGH: thigh}) == "Check 2 of 6 sensors"
 
 
 def test_the_button_is_yellow_while_a_sensor_is_bad(look: ThemeNotifier, qtbot: QtBot) -> None:
@@ -254,5 +254,5 @@ def test_arrows_go_over_the_pelvis(strip: SensorStrip) -> None:
 
 
 def test_a_silent_pelvis_is_named_in_the_sentence() -> None:
-    assert sentence(SEVEN) == "7 sensors, all heard"
+    assert sentence(SEVEN) == "7 sensors, all connected"
     assert sentence(SEVEN | {Site.PELVIS: tile(Site.PELVIS, silent_s=3.2)}) == "Pelvis: silent 3 s"

@@ -54,8 +54,8 @@ def dark_of_line(stopwatch: Stopwatch) -> int:
         (0.0, "00:00", "of 5 min target"),
         (246.7, "04:06", "of 5 min target"),
         (300.4, "05:00", "of 5 min target"),
-        (301.0, "05:01", "5 min target passed"),
-        (3725.0, "62:05", "5 min target passed"),
+        (301.0, "05:01", "5 min target exceeded"),
+        (3725.0, "62:05", "5 min target exceeded"),
     ],
 )
 def test_the_stopwatch_says_time_and_target(stopwatch: Stopwatch, elapsed_s: float, time: str, words: str) -> None:
@@ -83,9 +83,9 @@ def test_the_stopwatch_keeps_its_width_so_that_the_header_does_not_shift(stopwat
 
 def test_the_toast_offers_and_its_button_takes_back(toast: Toast, qtbot: QtBot) -> None:
     assert not toast.isVisible()
-    toast.offer("Walk 2 discarded.")
+    toast.offer("Walk 2 excluded.")
     assert toast.isVisible()
-    assert toast.accessibleName() == "Walk 2 discarded."
+    assert toast.accessibleName() == "Walk 2 excluded."
     with qtbot.waitSignal(toast.undone):
         QTest.mouseClick(toast.button, Qt.MouseButton.LeftButton)
     assert not toast.isVisible()
@@ -101,13 +101,13 @@ def test_a_toast_that_has_gone_takes_nothing_back(toast: Toast) -> None:
 def test_the_toast_goes_after_a_while(toast: Toast, qtbot: QtBot) -> None:
     assert toast_module.STAYS_MS == 6000
     toast._clock.setInterval(30)
-    toast.offer("Walk 2 discarded.")
+    toast.offer("Walk 2 excluded.")
     qtbot.waitUntil(lambda: not toast.isVisible(), timeout=2000)
 
 
 def test_the_toast_stays_under_the_mouse(toast: Toast, qtbot: QtBot) -> None:
     toast._clock.setInterval(30)
-    toast.offer("Walk 2 discarded.")
+    toast.offer("Walk 2 excluded.")
     point = QPointF(5, 5)
     QApplication.sendEvent(toast, QEnterEvent(point, point, point))
     qtbot.wait(90)

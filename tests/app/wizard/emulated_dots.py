@@ -12,6 +12,7 @@ from core.body import LEG_SITES
 from devices.dot.samples import DRIVER
 from devices.dot.sensor import DotSensor
 from devices.live import SourceRefusedError
+from tests.app.wizard.pressing import press
 from tests.devices.dot.fast_radio import FastRadio
 
 WAIT_MS = 20_000
@@ -44,6 +45,6 @@ def open_dots(qtbot: QtBot, visit: Visit, step: SensorsStep, record_hz: int = 12
     qtbot.waitUntil(lambda: has_asked_all(step), timeout=WAIT_MS)
     step.page.dots.walks.setCurrentIndex(step.page.dots.walks.findData(record_hz))
     with qtbot.waitSignal(visit.sensors.opened, timeout=WAIT_MS):
-        step.on_primary()
+        press(step)
     assert visit.sensors.acquisition is not None
     visit.sensors.assign_all(dict(zip(visit.sensors.acquisition.sensors, LEG_SITES, strict=False)))

@@ -1,5 +1,7 @@
 """A key that the bar shows is the bar's, whatever has the focus: at every step, with every widget that can have it."""
 
+from functools import partial
+
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
@@ -18,30 +20,24 @@ from pytestqt.qtbot import QtBot
 from app.storage.exchange import import_session
 from app.widgets.action_bar import BarAction, BarState
 from app.wizard import wizard as wizard_module
-from app.wizard.wizard import PATIENT, REPORT, RESULTS, Wizard
+from app.wizard.step import StepId
+from app.wizard.wizard import Wizard
 from app.workers.library_controller import LibraryController
 from core.samples import Session
 
-ALL = BarState(
-    primary=BarAction("Go on", "Enter"),
-    others=(BarAction("Record again", "Space"),),
-    quiet=(BarAction("Repeat left", "L"), BarAction("Repeat right", "R"), BarAction("Discard", "D")),
-)
-DOES = {"Enter": "primary", "Space": "other 0", "L": "quiet 0", "R": "quiet 1", "D": "quiet 2"}
+TEXTS = {"Enter": "Go on", "Space": "Record again", "L": "Repeat left", "R": "Repeat right", "D": "Discard"}
 KEYS = {"Enter": Qt.Key.Key_Return, "Space": Qt.Key.Key_Space, "L": Qt.Key.Key_L, "R": Qt.Key.Key_R, "D": Qt.Key.Key_D}
 WAIT_MS = 60_000
 
 
-def watched(wizard: Wizard, number: int, monkeypatch: pytest.MonkeyPatch) -> list[str]:
+def watched(wizard: Wizard, number: StepId, monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """Show every key on the bar of a step, and write down what of the bar is pressed instead of doing it."""
     pressed: list[str] = []
     step = wizard.steps[number]
     monkeypatch.setattr(wizard_module, "DEAF_S", 0.0)
-    monkeypatch.setattr(step, "bar", lambda: ALL)
+    primary, other, *quiet = (BarAction(text, partial(pressed.append, text), key) for key, text in TEXTS.items())
+    monkeypatch.setattr(step, "bar", lambda: BarState(primary, (other,), tuple(quiet)))
     monkeypatch.setattr(step, "on_intent", lambda _intent: False)
-    monkeypatch.setattr(step, "on_primary", lambda: pressed.append("primary"))
-    monkeypatch.setattr(step, "on_other", lambda k: pressed.append(f"other {k}"))
-    monkeypatch.setattr(step, "on_quiet", lambda k: pressed.append(f"quiet {k}"))
     step.changed.emit()
     return pressed
 
@@ -92,7 +88,7 @@ def presses(widget: QWidget, pressed: list[str], is_elsewhere: bool) -> list[str
 
     if isinstance(widget, QAbstractButton) and is_elsewhere:
         widget.clicked.connect(note)
-    for key, does in DOES.items():
+    for key, does in TEXTS.items():
         widget.setFocus()
         if QApplication.focusWidget() is widget:  # else another of its field has it
             pressed.clear()
@@ -105,15 +101,15 @@ def presses(widget: QWidget, pressed: list[str], is_elsewhere: bool) -> list[str
     return wrong
 
 
-@pytest.mark.parametrize("number", range(PATIENT, REPORT + 1))
+@pytest.mark.parametrize("number", list(StepId))
 def test_a_key_on_the_bar_presses_the_bar_whatever_has_the_focus(
-    wizard: Wizard, monkeypatch: pytest.MonkeyPatch, number: int
+    wizard: Wizard, monkeypatch: pytest.MonkeyPatch, number: StepId
 ) -> None:
     wizard.begin(None)
     monkeypatch.setattr(type(wizard.steps[number]), "cannot_enter", "")
     wizard.go_to(number)
     pressed = watched(wizard, number, monkeypatch)
-    assert len(focusable(wizard)) > len(ALL.quiet) + 3
+    assert len(focusable(wizard)) > len(TEXTS) + 1
     assert misses(wizard, pressed) == []
 
 
@@ -131,8 +127,8 @@ def test_it_does_so_on_pages_that_are_full_of_results(
     wizard.show_session(opened.library.sessions.list()[0].id)
     visit = wizard.visit
     assert visit is not None
-    qtbot.waitUntil(lambda: wizard.step_number == RESULTS and not visit.evaluation.is_busy, timeout=WAIT_MS)
-    for number in range(PATIENT, REPORT + 1):
+    qtbot.waitUntil(lambda: wizard.step_id is StepId.RESULTS and not visit.evaluation.is_busy, timeout=WAIT_MS)
+    for number in StepId:
         monkeypatch.setattr(type(wizard.steps[number]), "cannot_enter", "")
         wizard.go_to(number)
         pressed = watched(wizard, number, monkeypatch)
@@ -142,7 +138,7 @@ def test_it_does_so_on_pages_that_are_full_of_results(
 
 def test_with_shift_space_and_enter_press_what_has_the_focus(wizard: Wizard, monkeypatch: pytest.MonkeyPatch) -> None:
     wizard.begin(None)
-    pressed = watched(wizard, PATIENT, monkeypatch)
+    pressed = watched(wizard, StepId.PATIENT, monkeypatch)
     clicks: list[None] = []
     back = wizard.shell.bar.back
     back.clicked.disconnect()
@@ -157,11 +153,21 @@ def test_a_key_of_a_button_that_cannot_be_pressed_presses_nothing_else(
     wizard: Wizard, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     wizard.begin(None)
-    pressed = watched(wizard, PATIENT, monkeypatch)
-    monkeypatch.setattr(wizard.steps[PATIENT], "bar", lambda: BarState(BarAction("Go on", "Enter", is_enabled=False)))
-    wizard.steps[PATIENT].changed.emit()
+    pressed = watched(wizard, StepId.PATIENT, monkeypatch)
+    shut = BarAction("Go on", partial(pressed.append, "Go on"), "Enter", is_enabled=False)
+    monkeypatch.setattr(wizard.steps[StepId.PATIENT], "bar", lambda: BarState(shut))
+    wizard.steps[StepId.PATIENT].changed.emit()
     left: list[None] = []
     wizard.left.connect(lambda: left.append(None))
     wizard.shell.bar.back.setFocus()
     QTest.keyClick(wizard.shell.bar.back, Qt.Key.Key_Return)
     assert (pressed, left) == ([], [])
+
+
+def test_a_visit_that_was_left_is_not_held_by_the_bar(wizard: Wizard) -> None:
+    wizard.begin(None)
+    bar = wizard.shell.bar
+    assert bar.primary.verb.text == "Attach sensors"
+    wizard.leave()
+    assert bar.state == BarState()
+    assert {button.verb.text for button in (*bar.others, *bar.quiet, bar.primary)} == {""}

@@ -43,7 +43,7 @@ def test_nothing_is_lost_yet_only_while_the_disk_is_late_and_every_counter_is_no
     status: JournalStatus, lost: int, is_said: bool
 ) -> None:
     said = " ".join(trouble_message(Trouble.DISK_SLOW, status, lost))
-    assert ("Nothing is lost yet" in said) is is_said
+    assert ("No data lost so far" in said) is is_said
     assert ("answers late" in said) is (status is LATE)
 
 
@@ -59,17 +59,17 @@ def test_a_late_disk_that_answers_again_says_what_it_cost() -> None:
 @pytest.mark.parametrize("trouble", [Trouble.DISK_SLOW, Trouble.DROPPED])
 def test_what_was_dropped_is_counted(trouble: Trouble) -> None:
     what, then = trouble_message(trouble, DROPPING)
-    assert "had to be dropped" in what
+    assert "The disk did not respond for too long, so samples were lost" in what
     assert then.startswith("7 packets of samples were dropped so far, and stay gaps. ")
 
 
 @pytest.mark.parametrize("trouble", sorted(ENDS))
 def test_a_disk_that_ended_the_recording_says_up_to_where_it_is_kept(trouble: Trouble) -> None:
     _, then = trouble_message(trouble, CLOSED)
-    assert ("Its first 1:02 are written." in then) is (trouble is not Trouble.DISK_GONE)
-    assert ("The disk has confirmed the first 1:01 of it." in then) is (trouble is Trouble.DISK_GONE)
+    assert ("The first 1:02 are written." in then) is (trouble is not Trouble.DISK_GONE)
+    assert ("The first 1:01 are confirmed on the disk." in then) is (trouble is Trouble.DISK_GONE)
     _, then = trouble_message(trouble, replace(CLOSED, dropped_records=2))
-    assert ("what came after that is lost" in then) is (trouble is not Trouble.DISK_GONE)
+    assert ("are written; everything after that is lost" in then) is (trouble is not Trouble.DISK_GONE)
 
 
 @pytest.mark.parametrize("is_tried_again", [True, False])
@@ -85,7 +85,7 @@ def test_only_a_journal_that_is_closed_whole_is_called_safe(is_tried_again: bool
 
 
 def test_a_recording_without_a_row_is_called_written_only_while_all_of_it_is() -> None:
-    assert "written to the disk all the same" in no_row_message(FINE)[1]
+    assert "The recording is still written to the disk" in no_row_message(FINE)[1]
     assert "written" not in no_row_message(DROPPING)[1]
 
 

@@ -24,9 +24,10 @@ from app.widgets.rail_row import StepState
 from app.wizard import wizard as wizard_module
 from app.wizard.report.step import ReportStep
 from app.wizard.results.step import ResultsStep
+from app.wizard.step import StepId
 from app.wizard.visit import Visit
 from app.wizard.walking.step import WalkingStep
-from app.wizard.wizard import REPORT, RESULTS, WALKING, Wizard
+from app.wizard.wizard import Wizard
 from app.workers.library_controller import LibraryController
 from core.body import LEG_SITES, Joint, Side, Site
 from tests.app.wizard.conftest import PASSPHRASE
@@ -104,9 +105,9 @@ def visit_of(wizard: Wizard) -> Visit:
     return wizard.visit
 
 
-def place_of(wizard: Wizard) -> int:
+def place_of(wizard: Wizard) -> StepId:
     assert wizard.current is not None
-    return wizard.steps.index(wizard.current)
+    return wizard.step_id
 
 
 def samples_of(visit: Visit) -> dict[str, dict[str, int]]:
@@ -128,7 +129,7 @@ def test_amid_a_walk(qtbot: QtBot, start_again: Start, untouched_library: Path, 
     visit = visit_of(wizard)
     (walk,) = visit.recordings.walks
     assert walk.stored.state is RecordingState.RECOVERED
-    assert place_of(wizard) == WALKING
+    assert place_of(wizard) == StepId.WALKING
     assert walk.read_back is not None
     assert set(walk.read_back.imu) == set(LEG_SITES)
     for block in walk.read_back.imu.values():
@@ -171,7 +172,7 @@ def test_before_a_walk_was_kept_or_discarded(
     visit = visit_of(wizard)
     assert samples_of(visit) == told["takes"]
     assert visit.recordings.walks[0].stored.state is RecordingState.CLOSED
-    assert place_of(wizard) == WALKING
+    assert place_of(wizard) == StepId.WALKING
     step = wizard.current
     assert isinstance(step, WalkingStep)
     assert (step.state, step.note) == (StepState.ATTENTION, "include or exclude?")
@@ -179,7 +180,7 @@ def test_before_a_walk_was_kept_or_discarded(
     qtbot.waitUntil(lambda: visit.recordings.walks[0].stored.is_decided, timeout=WAIT_MS)
     wizard.show_session(UUID(told["session"]))
     qtbot.waitUntil(lambda: wizard.visit is not visit and wizard.shell.page is not None, timeout=WAIT_MS)
-    assert place_of(wizard) == RESULTS
+    assert place_of(wizard) == StepId.RESULTS
 
 
 def check_corrections(qtbot: QtBot, wizard: Wizard, told: dict[str, Any]) -> None:
@@ -201,7 +202,7 @@ def test_amid_the_results(qtbot: QtBot, start_again: Start, untouched_library: P
     """Every correction is there: a stride left out, a condition, a sign, a walk that does not count."""
     told = killed_at(Point.RESULTS, tmp_path, untouched_library)
     _, wizard = start_again(told["session"])
-    assert place_of(wizard) == RESULTS
+    assert place_of(wizard) == StepId.RESULTS
     check_corrections(qtbot, wizard, told)
     step = wizard.current
     assert isinstance(step, ResultsStep)
@@ -217,9 +218,9 @@ def test_amid_the_report(
     out = tmp_path / "out"
     assert not out.exists()
     _, wizard = start_again(told["session"])
-    assert place_of(wizard) == RESULTS
+    assert place_of(wizard) == StepId.RESULTS
     check_corrections(qtbot, wizard, told)
-    wizard.go_to(REPORT)
+    wizard.go_to(StepId.REPORT)
     step = wizard.current
     assert isinstance(step, ReportStep)
     assert step.page.report.comment.toPlainText() == COMMENT

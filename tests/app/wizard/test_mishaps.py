@@ -16,15 +16,16 @@ from app.storage.journal.disk import Trouble
 from app.storage.opened import OpenedLibrary
 from app.storage.shared_edits import SharedEdits
 from app.storage.stored import LibraryBusyError, LibraryError, RecordingState
+from app.system.progress import Report
 from app.theme.notifier import ThemeNotifier
 from app.wizard import wizard as wizard_module
 from app.wizard.free_motion.step import FreeMotionStep
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.standing.step import StandStillStep
+from app.wizard.step import StepId
 from app.wizard.visit import Visit
 from app.wizard.walking.step import WATCH_TICKS, WalkingStep
-from app.wizard.wizard import DEAF_S, FREE_MOTION, RESULTS, WALKING, Wizard
-from app.workers.background import Report
+from app.wizard.wizard import DEAF_S, Wizard
 from app.workers.library_controller import LibraryController
 from core.body import LEG_SITES, Site
 from core.samples import Patient, Recording, RecordingKind, Session
@@ -167,10 +168,10 @@ def test_what_is_said_of_a_late_disk_follows_its_counters(
 
     recording = step.bar().recording
     assert recording is not None
-    assert "Nothing is lost yet" in said()
+    assert "No data lost so far" in said()
     assert "Saved" not in recording.note
     monkeypatch.setattr(acquisition, "lost", lambda: {"DEMO-left_foot": 400})
-    assert "Nothing is lost" not in said()
+    assert "No data lost so far" not in said()
     now[0] = replace(fine, stuck_s=3.0, dropped_records=5)
     assert "5 packets of samples were dropped so far" in said()
     now[0] = fine
@@ -201,7 +202,7 @@ def test_a_standstill_amid_a_recording_is_said_on_every_step_that_records(
     monkeypatch.setattr(visit.recordings, "ongoing", Ongoing(told, 100.0))
     monkeypatch.setattr(visit.recordings, "_acquisition", acquisition)
     wizard._watch_recording()
-    assert ("Gaitwright stood still for 20 s, 0:01 into the recording." in wizard.shell.banner.text) is is_said
+    assert ("Gaitwright stalled for 20 s, 0:01 into the recording." in wizard.shell.banner.text) is is_said
     monkeypatch.setattr(visit.recordings, "ongoing", None)
 
 
@@ -286,7 +287,7 @@ def test_a_demonstration_that_was_left_gives_its_patient_to_no_other_session(
     qtbot: QtBot, controller: LibraryController, wizard: Wizard
 ) -> None:
     wizard.begin(None)
-    wizard.steps[0].demonstration_wanted.emit()
+    wizard.steps[StepId.PATIENT].demonstration_wanted.emit()
     wizard.begin(None)  # before the library has answered
     asked(qtbot, controller, lambda _opened: None)
     assert wizard.visit is not None
@@ -319,7 +320,7 @@ def test_walks_are_judged_without_sensors(qtbot: QtBot, controller: LibraryContr
     recovered = controller.state.library.library.recordings.close(walk.id, RecordingState.RECOVERED, sha256)
     again.recordings.every = (replace(walk, stored=recovered, is_decided=False),)
     step.tick()
-    assert "was recovered, up to the last record on the disk" in step.page.notice.text
+    assert "was recovered, up to the last record on disk" in step.page.notice.text
     step.page.discard_pressed.emit(str(walk.id))
     qtbot.waitUntil(lambda: not again.recordings.walks[0].details.is_kept, timeout=WAIT_MS)
     step.leave()
@@ -410,7 +411,7 @@ def test_a_session_that_was_left_while_it_opened_does_not_open_in_the_next(
     wizard.begin(None)
     with qtbot.waitSignal(before.resumed, timeout=WAIT_MS):
         pass
-    assert wizard.current is not wizard.steps[RESULTS]
+    assert wizard.current is not wizard.steps[StepId.RESULTS]
     assert wizard.visit.session is None
 
 
@@ -448,9 +449,9 @@ def test_a_key_that_was_meant_for_the_page_before_does_nothing(wizard: Wizard, m
     now_s = 1000.0
     monkeypatch.setattr("app.wizard.wizard.time.monotonic", lambda: now_s)
     wizard.begin(None)
-    wizard._go_to(FREE_MOTION)
-    wizard.steps[FREE_MOTION].done.emit()
-    assert wizard.step_number == WALKING
+    wizard._go_to(StepId.FREE_MOTION)
+    wizard.steps[StepId.FREE_MOTION].done.emit()
+    assert wizard.step_id is StepId.WALKING
     wizard.act_on(Intent(KeyAction.RUN))
     assert heard == []
     wizard.act_on(Intent(KeyAction.UNDO))

@@ -17,8 +17,9 @@ from app.widgets.rail_row import StepState
 from app.wizard import wizard as wizard_module
 from app.wizard.free_motion.step import FreeMotionStep
 from app.wizard.standing.step import StandStillStep
+from app.wizard.step import StepId
 from app.wizard.visit import Visit
-from app.wizard.wizard import RESULTS, SENSORS, WALKING, Wizard
+from app.wizard.wizard import Wizard
 from app.workers.library_controller import LibraryController
 from core.body import Site
 from core.calibration.rest import rest_of
@@ -51,28 +52,28 @@ def wizard(
     qapp.setStyleSheet("")
 
 
-def landed(qtbot: QtBot, wizard: Wizard, left: Visit) -> int:
+def landed(qtbot: QtBot, wizard: Wizard, left: Visit) -> StepId:
     """Open the session that was left as Home does, and say at which step that is."""
     assert left.session is not None
     wizard.show_session(left.session.id)
     qtbot.waitUntil(lambda: wizard.current is not None and wizard.shell.page is not None, timeout=WAIT_MS)
     assert wizard.current is not None
-    return wizard.steps.index(wizard.current)
+    return wizard.step_id
 
 
 def test_a_session_is_taken_up_where_something_is_to_be_done(qtbot: QtBot, wizard: Wizard, left: Visit) -> None:
     record(qtbot, left, RecordingKind.STANDING, 0.5)
-    assert landed(qtbot, wizard, left) == SENSORS
+    assert landed(qtbot, wizard, left) == StepId.SENSORS
     walk = record(qtbot, left, RecordingKind.WALKING, 0.5)
-    assert landed(qtbot, wizard, left) == WALKING  # nobody has said yet whether it is kept
+    assert landed(qtbot, wizard, left) == StepId.WALKING  # nobody has said yet whether it is kept
     left.recordings.keep(walk, is_kept=True)
     qtbot.waitUntil(lambda: left.recordings.walks[0].stored.is_decided, timeout=WAIT_MS)
-    assert landed(qtbot, wizard, left) == RESULTS
+    assert landed(qtbot, wizard, left) == StepId.RESULTS
     assert left.controller.state is not None
     library = left.controller.state.library.library
     files = {journal.segment: journal.sha256 for journal in walk.stored.journals}
     library.recordings.close(walk.id, RecordingState.RECOVERED, files)
-    assert landed(qtbot, wizard, left) == WALKING  # where it is kept or discarded
+    assert landed(qtbot, wizard, left) == StepId.WALKING  # where it is kept or discarded
 
 
 def test_what_a_crash_cut_short_is_not_done(qtbot: QtBot, left: Visit) -> None:
@@ -89,13 +90,13 @@ def test_what_a_crash_cut_short_is_not_done(qtbot: QtBot, left: Visit) -> None:
     rest(2.1)
     assert (stands.state, stands.note) == (StepState.TODO, "")
     rest(3.0)
-    assert (stands.state, stands.note) == (StepState.DONE, "3.0 s, zero set")
+    assert (stands.state, stands.note) == (StepState.DONE, "3.0 s, standing reference")
     assert moves.state is StepState.DONE
     recovered = replace(moved, stored=replace(moved.stored, state=RecordingState.RECOVERED))
     left.recordings.every = tuple(
         recovered if recording.id == moved.id else recording for recording in left.recordings.every
     )
-    assert (moves.state, moves.note) == (StepState.ATTENTION, "cut short")
+    assert (moves.state, moves.note) == (StepState.ATTENTION, "stopped early")
 
 
 @pytest.mark.endurance

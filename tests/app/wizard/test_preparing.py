@@ -6,7 +6,8 @@ from pytestqt.qtbot import QtBot
 from app.acquisition.acquisition import Acquisition
 from app.results.result_page import ResultPage
 from app.wizard import wizard as wizard_module
-from app.wizard.wizard import FREE_MOTION, PATIENT, REPORT, RESULTS, SENSORS, STAND_STILL, WALKING, Wizard
+from app.wizard.step import StepId
+from app.wizard.wizard import Wizard
 from app.wizard.worn_sensors import SourceChoice
 from app.workers.preload import preload
 from core.body import LEG_SITES
@@ -30,9 +31,9 @@ def test_all_pages_are_made_while_the_first_is_looked_at(qtbot: QtBot, preparing
     preparing.begin(None)
     qtbot.waitUntil(lambda: not preparing.to_prepare, timeout=WAIT_MS)
     made = preparing.shell.pages
-    assert set(made) == set(range(PATIENT, REPORT + 1))
-    assert preparing.shell.page is made[PATIENT]
-    assert made[RESULTS].findChildren(ResultPage)
+    assert set(made) == set(StepId)
+    assert preparing.shell.page is made[StepId.PATIENT]
+    assert made[StepId.RESULTS].findChildren(ResultPage)
 
 
 def test_nothing_is_made_ahead_amid_a_recording(
@@ -41,7 +42,7 @@ def test_nothing_is_made_ahead_amid_a_recording(
     monkeypatch.setattr(Wizard, "is_recording", True)
     preparing.begin(None)
     qtbot.wait(50)
-    assert list(preparing.shell.pages) == [PATIENT]
+    assert list(preparing.shell.pages) == [StepId.PATIENT]
 
 
 @pytest.mark.endurance
@@ -60,17 +61,17 @@ def test_a_whole_session_never_holds_up_the_screen(
     visit.patient.edit(Patient(code="DEMO-9"))
     visit.patient.commit()
     qtbot.waitUntil(lambda: visit.patient.stored is not None, timeout=WAIT_MS)
-    wizard.go_to(SENSORS)
+    wizard.go_to(StepId.SENSORS)
     qtbot.waitUntil(lambda: visit.session is not None, timeout=WAIT_MS)
     visit.sensors.search(visit.choices[0])
     qtbot.waitUntil(lambda: bool(visit.sensors.status), timeout=WAIT_MS)
     visit.sensors.assign_all(dict(zip(visit.sensors.status, LEG_SITES, strict=True)))
     qtbot.wait(LOOK_MS)
-    wizard.go_to(STAND_STILL)
+    wizard.go_to(StepId.STAND_STILL)
     qtbot.wait(LOOK_MS)
     wizard.press_primary()
-    qtbot.waitUntil(lambda: wizard.step_number == FREE_MOTION, timeout=WAIT_MS)
-    qtbot.waitUntil(lambda: wizard.step_number == WALKING, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: wizard.step_id is StepId.FREE_MOTION, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: wizard.step_id is StepId.WALKING, timeout=WAIT_MS)
     qtbot.wait(LOOK_MS)
     wizard.press_primary()
     qtbot.waitUntil(lambda: wizard.is_recording, timeout=WAIT_MS)
@@ -78,7 +79,7 @@ def test_a_whole_session_never_holds_up_the_screen(
     wizard.press_primary()
     qtbot.waitUntil(lambda: bool(visit.recordings.walks) and not visit.evaluation.is_busy, timeout=WAIT_MS)
     visit.recordings.keep(visit.recordings.walks[-1], True)
-    for step in (RESULTS, REPORT, PATIENT):
+    for step in (StepId.RESULTS, StepId.REPORT, StepId.PATIENT):
         wizard.go_to(step)
         qtbot.wait(3 * LOOK_MS)
     qtbot.waitUntil(lambda: visit.preview.is_idle, timeout=WAIT_MS)

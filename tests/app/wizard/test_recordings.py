@@ -59,7 +59,7 @@ def test_no_call_of_the_library_holds_up_a_recording(
             assert acquisition._writer is None
         assert ended == []
         assert [what for what, _ in told] == ["The library does not respond.", "The recording is not loaded yet."] * 2
-        assert ["written to the disk all the same" in then for _, then in told] == [True, False] * 2
+        assert ["The recording is still written to the disk" in then for _, then in told] == [True, False] * 2
         assert ["safe on the disk" in then for _, then in told] == [False, True] * 2
     finally:
         over.set()

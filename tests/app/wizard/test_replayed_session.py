@@ -9,7 +9,8 @@ import pytest
 from pytestqt.qtbot import QtBot
 
 from app.wizard.sensors.step import SensorsStep
-from app.wizard.wizard import FREE_MOTION, RESULTS, SENSORS, STAND_STILL, WALKING, Wizard
+from app.wizard.step import StepId
+from app.wizard.wizard import Wizard
 from core.analysis import analyse
 from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site
 from core.results import Analysis
@@ -32,14 +33,14 @@ def lead_to_standing(qtbot: QtBot, wizard: Wizard, folder: Path) -> None:
     visit.patient.edit(Patient(code="DEMO-8"))
     with qtbot.waitSignal(visit.patient.changed, timeout=WAIT_MS):
         visit.patient.commit()
-    wizard.go_to(SENSORS)
+    wizard.go_to(StepId.SENSORS)
     sensors = wizard.current
     assert isinstance(sensors, SensorsStep)
     with qtbot.waitSignal(visit.sensors.opened, timeout=WAIT_MS):
         sensors.stored.replay_folder(folder)
     assert set(visit.sensors.sensor_at) == set(LEG_SITES)
     wizard.press_primary()
-    assert wizard.step_number == STAND_STILL
+    assert wizard.step_id is StepId.STAND_STILL
 
 
 def record_walk(qtbot: QtBot, wizard: Wizard, seconds: float) -> None:
@@ -55,7 +56,7 @@ def record_walk(qtbot: QtBot, wizard: Wizard, seconds: float) -> None:
 def results(qtbot: QtBot, wizard: Wizard) -> Analysis:
     visit = wizard.visit
     assert visit is not None
-    wizard.go_to(RESULTS)
+    wizard.go_to(StepId.RESULTS)
     qtbot.waitUntil(lambda: not visit.evaluation.is_busy and visit.evaluation.analysis is not None, timeout=WAIT_MS)
     analysis = visit.evaluation.analysis
     assert analysis is not None
@@ -75,11 +76,11 @@ def test_the_demonstrations_folder_gives_what_its_analysis_gives(qtbot: QtBot, w
     write_session(simulate(DEMONSTRATION).session, folder)
     lead_to_standing(qtbot, wizard, folder)
     wizard.press_primary()
-    qtbot.waitUntil(lambda: wizard.step_number == FREE_MOTION, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: wizard.step_id is StepId.FREE_MOTION, timeout=WAIT_MS)
     qtbot.wait(30_000)
-    if wizard.step_number == FREE_MOTION:
+    if wizard.step_id is StepId.FREE_MOTION:
         wizard.press_primary()
-    qtbot.waitUntil(lambda: wizard.step_number == WALKING, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: wizard.step_id is StepId.WALKING, timeout=WAIT_MS)
     record_walk(qtbot, wizard, 20.0)
     analysis, stored = results(qtbot, wizard), analyse(read_session(folder))
     visit = wizard.visit
@@ -102,10 +103,10 @@ def test_a_real_walk_without_standing_goes_as_far(
     folder = tmp_path / "real"
     write_session(Session((Recording("walk 1", RecordingKind.WALKING, "walk_1", imported.imu),)), folder)
     lead_to_standing(qtbot, wizard, folder)
-    wizard.go_to(FREE_MOTION)
+    wizard.go_to(StepId.FREE_MOTION)
     qtbot.wait(12_000)
     wizard.press_primary()
-    qtbot.waitUntil(lambda: wizard.step_number == WALKING, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: wizard.step_id is StepId.WALKING, timeout=WAIT_MS)
     record_walk(qtbot, wizard, 24.0)
     analysis = results(qtbot, wizard)
     visit = wizard.visit

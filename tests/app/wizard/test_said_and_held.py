@@ -17,7 +17,8 @@ from app.storage.exchange import import_session
 from app.storage.opened import OpenedLibrary
 from app.system.settings import Settings
 from app.theme.notifier import ThemeNotifier
-from app.wizard.wizard import RESULTS, WALKING, Wizard
+from app.wizard.step import StepId
+from app.wizard.wizard import Wizard
 from app.workers.library_controller import LibraryController
 from core.samples import Session
 from tests.safety.random_keys import play
@@ -61,8 +62,8 @@ def session_in_sight(qtbot: QtBot, wizard: Wizard, opened: OpenedLibrary) -> Any
     wizard.show_session(line.id)
     visit = wizard.visit
     assert visit is not None
-    qtbot.waitUntil(lambda: wizard.step_number == RESULTS and not visit.evaluation.is_busy, timeout=WAIT_MS)
-    wizard.go_to(WALKING)
+    qtbot.waitUntil(lambda: wizard.step_id is StepId.RESULTS and not visit.evaluation.is_busy, timeout=WAIT_MS)
+    wizard.go_to(StepId.WALKING)
     return SimpleNamespace(screens=SimpleNamespace(currentWidget=lambda: wizard), home=None, wizard=wizard)
 
 
@@ -99,7 +100,7 @@ def test_what_is_said_otherwise_of_a_session_is_seen(session_in_sight: Any, held
 
 def test_what_is_said_otherwise_on_home_is_seen(home_in_sight: Any, held: HeldLibrary, alter: Alter) -> None:
     assert contradictions(home_in_sight, held) == []
-    home_in_sight.home.banner.tell("The program was closed while recording. 00:14 of walk 1 was recovered.")
+    home_in_sight.home.banner.tell("The program closed during recording. 00:14 of walk 1 was recovered.")
     for statement, words in (
         ("UPDATE sessions SET is_simulated = 0", "simulated, it is not held as such"),
         ("UPDATE recordings SET condition = 'else'", "home says conditions"),
@@ -113,7 +114,7 @@ def test_what_is_said_otherwise_on_home_is_seen(home_in_sight: Any, held: HeldLi
 
 
 def test_a_banner_that_is_hidden_says_nothing(home_in_sight: Any, held: HeldLibrary) -> None:
-    home_in_sight.home.banner.tell("The program was closed while recording. 00:05 of standing 6 was recovered.")
+    home_in_sight.home.banner.tell("The program closed during recording. 00:05 of standing 6 was recovered.")
     assert any("no recovered 'standing 6'" in one for one in contradictions(home_in_sight, held))
     home_in_sight.home.banner.hide()  # as where another library is opened
     assert contradictions(home_in_sight, held) == []

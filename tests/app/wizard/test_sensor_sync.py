@@ -56,7 +56,7 @@ class _Shown(SensorSync):
 @pytest.mark.parametrize(
     ("left_s", "attempt", "sentence", "title"),
     [
-        (22.0, 1, "About 25 s are left.", "The sensors are being synchronised"),
+        (22.0, 1, "About 25 s left.", "The sensors are being synchronised"),
         (4.0, 2, "", "Some sensors did not synchronise: all are being synchronised again"),
         (None, 1, "", "The sensors are being synchronised"),
     ],

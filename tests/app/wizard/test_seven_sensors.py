@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.storage.analysis_content import packed
-from app.storage.exchange import export_session, session_with_samples
+from app.storage.exchange import session_with_samples
 from app.theme.notifier import ThemeNotifier
 from app.wizard.free_motion.step import FreeMotionStep
 from app.wizard.sensors.replays import replay_of
@@ -29,8 +29,10 @@ from devices.decoders import DECODERS
 from devices.files.session_folder import read_session
 from devices.simulation.replay import ReplaySource
 from devices.simulation.walker import DEMONSTRATION, FreeMotion, Motion, Standing, Walk, simulate
+from tests.app.storage.library.folder_export import write_folder
 from tests.app.wizard.begun_visit import begin, record
 from tests.app.wizard.conftest import SPEED
+from tests.app.wizard.pressing import press
 
 HIPS = {hip_of(side) for side in Side}
 LIVE_SPEED = 4.0
@@ -64,10 +66,10 @@ def test_the_pelvis_stays_where_sides_are_changed() -> None:
         (tuple(Site), ""),
         (
             tuple(site for site in Site if site is not Site.LEFT_THIGH),
-            "Without L thigh: no left knee, left hip angles.",
+            "No sensor at L thigh: no angles for left knee, left hip.",
         ),
         (LEG_SITES, ""),  # nobody asked for hips
-        (LEG_SITES[1:], "Without L thigh: no left knee angles."),
+        (LEG_SITES[1:], "No sensor at L thigh: no angles for left knee."),
     ],
 )
 def test_what_is_missing_costs_hips_only_where_there_is_a_pelvis(
@@ -128,7 +130,7 @@ def test_all_that_is_kept_of_a_session_holds_the_pelvis(
     assert played.worn["DEMO-pelvis"] is Site.PELVIS
     for is_identified in (False, True):
         folder = tmp_path / f"{is_identified}"
-        export_session(opened, stored.id, folder, DECODERS, lambda *_: None, is_identified=is_identified)
+        write_folder(opened, stored.id, folder, DECODERS, is_identified=is_identified)
         assert len(list(folder.rglob("pelvis.csv"))) == len(stored.recordings)
         session = read_session(folder)
         assert all(Site.PELVIS in recording.imu for recording in session.recordings)
@@ -183,7 +185,7 @@ def test_live_hips_are_thin_then_sure_and_a_silent_pelvis_costs_them_alone(
     page = step.page
     assert page.charts.hip.isVisible() is False  # the walks stand there until one is recorded
     with qtbot.waitSignal(visit.recordings.begun, timeout=10_000):
-        step.on_primary()
+        press(step)
     qtbot.waitUntil(lambda: set(page.live.hips) == set(Side), timeout=20_000)
     assert page.charts.hip.isVisible()
     assert page.live.hips[Side.LEFT].is_provisional
@@ -192,15 +194,15 @@ def test_live_hips_are_thin_then_sure_and_a_silent_pelvis_costs_them_alone(
     assert np.nanmax(hip_deg) - np.nanmin(hip_deg) > 25.0
     pelvis = visit.sensors.sensor_at[Site.PELVIS]
     source.silence(pelvis)
-    qtbot.waitUntil(lambda: page.notice.text.startswith("The pelvis has been silent"), timeout=20_000)
-    assert "so do knees and ankles" in page.notice.text
+    qtbot.waitUntil(lambda: page.notice.text.startswith("Pelvis: no signal for"), timeout=20_000)
+    assert "Recording continues, including knees and ankles" in page.notice.text
     assert page.live.missing == (Site.PELVIS,)
     assert page.live.now_s - page.live.knees[Side.LEFT].time_s[-1] < 1.0
     assert page.live.now_s - page.live.hips[Side.LEFT].time_s[-1] > 1.0
     source.wake(pelvis)
     qtbot.waitUntil(lambda: page.notice.text.startswith("Pelvis is back"), timeout=20_000)
     with qtbot.waitSignal(visit.recordings.ended, timeout=20_000):
-        step.on_primary()
+        press(step)
     walk = visit.recordings.walks[-1]
     assert walk.read_back is not None
     assert Site.PELVIS in walk.read_back.imu
@@ -243,7 +245,7 @@ def test_live_standing_does_not_wait_for_a_silent_pelvis(
     qtbot.addWidget(step.page)
     looked.append(Looked(step))
     with qtbot.waitSignal(visit.recordings.ended, timeout=30_000):
-        step.on_primary()
+        press(step)
     assert set(visit.rests) == set(worn) - {"DEMO-pelvis"}
 
 

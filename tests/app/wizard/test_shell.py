@@ -11,7 +11,7 @@ from pytestqt.qtbot import QtBot
 
 from app.theme.icons import Icon
 from app.theme.notifier import ThemeNotifier, load_fonts
-from app.widgets.action_bar import BarAction, BarState, RecordingNote
+from app.widgets.action_bar import BarState, RecordingNote
 from app.widgets.rail_row import RailForm, RailRow, StepState
 from app.widgets.sensor_strip import SensorStrip
 from app.widgets.sensor_tile import SensorTile
@@ -20,8 +20,10 @@ from app.widgets.step_rail import wizard_below
 from app.wizard import shell as shell_module
 from app.wizard.free_motion.page import FreeMotionPage
 from app.wizard.shell import StripMode, WizardShell
+from app.wizard.step import StepId
 from app.wording.translation import tr, use_language
 from core.body import LEG_SITES, Site
+from tests.app.idle_action import idle
 from tests.app.room import settle, words_cut
 
 RECORDING = ("Recording Alignment C", "Saved as it comes in. The space bar stops it, with a sound.")
@@ -50,20 +52,20 @@ def fine() -> dict[Site, SensorTile]:
 
 def stop_early() -> BarState:
     note = tr("Stopping now leaves the left knee with range only, without absolute angles.")
-    stop = BarAction(tr("Stop early"), tr("Space"), Icon.STOP, is_wished=False)
-    return BarState(stop, quiet=(BarAction(tr("Repeat one leg"), icon=Icon.REPEAT),), note=note)
+    stop = idle(tr("Stop early"), tr("Space"), Icon.STOP, is_wished=False)
+    return BarState(stop, quiet=(idle(tr("Repeat one leg"), icon=Icon.REPEAT),), note=note)
 
 
 def recording() -> BarState:
     title, note = (tr(words) for words in RECORDING)
     return BarState(
-        BarAction(tr("Stop walk"), tr("Space"), Icon.STOP), recording=RecordingNote(title, note, 17.0, has_sound=True)
+        idle(tr("Stop walk"), tr("Space"), Icon.STOP), recording=RecordingNote(title, note, 17.0, has_sound=True)
     )
 
 
 def reconnect() -> BarState:
-    wished = BarAction(tr("Reconnect R foot"), tr("Enter"), Icon.REPEAT)
-    return BarState(wished, others=(BarAction(tr("Go on without right ankle")),))
+    wished = idle(tr("Reconnect R foot"), tr("Enter"), Icon.REPEAT)
+    return BarState(wished, others=(idle(tr("Continue without right ankle")),))
 
 
 def filled(look: ThemeNotifier) -> WizardShell:
@@ -104,7 +106,7 @@ def shell(look: ThemeNotifier, qtbot: QtBot, monkeypatch: pytest.MonkeyPatch) ->
     qtbot.addWidget(shell)
     shell.resize(1280, 800)
     shell.show()
-    shell.show_page(0, Page())
+    shell.show_page(StepId.PATIENT, Page())
     settle()
     return shell
 
@@ -150,14 +152,14 @@ def test_a_page_is_told_its_room_in_px_of_the_design(shell: WizardShell, look: T
     assert page is not None
     assert told[-1] == (True, page.width() / 2, page.height() / 2)
     told.clear()
-    shell.show_page(1, Page())
+    shell.show_page(StepId.SENSORS, Page())
     assert told
 
 
 def test_a_question_above_the_gauges_pushes_none_out_of_sight(shell: WizardShell, look: ThemeNotifier) -> None:
     page = FreeMotionPage(look)
-    shell.show_page(7, page)
-    page.ask("Both legs moved at once. Which one wears 0A31 on its shank?", "", ("Left", "Right"))
+    shell.show_page(StepId.PATIENT, page)
+    page.ask("Both legs moved at once. Which leg has 0A31 on the shank?", "", ("Left", "Right"))
     settle()
     assert page.question.isVisible()
     assert page.height() <= shell._scroll.viewport().height()
@@ -167,16 +169,16 @@ def test_a_question_above_the_gauges_pushes_none_out_of_sight(shell: WizardShell
 def test_a_page_with_nothing_to_press_leaves_the_focus_to_the_bar(shell: WizardShell, look: ThemeNotifier) -> None:
     page = SentencePage(look)
     page.show_sentence("The results are saved.")
-    shell.show_page(7, page)
+    shell.show_page(StepId.PATIENT, page)
     assert shell.focusWidget() is shell.bar.primary
     page.show_sentence("No walk is included yet.", button="Go to Walking")
-    shell.show_page(7, page)
+    shell.show_page(StepId.PATIENT, page)
     assert shell.focusWidget() is page.button
 
 
 def test_a_page_comes_into_sight_with_the_focus_where_reading_starts(shell: WizardShell) -> None:
     page = Page()
-    shell.show_page(3, page)
+    shell.show_page(StepId.FREE_MOTION, page)
     assert shell.page is page
     assert shell.focusWidget() is page.first
 
@@ -186,8 +188,8 @@ def test_the_page_that_was_there_fades_and_leaves_nothing(look: ThemeNotifier, q
     qtbot.addWidget(shell)
     shell.resize(900, 600)
     shell.show()
-    shell.show_page(0, Page())
-    shell.show_page(1, Page())
+    shell.show_page(StepId.PATIENT, Page())
+    shell.show_page(StepId.SENSORS, Page())
     qtbot.waitUntil(lambda: not shell._fade.isVisible(), timeout=2000)
 
 
@@ -232,7 +234,7 @@ def test_the_folded_strip_is_a_region_of_its_own_and_a_hidden_one_is_none(shell:
 def test_the_folded_strip_opens_at_a_press(shell: WizardShell) -> None:
     shell.set_strip_mode(StripMode.FOLDED)
     assert not shell.strip.isVisible()
-    assert shell.header.fold.text() == "6 sensors, all heard"
+    assert shell.header.fold.text() == "6 sensors, all connected"
     told = QAccessible.queryAccessibleInterface(shell.header.fold)
     assert (told.role(), bool(told.state().checked)) == (QAccessible.Role.CheckBox, False)
     QTest.mouseClick(shell.header.fold, Qt.MouseButton.LeftButton)
@@ -293,7 +295,7 @@ def test_a_banner_that_comes_while_recording_pushes_nothing(shell: WizardShell) 
 
 
 def test_the_toast_stands_above_the_bar_at_its_left(shell: WizardShell) -> None:
-    shell.toast.offer("Walk 2 discarded.")
+    shell.toast.offer("Walk 2 excluded.")
     settle()
     assert shell.toast.geometry().bottom() < shell.bar.mapTo(shell, QPoint(0, 0)).y()
     assert shell.toast.x() == shell.rail.width() + 24
@@ -356,7 +358,7 @@ def test_no_word_of_the_frame_is_cut(
     shell.strip.show_at_once(bad)
     for state in (stop_early(), recording(), reconnect()):
         shell.bar.show_state(state)
-        shell.toast.offer(tr("Walk 2 discarded."))
+        shell.toast.offer(tr("Walk 2 excluded."))
         assert words_cut(shell) == []
         assert shell.size().toTuple() == size
 
@@ -369,7 +371,7 @@ def test_tab_goes_past_a_list_that_folds_out(shell: WizardShell) -> None:
     choice.view()  # Qt makes its window when it is first asked for
     for widget in (choice, button):
         column.addWidget(widget)
-    shell.show_page(1, page)  # Qt's warnings fail a test
+    shell.show_page(StepId.SENSORS, page)  # Qt's warnings fail a test
     choice.setFocus()
     QTest.keyClick(choice, Qt.Key.Key_Tab)
     assert button.hasFocus()

@@ -6,9 +6,9 @@ from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
 from app.wizard.keys import Intent, KeyAction
-from app.wizard.step import Step
+from app.wizard.step import Step, StepId
 from app.wizard.walking.step import WalkingStep
-from app.wizard.wizard import WALKING, Wizard
+from app.wizard.wizard import Wizard
 
 
 def test_the_wizard_tells_its_keys_whether_a_step_takes_a_clicker(
@@ -16,7 +16,7 @@ def test_the_wizard_tells_its_keys_whether_a_step_takes_a_clicker(
 ) -> None:
     wizard.begin(None)
     pressed: list[Intent] = []
-    step = wizard.steps[WALKING]
+    step = wizard.steps[StepId.WALKING]
     assert isinstance(step, WalkingStep)
 
     def take(_step: Step, intent: Intent) -> bool:

@@ -20,8 +20,9 @@ from app.storage.stored import BEGINNING, LibraryError, Limits, PlacedSensor
 from app.storage.three_way import Value
 from app.wizard.report.step import ReportStep
 from app.wizard.results.stride_choice import StrideChoice
+from app.wizard.step import StepId
 from app.wizard.visit import Visit
-from app.wizard.wizard import SENSORS, Wizard
+from app.wizard.wizard import Wizard
 from app.workers.library_controller import LibraryController
 from core.body import Joint, Side, Site
 from core.samples import Patient, Recording, RecordingKind, SensorInfo, Session
@@ -221,18 +222,18 @@ def test_going_on_from_the_patient_waits_for_the_answer(qtbot: QtBot, wizard: Wi
     visit.patient.edit(replace(visit.patient.details, height_m=1.82))
     wizard.press_primary()
     dialog = dialog_of(qtbot, wizard)
-    assert wizard.step_number != SENSORS
+    assert wizard.step_id is not StepId.SENSORS
     answer(dialog, Qt.Key.Key_Escape)
-    qtbot.waitUntil(lambda: wizard.step_number == SENSORS, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: wizard.step_id is StepId.SENSORS, timeout=WAIT_MS)
     assert other.told.height_m == 1.80
 
 
 def test_words_of_the_report_typed_at_both_stations_are_asked_about(
     qtbot: QtBot, wizard: Wizard, ours: Visit, other: OtherStation
 ) -> None:
-    step = wizard.steps[-1]
+    step = wizard.steps[StepId.REPORT]
     assert isinstance(step, ReportStep)
-    wizard.shell.add_page(wizard.steps.index(step), step.page)
+    wizard.shell.add_page(step.id, step.page)
     report = step.page.report
     other.say_of_session({"comment": "The left foot drags."})
     report.comment.setPlainText("Keep alignment C.")
@@ -297,7 +298,7 @@ def test_strides_left_out_at_both_stations_are_all_left_out(qtbot: QtBot, ours: 
     ours.recordings.change(walk, lambda told: replace(told, left_out_s={Side.LEFT: (7.0,)}))
     settle(qtbot, ours, other, lambda: other.walk.left_out_s == {Side.LEFT: (4.0, 7.0)})
     qtbot.waitUntil(lambda: bool(ear.heard), timeout=WAIT_MS)
-    assert "Strides left out, left: 2 strides: 4.0 s, 7.0 s" in ear.heard[0]
+    assert "Strides excluded, left: 2 strides: 4.0 s, 7.0 s" in ear.heard[0]
     choice = StrideChoice(ours.recordings, ours)
     choice.take_all_in("walk 1")
     settle(qtbot, ours, other, lambda: other.walk.left_out_s == {})
@@ -364,10 +365,10 @@ def test_what_is_refused_by_another_station_after_the_visit_was_left_is_still_as
 
 def report_of(wizard: Wizard) -> ReportStep:
     """The last step, in sight."""
-    step = wizard.steps[-1]
+    step = wizard.steps[StepId.REPORT]
     assert isinstance(step, ReportStep)
-    wizard.shell.add_page(wizard.steps.index(step), step.page)
-    wizard.go_to(len(wizard.steps) - 1)
+    wizard.shell.add_page(step.id, step.page)
+    wizard.go_to(StepId.REPORT)
     return step
 
 

@@ -18,9 +18,10 @@ from app.storage.stored import RecordingState
 from app.system.settings import Settings
 from app.theme.notifier import ThemeNotifier, load_fonts
 from app.wizard import wizard as wizard_module
+from app.wizard.step import StepId
 from app.wizard.visit import Visit
 from app.wizard.walking.step import WalkingStep
-from app.wizard.wizard import WALKING, Wizard
+from app.wizard.wizard import Wizard
 from app.wizard.worn_sensors import SourceChoice
 from app.workers.library_controller import LibraryController
 from core.body import LEG_SITES, Site
@@ -192,7 +193,7 @@ def test_a_whole_day_on_which_the_disk_comes_and_goes(
     assert visit is not None
     monkeypatch.setattr("app.wizard.reading_back.READ_AGAIN_MS", 100)
     begin(qtbot, visit, worn)
-    wizard._go_to(WALKING)
+    wizard._go_to(StepId.WALKING)
     start_walk(qtbot, visit)
     qtbot.wait(300)
     began_s = time.monotonic()

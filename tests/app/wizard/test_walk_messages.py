@@ -8,7 +8,6 @@ from app.theme.notifier import ThemeNotifier
 from app.wizard.losses import NOTHING
 from app.wizard.visit import Visit
 from app.wizard.walk_messages import (
-    clock,
     few_strides_message,
     lacks_message,
     loose_message,
@@ -19,6 +18,7 @@ from app.wizard.walking.step import WalkingStep
 from core.body import LEG_SITES, Side, Site
 from core.samples import RecordingKind
 from tests.app.wizard.begun_visit import begin, record
+from tests.app.wizard.pressing import press
 
 FEET = frozenset((Site.LEFT_FOOT, Site.RIGHT_FOOT))
 ALL = frozenset(LEG_SITES)
@@ -40,7 +40,7 @@ def test_strides_that_are_not_counted_live_are_told(worn: frozenset[Site], said:
 
 def test_angles_are_promised_for_when_they_come() -> None:
     assert "five strides" in no_angles_message(ALL)[1]
-    assert "once the walk is stopped" in no_angles_message(ALL - FEET)[1]
+    assert "They appear when the walk has been stopped" in no_angles_message(ALL - FEET)[1]
 
 
 @pytest.mark.parametrize(
@@ -48,8 +48,8 @@ def test_angles_are_promised_for_when_they_come() -> None:
     [
         ((), ""),
         ((Lack("DOT 0003", lost=12),), "Samples of A Shoes could not be fetched: DOT 0003 12."),
-        ((Lack("DOT 0003", 12), Lack("DOT 0004", 0, 20.4)), "DOT 0004 ended 20 s before A Shoes was stopped."),
-        ((Lack("DOT 0003", is_end_known=False),), "DOT 0003 did not say where A Shoes ends."),
+        ((Lack("DOT 0003", 12), Lack("DOT 0004", 0, 20.4)), "DOT 0004 stopped 20 s before the end of A Shoes."),
+        ((Lack("DOT 0003", is_end_known=False),), "DOT 0003 did not report the end of A Shoes."),
     ],
 )
 def test_what_could_not_be_fetched_is_told_the_gravest_first(lacks: tuple[Lack, ...], said: str) -> None:
@@ -57,18 +57,16 @@ def test_what_could_not_be_fetched_is_told_the_gravest_first(lacks: tuple[Lack, 
 
 
 def test_sensors_without_one_clock_are_named_or_said_to_drift() -> None:
-    assert loose_message(["DOT 0003"])[0] == "Not on the common clock: DOT 0003."
+    assert loose_message(["DOT 0003"])[0] == "Not synchronised: DOT 0003."
     assert "half an hour ago" in loose_message([])[0]
 
 
 def test_only_what_is_short_of_a_spread_is_told() -> None:
     assert few_strides_message({Side.LEFT: 12}) == NOTHING
-    assert few_strides_message({Side.LEFT: 12, Side.RIGHT: 4})[0] == "Only 4 right strides, 10 make a spread."
-    assert few_strides_message({Side.LEFT: 9})[0] == "Only 9 left strides, 10 make a spread."
-
-
-def test_a_clock_shows_minutes_and_no_negative_time() -> None:
-    assert (clock(41.9), clock(605.0), clock(-3.0)) == ("0:41", "10:05", "0:00")
+    assert (
+        few_strides_message({Side.LEFT: 12, Side.RIGHT: 4})[0] == "Only 4 right strides; a standard deviation needs 10."
+    )
+    assert few_strides_message({Side.LEFT: 9})[0] == "Only 9 left strides; a standard deviation needs 10."
 
 
 def test_who_walks_without_foot_sensors_reads_why_nothing_is_counted(
@@ -83,9 +81,9 @@ def test_who_walks_without_foot_sensors_reads_why_nothing_is_counted(
     qtbot.addWidget(step.page)
     step.enter()
     with qtbot.waitSignal(visit.recordings.begun, timeout=10_000):
-        step.on_primary()
+        press(step)
     step.tick()
     assert step.page.notice.text.startswith("No foot sensors: strides are counted after the walk.")
     with qtbot.waitSignal(visit.recordings.ended, timeout=10_000):
-        step.on_primary()
+        press(step)
     step.leave()

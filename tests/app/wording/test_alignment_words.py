@@ -27,7 +27,7 @@ B = AlignmentChange(
 def test_a_list_says_each_thing_that_was_done() -> None:
     assert change_lines(B) == [
         ("Foot, anterior screw", "½ out, +2° plantar"),
-        ("Foot, shift", "4 mm back"),
+        ("Foot, shift", "4 mm posterior"),
         ("Pylon, height", "+3 mm"),
         ("Pylon", "new clamp"),
     ]
@@ -54,7 +54,7 @@ def test_what_is_to_be_done_to_return_turns_every_direction_round() -> None:
         (PartChange(FRONT, angle_deg=-1.5), "+1.5° dorsal"),
         (PartChange(ProsthesisPart.FOOT_ROTATION, angle_deg=-3.0), "+3° toes in"),
         (PartChange(ProsthesisPart.SOCKET_OUTER_SCREW, angle_deg=1.0), "+1° abduction"),
-        (PartChange(ProsthesisPart.SOCKET_INNER_SCREW, shift_mm=-2.0), "2 mm inwards"),
+        (PartChange(ProsthesisPart.SOCKET_INNER_SCREW, shift_mm=-2.0), "2 mm medial"),
         (PartChange(ProsthesisPart.KNEE_UNIT, angle_deg=-1.0), "\N{MINUS SIGN}1°"),
     ],
 )

@@ -24,7 +24,7 @@ from app.storage.library import Library
 from app.storage.opened import OpenedLibrary, held_alone, open_library
 from app.storage.slots import Cost
 from app.storage.stored import LibraryError, Operator, Role, StoredPatient
-from app.workers.background import Report
+from app.system.progress import Report
 from app.workers.library_controller import LibraryController
 from app.workers.library_state import Joined, LibraryPlace, OpenedState
 from app.workers.library_watch import LibraryWatch
@@ -64,11 +64,20 @@ def test_the_passphrase_is_not_held_by_a_library_that_is_open(
 ) -> None:
     slots, own = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64)), "words that only this test types"
     slots.set_passphrase(slots.open("hk", PASSPHRASE), "hk", own)
-    for passphrase, signal in ((own, controller.opened), ("words of somebody else", controller.not_opened)):
-        with qtbot.waitSignal(signal, timeout=WAIT_MS):
-            controller.open(folder, passphrase, "hk")
+
+    def let_go_of(passphrase: str) -> None:
         # the thread may be about to let go of it
         qtbot.waitUntil(lambda text=passphrase: not is_held(text), timeout=WAIT_MS)  # type: ignore[misc]  # pytest-qt's types
+
+    for passphrase, signal in (("words of somebody else", controller.not_opened), (own, controller.opened)):
+        with qtbot.waitSignal(signal, timeout=WAIT_MS):
+            controller.open(folder, passphrase, "hk")
+        let_go_of(passphrase)
+    asker = Asker()
+    controller.lock()
+    controller.unlock("hk", own, None, asker.on_done, asker.on_failed, asker)
+    qtbot.waitUntil(lambda: bool(asker.results), timeout=WAIT_MS)
+    let_go_of(own)
 
 
 def is_held(text: str) -> bool:
@@ -319,7 +328,7 @@ def test_a_library_that_another_program_holds_is_not_opened(
     with held_alone(folder), qtbot.waitSignal(controller.not_opened, timeout=WAIT_MS) as told:
         controller.open(folder, PASSPHRASE, "hk")
     assert told.args is not None
-    assert "open with this library already" in told.args[0]
+    assert "This library is already open in Gaitwright" in told.args[0]
     opened(qtbot, controller, folder)
 
 
@@ -554,7 +563,7 @@ def test_what_is_no_address_is_refused_and_leaves_nothing(
     (joined,) = asker.results
     assert isinstance(joined, Joined)
     assert joined.refusal is not None
-    assert "no address" in joined.refusal.what
+    assert "This is not the address of a PostgreSQL server" in joined.refusal.what
     assert not (tmp_path / "station").exists()
 
 
@@ -565,7 +574,7 @@ def test_a_move_that_is_refused_leaves_the_library_open(
     asker = Asker()
     controller.move_to_server("nowhere", "", str(folder), asker.on_done, asker.on_failed, asker.on_progressed, asker)
     qtbot.waitUntil(lambda: bool(asker.refusals), timeout=WAIT_MS)
-    assert "no address" in asker.refusals[0][0]
+    assert "This is not the address of a PostgreSQL server" in asker.refusals[0][0]
     assert controller.state is not None
     assert controller.state.library is state.library
     controller.run(lambda library: library.library.patients.search(), asker.on_done, asker.on_failed, asker)
@@ -578,7 +587,7 @@ def test_a_library_in_a_folder_is_not_brought_back(qtbot: QtBot, controller: Lib
     asker = Asker()
     controller.bring_back(asker.on_done, asker.on_failed, asker.on_progressed, asker)
     qtbot.waitUntil(lambda: bool(asker.refusals), timeout=WAIT_MS)
-    assert "in a folder already" in asker.refusals[0][0]
+    assert "This library is already in a folder" in asker.refusals[0][0]
     assert controller.state is not None
 
 

@@ -123,7 +123,7 @@ def test_what_was_recorded_meanwhile_is_home_once_it_is_back(
     with qtbot.waitSignal(controller.back, timeout=WAIT_MS) as said:
         elsewhere.rename(folder)
     assert said.args is not None
-    assert said.args[1] == "1 recording that was made meanwhile is in it now."
+    assert said.args[1] == "1 recording made meanwhile was added."
     assert [path.name for path in opened.recordings.iterdir()] == [f"{recording_id}.1.journal"]
 
 
@@ -229,7 +229,7 @@ def test_after_a_change_of_the_key_the_library_is_watched_as_before(
     assert opened_of(controller) is not before
     qtbot.wait(1200)
     assert gone.count() == 0
-    with pytest.raises(LibraryError, match="open with this library already"), held_alone(folder):
+    with pytest.raises(LibraryError, match="This library is already open in Gaitwright"), held_alone(folder):
         pass
     elsewhere = folder.with_name("renamed")
     with qtbot.waitSignal(controller.gone, timeout=WAIT_MS):
@@ -238,7 +238,7 @@ def test_after_a_change_of_the_key_the_library_is_watched_as_before(
     with qtbot.waitSignal(controller.back, timeout=WAIT_MS) as said:
         elsewhere.rename(folder)
     assert said.args is not None
-    assert said.args[1] == "1 recording that was made meanwhile is in it now."
+    assert said.args[1] == "1 recording made meanwhile was added."
     (found,) = find_interrupted(opened_of(controller))
     assert (found.recording_id, found.problem) == (recording_id, "")
     assert found.belonging is not None
@@ -278,7 +278,7 @@ def test_the_key_is_not_changed_while_what_was_recorded_waits_and_nobody_is_remo
     controller.change_key("ab", asker.on_done, asker.on_failed, asker.on_progressed, asker)
     qtbot.waitUntil(lambda: asker.has_heard, timeout=WAIT_MS)
     ((what, remedy),) = asker.refusals
-    assert what.startswith("What was recorded while the library was gone is not in it yet")
+    assert what.startswith("Recordings made while the library was unavailable are not in it yet")
     assert str(opened.shelter.folder) in remedy
     assert [one.is_active for one in opened_of(controller).library.operators.list()] == [True, True]
     with qtbot.waitSignal(controller.gone, timeout=WAIT_MS):  # it is watched all the same

@@ -196,7 +196,7 @@ def test_cadence_ends_with_the_walk() -> None:
 
 
 @pytest.mark.parametrize("lost_s", [0.03, 0.2, 0.5, 1.3])
-@pytest.mark.parametrize("how", ["left out", "NaN"])
+@pytest.mark.parametrize("how", ["excluded", "NaN"])
 def test_a_gap_invents_nothing_and_walking_is_told_again_after_the_next_stance(lost_s: float, how: str) -> None:
     foot = walking_feet()[0]
     track, offline = foot.track, gait_of(foot)
@@ -204,7 +204,7 @@ def test_a_gap_invents_nothing_and_walking_is_told_again_after_the_next_stance(l
         is_lost = (track.time_s > from_s) & (track.time_s < from_s + lost_s)
         gyr, acc = track.gyr_rad_s.copy(), track.acc_m_s2.copy()
         gyr[is_lost] = np.nan
-        kept = ~is_lost if how == "left out" else np.ones(len(track), dtype=bool)
+        kept = ~is_lost if how == "excluded" else np.ones(len(track), dtype=bool)
         told = LiveEvents().update(track.time_s[kept], gyr[kept], acc[kept])
         for event in FootEvent:
             expected = getattr(offline, f"{event}_s")

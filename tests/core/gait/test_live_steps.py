@@ -137,7 +137,7 @@ def test_an_axis_that_is_given_helps_whichever_way_it_points(
     np.testing.assert_allclose(found_s[: len(truth.toe_off_s) - 1], truth.toe_off_s[:-1], atol=0.05)
 
 
-@pytest.mark.parametrize("how", ["left out", "NaN"])
+@pytest.mark.parametrize("how", ["excluded", "NaN"])
 @pytest.mark.parametrize(("lost_s", "is_missed"), [(0.03, False), (0.4, True)])
 def test_a_gap_costs_the_step_it_lies_in_and_no_other(
     usual: tuple[ImuBlock, TrueFootEvents], how: str, lost_s: float, is_missed: bool
@@ -146,7 +146,7 @@ def test_a_gap_costs_the_step_it_lies_in_and_no_other(
     from_s = truth.toe_off_s[3] + 0.1  # in swing
     is_lost = (block.time_s > from_s) & (block.time_s < from_s + lost_s)
     gyr = np.where(is_lost[:, None], np.nan, block.gyr_rad_s)
-    kept = ~is_lost if how == "left out" else np.ones(len(block), dtype=bool)
+    kept = ~is_lost if how == "excluded" else np.ones(len(block), dtype=bool)
     told = LiveEvents().update(block.time_s[kept], gyr[kept], block.acc_m_s2[kept])
     contacts_s = times_s(told, "initial_contact")
     apart_s = np.array([np.min(np.abs(contacts_s - at_s)) for at_s in truth.initial_contact_s[:-1]])

@@ -323,7 +323,7 @@ def test_one_that_records_in_its_memory_is_only_asked_for_its_state(radio: Virtu
     dot = wearing.dots[0]
     dot.write(0x1002, bytes.fromhex("10" + "00" * 23 + "7800" + "00" * 6))
     dot.write(0x7001, bytes.fromhex("010740DF503B5BFFFFF5"))
-    with pytest.raises(SourceRefusedError, match="recording in its memory"):
+    with pytest.raises(SourceRefusedError, match="is recording to its memory"):
         wearing.open()
     assert dot.memory.state == 0x40
     assert dot.memory.files == []

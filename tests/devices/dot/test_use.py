@@ -36,7 +36,7 @@ def test_a_rate_is_not_changed_after_synchronising_and_a_recording_at_another_is
     for dot in wearing.dots:
         dot.write(0x1002, bytes.fromhex("10" + "00" * 23 + "7800" + "00" * 6))
     assert [dot.rate_hz for dot in wearing.dots] == [60, 60]
-    with pytest.raises(DotRefusedError, match="does not have the rate"):
+    with pytest.raises(DotRefusedError, match="is not set to the recording rate"):
         radio.run(record(wearing.group.sensors, UTC_S, 120))
 
 
@@ -48,7 +48,7 @@ def test_one_that_says_too_little_of_its_rate_is_a_refusal_and_nobody_records(
     cut = wearing.dots[1]
     whole = cut.read
     monkeypatch.setattr(cut, "read", lambda which: whole(which)[:4] if which == 0x1002 else whole(which))
-    with pytest.raises(DotRefusedError, match="DOT 0002 is out of reach"):
+    with pytest.raises(DotRefusedError, match="DOT 0002 is out of range"):
         radio.run(record(wearing.group.sensors, UTC_S, 120))
     assert [dot.memory.files for dot in wearing.dots] == [[], []]
 

@@ -92,7 +92,7 @@ def test_columns_that_cannot_be_are_refused(wrong: dict[str, object]) -> None:
 
 def test_another_line_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("devices.drivers.csv_serial.SAYS_S", 0.05)
-    with pytest.raises(SourceRefusedError, match="No line of numbers"):
+    with pytest.raises(SourceRefusedError, match="in the expected format"):
         ByteSource(CsvSerial(COLUMNS), ScriptedChannel([b"hello\nhello\n"])).open()
 
 

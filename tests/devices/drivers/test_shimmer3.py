@@ -252,5 +252,5 @@ def test_a_sensor_without_calibration_is_refused_in_words() -> None:
 
 def test_a_port_where_no_sensor_answers_is_refused_in_words(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("devices.drivers.shimmer3.ANSWERS_S", 0.01)
-    with pytest.raises(SourceRefusedError, match="No Shimmer3 answers at script"):
+    with pytest.raises(SourceRefusedError, match="No Shimmer3 responds at script"):
         ByteSource(Shimmer3(), ScriptedChannel()).open()

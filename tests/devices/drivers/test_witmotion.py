@@ -119,7 +119,7 @@ def test_who_sends_no_time_or_nothing_is_refused(monkeypatch: pytest.MonkeyPatch
     monkeypatch.setattr("devices.drivers.witmotion.SAYS_S", 0.05)
     with pytest.raises(SourceRefusedError, match="sends no time"):
         ByteSource(WitMotion(), ScriptedChannel(bursts(200, content=0b1110))).open()
-    with pytest.raises(SourceRefusedError, match="No WitMotion sensor"):
+    with pytest.raises(SourceRefusedError, match="No signal from a WitMotion sensor at"):
         ByteSource(WitMotion(), ScriptedChannel([b"hello"])).open()
 
 

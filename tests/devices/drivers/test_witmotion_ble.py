@@ -9,7 +9,6 @@ from devices.clocks.arrival_clock import ArrivalClock
 from devices.drivers.witmotion import G
 from devices.drivers.witmotion_ble import DRIVER, WitBle, WitBleFramer, WitBleSource, is_wit
 from devices.emulators.bluetooth import Air
-from devices.emulators.witmotion_ble import EmulatedWitBle
 from devices.live import SourceLostError, SourceRefusedError
 from devices.search import search
 from devices.source import SourceInfo
@@ -18,6 +17,7 @@ from devices.transport.bluetooth import Announced
 from devices.transport.notifications import framed
 from tests.devices.bumble_air import ReachedByBumble
 from tests.devices.dot.virtual_time import VirtualRadio
+from tests.devices.drivers.emulated_wit_ble import EmulatedWitBle
 
 FRAME = bytes.fromhex("5561 0008 00F8 0040 0040 00C0 0000 0000 0000 0000")  # 1 g, -1 g, 8 g; 1000, -1000, 0 deg/s
 
@@ -180,7 +180,7 @@ def test_a_link_that_is_lost_is_found_again_and_the_gap_is_counted(radio: Virtua
         measure(1.0)
     source.close()
     radio.pass_s(2.0)
-    with pytest.raises(SourceRefusedError, match="does not answer"):
+    with pytest.raises(SourceRefusedError, match="does not respond"):
         source.open()
     wit.is_away = False
     source.open()

@@ -193,7 +193,7 @@ def test_it_is_left_as_it_is_unless_a_rate_is_wanted() -> None:
 def test_who_does_not_answer_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("devices.drivers.ximu3.PING_S", 0.01)
     channel = ScriptedChannel([b"$GPGGA,1\r\n"])
-    with pytest.raises(SourceRefusedError, match="No x-IMU3 answers at script"):
+    with pytest.raises(SourceRefusedError, match="No x-IMU3 responds at script"):
         ByteSource(Ximu3(), channel).open()
     assert not channel.is_open
 

@@ -356,7 +356,7 @@ def test_a_sensor_that_refuses_its_owners_rate_is_set_to_the_usual_one() -> None
 def test_a_port_where_no_sensor_answers_is_refused_in_words(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("devices.drivers.xsens_mti.ANSWERS_S", 0.01)
     source = ByteSource(XsensMti(), ScriptedChannel())
-    with pytest.raises(SourceRefusedError, match="No Xsens sensor answers at script"):
+    with pytest.raises(SourceRefusedError, match="No Xsens sensor responds at script"):
         source.open()
 
 

@@ -110,7 +110,7 @@ def test_sensors_by_number_and_by_name(test_data: FindData) -> None:
     stamps = [int(line[0]) for line in cells[3:] if line]
     np.testing.assert_allclose(imported.imu[Site.LEFT_FOOT].time_s * 1e6, np.array(stamps) - stamps[0], atol=1.0)
     with pytest.raises(
-        FileRefusedError, match=r'none of the files is or holds "Knee". The sensors there are Lumbar \(5718\)'
+        FileRefusedError, match=r'"Knee". The sensors there are Lumbar \(5718\) matches no file and no sensor'
     ):
         import_with(apdm_trial, [path], {Site.LEFT_FOOT: "Knee"}, "walk 1")
     with pytest.raises(FileRefusedError, match="at two sites"):
@@ -148,9 +148,9 @@ def test_other_units_are_refused_with_their_name(tmp_path: Path) -> None:
 def test_what_is_damaged_is_refused_where_it_is(tmp_path: Path) -> None:
     row = ["0.1", "0", "0", "9.81", "0", "0", "0"]
     assert "a.csv, line 6: it has 3 cells, the heads 7" in refusal(moveo(tmp_path / "a.csv", [row, row[:3]]))
-    assert 'b.csv, line 5: "moved" is no number' in refusal(moveo(tmp_path / "b.csv", [["0.1", "moved", *row[2:]]]))
+    assert 'b.csv, line 5: "moved" is not a number' in refusal(moveo(tmp_path / "b.csv", [["0.1", "moved", *row[2:]]]))
     back = ["0.05", *row[1:]]
-    assert "c.csv, line 6: Time steps back from 0.1 to 0.05" in refusal(moveo(tmp_path / "c.csv", [row, back]))
+    assert "c.csv, line 6: Time goes back from 0.1 to 0.05" in refusal(moveo(tmp_path / "c.csv", [row, back]))
     assert "d.csv, line 5: a sample has no time" in refusal(moveo(tmp_path / "d.csv", [["", *row[1:]]]))
     cells = cells_of(moveo(tmp_path / "e.csv"))
     assert '"Thigh" has no angular rates' in refusal(written(tmp_path / "e.csv", [line[:4] for line in cells]))
@@ -161,8 +161,8 @@ def test_what_is_damaged_is_refused_where_it_is(tmp_path: Path) -> None:
         written(tmp_path / "j.csv", [*cells[:2], *short])
     )
     (tmp_path / "g.csv").write_bytes(b"Test Name:,\xff\xfe")
-    assert "no text of comma-separated values" in refusal(tmp_path / "g.csv")
-    assert "no export of APDM's programs" in refusal(written(tmp_path / "h.csv", [["Sensor", "Time"]]))
+    assert "this is not comma-separated text" in refusal(tmp_path / "g.csv")
+    assert "this is not an export from APDM software" in refusal(written(tmp_path / "h.csv", [["Sensor", "Time"]]))
 
 
 def test_a_trial_without_samples_is_an_empty_recording(tmp_path: Path) -> None:

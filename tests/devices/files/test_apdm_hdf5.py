@@ -154,9 +154,9 @@ def test_orientations_of_zeros_are_none(tmp_path: Path) -> None:
 
 def test_other_units_are_refused(tmp_path: Path) -> None:
     in_g = version_5(tmp_path / "a.h5", {"1": ("A", stamps(), still(acc=1.0))})
-    assert 'the acceleration of "A" is 1.00 in the middle, which is not gravity in m/s2' in refusal(in_g)
+    assert 'the median acceleration of "A" is 1.00, not gravity in m/s2' in refusal(in_g)
     in_degrees = version_5(tmp_path / "b.h5", {"1": ("A", stamps(), still(rate=180.0))})
-    assert 'the angular rates of "A" are in deg/s and not in rad/s' in refusal(in_degrees)
+    assert 'the angular rates of "A" are in deg/s, not in rad/s' in refusal(in_degrees)
     told = version_5(tmp_path / "c.h5", {"1": ("A", stamps(), still())})
     with h5py.File(told, "r+") as file:
         file["Sensors/1/Accelerometer"].attrs["Units"] = "g"
@@ -176,7 +176,7 @@ def test_what_is_missing_or_damaged_is_refused_where_it_is(tmp_path: Path) -> No
     assert "c.h5, A, sample 21: Time steps back from" in refusal(
         version_5(tmp_path / "c.h5", {"1": ("A", back, still())})
     )
-    assert "it is of version 2 of APDM's files, versions 3 to 5 are read" in refusal(version_4(tmp_path / "d.h5", 2))
+    assert "APDM file version 2 is not supported, only versions 3 to 5" in refusal(version_4(tmp_path / "d.h5", 2))
     whole = version_5(tmp_path / "e.h5", {"1": ("A", stamps(), still())}).read_bytes()
     (tmp_path / "f.h5").write_bytes(whole[: len(whole) // 2])
     assert "f.h5: this is not readable as HDF5" in refusal(tmp_path / "f.h5")
@@ -189,20 +189,20 @@ def test_values_that_stand_in_another_file_are_not_read(tmp_path: Path) -> None:
     with h5py.File(linked, "r+") as file:
         del file["Sensors/1/Gyroscope"]
         file["Sensors/1/Gyroscope"] = h5py.ExternalLink("other.h5", "/Sensors/1/Gyroscope")
-    assert 'a.h5: "Sensors/1/Gyroscope" stands in another file' in refusal(linked)
+    assert 'a.h5: "Sensors/1/Gyroscope" is stored in another file' in refusal(linked)
     (tmp_path / "secret").write_bytes(bytes(40 * 3 * 8))
     stored = version_5(tmp_path / "b.h5", {"1": ("A", stamps(), still())})
     with h5py.File(stored, "r+") as file:
         del file["Sensors/1/Gyroscope"]
         place = [(str(tmp_path / "secret"), 0, h5py.h5f.UNLIMITED)]
         file.create_dataset("Sensors/1/Gyroscope", (40, 3), dtype="f8", external=place)
-    assert 'the values of "Sensors/1/Gyroscope" stand in another file' in refusal(stored)
+    assert 'the values of "Sensors/1/Gyroscope" are stored in another file' in refusal(stored)
 
 
 def test_other_hdf5_is_not_taken_for_it(tmp_path: Path) -> None:
     with h5py.File(tmp_path / "a.h5", "w") as file:
         file["Sensors/1/Accelerometer"] = np.ones((3, 3))
-    with pytest.raises(FileRefusedError, match="no format that can be imported is recognised"):
+    with pytest.raises(FileRefusedError, match="its format is not recognised"):
         recognised([tmp_path / "a.h5"])
 
 

@@ -101,8 +101,8 @@ def test_acceleration_goes_before_free_acceleration() -> None:
 
 
 def test_two_columns_of_one_meaning_are_refused() -> None:
-    with pytest.raises(FileRefusedError, match="the columns acc_x, ax mean the same"):
+    with pytest.raises(FileRefusedError, match="the columns acc_x, ax have the same meaning"):
         sensor_columns([*columns_of(""), "ax"])
-    with pytest.raises(FileRefusedError, match="the columns time_s, time_ms mean the same"):
+    with pytest.raises(FileRefusedError, match="the columns time_s, time_ms have the same meaning"):
         sensor_columns([*columns_of(""), "time_s", "time_ms"])
     assert sensor_columns([*columns_of(""), "timestamp", "time_ms"])[0].time == "time_ms"

@@ -225,19 +225,19 @@ def test_units_are_held_to_their_size(tmp_path: Path) -> None:
     )
     mixed = named("acc_{}_m_s2", "gyr_{}_rad_s")
     mixed["acc_y_g"] = mixed.pop("acc_y_m_s2")
-    assert "are not in one unit" in refusal(write(tmp_path / "c.csv", {"time_s": TIME_S, **mixed}))
+    assert "have different units" in refusal(write(tmp_path / "c.csv", {"time_s": TIME_S, **mixed}))
 
 
 def test_times_are_held_to_their_size(tmp_path: Path) -> None:
     columns = named("acc_{}_m_s2", "gyr_{}_rad_s")
-    assert "its times make 0.1 samples per second, 1 to 20000 are expected" in refusal(
+    assert "its times give 0.1 samples per second, expected 1 to 20000" in refusal(
         write(tmp_path / "a.csv", {"time_s": TIME_S * 1e3, **columns})
     )
     path = write(tmp_path / "a.csv", {"time_s": TIME_S, **columns})
-    assert "its times make 100 samples per second, 60 are expected" in refusal(path, 60.0)
+    assert "its times give 100 samples per second, expected 60" in refusal(path, 60.0)
     back = TIME_S.copy()
     back[50:] -= 0.3
-    assert 'a.csv, line 52: "time_s" steps back from 0.49 to 0.2' in refusal(write(path, {"time_s": back, **columns}))
+    assert 'a.csv, line 52: "time_s" goes back from 0.49 to 0.2' in refusal(write(path, {"time_s": back, **columns}))
     empty = TIME_S.copy()
     empty[5] = np.nan
     assert 'a.csv, line 7: a sample has no time in column "time_s"' in refusal(
@@ -274,12 +274,12 @@ def test_columns_that_mean_nothing_are_told(tmp_path: Path) -> None:
 def test_what_is_no_such_table_is_refused_and_not_recognised(tmp_path: Path) -> None:
     path = write(tmp_path / "a.csv", {"time": TIME_S, "left": TIME_S, "acc_x": TIME_S})
     assert (
-        "its columns do not say which are acceleration and angular rates about three axes each: time, left, acc_x. Name"
-        in refusal(path)
+        "its columns do not identify acceleration and angular rates on three axes each: time, left, "
+        "acc_x. Name" in refusal(path)
     )
     xsens = {"PacketCounter": TIME_S, "SampleTimeFine": TIME_S, **named("Acc_{}", "Gyr_{}")}
     for columns in ({"time": TIME_S, "acc_x": TIME_S}, xsens):
-        with pytest.raises(FileRefusedError, match="no format that can be imported"):
+        with pytest.raises(FileRefusedError, match="its format is not recognised"):
             recognised([write(path, columns)])
     cut = write(path, {"time_s": TIME_S, **named("acc_{}_m_s2", "gyr_{}_rad_s")})
     cut.write_text(cut.read_text()[:-30])

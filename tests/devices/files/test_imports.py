@@ -36,11 +36,11 @@ def test_a_map_names_sites() -> None:
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("", "does not say which file"),
-        ("left_thigh", "does not say which file"),
-        ("left_thigh=", "does not say which file"),
+        ("", "does not assign a file to a site"),
+        ("left_thigh", "does not assign a file to a site"),
+        ("left_thigh=", "does not assign a file to a site"),
         ("sternum=a", '"sternum" is not a site'),
-        ("left_thigh=a,left_thigh=b", "left_thigh is there twice"),
+        ("left_thigh=a,left_thigh=b", "left_thigh is given twice"),
     ],
 )
 def test_a_wrong_map_is_refused(text: str, words: str) -> None:
@@ -82,9 +82,9 @@ def test_a_sensor_is_found_by_the_path_of_its_file(
 @pytest.mark.parametrize(
     ("placement", "words"),
     [
-        ({Site.LEFT_FOOT: "00B49999"}, r"none of the files is or holds .* there are t_00B40001.txt \(00B40001\), t_"),
+        ({Site.LEFT_FOOT: "00B49999"}, ".* there are t_00B40001.txt \\(00B40001\\), t_ matches no file and no sensor"),
         ({Site.LEFT_FOOT: "00B40002"}, "may be t_00B40002.txt, u_00B40002.txt"),
-        ({Site.LEFT_FOOT: "00B40001", Site.LEFT_SHANK: "t_00B40001.txt"}, "t_00B40001.txt is at two sites"),
+        ({Site.LEFT_FOOT: "00B40001", Site.LEFT_SHANK: "t_00B40001.txt"}, "t_00B40001.txt is assigned to two sites"),
         ({Site.LEFT_FOOT: "00B40003"}, "b_00B40003.txt: there is no acceleration"),
         ({Site.LEFT_FOOT: "b_00B40003.txt"}, "b_00B40003.txt: there is no acceleration"),
     ],

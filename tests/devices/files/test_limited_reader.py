@@ -308,6 +308,7 @@ def test_a_reading_that_is_given_up_ends_its_process(make_session: MakeSession, 
 def test_the_process_is_renewed_after_many_files(
     make_session: MakeSession, reader: LimitedReader, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    assert limited_reader.FILES_EACH == 500
     monkeypatch.setattr(limited_reader, "FILES_EACH", 4)
     folder = make_session()
     read(folder, reader)

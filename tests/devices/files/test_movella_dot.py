@@ -157,7 +157,7 @@ def test_an_excel_file_holds_the_same(tmp_path: Path) -> None:
     np.testing.assert_array_equal(one.time_s, other.time_s)
     sheet.cell(20, 5).value = "moved"
     book.save(tmp_path / "b.xlsx")
-    assert 'b.xlsx, row 20: "moved" is no number' in refusal(tmp_path / "b.xlsx")
+    assert 'b.xlsx, row 20: "moved" is not a number' in refusal(tmp_path / "b.xlsx")
 
 
 def test_an_excel_file_without_the_library_says_what_to_install(
@@ -186,7 +186,7 @@ def test_a_repeated_time_is_told_and_a_step_back_refused(tmp_path: Path) -> None
     trial = movella_dot_trial([dot(tmp_path / "a.csv", "Acc", "Gyr", ticks=ticks)])
     assert (keys(trial), len(trial.sensors[0].block)) == ([["doubled_stamps"]], 239)
     ticks[100:] = ticks[90:-10]
-    assert "b.csv, line 109: SampleTimeFine steps back from 1650033 to 1500030" in refusal(
+    assert "b.csv, line 109: SampleTimeFine goes back from 1650033 to 1500030" in refusal(
         dot(tmp_path / "b.csv", "Acc", "Gyr", ticks=ticks)
     )
 
@@ -262,7 +262,9 @@ def test_other_units_are_refused(tmp_path: Path) -> None:
     without = {name: value * 0.3 if name.startswith("Acc") else value for name, value in columns.items()}
     assert "which is not gravity" in refusal(dot(tmp_path / "b.csv", "Acc", "Gyr", columns=without))
     rad = {name: np.radians(value) if name.startswith("Gyr") else value for name, value in columns.items()}
-    assert "in rad/s and not in deg/s" in refusal(dot(tmp_path / "c.csv", "Quat", "Acc", "Gyr", columns=rad))
+    assert "the angular rates are in rad/s, not in deg/s" in refusal(
+        dot(tmp_path / "c.csv", "Quat", "Acc", "Gyr", columns=rad)
+    )
     double = {name: value * 2 if name.startswith("Quat") else value for name, value in columns.items()}
     assert "d.csv, line 9: the orientation is no rotation" in refusal(
         dot(tmp_path / "d.csv", "Quat", "Acc", columns=double)

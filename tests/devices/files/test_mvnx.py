@@ -118,7 +118,7 @@ def test_missing_frames_are_a_gap_and_a_repeated_one_is_told(tmp_path: Path) -> 
     trial = mvnx_trial([mvnx(tmp_path / "b.mvnx", held, index=[*range(100), *range(99, 299)])])
     assert len(trial.sensors[0].block) == 299
     assert trial.sensors[0].findings[-1].numbers == {"count": 1}
-    assert "b.mvnx, frame 101: index steps back from 99 to 5" in refusal(
+    assert "b.mvnx, frame 101: index goes back from 99 to 5" in refusal(
         mvnx(tmp_path / "b.mvnx", held, index=[*range(100), *range(5, 205)])
     )
 
@@ -160,10 +160,10 @@ def test_other_units_and_broken_frames_are_refused(tmp_path: Path) -> None:
     assert "frame 0: it has 5 values for 2 sensors, expected 6" in refusal(mvnx(tmp_path / "c.mvnx", short))
     twice = held | {"sensorOrientation": 2.0 * held["sensorOrientation"]}
     assert "frame 0: the orientation is no rotation" in refusal(mvnx(tmp_path / "d.mvnx", twice))
-    assert "its frames take 3.0 s at 100 Hz, and its stamps 6.0 s" in refusal(
+    assert "its frames take 3.0 s at 100 Hz, but its timestamps 6.0 s" in refusal(
         mvnx(tmp_path / "e.mvnx", held, ms_each=20.0)
     )
-    assert '"A" is no name for a sensor, or one of two' in refusal(mvnx(tmp_path / "f.mvnx", held, names=("A", "A")))
+    assert '"A" is not a sensor name, or is used twice' in refusal(mvnx(tmp_path / "f.mvnx", held, names=("A", "A")))
 
 
 @pytest.mark.endurance

@@ -69,13 +69,13 @@ def test_what_is_left_open_is_asked_for(tmp_path: Path) -> None:
 def test_stamps_that_step_back_are_refused_by_their_row(tmp_path: Path) -> None:
     back = TIME_MS.copy()
     back[20:] -= 200
-    with pytest.raises(FileRefusedError, match=r'a.parquet, row 21: "time_ms" steps back from 190 to 0'):
+    with pytest.raises(FileRefusedError, match=r'a.parquet, row 21: "time_ms" goes back from 190 to 0'):
         parquet_trial([written(tmp_path / "a.parquet", {"time_ms": back, **columns()}, in_degrees())])
 
 
 def test_other_parquet_is_not_taken_for_it(tmp_path: Path) -> None:
     path = written(tmp_path / "a.parquet", {"year": [2026], "amount": [1.0]})
-    with pytest.raises(FileRefusedError, match="no format that can be imported is recognised"):
+    with pytest.raises(FileRefusedError, match="its format is not recognised"):
         recognised([path])
     with pytest.raises(FileRefusedError, match=r"its columns do not say which are acceleration .*: year, amount. Name"):
         parquet_trial([path])
@@ -83,5 +83,5 @@ def test_other_parquet_is_not_taken_for_it(tmp_path: Path) -> None:
     with pytest.raises(FileRefusedError, match="this is not a readable Parquet file"):
         parquet_trial([path])
     text = written(tmp_path / "b.parquet", {"time_s": ["0", "1"], **{name: v[:2] for name, v in columns().items()}})
-    with pytest.raises(FileRefusedError, match="column time_s holds string, not numbers"):
+    with pytest.raises(FileRefusedError, match="column time_s contains string, not numbers"):
         parquet_trial([text])

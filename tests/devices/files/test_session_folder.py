@@ -282,8 +282,8 @@ def test_a_wrong_session_toml_is_refused(make_session: MakeSession, toml: str | 
         ("\n\n", "the file has no header line"),
         ("a,b\n1,2\n", "line 1: required columns are missing: time_s"),
         (table("0,1,1,1,1,1", columns=COLUMNS.replace("acc_y_m_s2,", "")), "columns are missing: acc_y_m_s2"),
-        (table(*ROWS, columns=COLUMNS.replace("acc_y", "acc_x")), 'line 1: column "acc_x_m_s2" is there twice'),
-        (table("0,1,1,1,1,1,1", "1,1,1,1,1,1,1", "0.5,1,1,1,1,1,1"), "line 4: the clock steps back from 1 s to 0.5 s"),
+        (table(*ROWS, columns=COLUMNS.replace("acc_y", "acc_x")), 'line 1: column "acc_x_m_s2" is given twice'),
+        (table("0,1,1,1,1,1,1", "1,1,1,1,1,1,1", "0.5,1,1,1,1,1,1"), "line 4: the clock goes back from 1 s to 0.5 s"),
         (table("0,1,1,1,1,1,1", "", "1,1,1,1,1,1,1", "", "0.5,1,1,1,1,1,1"), "line 6: the clock steps back"),
         (table("0,1,1,1,1,1,1", "1,1,x1,1,1,1,1"), 'line 3: "x1" in column acc_y_m_s2 is not a number'),
         (table("0,1,1,1,1,1,1", "1,1,0x10,1,1,1,1"), "line 3: .* is not a number"),
@@ -314,8 +314,8 @@ def test_a_wrong_text_is_refused(make_session: MakeSession, text: str | bytes, w
     ("columns", "words"),
     [
         ({"time_s": [0.0, 1.0]}, "required columns are missing"),
-        ({"time_s": ["a", "b"]}, "column time_s holds string, not numbers"),
-        ({"time_s": [1.0, 0.0]}, "row 2: the clock steps back from 1 s to 0 s"),
+        ({"time_s": ["a", "b"]}, "column time_s contains string, not numbers"),
+        ({"time_s": [1.0, 0.0]}, "row 2: the clock goes back from 1 s to 0 s"),
     ],
 )
 def test_a_wrong_parquet_is_refused(make_session: MakeSession, columns: dict[str, list[object]], words: str) -> None:
@@ -340,7 +340,7 @@ def test_a_session_without_any_site_file_is_refused(make_session: MakeSession) -
 
 def test_a_site_twice_is_refused(make_session: MakeSession) -> None:
     folder = make_session({"left_thigh.csv": table(*ROWS), "left_thigh.parquet": b""})
-    assert "walk_1: left_thigh is there twice: left_thigh.csv and left_thigh.parquet" in refusal(folder)
+    assert "walk_1: left_thigh exists twice: left_thigh.csv and left_thigh.parquet" in refusal(folder)
 
 
 @pytest.mark.skipif(os.name == "nt", reason="links need rights there")

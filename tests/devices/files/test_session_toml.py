@@ -107,8 +107,8 @@ def test_every_key_of_the_format_is_read() -> None:
         (TOML.replace("gaitwright-session/1", "gaitwright-session/2"), "later version.*Update Gaitwright"),
         (TOML.replace("gaitwright-session/1", "other/1"), 'format "other/1" is not known'),
         (TOML.replace('"gaitwright-session/1"', "1"), 'format "1" is not known'),
-        ('format = "gaitwright-session/1"', "no recording at all"),
-        ('format = "gaitwright-session/1"\nrecordings = []', "no recording at all"),
+        ('format = "gaitwright-session/1"', "there is no recording"),
+        ('format = "gaitwright-session/1"\nrecordings = []', "there is no recording"),
         ('format = "gaitwright-session/1"\nrecordings = 5', "not a list of tables"),
         (TOML.replace('name = "walk 1"', ""), "number 1: name is missing"),
         (TOML.replace('kind = "walking"', ""), '"walk 1": kind is missing'),
@@ -156,7 +156,7 @@ def test_what_is_wrong_is_refused(toml: str, words: str) -> None:
     "deep", ["a = " + "[" * 60 + "]" * 60, "a = " + "{b = " * 60 + "1" + "}" * 60, "[a" + ".a" * 60 + "]"]
 )
 def test_tables_without_end_within_each_other_are_refused(deep: str) -> None:
-    with pytest.raises(FileRefusedError, match="too deep within each other"):
+    with pytest.raises(FileRefusedError, match="its tables are nested too deeply"):
         parse(f"{deep}\n{TOML}" if deep.startswith("a") else f"{TOML}{deep}\n")
     shallow = "a = " + "[" * 40 + "]" * 40
     assert "a" in parse(f"{shallow}\n{TOML}")[0].unknown

@@ -90,7 +90,7 @@ def test_units_are_those_that_are_told(tmp_path: Path) -> None:
     assert sensor.block.gyr_rad_s[0].tolist() == [0.0, -20.0, 0.0]
     assert sensor.block.acc_m_s2[0] == pytest.approx([0.5, -0.25, 9.8])
     strange = written(tmp_path / "b.csv", units={"Gyro": "furlongs"})
-    with pytest.raises(FileRefusedError, match="no unit that is known"):
+    with pytest.raises(FileRefusedError, match="which is not a known unit"):
         shimmer_trial([strange])
 
 
@@ -124,7 +124,9 @@ def test_several_sensors_may_stand_side_by_side_and_losses_are_gaps(tmp_path: Pa
 def test_what_is_not_calibrated_is_refused_with_what_to_set(tmp_path: Path) -> None:
     raw = written(tmp_path / "raw.csv", kind="RAW")
     assert format_of(raw) == "shimmer"
-    with pytest.raises(FileRefusedError, match="no sensor in it has calibrated acceleration") as refused:
+    with pytest.raises(
+        FileRefusedError, match="no sensor has calibrated acceleration, angular rates and Unix time"
+    ) as refused:
         shimmer_trial([raw])
     assert "calibrated, with Unix time in milliseconds" in refused.value.remedy
     without = written(tmp_path / "b.csv", wanted=("Timestamp_Unix", "Gyro"))

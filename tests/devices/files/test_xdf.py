@@ -233,18 +233,18 @@ def test_what_senders_do_not_tell_is_asked_for(tmp_path: Path) -> None:
         SentStream("rate", motion()[:, 3:], labels=LABELS[3:], units=UNITS[3:]),
     ]
     assert (
-        "no stream in it has acceleration and angular rates about three axes each. Streams there are: force, rate, "
-        "buttons. Label the channels acc_x to acc_z and gyr_x to gyr_z" in refusal(*parts)
+        "no stream has acceleration and angular rates on three axes each. Available streams: force, "
+        "rate, buttons. Label the channels acc_x to acc_z and gyr_x to gyr_z" in refusal(*parts)
     )
     assert "is said to be in g" not in refusal(SentStream("a", units=["V"] * 3 + UNITS[3:]))
     assert '"acc_x" is in "V", expected one of m/s2, g, mg' in refusal(SentStream("a", units=["V"] * 3 + UNITS[3:]))
     assert "is said to be in g, but is" in refusal(SentStream("a", units=["g"] * 3 + UNITS[3:]))
     twice = SentStream("a", np.hstack([motion(), motion()]), labels=LABELS * 2, units=UNITS * 2)
-    assert "no stream in it has acceleration" in refusal(twice)
+    assert "no stream has acceleration and angular rates on three axes each" in refusal(twice)
     back = START_S + TIME_S
     back[1000:] -= 3.0
     assert 'a, sample 1001: "time" steps back' in refusal(SentStream("a", stamp_s=back, rate_hz=0.0))
-    with pytest.raises(FileRefusedError, match="its times make 100 samples per second, 60 are expected"):
+    with pytest.raises(FileRefusedError, match="its times give 100 samples per second, expected 60"):
         only(recorded(tmp_path / "a.xdf", SentStream("a")), 60.0)
 
 

@@ -175,7 +175,7 @@ def test_the_kind_of_rate_is_read_from_the_orientation(test_data: FindData) -> N
     [
         ("MT2022_ACC_00B42D4B.txt", "neither angular rates"),
         ("MT_012005D6-000_sit_to_stand-000_00B421ED.txt", "there is no acceleration"),
-        ("OpenSenseExample_myIMUMappings.xml", "there is no column PacketCounter"),
+        ("OpenSenseExample_myIMUMappings.xml", "column PacketCounter is missing"),
     ],
 )
 def test_files_that_lack_what_is_needed_are_refused(test_data: FindData, name: str, words: str) -> None:
@@ -254,11 +254,11 @@ def test_header_only_files_hold_no_samples(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("names", "rows", "words"),
     [
-        (ACC_GYR[1:], [], "there is no column PacketCounter"),
-        (ACC_GYR, still([5, 4]), "line 4: PacketCounter steps back from 5 to 4"),
+        (ACC_GYR[1:], [], "column PacketCounter is missing"),
+        (ACC_GYR, still([5, 4]), "line 4: PacketCounter goes back from 5 to 4"),
         (ACC_GYR, [[70000.0, 0, 0, 9.8, 0, 0, 0]], "line 3: PacketCounter is not a whole number"),
         (ACC_GYR, [[1.0, 0, 0, 1.0, 0, 0, 0]], "the acceleration is 1.00 in the middle, as if it were in g"),
-        (ACC_GYR, [[1.0, 0, 0, 0.1, 0, 0, 0]], "as if gravity had been taken out"),
+        (ACC_GYR, [[1.0, 0, 0, 0.1, 0, 0, 0]], "m/s2, as if gravity had been removed"),
         (ACC_GYR, [[1.0, 0, 0, 9.8, 0, 0, 250.0]], "the angular rates are in deg/s"),
         (
             [*ACC_GYR, *MATRIX],
@@ -273,7 +273,7 @@ def test_header_only_files_hold_no_samples(tmp_path: Path) -> None:
         (
             [*ACC_GYR, "Quat_q0", "Quat_q1", "Quat_q2", "Quat_q3"],
             [[1.0, 0, 0, 9.8, 0, 0, 0, 0, 0, 0, 0]],
-            "no rotation",
+            "the orientation is not a valid rotation",
         ),
     ],
 )

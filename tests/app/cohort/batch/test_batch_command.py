@@ -225,7 +225,7 @@ def test_a_worker_that_sees_other_folders_or_has_other_software_says_so(place: P
     same_path = done.BatchFolder(out, "the mark of the asking computer's own folder")
     for batch, folder, theirs, reason in (
         (same_path, session, software(), "does not see OUT. FOLDER and OUT have to be on a disk that all workers see"),
-        (here, place / "elsewhere", software(), "does not see the session's folder"),
+        (here, place / "elsewhere", software(), "the worker here cannot access the session folder"),
         (here, session, "older", "has another version of Gaitwright"),
     ):
         outcome = task.analyse_task(task.BatchTask("visit 000", folder, batch, choices, theirs))

@@ -175,7 +175,7 @@ def test_a_question_that_takes_too_much_memory_is_refused_and_the_next_is_answer
 def test_a_question_that_never_ends_is_ended(path: Path, monkeypatch: pytest.MonkeyPatch, sql: str) -> None:
     with ParameterTable.opened(path) as table:
         monkeypatch.setattr(limited_reader, "DEADLINE_S", 0.2)
-        with pytest.raises(FileRefusedError, match="longer than a question is given"):
+        with pytest.raises(FileRefusedError, match="this query exceeds the time limit"):
             table.ask(sql)
 
 
@@ -185,8 +185,8 @@ def test_what_is_no_table_of_a_batch_is_refused(tmp_path: Path) -> None:
     broken.write_bytes(b"PAR1 and no more")
     empty.mkdir()
     for place, said in (
-        (other, "there is no column side"),
-        (broken, "this cannot be read as Parquet"),
+        (other, "column side is missing"),
+        (broken, "this is not a readable Parquet file"),
         (empty, "parameters.parquet: this is not there"),
         (tmp_path / "nothing.parquet", "not found"),
     ):

@@ -96,7 +96,7 @@ def test_what_is_in_sight_is_saved_with_all_its_numbers(qtbot: QtBot, home: Home
     assert [row["group"] for row in rows] == [one.group for one in page.found.rows]
     assert [float(row["mean"]) for row in rows] == [one.mean for one in page.found.rows]
     home.questions.write(tmp_path)  # a folder
-    qtbot.waitUntil(lambda: "cannot be saved" in home.banner.text, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: "The groups could not be saved" in home.banner.text, timeout=WAIT_MS)
 
 
 def test_the_last_table_is_asked_again_the_next_time(qtbot: QtBot, home: Home, settings: Settings, table: Path) -> None:
@@ -125,7 +125,7 @@ def test_a_file_that_is_no_table_is_refused_in_words(
     home.questions.open(broken)
     qtbot.waitUntil(page.refusal.isVisible, timeout=WAIT_MS)
     assert "broken.parquet: this cannot be read as Parquet" in page.refusal.text
-    assert "gaitwright batch writes" in page.refusal.text
+    assert "parquet written by gaitwright batch" in page.refusal.text
     assert page.question is None
     assert settings.latest_table == str(table)
     assert not home.bar.primary.isVisible()

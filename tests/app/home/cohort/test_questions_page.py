@@ -56,8 +56,8 @@ def shown(page: QuestionsPage) -> str:
         ("narrower than they should be", found(WHOLE, patients=1), found(WHOLE, patients=0)),
         ("SIMULATED: 3 sessions are simulated", found(WHOLE, simulated=3), found(WHOLE)),
         ("1 simulated session is left out", found(WHOLE, simulated_left_out=1), found(WHOLE)),
-        ("4 withheld", found(replace(WHOLE, withheld=4)), found(replace(WHOLE, with_care=4))),
-        ("5 to be read with care", found(replace(WHOLE, with_care=5)), found(replace(WHOLE, withheld=5))),
+        ("4 not reported", found(replace(WHOLE, withheld=4)), found(replace(WHOLE, with_care=4))),
+        ("5 rated caution", found(replace(WHOLE, with_care=5)), found(replace(WHOLE, withheld=5))),
         ("6 not measured", found(replace(WHOLE, not_measured=6)), found(WHOLE)),
     ],
 )
@@ -105,9 +105,9 @@ def test_of_many_groups_the_largest_are_drawn_and_the_rest_is_told(page: Questio
     page.show_answer(found(*rows))
     assert [line.label for line in page.plot.lines] == [row.group for row in rows[-MOST_DRAWN:]]
     assert len(page.table.cells.rows) == MOST_ROWS
-    assert "the CSV all" in shown(page)
+    assert "The CSV has all groups" in shown(page)
     page.show_answer(found(WHOLE))
-    assert "the CSV all" not in shown(page)
+    assert "The CSV has all groups" not in shown(page)
 
 
 def test_nobody_is_named_on_the_page(page: QuestionsPage, tmp_path: Path) -> None:
@@ -162,11 +162,11 @@ def test_without_a_table_it_is_said_how_one_comes_to_be(qtbot: QtBot, page: Ques
 @pytest.mark.parametrize(
     ("grouping", "names"),
     [
-        (Grouping.AGE, {"0": "under 18 years", "18": "18 to 39 years", "80": "80 years and over", "": "not stated"}),
+        (Grouping.AGE, {"0": "under 18 years", "18": "18 to 39 years", "80": "80 years and over", "": "not recorded"}),
         (Grouping.SPEED, {"0": "under 0.4 m/s", "0.8": "0.8 to 1.2 m/s", "1.6": "1.6 m/s and over"}),
         (Grouping.LEG, {"prosthetic": "prosthetic leg", "other": "sound leg", "neither": "no leg affected"}),
         (Grouping.SIDE, {"left": "left leg", "both": "both legs"}),
-        (Grouping.CONDITION, {"left": "left", "": "not stated"}),
+        (Grouping.CONDITION, {"left": "left", "": "not recorded"}),
     ],
 )
 def test_a_group_is_called_what_it_is(grouping: Grouping, names: dict[str, str]) -> None:
@@ -184,7 +184,7 @@ def test_a_dot_lies_at_its_mean_is_hollow_without_interval_and_all_is_inside_the
     plot = GroupPlot(look)
     qtbot.addWidget(plot)
     lines = [GroupLine("a", 50.0, 5.0, "9 sessions"), GroupLine("b", 70.0, math.nan, "1 session")]
-    plot.show_groups(lines, "Knee ROM, °", "Means", "in words")
+    plot.show_groups(lines, "Knee ROM, °", "Means", "result")
     plot.resize(600, plot.height())
     low, high, step = plot.axis
     assert low <= 45.0

@@ -57,10 +57,10 @@ def test_what_was_understood_is_shown_before_anything_is_stored(qtbot: QtBot, ho
     assert "3 sensors · 3.0 s · 128 Hz · gravity 9.8 m/s² · no gaps" in said
     assert said.count("from its name") == 2
     by_name = choices(page)
-    assert by_name["Where was Left Thigh (100) worn?"].currentText() == "Left thigh"
-    assert by_name["Where was Lumbar (102) worn?"].currentText() == "Not said"
-    assert by_name["What is walk?"].currentText() == "Walk"
-    by_name["Where was Left Thigh (100) worn?"].setCurrentIndex(4)
+    assert by_name["Position of Left Thigh (100)"].currentText() == "Left thigh"
+    assert by_name["Position of Lumbar (102)"].currentText() == "Not recorded"
+    assert by_name["Type of walk"].currentText() == "Walk"
+    by_name["Position of Left Thigh (100)"].setCurrentIndex(4)
     assert shown(page).count("from its name") == 1  # what a person says is no proposal
     assert len(home.page.patients.lines) == 2
 
@@ -110,12 +110,12 @@ def test_nothing_is_imported_as_long_as_something_is_wrong(qtbot: QtBot, home: H
     one.setCurrentIndex(1)
     assert home.bar.primary.isEnabled()
     two.setCurrentIndex(1)
-    assert "Left thigh is chosen twice." in shown(page)
+    assert "Left thigh is assigned twice." in shown(page)
     assert not home.bar.primary.isEnabled()
     two.setCurrentIndex(2)
     page.day_field.line_edit.setText("9 March")
     page.day_field.line_edit.textEdited.emit("9 March")
-    assert "Write it as year-month-day" in shown(page)
+    assert "Enter it as year-month-day, such as 2026-03-09" in shown(page)
     assert not home.bar.primary.isEnabled()
     QTest.keyClick(page.code.line_edit, Qt.Key.Key_Return)
     assert home.current is page  # nor by the key
@@ -178,16 +178,16 @@ def test_a_site_that_was_said_tells_the_side(qtbot: QtBot, home: Home, test_data
     page = read(qtbot, home, *sorted(folder.glob("OpenSenseExample_*.txt")))
     for torso in ("00B42268", "00B42279"):
         choices(page)[f"Where was {torso} worn?"].setCurrentIndex(7)
-    thigh = choices(page)["Where was 00B4227C worn?"]
+    thigh = choices(page)["Position of 00B4227C"]
     thigh.setCurrentIndex(1)  # left, whatever it was
     page.draft.place.click()
     qtbot.waitUntil(lambda: page.draft.sites["00B421EF"] is Site.LEFT_FOOT, timeout=WAIT_MS)
     assert page.draft.sites["00B421E6"] is Site.RIGHT_FOOT
-    choices(page)["Where was 00B421E6 worn?"].setCurrentIndex(0)
+    choices(page)["Position of 00B421E6"].setCurrentIndex(0)
     thigh.setCurrentIndex(3)  # a foot, which the motion takes for a thigh
     page.draft.place.click()
     qtbot.waitUntil(home.banner.isVisible, timeout=WAIT_MS)
-    assert "does not fit what is said" in home.banner.text
+    assert "The movement does not fit the entered sensor positions" in home.banner.text
     assert page.draft.sites["00B421E6"] is None
 
 
@@ -195,7 +195,7 @@ def test_import_begins_with_a_choice_of_files_or_a_folder(qtbot: QtBot, home: Ho
     home.rail.step_pressed.emit(2)
     page = home.importing.page
     assert home.current is page
-    assert "Drop files or folders onto this window" in shown(page)
+    assert "Drop files or folders here, or choose them" in shown(page)
     assert page.choose_files.hasFocus()
     home.escape()
     assert home.page.isVisible()

@@ -66,7 +66,7 @@ def test_a_server_that_the_environment_names_is_tried_again_and_never_typed(qtbo
     page = shown(qtbot, look)
     page.show_trouble("The clinic's server does not answer. Try again when it is back.")
     assert not any(field.isVisible() for field in page.server.fields)
-    assert "does not answer" in page.lead.text()
+    assert "does not respond" in page.lead.text()
     with qtbot.waitSignal(page.again_wished):
         page.again.click()
 

@@ -40,9 +40,10 @@ def test_before_a_patient_is_deleted_it_is_said_what_goes_and_until_when_it_can_
 ) -> None:
     dialog = deletion_dialog(qtbot, home)
     assert dialog.windowTitle() == "Delete patient P-0163?"
-    assert dialog.goes.text() == "With the patient go 3 sessions and 0 recordings."
+    assert dialog.goes.text() == "This also deletes 3 sessions and 0 recordings."
     day = date((datetime.now().astimezone() + timedelta(days=30)).date())
     assert f"restore it in Settings until {day}" in dialog.until.text()
+    assert "Earlier backups keep it longer." in dialog.until.text()
     assert dialog.others.isHidden()  # nobody else was here
     QTest.keyClick(dialog, Qt.Key.Key_Return)
     QTest.keyClick(dialog, Qt.Key.Key_Escape)
@@ -75,7 +76,7 @@ def test_a_patient_who_is_being_recorded_is_deleted_with_a_warning(qtbot: QtBot,
         elsewhere.sessions.place(visit, {Site.LEFT_THIGH: PlacedSensor("A", SensorInfo())})
         elsewhere.recordings.start(visit, Recording("walk 1", RecordingKind.WALKING, "walk_1", {}), is_simulated=False)
     dialog = deletion_dialog(qtbot, home)
-    assert dialog.goes.text() == "With the patient go 3 sessions and 1 recording."
+    assert dialog.goes.text() == "This also deletes 3 sessions and 1 recording."
     assert dialog.others.text == (
         "A recording of this patient is running or was not stopped. Ask there before you delete."
     )
@@ -112,7 +113,7 @@ def test_a_viewer_is_refused_before_anything_is_asked(qtbot: QtBot, home: Home, 
     with qtbot.waitSignal(home.deleting.refused, timeout=WAIT_MS) as told:
         home.page.panel.delete_patient.trigger()
     assert told.args is not None
-    assert told.args[0] == "This needs the role of clinician."
+    assert told.args[0] == "This requires the role clinician."
     assert home.deleting.dialog is None
 
 
@@ -133,7 +134,7 @@ def test_an_undo_that_is_refused_is_offered_again(qtbot: QtBot, home: Home, monk
     qtbot.waitUntil(lambda: codes(home) == ["P-0147"], timeout=WAIT_MS)
 
     def refuse(_patients: object, _patient: object) -> None:
-        raise ServerSilentError("The server does not answer", "Try again")
+        raise ServerSilentError("The server does not respond", "Try again")
 
     with monkeypatch.context() as patched:
         patched.setattr(Patients, "restore", refuse)

@@ -51,12 +51,12 @@ def test_one_of_which_only_the_row_was_left_open_is_whole() -> None:
     assert "It is whole. Look at it" in said(WHOLE)
     assert recovery_costs() not in said(WHOLE)
     assert "whole" not in said(WHOLE, CUT)
-    assert "They are whole" in said(WHOLE, WHOLE)
+    assert "They are complete" in said(WHOLE, WHOLE)
 
 
 @pytest.mark.parametrize(("missing", "is_said"), [(0, False), (1, True), (4, True)])
 def test_records_that_are_missing_before_the_end_are_counted(missing: int, is_said: bool) -> None:
     words = said(CUT, replace(CUT, missing_records=missing))
     assert ("missing" in words) is is_said
-    assert ("4 records before it are missing and stay gaps." in words) is (missing == 4)
+    assert ("4 records before it are missing and leave gaps." in words) is (missing == 4)
     assert "2 recordings, 02:28 in all, were recovered." in words

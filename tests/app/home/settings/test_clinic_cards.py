@@ -21,8 +21,8 @@ def station(qtbot: QtBot, look: ThemeNotifier) -> StationCard:
     ("waiting", "words"),
     [
         (0, "All recordings were transferred."),
-        (1, "1 recording waits here to be handed over."),
-        (2, "2 recordings wait here to be handed over."),
+        (1, "1 recording here is waiting to be transferred."),
+        (2, "2 recordings here are waiting to be transferred."),
     ],
 )
 def test_it_says_what_waits_here(station: StationCard, waiting: int, words: str) -> None:

@@ -38,7 +38,9 @@ def test_where_nothing_exceeds_its_error_the_answer_is_that(
 ) -> None:
     found = answer(request_of_demonstration, analysis)
     assert (found.outcome, found.first) == (Outcome.NOTHING, "All judged differences are within measurement error.")
-    assert "within 2\u00a0SD of the band" in found.then
+    assert (
+        "All judged peaks are within 2\N{NO-BREAK SPACE}SD of the reference, shifted to the level of each curve"
+    ) in found.then
 
 
 def test_a_difference_that_is_told_in_the_table_alone_is_not_called_none(
@@ -62,7 +64,7 @@ def test_too_few_strides_are_counted(
 def test_of_a_walk_without_strides_nothing_is_read(request_of_demonstration: ReportRequest, analysis: Analysis) -> None:
     found = answer(request_of_demonstration, rewalked(analysis, gait={}))
     assert found.outcome is Outcome.UNREADABLE
-    assert found.first.startswith("Nothing can be read of this walk")
+    assert found.first.startswith("No results for this walk: no stride was found from a foot or shank sensor")
 
 
 def test_what_is_withheld_is_no_answer_but_the_caveat_beside_it(
@@ -73,7 +75,7 @@ def test_what_is_withheld_is_no_answer_but_the_caveat_beside_it(
         request_of_demonstration, recalibrated(shortened, [Joint.LEFT_KNEE], is_same_joint=False, sign_margin=1.05)
     )
     assert "knee moves" not in found.first
-    assert found.then.endswith("Withheld: left knee.")
+    assert found.then.endswith("Not reported: left knee.")
 
 
 def test_the_screen_and_the_report_say_the_same(request_of_demonstration: ReportRequest, analysis: Analysis) -> None:

@@ -119,7 +119,7 @@ def test_page_one_stays_one_page(
 
 def test_the_pages_stand_in_their_order(report: bytes) -> None:
     headings = (
-        "In short",
+        "Summary",
         "All curves and peaks",
         "Time, distance and strides",
         "Clinical comment",
@@ -168,14 +168,14 @@ def test_what_explains_the_peaks_takes_no_page_of_its_own(request_of_demonstrati
 def test_a_walk_is_called_as_on_the_screen(request_of_alignments: ReportRequest) -> None:
     assert "walk: C alignment C" in first_page(request_of_alignments)
     two = replace(request_of_alignments, walks=("walk 2", "walk 3"))
-    assert "Compared, C shown here: B alignment B · C alignment C" in first_page(two)
+    assert "Compared (C shown here): B alignment B · C alignment C" in first_page(two)
     visit = request_of_alignments.visit
     told = visit.session.recordings
     alike = tuple(replace(one, condition="shoes" if one.name.startswith("walk") else "") for one in told)
     same = AnalysedVisit(replace(visit.session, recordings=alike), visit.analysis)
     first = first_page(replace(two, visit=same))
     assert "walk: A3 shoes" in first
-    assert "Compared, A3 shown here: A2 shoes · A3 shoes" in first
+    assert "Compared (A3 shown here): A2 shoes · A3 shoes" in first
     unnamed = tuple(replace(one, condition="") for one in told)
     bare = AnalysedVisit(replace(visit.session, recordings=unnamed), visit.analysis)
     assert "walk: walk 3" in first_page(replace(two, visit=bare, walks=("walk 3",)))
@@ -186,12 +186,12 @@ def test_page_one_alone_says_what_was_measured_and_what_differs(
 ) -> None:
     first = first_page(request_of_alignments)
     assert "Knee and ankle of both legs · 6 motion sensors" in first
-    assert "Compared, C shown here: A alignment A · B alignment B · C alignment C" in first
-    assert "Speed A: 1.05, B: 1.16, C: 1.20 m/s: part of a difference can come from speed." in first
+    assert "Compared (C shown here): A alignment A · B alignment B · C alignment C" in first
+    assert "Speed A: 1.05, B: 1.16, C: 1.20 m/s: part of a difference is ambiguous: due to speed." in first
     before = walked_under(request_of_one_leg.visit, request_of_alignments)
     with_one_leg_before = replace(request_of_alignments, earlier=before)
     first = first_page(with_one_leg_before)
-    assert "No difference is so much larger than its error that it is told here" in first
+    assert "No difference is far enough beyond measurement error to be listed here" in first
     first = first_page(request_of_one_leg)
     assert "Knee and ankle of the left leg · 3 motion sensors" in first
     assert "Every peak that could be judged lies within 2 SD of the band, at its curve's height." in first
@@ -205,7 +205,7 @@ def test_two_visits_are_compared_by_the_error_of_a_new_attachment(
 ) -> None:
     page = texts(make_report(replace(request_of_alignments, earlier=alignments)))[4]
     assert "Comparison of visits" in page
-    assert "sensors put on anew" in page
+    assert "Two visits, sensors reattached" in page
     assert "9.2" in page
 
 
@@ -223,7 +223,7 @@ def test_a_visit_of_another_alignment_is_not_compared_and_the_report_says_so(
     pages = texts(make_report(request))
     said = "has no walk of this condition (alignment C), so it is not compared; it has alignment A."
     assert sum(said in " ".join(page.split()) for page in pages) == 1
-    assert not any("sensors put on anew" in page for page in pages)
+    assert not any("Two visits, sensors reattached" in page for page in pages)
     same = comparison_of(replace(request, earlier=alignments))
     assert same is not None
     assert [[walk.name for walk in part.walks] for part in same.parts] == [["walk 3"], ["walk 3"]]
@@ -284,6 +284,6 @@ def test_the_page_of_conditions_says_what_was_turned_and_against_which(request_o
     assert "Foot, front screw ½ turn out" in page
     assert "Pylon +3 mm" in page
     assert "Jonkergouw" in page
-    assert "C against B" in page
-    assert "C against A" in without
+    assert "C vs B" in page
+    assert "C vs A" in without
     assert not any(words in without for words in ("Jonkergouw", "turn out", "Changed from"))

@@ -71,7 +71,7 @@ def test_six_joints_are_counted_and_the_late_clock_is_told() -> None:
 
 def test_a_withheld_hip_is_told_once_with_what_to_do() -> None:
     found = data_quality(hip_facts(with_hip(hip_analysis(), Joint.LEFT_HIP, margin=1.2, is_3d=False)))
-    assert found.first == "5 of 6 joints can be read. Withheld: left hip."
+    assert found.first == "5 of 6 joints are reported. Not reported: left hip."
     (line,) = found.lines  # its abduction goes with it
     assert line.where == "Left hip"
     assert line.verdict is Verdict.WITHHELD
@@ -107,8 +107,13 @@ def test_how_the_legs_have_one_time_is_said(
     [
         (0.04, 0.005, ClockStatus.FOUND, "found through the hips, the right leg's 40 ms late, 1 SD 5 ms, taken out."),
         (-0.004, 0.005, ClockStatus.FOUND, "found through the hips, the left leg's 4 ms late, 1 SD 5 ms."),
-        (0.001, 0.005, ClockStatus.PROVEN, "proven to be one."),
-        (math.nan, math.nan, ClockStatus.WITHHELD, "not told by the hips."),
+        (0.001, 0.005, ClockStatus.PROVEN, "Left and right sensors: synchronised, confirmed"),
+        (
+            math.nan,
+            math.nan,
+            ClockStatus.WITHHELD,
+            "Left and right sensors: hip movement does not show their time offset",
+        ),
     ],
 )
 def test_page_four_says_how_both_clocks_are_tied(
@@ -123,7 +128,7 @@ def test_the_gates_of_a_hip_stand_with_their_limits_and_what_failed_is_withheld(
     assert table["Adjacent segments, margin"][2] == "at least 1.5"
     assert table["ROM, shape"][:2] == ["withheld", "good"]
     assert table["Abduction"][:2] == ["withheld", "good"]
-    assert table["Pelvis–thigh heading, 1 SD"][2] == "at most 6°, of abduction alone"
+    assert table["Pelvis–thigh heading, 1 SD"][2] == "at most 6°, for abduction only"
 
 
 def test_no_difference_of_hips_is_judged_and_rotation_is_named_as_unreadable() -> None:
@@ -133,7 +138,9 @@ def test_no_difference_of_hips_is_judged_and_rotation_is_named_as_unreadable() -
     assert left.endswith(tuple("0123456789"))
     assert right != left
     assert (difference != "–", error, judged) == (True, "–", "not judged")
-    assert "Rotation of the hip is not readable and not given." in said(peaks_table(facts))
+    assert (
+        "For hips and pelvis the measurement error of a difference is not known: differences are given but not judged"
+    ) in said(peaks_table(facts))
 
 
 def test_no_sentence_tells_how_hips_or_pelvis_differ_however_much() -> None:

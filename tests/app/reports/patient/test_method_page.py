@@ -40,22 +40,27 @@ def test_the_page_of_the_method_says_how_it_was_measured(request_of_demonstratio
     for title, words in {
         "Sensors": "6 × MTi, firmware 4.2, set to 100 Hz, 100.0 Hz by their stamps, on thigh, shank and foot of both",
         "Calibration": "from the patient's own free movement, the ankle's axis from the walks too: no posture",
-        "Angles": "VQF (Laidig, Seel 2023) forward and back, without magnetometer, time constant 3 s, from rates of "
-        "instants. An angle is the turn of the lower segment against the upper one about the joint's own axis: one of "
-        "its three",
+        "Angles": (
+            "VQF (Laidig, Seel 2023) forward and back, without magnetometer, time constant 3 s, from "
+            "rates of instants. An angle is the turn of the lower segment vs the upper one about the "
+            "joint's own axis: one of its three"
+        ),
         "Events and strides": "Contact and toe\u2011off: from the pitch of the feet, of feet that hardly roll",
-        "Accuracy": "It has not been tested on patients",
+        "Accuracy": "Not tested on patients, after knee replacement or on real prostheses",
         "Software": "Gaitwright 9.8.7, the robust method",
     }.items():
         assert words in told[title], title
-    assert "Zero: the standing posture" in told["Calibration"]
+    assert (
+        "Standing reference: this patient's posture on this day, or the goniometer value entered for it"
+        in told["Calibration"]
+    )
     assert "gaps up to 0.05 s are bridged" in told["Angles"]
 
 
 def test_what_no_sensor_told_is_said_to_be_unknown(request_of_demonstration: ReportRequest) -> None:
     told = said(with_sensors(request_of_demonstration, {}))
     assert told["Sensors"].startswith("6 × sensor whose model is not told, 100.0 Hz by their stamps, on ")
-    assert "Their measuring range is not in the recording" in told["Sensors"]
+    assert "The measuring range is not in the recording" in told["Sensors"]
     assert "from rates of a kind that is not told" in told["Angles"]
     differing = {site: replace(MTI, model=f"model {k}") for k, site in enumerate(Site)}
     assert said(with_sensors(request_of_demonstration, differing))["Sensors"].startswith("6 sensors of 6 models, ")
@@ -82,7 +87,7 @@ def test_what_was_noticed_changes_what_is_said(request_of_demonstration: ReportR
         (
             Finding("clipped", Severity.WARNING, f"left_foot, {walk}", {"percent": 1.0}),
             "Sensors",
-            "samples lie at its end, see",
+            "some samples reach its limit",
         ),
         (
             Finding("rate_kind_found", Severity.INFO, "session", {"kind": "averaged"}),

@@ -74,14 +74,16 @@ def test_without_a_zero_no_height_is_told(request_of_demonstration: ReportReques
     request = without_zero(request_of_demonstration)
     pages = shown(request)
     assert readable(request)["Left knee"] == [READ, WITHHELD, READ]
-    assert "Height of all joints: No zero was set, so heights say nothing." in pages[0]
+    assert "Absolute angle of all joints: No zero was set, so heights say nothing." in pages[0]
     assert "none: no absolute angles" in pages[0]
-    assert "Knee range over the stride" in pages[0]
-    assert "from band" not in pages[0]
+    assert "Knee range of motion" in pages[0]
+    assert "° vs reference" not in pages[0]
     assert "Left knee, ° from its mean" in pages[0]
-    assert "laid at the height of each curve" in pages[0]  # a shape needs no zero
+    assert (
+        "It is shifted to the level of each curve to compare shape; the absolute angle is shown beside it"
+    ) in pages[0]  # a shape needs no zero
     assert "degrees from the mean of the stride" in pages[1]
-    assert "without a zero there is no height to compare" in pages[1]
+    assert "No reference: without a standing reference there are no absolute angles to compare" in pages[1]
     assert "At initial contact" not in pages[1]
 
 
@@ -93,7 +95,7 @@ def test_one_leg_alone_is_not_compared(request_of_demonstration: ReportRequest) 
     assert "Right knee" not in pages[0]
     assert "Stride time, s 1.08 ± 0.01 not measured – – – –" in pages[2]
     assert "Range over the stride 61.7 ± 0.8 not measured – – – " in pages[1]
-    assert "against" not in pages[0].split("In short")[1].split("Data quality")[0]
+    assert "against" not in pages[0].split("Summary")[1].split("Data quality")[0]
 
 
 def test_without_a_foot_sensor_a_line_stands_in_place_of_the_ankle(request_of_demonstration: ReportRequest) -> None:
@@ -168,7 +170,7 @@ def test_an_axis_beyond_its_limit_is_marked_and_a_worse_one_withheld(request_of_
     assert readable(request)["Left knee"] == readable(request)["Right ankle"] == [CARE, CARE, READ]
     assert "All joints: The joint's axis is known to 8.0° only (6.5° wanted). Record free motion" in pages[0]
     assert "0.9 *" in pages[1]
-    assert "*: read with care; page 1 says why." in pages[1]
+    assert "*: caution; reason on page 1." in pages[1]
     request = with_joints(request_of_demonstration, Joint.LEFT_ANKLE, axis_sd_rad=np.deg2rad(9.5))
     pages = shown(request)
     assert readable(request)["Left ankle"] == [WITHHELD, WITHHELD, READ]
@@ -181,7 +183,7 @@ def test_an_axis_beyond_its_limit_is_marked_and_a_worse_one_withheld(request_of_
 def test_an_uncertain_sign_leaves_the_range_alone(request_of_demonstration: ReportRequest) -> None:
     pages = shown(with_joints(request_of_demonstration, Joint.LEFT_KNEE, is_sign_certain=False))
     assert "All of left knee but the range: The motion does not tell flexion from extension" in pages[0]
-    assert "Not drawn: left knee, withheld." in pages[1]
+    assert "Not drawn: left knee, not reported." in pages[1]
     assert "loading (5–30 %) withheld 14.0" in pages[1]
     assert re.search(r"Range over the stride 61\.7 ± 0\.8 63\.0", pages[1])
 
@@ -200,13 +202,13 @@ def test_sensors_that_are_no_neighbours_leave_no_number_of_their_joint(
     assert (told["Left vs right"], told["Distance"]) == ([READ], [CARE])
     said = "Right ankle: The two sensors do not move as neighbours (margin 1.05, 1.50 wanted)."
     assert said in pages[0].split("Key values")[0]
-    assert said in pages[0].split("In short")[1].split("Data quality")[0]  # the caveat
+    assert said in pages[0].split("Summary")[1].split("Data quality")[0]  # the caveat
     assert said in pages[1]
     assert re.search(r"Ankle push\u2011off, ° \d+\.\d ± \d\.\d withheld – – no band", pages[0])
     ankle = pages[1].split("Ankle: movement ranges")[1].split("Windows in brackets")[0]
     assert ankle.count("withheld") == 10  # four movements, the range, five angles
-    assert "Not drawn: right ankle, withheld." in pages[1]
-    assert "Double support, % of stride withheld" in pages[2]
+    assert "Not drawn: right ankle, not reported." in pages[1]
+    assert "Double support, % of stride not reported" in pages[2]
     assert "withheld" not in "".join(usual[:3])
 
 
@@ -215,7 +217,7 @@ def test_a_child_and_a_crawl_stand_beside_no_band(request_of_demonstration: Repo
     child = replace(session, started="2026-11-20T09:42:00+01:00", patient=replace(session.patient, birth_year=2016))
     visit = AnalysedVisit(child, request_of_demonstration.visit.analysis)
     pages = shown(replace(request_of_demonstration, visit=visit))
-    assert "no band" in pages[0]
+    assert "no reference" in pages[0]
     for page in pages:
         assert "No reference: the available groups are adults." in page
 
@@ -231,8 +233,8 @@ def test_visits_with_different_zeros_are_compared_in_shape_and_range_only(
         "The standing reference is missing or of another kind: only range of motion and timing are compared."
     ) in page
     assert "Left: knee, degrees from the mean (flexion +)" in page
-    assert "Band mean" not in page
-    assert "Knee: most flexed, swing withheld 58.8 ± 0.9 – – withheld" in page
+    assert "Reference mean, ±1 SD" not in page
+    assert "Knee: most flexed, swing withheld 58.8 ± 0.9 – – not reported" in page
     assert re.search(r"Knee: range over the stride 61\.7 ± 0\.8 61\.7 ± 0\.8 0\.0 \d+\.\d inside error", page)
     assert "degrees (flexion +" in shown(replace(request_of_demonstration, earlier=visit))[4]
 
@@ -248,12 +250,12 @@ def test_gaps_and_slips_are_said(request_of_demonstration: ReportRequest) -> Non
     request = with_analysis(request_of_demonstration, changed)
     pages = shown(request)
     assert "4.2 % (L foot)" in pages[0]
-    assert "slipped: R shank" in pages[0]
+    assert "moved: R shank" in pages[0]
     assert readable(request)["Left ankle"][:2] == [CARE, CARE]
     remarks = pages[3].split("Data quality findings")[1]
     assert "Gaps over 50 ms take 4.2 % of the strides used (1.0 % at most)." in remarks
     assert "Right leg: A strap slipped from 2.0 s on" in remarks
-    assert "more remark on page 4." in pages[0] or "more remarks on page 4." in pages[0]
+    assert "more finding on page 4" in pages[0] or "more findings on page 4" in pages[0]
 
 
 def test_clocks_that_cannot_be_compared_are_said(request_of_demonstration: ReportRequest) -> None:

@@ -19,9 +19,10 @@ from app.charts.stride_chart import StrideChart
 from app.exports.result_folder import write_results
 from app.reports.patient import comparison_page, curves_page, first_page, time_page
 from app.reports.patient.document import report_data
-from app.summary.numbers_in_words import MINUS, NOTHING, against_band, fixed, signed, spread
+from app.summary.numbers_in_words import NOTHING, against_band, fixed, signed, spread
 from app.summary.reference_bands import reference_curves, time_distance_classes
 from app.summary.request import AnalysedVisit, ReportRequest
+from app.wording.numbers import MINUS
 from core.body import Side
 from core.gait.spatiotemporal import MeanAndSd
 
@@ -224,8 +225,8 @@ def test_words_against_a_band_state_the_size_of_a_distance_only() -> None:
     band = (8.0, 12.0)
     words = {value: against_band(value, band).replace("\u00a0", " ") for value in (10.0, 12.0, 13.9, 5.0, 7.9)}
     assert words == {
-        10.0: "inside 1 SD",
-        12.0: "inside 1 SD",
+        10.0: "within 1 SD",
+        12.0: "within 1 SD",
         13.9: "1–2 SD above",
         5.0: "more than 2 SD below",
         7.9: "1–2 SD below",

@@ -1,15 +1,20 @@
 """Where a report may stand, what it is made from, and the subcommand that makes one."""
 
+import os
+import re
 import shutil
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pypdf
 import pytest
+import typst
 
 from app.cli.main import main
+from app.reports.patient.document import make_report
 from app.reports.patient.report_file import check_report_place, chosen_walks, replace_report, session_of
-from app.summary.request import AnalysedVisit, default_walks
+from app.summary.request import AnalysedVisit, ReportRequest, default_walks
 from devices.files.refusal import FileRefusedError
 from devices.files.session_folder import write_session
 
@@ -79,5 +84,37 @@ def test_the_last_walk_of_each_condition_is_shown(alignments: AnalysedVisit) -> 
     assert chosen_walks(alike, ["walk 2", "walk 1"], "session") == ("walk 2", "walk 1")
     nothing = AnalysedVisit(alignments.session, replace(alignments.analysis, recordings=()))
     assert default_walks(nothing) == ()
-    with pytest.raises(FileRefusedError, match="no kept walk"):
+    with pytest.raises(FileRefusedError, match="this contains no included walk, so there is nothing to report"):
         chosen_walks(nothing, [], "session")
+
+
+def test_what_is_typed_reaches_the_template_as_data_in_memory_and_nothing_there_runs_or_reads(
+    request_of_demonstration: ReportRequest, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    came: list[tuple[bytes, dict[str, Any]]] = []
+
+    def compiled(template: bytes, **options: Any) -> tuple[bytes, list[str]]:
+        came.append((template, options))
+        return b"", []
+
+    monkeypatch.setattr(typst, "compile_with_warnings", compiled)
+    make_report(replace(request_of_demonstration, comment='#eval("1") #image("/etc/passwd")'))
+    ((template, options),) = came
+    assert b"passwd" not in template
+    assert "passwd" in options["sys_inputs"]["data"]
+    assert re.findall(rb"\b(?:eval|read|plugin|csv|toml|xml|yaml|cbor)\(|#(?:include|import)\b", template) == []
+    assert re.findall(rb"\b(?:image|json)\((?!bytes\()", template) == []
+
+
+def test_a_report_is_on_the_disk_before_it_takes_its_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    out, synced = tmp_path / "report.pdf", list[int]()
+    out.write_bytes(b"%PDF- before")
+
+    def noted(descriptor: int) -> None:
+        assert out.read_bytes() == b"%PDF- before"
+        synced.append(os.fstat(descriptor).st_size)
+
+    monkeypatch.setattr(os, "fsync", noted)
+    replace_report(b"%PDF- now", out)
+    assert synced == [9]
+    assert out.read_bytes() == b"%PDF- now"

@@ -68,7 +68,7 @@ def test_a_change_beyond_the_error_is_a_sentence_with_both_values(request_of_dem
     assert len(found) == 1
     pattern = r"Left, knee bend from stance to swing: 31\.0° at visit 1, 52\.0° at visit 3; \+21\.0°, error"
     assert re.search(pattern, found[0])
-    assert "Since visit 2 +16.0°: larger than the error." in found[0]
+    assert "Since visit 2 +16.0°: beyond error." in found[0]
 
 
 def test_a_change_inside_the_error_is_none(request_of_demonstration: ReportRequest) -> None:
@@ -106,7 +106,7 @@ def test_the_page_is_in_the_report_where_visits_were_given(request_of_demonstrat
     seen = visits(walk(31), walk(52))
     without, with_it = (report_data(replace(request_of_demonstration, course=tuple(course))) for course in ((), seen))
     assert len(with_it["pages"]) == len(without["pages"]) + 1
-    assert with_it["pages"][-1][0]["said"].startswith("Course over 2 visits, 2 Sep 2026 to 16 Sep 2026")
+    assert with_it["pages"][-1][0]["said"].startswith("Progress over 2 visits, 2 Sep 2026 to 16 Sep 2026")
 
 
 @pytest.mark.parametrize("value", [0.7, 31.0, 60.0])
@@ -202,6 +202,6 @@ def test_timed_tests_stand_in_the_table_and_speed_is_told_once(request_of_demons
     assert told[0].startswith("10-metre walk: 0.50 m/s at visit 1, 1.25 m/s at visit 2; +0.75 m/s, error between")
     chair = visits(*(with_test(time_s, protocol=TimedProtocol.SIT_TO_STAND) for time_s in (30.0, 12.0)))
     blocks = page(request_of_demonstration, chair)
-    assert rows(blocks)["Sit to stand, 5 ×, s", ""] == ["30.0", "12.0", "–", "-18.0", "–", "not judged"]
+    assert rows(blocks)["5 ×, s sit to stand", ""] == ["30.0", "12.0", "–", "-18.0", "–", "not judged"]
     assert sentences(blocks) == ["All judged changes are within measurement error."]
     assert not any("10-metre" in name for name, _ in rows(page(request_of_demonstration, visits(walk(), walk()))))

@@ -216,7 +216,10 @@ def test_broken_off_anywhere_it_goes_there_once(
 def test_what_is_still_worked_with_stays_until_it_is_not(stations: Stations) -> None:
     first, second = stations
     session_id, _ = visit_away(first)
-    with held_alone(first.folder / AWAY), pytest.raises(LibraryError, match="open with this library already"):
+    with (
+        held_alone(first.folder / AWAY),
+        pytest.raises(LibraryError, match="This library is already open in Gaitwright"),
+    ):
         bring_away_home(first)
     assert bring_away_home(first) == 1
     assert second.library.sessions.get(session_id).details.notes == "while the server was away"

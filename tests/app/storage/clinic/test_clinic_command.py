@@ -32,20 +32,20 @@ def test_a_library_goes_to_the_server_a_station_joins_and_it_comes_back(
     assert main(["clinic", "prepare"]) == 0
     assert "is ready" in capsys.readouterr().out
     assert main(["clinic", "join", second]) == 2
-    assert "no library on the clinic's server" in capsys.readouterr().err
+    assert "No library was found on the clinic's server" in capsys.readouterr().err
     assert main(["clinic", "move", str(folder), *key, "--journals", str(shared_place)]) == 0
     said = capsys.readouterr().out
     assert "1 patient, 1 session and 3 recordings are on postgresql://" in said
     assert main(["clinic", "join", second]) == 2
     assert str(shared_place) in capsys.readouterr().err
     assert main(["clinic", "join", second, "--journals", str(shared_place)]) == 0
-    assert "is a station of" in capsys.readouterr().out
+    assert "This computer is a workstation of" in capsys.readouterr().out
     monkeypatch.delenv(DATABASE_VARIABLE)  # from here on the station's own file names the server
     assert main(["clinic", "status", second, *key]) == 0
     assert "All recordings were transferred." in capsys.readouterr().out
     assert main(["clinic", "back", second, *key, "--out", str(tmp_path / "copy"), "--copy"]) == 0
     assert main(["clinic", "back", str(folder), *key, "--out", back]) == 0
-    assert "closed to all stations" in capsys.readouterr().out
+    assert "Have its database and recordings removed once you are sure" in capsys.readouterr().out
     assert main(["clinic", "status", second, *key]) == 2
     assert "no longer on the clinic's server" in capsys.readouterr().err
     for place in (back, str(tmp_path / "copy")):

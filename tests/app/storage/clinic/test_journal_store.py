@@ -71,7 +71,7 @@ def test_what_is_put_is_fetched_as_it_was(place: str, journal: Path, tmp_path: P
     store.destroy(name)
     store.destroy(name)
     assert names_in(place) == set()
-    with pytest.raises(LibraryError, match="missing in the clinic's shared place"):
+    with pytest.raises(LibraryError, match="A recording is missing from the clinic's shared storage"):
         store.fetch(name, tmp_path / "copies" / "c.journal")
     assert [path.name for path in (tmp_path / "copies").iterdir()] == ["b.journal"]
 
@@ -87,7 +87,7 @@ def test_a_bucket_that_does_not_answer_is_said_not_to(monkeypatch: pytest.Monkey
     monkeypatch.setenv("AWS_ENDPOINT_URL", "http://127.0.0.1:9")
     monkeypatch.setenv("AWS_ACCESS_KEY_ID", "testing")
     monkeypatch.setenv("AWS_SECRET_ACCESS_KEY", "testing")
-    with pytest.raises(LibraryError, match="does not answer"):
+    with pytest.raises(LibraryError, match="does not respond"):
         JournalStore("s3://bucket").put(journal)
 
 
@@ -99,7 +99,7 @@ def test_a_place_that_lets_nobody_in_says_so(tmp_path: Path, journal: Path, monk
         raise PermissionError(13, "Permission denied")
 
     monkeypatch.setattr("app.storage.clinic.journal_store.os.open", refused)
-    with pytest.raises(LibraryError, match="does not let this station in"):
+    with pytest.raises(LibraryError, match="This workstation has no access to the clinic's shared storage"):
         store.put(journal)
 
 
@@ -120,7 +120,7 @@ def test_half_a_journal_has_no_journals_name(tmp_path: Path, journal: Path, monk
 
 @pytest.mark.parametrize("address", ["gopher://clinic.example/a", "unheard-of://b"])
 def test_an_address_that_nothing_here_reads_is_refused(address: str) -> None:
-    with pytest.raises(LibraryError, match="cannot be kept at this address"):
+    with pytest.raises(LibraryError, match="Recordings cannot be stored at this address"):
         JournalStore(address)
 
 
@@ -137,5 +137,5 @@ ELSEWHERE = (
 
 @pytest.mark.parametrize("place", [*ELSEWHERE, "zip://x::/tmp/a.zip", "s3:bucket", "simplecache::s3://bucket/x"])
 def test_a_place_is_a_folder_or_a_bucket_and_nothing_else(place: str) -> None:
-    with pytest.raises(LibraryError, match="cannot be kept at this address"):
+    with pytest.raises(LibraryError, match="Recordings cannot be stored at this address"):
         JournalStore(place)

@@ -110,7 +110,7 @@ def test_nothing_is_brought_back_while_something_waits_at_a_station(
     (line,) = first.library.sessions.list()
     recording = first.library.sessions.get(line.id).recordings[0]
     second.library.recordings.start(line.id, replace(recording.details, name="walk 9"), True)
-    with pytest.raises(LibraryError, match="wait at a station"):
+    with pytest.raises(LibraryError, match="recordings are running or not yet transferred from a workstation"):
         bring_back(first, tmp_path / "back", silent)
     assert not (tmp_path / "back").exists()
     assert second.library.patients.find("DEMO-1") is not None
@@ -193,7 +193,7 @@ def test_a_server_with_another_library_is_refused(
 ) -> None:
     other = Library.create(tmp_path / "other", untouched.data_key, Operator("hk", "H. Keller", Role.ADMINISTRATOR))
     opened = OpenedLibrary(other, tmp_path / "other", untouched.data_key)
-    with pytest.raises(LibraryError, match="another library on the clinic's server"):
+    with pytest.raises(LibraryError, match="The clinic's server already holds another library"):
         move_to_server(opened, new_station(moved.database, str(shared_place)), silent)
     other.close()
 

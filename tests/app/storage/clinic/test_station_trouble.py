@@ -114,7 +114,8 @@ def test_a_copy_that_is_damaged_is_fetched_again(stations: Stations, session_id:
 
 
 @pytest.mark.parametrize(
-    ("number", "said"), [(errno.ENOSPC, "is full"), (errno.EFBIG, "is full"), (errno.EROFS, "can only be read")]
+    ("number", "said"),
+    [(errno.ENOSPC, "is full"), (errno.EFBIG, "is full"), (errno.EROFS, "The clinic's shared storage is read-only")],
 )
 def test_a_full_or_locked_place_says_so_and_leaves_nothing_half_there(
     stations: Stations, session_id: UUID, shared_place: Path, monkeypatch: pytest.MonkeyPatch, number: int, said: str
@@ -195,7 +196,7 @@ def test_a_save_whose_end_was_not_heard_is_said_to_be_uncertain(
         raise gone
 
     monkeypatch.setattr(OrmSession, "commit", lost)
-    with pytest.raises(LibraryFaultError, match="Look whether it was saved"):
+    with pytest.raises(LibraryFaultError, match="Check whether it was saved before you repeat it"):
         first.library.patients.change(patient_of(first), replace(patient_of(first).details, height_m=1.8))
     assert patient_of(second).details.height_m == 1.8
 
@@ -286,7 +287,7 @@ def test_what_was_begun_while_it_is_brought_back_is_noticed(
         return made_beside(folder)
 
     monkeypatch.setattr(moving, "made_beside", begun_meanwhile)
-    with pytest.raises(LibraryError, match="wait at a station"):
+    with pytest.raises(LibraryError, match="recordings are running or not yet transferred from a workstation"):
         bring_back(first, tmp_path / "back", silent)
     assert not (tmp_path / "back").exists()
     second.library.patients.change(patient_of(second), replace(patient_of(second).details, height_m=1.8))
@@ -307,7 +308,7 @@ def test_the_servers_own_trouble_in_tls_is_not_said_to_be_a_false_name() -> None
     said = psycopg.OperationalError("consuming input failed: SSL error: unexpected eof while reading")
     cause = OperationalError("", {}, said, connection_invalidated=True)
     database = Database(postgres_engine("postgresql+psycopg://nobody@/nowhere"))
-    with pytest.raises(LibraryFaultError, match="does not answer"), database.reading():
+    with pytest.raises(LibraryFaultError, match="does not respond"), database.reading():
         raise cause
 
 
@@ -327,4 +328,4 @@ def test_a_server_that_falls_silent_amid_a_statement_is_given_up(
         session.scalar(text("SELECT 1"))
     database.close()
     server.close()
-    assert time.monotonic() - began_s < PG_SILENT_S
+    assert time.monotonic() - began_s < PG_SILENT_S <= 30.0

@@ -133,7 +133,7 @@ def test_what_was_recorded_is_handed_over_by_itself_and_trouble_is_said_once(
         record(own, line.id, "walk 2")
     what, then = said.args or ["", ""]
     assert what == "The place of the clinic's recordings is not there."
-    assert "handed over by itself" in then
+    assert ("Recordings made here stay on this computer and are transferred automatically as soon as possible") in then
     assert count_waiting(own) == 1
     elsewhere.rename(shared_place)
     qtbot.waitUntil(lambda: count_waiting(own) == 0, timeout=WAIT_MS)
@@ -159,7 +159,9 @@ def test_without_the_server_a_station_opens_its_own_and_brings_it_home_later(
         with qtbot.waitCallback(timeout=WAIT_MS) as unlocked:
             spy.unlock(controller, unlocked)
         assert away.data_key
-        with pytest.raises(LibraryError, match="stays while stations share it"):
+        with pytest.raises(
+            LibraryError, match="The key of a clinic's library cannot change while workstations share it"
+        ):
             refuse_change(away)
     finally:
         server.start()

@@ -79,7 +79,7 @@ def test_what_one_station_recorded_the_other_reads_once_it_was_handed_over(
     first, second = stations
     walk = record(first, session_id, "walk 2")
     assert count_waiting(first) == 1
-    with pytest.raises(JournalRefusedError, match="still on the station that made it"):
+    with pytest.raises(JournalRefusedError, match="this recording is still on the workstation that recorded it"):
         read(second, walk)
     assert hand_over(first) == {walk}
     assert (count_waiting(first), hand_over(first)) == (0, frozenset())
@@ -186,14 +186,14 @@ def test_a_journal_that_is_damaged_in_the_shared_place_is_not_taken(
         read(second, walk)
     assert not (second.folder / "cache" / journal.file).exists()
     there.unlink()
-    with pytest.raises(LibraryError, match="missing in the clinic's shared place"):
+    with pytest.raises(LibraryError, match="A recording is missing from the clinic's shared storage"):
         read(second, walk)
 
 
 def test_a_row_cannot_lead_out_of_the_shared_place(tmp_path: Path) -> None:
     (tmp_path / "place").mkdir()
     shared = SharedJournals(tmp_path, str(tmp_path / "place"), None)
-    with pytest.raises(LibraryError, match="names no journal"):
+    with pytest.raises(LibraryError, match="The library refers to an invalid recording file"):
         shared.path(StoredJournal(uuid7(), 1, None, "", "../station.json"))
 
 
@@ -254,7 +254,7 @@ def test_without_the_server_a_station_knows_its_operators_and_changes_nothing(
     slots = slots_of(second.folder)
     assert slots.codes == ("hk", "ab")
     assert slots.open("hk", PASSPHRASE) == second.data_key
-    with pytest.raises(LibraryError, match="server does not answer"):
+    with pytest.raises(LibraryError, match="server does not respond"):
         slots.set_passphrase(second.data_key, "hk", "other words for then")
     monkeypatch.delenv(DATABASE_VARIABLE)
     assert slots_of(first.folder).open("hk", PASSPHRASE) == first.data_key
@@ -293,16 +293,16 @@ def test_a_damaged_station_file_is_said_to_be(moved: Station, folder: Path) -> N
 
 @pytest.mark.parametrize("address", ["", "clinic.example", "mysql://a@b/c", "postgresql://clinic.example", "//"])
 def test_what_is_no_address_of_a_server_is_refused(address: str, tmp_path: Path) -> None:
-    with pytest.raises(LibraryError, match="no address of a PostgreSQL server"):
+    with pytest.raises(LibraryError, match="This is not the address of a PostgreSQL server"):
         join(tmp_path / "station", address)
     assert not (tmp_path / "station").exists()
 
 
 def test_an_empty_server_cannot_be_joined(database_url: str, tmp_path: Path) -> None:
-    with pytest.raises(LibraryError, match="no library on the clinic's server"):
+    with pytest.raises(LibraryError, match="No library was found on the clinic's server"):
         join(tmp_path / "station", database_url)
     prepare_server(database_url)
-    with pytest.raises(LibraryError, match="no library on the clinic's server"):
+    with pytest.raises(LibraryError, match="No library was found on the clinic's server"):
         join(tmp_path / "station", database_url)
 
 
@@ -318,7 +318,10 @@ def test_a_stations_login_works_and_cannot_touch_tables_or_audit(
     engine = postgres_engine(driver_url(address))
     database = Database(engine)
     for said in ("UPDATE audit SET operator = 'x'", "DELETE FROM audit", "TRUNCATE audit", "DROP TABLE patients"):
-        with pytest.raises(LibraryError, match="does not allow this"), database.writing() as session:
+        with (
+            pytest.raises(LibraryError, match="The clinic's server does not permit this for this workstation"),
+            database.writing() as session,
+        ):
             session.execute(text(said))
     database.close()
 
@@ -333,7 +336,7 @@ def test_a_readers_login_reads_is_noted_and_changes_nothing(
     assert len(session_with_samples(reader, visit, {}, silent).recordings) == 3
     patient = reader.library.patients.find("DEMO-1")
     assert patient is not None
-    with pytest.raises(LibraryError, match="does not allow this"):
+    with pytest.raises(LibraryError, match="The clinic's server does not permit this for this workstation"):
         reader.library.patients.change(patient, replace(patient.details, height_m=1.7))
 
 

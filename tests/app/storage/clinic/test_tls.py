@@ -176,7 +176,7 @@ def test_a_server_without_tls_is_refused_over_the_network(connect: Connect) -> N
 def test_a_server_that_goes_away_amid_tls_is_not_said_to_be_another(connect: Connect, front: TlsFront) -> None:
     database = connect(NAME, "root").database_kept()
     try:
-        with pytest.raises(LibraryFaultError, match="does not answer"), database.reading() as session:  # noqa: PT012 - it is cut off amid it
+        with pytest.raises(LibraryFaultError, match="does not respond"), database.reading() as session:  # noqa: PT012 - it is cut off amid it
             session.scalar(text("SELECT 42"))
             front.cut_off()
             session.scalar(text("SELECT 43"))

@@ -17,6 +17,7 @@ from app.storage.database.schema import NEWEST, alembic_config, bring_up_to_date
 from app.storage.library import Library
 from app.storage.stored import LibraryError
 from core.samples import Patient, Session
+from tests.safety.migration_kills import update_killed
 
 
 def constraints(connection: Connection) -> dict[str, Any]:
@@ -159,3 +160,10 @@ def test_an_update_that_leaves_references_to_nothing_is_not_kept(tmp_path: Path)
         connection.execute(text(nobody))
     assert database.faults() == ()
     database.close()
+
+
+@pytest.mark.endurance
+def test_an_update_of_an_earlier_library_that_is_killed_loses_nothing(tmp_path: Path) -> None:
+    found = update_killed(tmp_path, 4, 3, ("0001", "0006", "0012"))
+    assert found.faults == []
+    assert found.kills > 5

@@ -42,13 +42,13 @@ def test_every_journal_has_a_key_of_its_own(tmp_path: Path) -> None:
 
 def test_another_librarys_key_is_refused() -> None:
     sealed, _ = HEADER.with_new_key(KEY)
-    with pytest.raises(JournalRefusedError, match="another library's"):
+    with pytest.raises(JournalRefusedError, match="the key of this recording is damaged or belongs to another library"):
         sealed.key(OTHER_KEY, "a")
 
 
 def test_a_wrapped_key_put_into_another_header_does_not_open() -> None:
     sealed, _ = HEADER.with_new_key(KEY)
-    with pytest.raises(JournalRefusedError, match="another library's"):
+    with pytest.raises(JournalRefusedError, match="the key of this recording is damaged or belongs to another library"):
         replace(sealed, recording_id=OTHER_ID).key(KEY, "a")
 
 
@@ -60,14 +60,16 @@ def test_without_logging_in_a_sealed_journal_stays_closed(tmp_path: Path) -> Non
 
 def test_an_open_journal_is_not_taken_for_one_of_a_sealed_library(tmp_path: Path) -> None:
     path = record_some(tmp_path, None, rounds=1).path
-    with pytest.raises(JournalRefusedError, match="not this library's"):
+    with pytest.raises(
+        JournalRefusedError, match="this recording is not encrypted, so it does not belong to this library"
+    ):
         read_all(path, KEY)
 
 
 @pytest.mark.parametrize("content", [b"", b"\x89GWJ\r\n\x1a\n", b"\x89GWJ\n\x1a\n" + bytes(200), bytes(200)])
 def test_what_is_no_journal_is_refused(tmp_path: Path, content: bytes) -> None:
     (tmp_path / "a.journal").write_bytes(content)
-    with pytest.raises(JournalRefusedError, match="not a recording"):
+    with pytest.raises(JournalRefusedError, match="this is not a Gaitwright recording, or its beginning is missing"):
         read_header(tmp_path / "a.journal")
 
 
@@ -95,7 +97,7 @@ def test_a_destroyed_key_leaves_nothing_to_read(tmp_path: Path) -> None:
     destroy_key(path)
     assert wrapped_key[12:] not in path.read_bytes()
     assert path.stat().st_size == size
-    with pytest.raises(JournalRefusedError, match="destroyed for good"):
+    with pytest.raises(JournalRefusedError, match="this recording was permanently destroyed"):
         read_all(path, KEY)
     open_one = record_some(tmp_path, None, recording_id=OTHER_ID).path
     with pytest.raises(JournalRefusedError, match="no key"):

@@ -14,7 +14,7 @@ from app.storage.journal.disk import TOLD, JournalFile, Room, Trouble
 from app.storage.journal.header import JournalRefusedError, find_segments
 from app.storage.journal.payloads import Footer, SourceEntry
 from app.storage.journal.records import MAX_PAYLOAD, RecordKind
-from app.storage.journal.writer import SLOW_S, JournalWriter, State
+from app.storage.journal.writer import SLOW_S, SYNC_EVERY_S, WRITE_EVERY_S, JournalWriter, State
 from devices.source import SourceInfo
 from tests.safety.journal_material import (
     ID,
@@ -176,6 +176,16 @@ def test_status_tells_up_to_when_records_are_written_and_synced(tmp_path: Path, 
         assert (journal.status.written_s, journal.status.synced_s) == (3.0, 3.0)
         disk.answers.set()
     assert (journal.status.written_s, journal.status.synced_s) == (7.0, 7.0)
+
+
+def test_it_is_written_every_20_ms_synced_every_half_second_and_its_name_at_the_beginning(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    synced: list[Path] = []
+    monkeypatch.setattr("app.storage.files.sync_folder", synced.append)
+    with JournalWriter.create(tmp_path, ID, KEY, room=NO_ROOM_ASKED):
+        assert synced == [tmp_path]
+    assert (WRITE_EVERY_S, SYNC_EVERY_S) == (0.02, 0.5)
 
 
 def test_ten_seconds_of_six_sensors_fit_into_the_queue(tmp_path: Path, disk: Disk) -> None:

@@ -1,6 +1,7 @@
 """A backup opens and holds everything, or there is none; a restored library is the one that was backed up."""
 
 import datetime
+import errno
 import json
 import os
 import shutil
@@ -11,11 +12,13 @@ from pathlib import Path
 from uuid import UUID
 
 import pytest
+import sqlcipher3.dbapi2 as sqlite
 
 from app.storage.backup import LIST, back_up, find_backups, remove_old_backups, restore
+from app.storage.files import held
 from app.storage.journal.reader import JournalReader
 from app.storage.keys import KeySlots
-from app.storage.layout import DATABASE, KEYS, RECORDINGS
+from app.storage.layout import DATABASE, IN_USE, KEYS, RECORDINGS
 from app.storage.opened import OpenedLibrary, held_alone, open_library
 from app.storage.stored import Action, LibraryError, StoredRecording
 from core.samples import Patient
@@ -127,7 +130,7 @@ def test_what_is_damaged_on_the_way_is_no_backup(opened: OpenedLibrary, record: 
             if what == "backup" and copy.stat().st_size > 1000:
                 flip(copy, 700)
 
-    with pytest.raises(LibraryError, match="was not copied as it is"):
+    with pytest.raises(LibraryError, match="does not match the original"):
         back_up(opened, tmp_path / "backups", damage)
     assert list((tmp_path / "backups").iterdir()) == []
 
@@ -172,12 +175,12 @@ def test_nothing_is_restored_over_a_library_nor_with_another_key_nor_by_a_strang
     record("walk 1")
     folder = back_up(opened, tmp_path / "backups").folder
     before = {path: path.stat().st_mtime_ns for path in opened.recordings.iterdir()}
-    with pytest.raises(LibraryError, match="something in this folder"):
+    with pytest.raises(LibraryError, match="This folder is not empty"):
         restore(folder, opened.folder, opened.data_key, "hk")
     assert {path: path.stat().st_mtime_ns for path in opened.recordings.iterdir()} == before
-    with pytest.raises(LibraryError, match="does not open with this key"):
+    with pytest.raises(LibraryError, match="This key does not open the library, or the start of its file is damaged"):
         restore(folder, tmp_path / "restored", bytes(32), "hk")
-    with pytest.raises(LibraryError, match="does not work here"):
+    with pytest.raises(LibraryError, match="This user is not active in this library"):
         restore(folder, tmp_path / "restored", opened.data_key, "somebody")
     assert not (tmp_path / "restored").exists()
 
@@ -192,17 +195,17 @@ def test_a_list_cannot_lead_out_of_its_backup(opened: OpenedLibrary, tmp_path: P
     assert not (tmp_path / "restored" / "elsewhere").exists()
     del told["files"][KEYS]
     (folder / LIST).write_text(json.dumps(told))
-    with pytest.raises(LibraryError, match="not a backup"):
+    with pytest.raises(LibraryError, match="This version cannot read this folder as a backup"):
         restore(folder, tmp_path / "again", opened.data_key, "hk")
 
 
 def test_a_backup_stands_outside_of_its_library_and_needs_room(
     opened: OpenedLibrary, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    with pytest.raises(LibraryError, match="inside of its library"):
+    with pytest.raises(LibraryError, match="A backup cannot be stored inside its own library"):
         back_up(opened, opened.folder / "backups")
     monkeypatch.setattr("app.storage.backup.SPARE_BYTES", 10**18)
-    with pytest.raises(LibraryError, match="MB are left"):
+    with pytest.raises(LibraryError, match="MB free"):
         back_up(opened, tmp_path / "backups")
 
 
@@ -265,3 +268,38 @@ def test_what_a_kill_left_of_a_restore_is_gone_at_the_next_start(
     restore(backup.folder, target, opened.data_key, "hk")
     with held_alone(target):
         assert list(tmp_path.glob(".rs-*")) == [somebodys]
+
+
+def test_a_restore_is_not_held_up_by_what_a_kill_left_where_an_open_file_does_not_go(
+    opened: OpenedLibrary, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As on a disk of the network, or on Windows."""
+    backup = back_up(opened, tmp_path / "backups")
+    left, remove = tmp_path / ".rs-abcdefgh", shutil.rmtree
+    left.mkdir()
+    (left / IN_USE).touch()
+
+    def remove_closed(folder: Path, *, ignore_errors: bool = False) -> None:
+        if (folder / IN_USE).exists():
+            try:
+                with held(folder / IN_USE):
+                    pass
+            except BlockingIOError:
+                raise OSError(errno.ENOTEMPTY, "Directory not empty") from None
+        remove(folder, ignore_errors=ignore_errors)
+
+    monkeypatch.setattr("shutil.rmtree", remove_closed)
+    restore(backup.folder, tmp_path / "rs", opened.data_key, "hk")
+    assert not left.exists()
+
+
+def test_a_disk_that_refuses_the_copy_of_the_database_is_said_and_nothing_is_left(
+    opened: OpenedLibrary, tmp_path: Path
+) -> None:
+    def refuse(share: float, _what: str) -> None:
+        if share:  # amid the copying of the database
+            raise sqlite.OperationalError("disk I/O error")
+
+    with pytest.raises(LibraryError, match=r"This folder cannot be written \(disk I/O error\)"):
+        back_up(opened, tmp_path / "backups", refuse)
+    assert list((tmp_path / "backups").iterdir()) == []

@@ -13,9 +13,10 @@ from app.cohort.batch import library_sessions
 from app.storage.exchange import import_session, session_with_samples
 from app.storage.journal.decoding import Decoders
 from app.storage.journal.disk import Room
-from app.storage.opened import OpenedLibrary, Report
+from app.storage.opened import OpenedLibrary
 from app.storage.pseudonyms import Pseudonyms
 from app.storage.stored import Action, StoredSession
+from app.system.progress import Report
 from core.samples import Patient, Session
 from tests.app.batch_material import results_in, swinging_session
 

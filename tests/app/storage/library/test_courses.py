@@ -57,11 +57,13 @@ def not_kept(opened: OpenedLibrary, visit: StoredSession) -> None:
 
 
 def swapped(opened: OpenedLibrary, visit: StoredSession) -> None:
-    placement = visit.recordings[1].placement
+    walks = visit.recordings[1:]
+    placement = walks[0].placement
     assert placement is not None
     thigh, shank = placement.sensors[Site.LEFT_THIGH], placement.sensors[Site.LEFT_SHANK]
     worn = {**placement.sensors, Site.LEFT_THIGH: shank, Site.LEFT_SHANK: thigh}
-    opened.library.sessions.correct_placement(visit.recordings[1:], worn)
+    seen = {one.id: one.placement.id if one.placement is not None else None for one in walks}
+    opened.library.edits.placement(visit.id, seen, [([one.id for one in walks], worn)])
 
 
 def turned(opened: OpenedLibrary, visit: StoredSession) -> None:

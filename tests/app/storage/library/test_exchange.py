@@ -1,7 +1,6 @@
 """A session folder goes into the library and comes out again with every bit, key and column, or without any name."""
 
 import datetime
-import json
 import math
 from collections.abc import Mapping
 from dataclasses import replace
@@ -15,19 +14,19 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from app.storage.audit import about
-from app.storage.exchange import export_session, import_session, session_with_samples
+from app.storage.exchange import import_session, session_with_samples
 from app.storage.journal.disk import Room
 from app.storage.journal.header import JournalRefusedError
 from app.storage.opened import OpenedLibrary
 from app.storage.pseudonyms import AGE, Pseudonyms, Typed, age_in_words
-from app.storage.stored import Action, LibraryError, RecordingState
+from app.storage.stored import LibraryError, RecordingState
 from core.body import LEG_JOINTS, LEG_SITES, Joint, Site
 from core.findings import Finding, Severity
 from core.goals import Goal, GoalOf
 from core.samples import ImuBlock, Patient, RateKind, Recording, RecordingKind, SensorInfo, Session
 from devices.files.session_folder import read_session, write_session
 from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
+from tests.app.storage.library.folder_export import write_folder
 
 ANY_ROOM = Room(start_bytes=0, kept_bytes=0)
 NAMES = [f"Kowalczyk-{number:03d}" for number in range(200)]
@@ -116,7 +115,7 @@ def test_the_simulated_patient_comes_back_bit_for_bit_by_way_of_folders(
     write_session(walked, tmp_path / "first")
     session = read_session(tmp_path / "first")
     imported = import_session(opened, session, silent, room=ANY_ROOM)
-    export_session(opened, imported.session_id, tmp_path / "second", {}, silent, is_identified=True)
+    write_folder(opened, imported.session_id, tmp_path / "second", {}, is_identified=True)
     assert_same(session, read_session(tmp_path / "second"))
     first, second = (sorted((tmp_path / name).rglob("*.csv")) for name in ("first", "second"))
     assert [path.read_bytes() for path in first] == [path.read_bytes() for path in second]
@@ -264,17 +263,14 @@ def test_an_export_says_no_name_unless_it_is_asked_to(opened: OpenedLibrary, wal
     for number, name in enumerate(NAMES[:8]):
         imported = import_session(opened, named(small(walked), name), silent, room=ANY_ROOM)
         folder = tmp_path / f"out{number}"
-        export_session(opened, imported.session_id, folder, {}, silent)
+        write_folder(opened, imported.session_id, folder, {})
         assert not [one for one in [*NAMES, "2026-11-20", "Keller"] if one in everything_in(folder)]
         exported = read_session(folder)
         assert [one.name for one in exported.recordings] == ["standing", "free motion", "walk 1"]
         pseudonyms.add(exported.patient.code)
         folder = tmp_path / f"identified{number}"
-        export_session(opened, imported.session_id, folder, {}, silent, is_identified=True)
+        write_folder(opened, imported.session_id, folder, {}, is_identified=True)
         assert name in everything_in(folder)
-        noted = opened.library.audit.entries(about("session", imported.session_id))
-        told = [json.loads(entry.details)["is_identified"] for entry in noted if entry.action == Action.EXPORT]
-        assert told == [False, True]
     assert len(pseudonyms) == 8
 
 
@@ -360,7 +356,7 @@ def test_goals_come_with_a_new_patient_and_go_out_again_and_others_are_told_of(
     assert second.differing == ("goals",)
     assert second.patient.details.goals == (goal,)
     for name, is_identified in (("whole", True), ("nameless", False)):
-        export_session(opened, first.session_id, tmp_path / name, {}, silent, is_identified=is_identified)
+        write_folder(opened, first.session_id, tmp_path / name, {}, is_identified=is_identified)
     assert read_session(tmp_path / "whole").patient.goals == (goal,)
     (nameless,) = read_session(tmp_path / "nameless").patient.goals
     assert (nameless.key, nameless.value, nameless.by, nameless.note) == (goal.key, 1.2, "", "")
@@ -374,19 +370,12 @@ def test_a_destroyed_recording_is_not_exported_and_a_missing_file_is_said(
     opened.library.recordings.discard(first.id)
     (opened.recordings / second.journals[0].file).rename(tmp_path / "away")
     with pytest.raises(JournalRefusedError, match="missing"):
-        export_session(opened, imported.session_id, tmp_path / "out", {}, silent)
+        write_folder(opened, imported.session_id, tmp_path / "out", {})
     (tmp_path / "away").rename(opened.recordings / second.journals[0].file)
-    export_session(opened, imported.session_id, tmp_path / "out", {}, silent)
+    write_folder(opened, imported.session_id, tmp_path / "out", {})
     assert len(read_session(tmp_path / "out").recordings) == 2
     states = [one.state for one in opened.library.sessions.get(imported.session_id).recordings]
     assert states == [RecordingState.DISCARDED, RecordingState.CLOSED, RecordingState.CLOSED]
-
-
-def test_an_export_takes_nobodys_place(opened: OpenedLibrary, walked: Session, tmp_path: Path) -> None:
-    imported = import_session(opened, small(walked), silent, room=ANY_ROOM)
-    (tmp_path / "theirs.txt").write_text("theirs")
-    with pytest.raises(LibraryError, match="something in this folder"):
-        export_session(opened, imported.session_id, tmp_path, {}, silent)
 
 
 def test_what_happened_to_a_recordings_file_is_told(opened: OpenedLibrary, walked: Session) -> None:
@@ -430,9 +419,9 @@ def test_what_an_import_found_is_in_the_library_and_in_every_export_without_name
     imported = import_session(opened, read_session(tmp_path / "in"), silent, room=ANY_ROOM)
     stored = session_with_samples(opened, opened.library.sessions.get(imported.session_id), {}, silent)
     assert all(one in stored.findings for one in found)
-    export_session(opened, imported.session_id, tmp_path / "whole", {}, silent, is_identified=True)
+    write_folder(opened, imported.session_id, tmp_path / "whole", {}, is_identified=True)
     assert all(one in read_session(tmp_path / "whole").findings for one in found)
-    export_session(opened, imported.session_id, tmp_path / "out", {}, silent)
+    write_folder(opened, imported.session_id, tmp_path / "out", {})
     assert "Kowalczyk" not in (tmp_path / "out" / "session.toml").read_text()
     exported = read_session(tmp_path / "out")
     walk = exported.recordings[-1].name

@@ -79,13 +79,13 @@ def test_who_leaves_opens_nothing_new_with_an_old_copy_of_the_keys(
     assert bytes(stolen) == before != bytes(changed.data_key)
     with pytest.raises(KeyRefusedError):
         slots.open("ab", LEAVING)
-    with pytest.raises(LibraryError, match="does not open with this key"):
+    with pytest.raises(LibraryError, match="This key does not open the library, or the start of its file is damaged"):
         Library.open(opened.folder, stolen)
     with open_library(opened.folder, PASSPHRASE) as again:
         assert again.data_key == changed.data_key
         assert samples_of(again) == old_samples
         for paths in find_segments(again.recordings).values():
-            with pytest.raises(Exception, match="damaged or another library's"):
+            with pytest.raises(Exception, match="the key of this recording is damaged or belongs to another library"):
                 read_header(paths[1]).key(stolen, "journal")
         assert not again.library.faults()
         assert not again.library.audit.verify().faults
@@ -166,7 +166,9 @@ def test_a_key_is_not_changed_while_a_recording_waits_to_come_home(
     with pytest.raises(LibraryGoneError):
         change_data_key(opened, ["hk"], silent)
     (tmp_path / "renamed").rename(opened.folder)
-    with pytest.raises(LibraryError, match="is not in it yet") as refused:
+    with pytest.raises(
+        LibraryError, match="Recordings made while the library was unavailable are not in it yet"
+    ) as refused:
         change_data_key(opened, ["hk"], silent)
     assert opened.shelter is not None
     assert str(opened.shelter.folder) in refused.value.remedy
@@ -246,7 +248,7 @@ def test_headers_that_a_kill_left_are_written_at_the_next_start(
         (recording,) = (recording for paths in find_segments(again.recordings).values() for recording in paths.values())
         row = again.library.recordings.known()
         assert row
-        with pytest.raises(Exception, match="damaged or another library's"):
+        with pytest.raises(Exception, match="the key of this recording is damaged or belongs to another library"):
             JournalReader(recording, again.data_key)
         database = Database(sqlite_engine(again.folder / DATABASE, again.data_key))
         write_headers(database, again.recordings)

@@ -10,7 +10,7 @@ import pytest
 
 from app.cli import main as cli
 from app.storage.database.ids import uuid7
-from app.storage.exchange import export_session, import_session
+from app.storage.exchange import import_session
 from app.storage.journal.disk import Room
 from app.storage.journal.payloads import Belonging
 from app.storage.journal.writer import JournalWriter
@@ -19,6 +19,7 @@ from app.storage.recovery import find_interrupted
 from app.storage.stored import Action, StoredRecording
 from core.samples import Recording, RecordingKind
 from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
+from tests.app.storage.library.folder_export import write_folder
 
 PASSPHRASE = "four short words here"
 ANY_ROOM = Room(start_bytes=0, kept_bytes=0)
@@ -97,7 +98,7 @@ def test_a_library_that_is_in_use_is_not_recovered(
     record("walk 1", is_stopped=False)
     with held_alone(opened.folder):
         assert cli.main(["recover", str(opened.folder), *key]) == 2
-    assert "open with this library already" in capsys.readouterr().err
+    assert "This library is already open in Gaitwright" in capsys.readouterr().err
     assert len(find_interrupted(opened)) == 1
 
 
@@ -118,7 +119,7 @@ def test_a_session_of_the_library_gives_the_same_results_as_its_folder(
     recordings = (Standing(), FreeMotion(), Walk(strides=6))
     session = simulate(WalkerSettings(seed=3, recordings=recordings)).session
     imported = import_session(opened, session, silent, room=Room(start_bytes=0, kept_bytes=0))
-    export_session(opened, imported.session_id, tmp_path / "folder", {}, silent, is_identified=True)
+    write_folder(opened, imported.session_id, tmp_path / "folder", {}, is_identified=True)
     by_folder, by_library = tmp_path / "one", tmp_path / "two"
     assert cli.main(["analyse", str(tmp_path / "folder"), "--out", str(by_folder), "--no-rrd"]) == 0
     place = ["--library", str(opened.folder), *key]

@@ -178,16 +178,23 @@ def test_an_orphan_comes_where_it_was_made(opened: OpenedLibrary, session_id: UU
     assert [one.is_decided for one in session.recordings] == [True, False, False, True]  # asked: keep or discard
 
 
-@pytest.mark.parametrize("damage", ["missing", "another key", "no journal"])
+@pytest.mark.parametrize(
+    "damage",
+    [
+        "missing",
+        "Recordings made while the library was unavailable are not in it yet",
+        "The library refers to an invalid recording file",
+    ],
+)
 def test_what_cannot_be_recovered_stays_open_and_says_what_to_do(
     opened: OpenedLibrary, record: Record, damage: str
 ) -> None:
     path = opened.recordings / record("walk 1", is_stopped=False).journals[0].file
     content = path.read_bytes()
     path.unlink()
-    if damage == "no journal":
+    if damage == "The library refers to an invalid recording file":
         path.write_bytes(bytes(len(content)))
-    elif damage == "another key":
+    elif damage == "Recordings made while the library was unavailable are not in it yet":
         other = record("walk 2").journals[0]
         path.write_bytes((opened.recordings / other.file).read_bytes()[:HEADER_BYTES] + content[HEADER_BYTES:])
     (found,) = find_interrupted(opened)
@@ -235,7 +242,11 @@ def test_progress_is_told_and_a_stop_leaves_the_recording_open(opened: OpenedLib
 
 
 def test_only_one_program_records_into_a_library(tmp_path: Path) -> None:
-    with held_alone(tmp_path), pytest.raises(LibraryError, match="open with this library"), held_alone(tmp_path):
+    with (
+        held_alone(tmp_path),
+        pytest.raises(LibraryError, match="This library is already open in Gaitwright"),
+        held_alone(tmp_path),
+    ):
         raise AssertionError
     with held_alone(tmp_path):
         pass

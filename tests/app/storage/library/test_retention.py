@@ -107,6 +107,19 @@ def test_a_clock_that_is_a_year_back_destroys_nothing(
     assert destroy_overdue(timed, later) == 0
 
 
+def test_a_library_that_is_used_once_a_month_destroys_half_a_year_later(
+    timed: OpenedLibrary, session_id: UUID, record: Record, later: Later
+) -> None:
+    record("walk 1")
+    timed.library.sessions.delete(timed.library.sessions.get(session_id))
+    destroyed = []
+    for month in range(1, 8):
+        later.days = 30 * month
+        timed.library.log_in("hk")
+        destroyed.append(destroy_overdue(timed, later))
+    assert destroyed == [0, 0, 0, 0, 0, 1, 0]
+
+
 def test_a_restored_session_stays(timed: OpenedLibrary, session_id: UUID, record: Record, later: Later) -> None:
     recording = record("walk 1")
     timed.library.sessions.delete(timed.library.sessions.get(session_id))
@@ -134,7 +147,7 @@ def test_the_keys_are_gone_before_the_file_is(
         with pytest.raises(KeyboardInterrupt):
             destroy_recording(opened, recording)
     assert wrapped not in path.read_bytes()
-    with pytest.raises(JournalRefusedError, match="destroyed for good"):
+    with pytest.raises(JournalRefusedError, match="this recording was permanently destroyed"):
         JournalReader(path, opened.data_key)
     destroy_recording(opened, recording)
     assert not path.exists()

@@ -134,7 +134,7 @@ def test_a_folder_that_is_renamed_while_recording_costs_no_byte(opened: OpenedLi
         assert not opened.folder.exists(), "made anew"
         assert lines.sheltered == [f"{lines.id}.2.journal"]
         assert [path.name for path in (elsewhere / "recordings").iterdir()] == [f"{lines.id}.1.journal"]
-        with pytest.raises(LibraryGoneError, match="is gone from"):
+        with pytest.raises(LibraryGoneError, match="The library is no longer in"):
             bring_home(opened)
     assert bring_home(opened) == {lines.id}
     assert lines.sheltered == []

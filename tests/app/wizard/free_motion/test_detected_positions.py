@@ -11,12 +11,14 @@ from app.theme.notifier import ThemeNotifier
 from app.widgets.rail_row import StepState
 from app.wizard.free_motion.step import FreeMotionStep
 from app.wizard.sensors.step import SensorsStep
+from app.wizard.step import StepId
 from app.wizard.visit import Visit
-from app.wizard.wizard import FREE_MOTION, SENSORS, Wizard
+from app.wizard.wizard import Wizard
 from core.body import Site
 from core.placement.labels import groups_of
 from core.samples import RecordingKind
 from tests.app.wizard.begun_visit import begin, record
+from tests.app.wizard.pressing import press
 
 THIGH, SHANK, FOOT = Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT
 MIXED = {THIGH: SHANK, SHANK: FOOT, FOOT: THIGH}
@@ -51,7 +53,7 @@ def test_detected_positions_are_used_by_the_primary_button_and_the_step_goes_on(
     assert moved.page.band.hint.sentence == "Positions look swapped"
     before = dict(visit.sensors.site_of)
     with qtbot.waitSignals([moved.done, moved.told, visit.worn.corrected], timeout=10_000):
-        moved.on_primary()
+        press(moved)
     assert visit.sensors.site_of == {name: detected.get(site, site) for name, site in before.items()}
     free = visit.recordings.free_motion
     assert free is not None
@@ -73,8 +75,8 @@ def test_positions_can_be_checked_and_kept_as_they_are(
     visit.sensors.doubt(MIXED)
     assert [(one.text, one.key) for one in moved.bar().quiet] == [("Check positions", "P")]
     with qtbot.waitSignal(moved.jumped) as jumped:
-        moved.on_quiet(0)
-    assert jumped.args == [SENSORS]
+        press(moved, "Check positions")
+    assert jumped.args == [StepId.SENSORS]
     sensors = SensorsStep(ThemeNotifier(), visit)
     qtbot.addWidget(sensors.page)
     sensors.enter()
@@ -112,7 +114,7 @@ def test_a_motion_that_tells_no_positions_leads_to_them(qtbot: QtBot, visit: Vis
     done: list[None] = []
     moved.done.connect(lambda: done.append(None))
     with qtbot.waitSignal(moved.told, timeout=10_000) as told:
-        moved.on_primary()
+        press(moved)
     assert told.args[0] == "Sensor positions could not be detected."
     bar = moved.bar()
     assert bar.primary is not None
@@ -127,10 +129,10 @@ def test_groups_are_the_cycles_in_which_sensors_change_places() -> None:
 
 def test_the_keys_on_the_bar_use_and_check_the_positions(wizard: Wizard, monkeypatch: pytest.MonkeyPatch) -> None:
     wizard.begin(None)
-    step = wizard.steps[FREE_MOTION]
-    gone: list[int] = []
+    step = wizard.steps[StepId.FREE_MOTION]
+    gone: list[StepId] = []
     monkeypatch.setattr(type(step), "cannot_enter", "")
-    wizard.go_to(FREE_MOTION)
+    wizard.go_to(StepId.FREE_MOTION)
     visit = wizard.visit
     assert visit is not None
     visit.sensors.doubt(MIXED)
@@ -139,4 +141,4 @@ def test_the_keys_on_the_bar_use_and_check_the_positions(wizard: Wizard, monkeyp
     step.jumped.connect(gone.append)
     wizard.shell.bar.back.setFocus()
     QTest.keyClick(wizard.shell.bar.back, Qt.Key.Key_P)
-    assert gone == [SENSORS]
+    assert gone == [StepId.SENSORS]

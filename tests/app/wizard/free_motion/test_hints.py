@@ -142,10 +142,10 @@ def test_a_joint_that_is_no_hinge_is_said_in_place_of_enough_motion() -> None:
     all_four = dict.fromkeys(LEG_JOINTS, ENOUGH)
     one, both = all_four | {Joint.LEFT_KNEE: LOOSE}, dict.fromkeys(LEG_JOINTS, LOOSE)
     said = last_hint(motion(one), PROSTHETIC)
-    assert said.sentence == "Left knee: no hinge"
+    assert said.sentence == "Left knee: not a hinge"
     assert said.how == "The angle is the part about the main axis. Walking comes next, by itself."
-    assert recorded_hint(motion(one), PROSTHETIC).sentence == "Left knee: no hinge"
-    assert last_hint(motion(both), frozenset(Side)).sentence == "2 joints: no hinges"
+    assert recorded_hint(motion(one), PROSTHETIC).sentence == "Left knee: not a hinge"
+    assert last_hint(motion(both), frozenset(Side)).sentence == "2 joints: not hinges"
     assert last_hint(motion(one)).sentence == "Enough movement"  # of a living knee none is expected
     assert last_hint(motion(all_four), PROSTHETIC).sentence == "Enough movement"
 
@@ -153,10 +153,10 @@ def test_a_joint_that_is_no_hinge_is_said_in_place_of_enough_motion() -> None:
 def test_the_rail_says_which_joints_have_enough_motion_and_an_ankle_by_its_centre() -> None:
     far, none = state(11, 34), frozenset[Side]()
     some = motion({Joint.LEFT_KNEE: ENOUGH, Joint.RIGHT_KNEE: far, Joint.LEFT_ANKLE: ENOUGH, Joint.RIGHT_ANKLE: ENOUGH})
-    assert enough_for(some, none) == "enough motion for 1 of 2 knees, 2 of 2 ankle centres"
+    assert enough_for(some, none) == "enough movement for 1 of 2 knees, 2 of 2 ankle centres"
     assert enough_for(motion(dict.fromkeys(LEG_JOINTS, ENOUGH)), none) == "enough movement"
-    assert enough_for(motion({Joint.LEFT_KNEE: far}), none) == "enough motion for 0 of 1 knee"
-    assert enough_for(motion({Joint.LEFT_ANKLE: far}), none) == "enough motion for 0 of 1 ankle centre"
+    assert enough_for(motion({Joint.LEFT_KNEE: far}), none) == "enough movement for 0 of 1 knee"
+    assert enough_for(motion({Joint.LEFT_ANKLE: far}), none) == "enough movement for 0 of 1 ankle centre"
 
 
 def test_a_joint_that_is_no_hinge_is_named_and_not_counted() -> None:
@@ -195,9 +195,9 @@ def test_stopping_costs_nothing_when_the_motion_is_enough() -> None:
 def test_stopping_before_a_joint_is_found_costs_its_angles() -> None:
     unknown, enough = state(57, 250), state(1, 8, None, is_closed=True)
     one = motion({Joint.LEFT_KNEE: unknown, Joint.RIGHT_KNEE: enough})
-    assert price_of_stopping(one) == "Stopping now leaves the left knee without angles to rely on."
+    assert price_of_stopping(one) == "If you stop now, angles are unreliable for the left knee."
     both = motion({Joint.LEFT_KNEE: unknown, Joint.RIGHT_KNEE: unknown})
-    assert price_of_stopping(both) == "Stopping now leaves the left knee and the right knee without angles to rely on."
+    assert price_of_stopping(both) == "If you stop now, angles are unreliable for the left knee and the right knee."
     assert price_of_stopping(FreeMotionState()) == "No joint is calibrated yet."
 
 
@@ -222,14 +222,14 @@ def test_a_replayed_patient_who_has_ended_is_not_asked_to_move() -> None:
 
 def test_of_a_prosthesis_more_is_wanted() -> None:
     said = price_of_stopping(motion({Joint.LEFT_KNEE: state(1.2, 6)}), frozenset({Side.LEFT}))
-    assert said.startswith("Left knee: 1.2°, 0.5° wanted.")
+    assert said.startswith("Left knee: 1.2°, limit 0.5°.")
 
 
 def test_a_joint_without_gauge_says_why() -> None:
     worn = set(LEG_SITES) - {Site.RIGHT_FOOT}
     assert absent_note(Joint.RIGHT_ANKLE, worn, ()) == "R foot without sensor: no right ankle angle."
     assert absent_note(Joint.RIGHT_KNEE, worn, ()) == ""
-    assert absent_note(Joint.LEFT_ANKLE, worn, {Side.LEFT}).startswith("Foot without ankle joint: nothing to find.")
+    assert absent_note(Joint.LEFT_ANKLE, worn, {Side.LEFT}).startswith("Foot without ankle joint: nothing to calibrate")
     assert absent_note(Joint.LEFT_KNEE, worn, {Side.LEFT}) == ""
 
 
@@ -263,7 +263,7 @@ def test_hips_are_asked_for_once_nothing_else_brings_more() -> None:
     asked = hold.ask(replace(motion(plateau), hips=OPEN_HIPS), 0.0)
     assert asked.hint == hip_hint()
     assert (asked.joint, asked.site) == (Joint.LEFT_HIP, Site.PELVIS)
-    assert "Circling legs do not show the hips" in asked.hint.how
+    assert "Circling the legs does not calibrate the hips; walking does" in asked.hint.how
     without = HintHold().ask(motion(plateau), 0.0)
     assert without.hint.sentence == "Certainty no longer rises"
     open_knee = {**plateau, Joint.LEFT_KNEE: state(3.0, 6)}

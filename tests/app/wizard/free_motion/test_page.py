@@ -77,9 +77,9 @@ def test_where_there_is_little_room_the_figure_goes(page: FreeMotionPage) -> Non
 
 
 def test_a_hint_is_said_aloud_only_when_its_sentence_changes(page: FreeMotionPage, announced: list[str]) -> None:
-    page.band.show_hint(Hint("Bend the left knee", "To and fro."))
+    page.band.show_hint(Hint("Bend the left knee", "Moving it by hand is fine"))
     page.band.show_hint(Hint("Bend the left knee", "The therapist moves the limb."))
-    page.band.show_hint(Hint("Bend the right knee", "To and fro."))
+    page.band.show_hint(Hint("Bend the right knee", "Moving it by hand is fine"))
     assert announced == ["Bend the left knee. To and fro.", "Bend the right knee. To and fro."]
 
 

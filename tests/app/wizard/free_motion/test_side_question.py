@@ -40,7 +40,7 @@ def test_an_answer_ends_the_question_and_a_second_press_is_no_answer() -> None:
     for _ in range(5):
         question.look(chains("A", "B"), {})
     assert question.told == ("A", Side.RIGHT)
-    assert question.words == ("Understood: A is on the right leg.", "", ("Undo",))
+    assert question.words == ("A set to the right leg.", "", ("Undo",))
     question.look(chains("B", "A"), {})  # the search puts another leg first
     assert question.told == ("A", Side.RIGHT)
 
@@ -62,7 +62,7 @@ def test_an_answer_that_contradicts_an_earlier_one_is_asked_again(second: int) -
     question = asked("A", "B", earlier={"A": Side.RIGHT})
     question.answer(0)
     assert question.told is None
-    assert question.words == ("Earlier A was worn on the right leg. Which leg wears it now?", "", SIDES)
+    assert question.words == ("A was on the right leg before. Which leg is it on now?", "", SIDES)
     question.look(chains("A", "B"), {"A": Side.RIGHT})
     question.answer(second)
     assert question.told == ("A", (Side.LEFT, Side.RIGHT)[second])

@@ -28,6 +28,7 @@ from tests.app.wizard.begun_visit import begin, record
 from tests.app.wizard.free_motion.test_hints import motion, state
 from tests.app.wizard.free_motion.test_side_question import chains
 from tests.app.wizard.patient_time import PATIENCE_MS, PatientTime
+from tests.app.wizard.pressing import press
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
@@ -130,7 +131,7 @@ def test_a_replay_that_has_ended_is_said_and_is_recorded_again_from_its_beginnin
     assert bar.primary.text == "Continue to walking"
     assert [verb.text for verb in bar.others] == ["Record again"]
     assert bar.note == "Left knee: 3.8°, 1.5° wanted. Go on and the report says so."
-    step.on_other(0)
+    press(step, "Record again")
     ticks(qtbot, step, lambda: len(visit.recordings.every) == 1 and visit.recordings.has_begun)
     assert not visit.recordings.every[0].details.is_kept
     assert step.page.band.hint.sentence != "The replay has ended"
@@ -147,7 +148,7 @@ def test_a_replay_without_free_motion_says_so_and_what_did_not_move_does_not_cou
     )
     assert [verb.text for verb in step.bar().others] == []
     with qtbot.waitSignals([step.done, step.told], timeout=PATIENCE_MS, order="strict"):
-        step.on_primary()
+        press(step)
     qtbot.waitUntil(lambda: visit.recordings.free_motion is None, timeout=PATIENCE_MS)
     assert len(visit.recordings.every) == 1  # nothing is deleted
     assert step.state is StepState.TODO
@@ -170,14 +171,14 @@ def test_a_leg_that_is_repeated_later_leaves_the_other_legs_recording_in_force(
     step.enter()
     ticks(qtbot, step, lambda: knows(step))
     with qtbot.waitSignal(step.done, timeout=PATIENCE_MS):
-        step.on_primary()
+        press(step)
     left = step.page.gauges[Joint.LEFT_KNEE].face.centre
-    step.on_quiet(1)
+    press(step, "Repeat right")
     ticks(qtbot, step, lambda: visit.recordings.has_begun and knows(step))
     patient_time.wait(qtbot, 1.0)
     assert step.page.gauges[Joint.LEFT_KNEE].face.centre == left
     with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
-        step.on_primary()
+        press(step)
     repeated = visit.recordings.free_motion
     assert repeated is not None
     assert repeated.read_back is not None
@@ -205,17 +206,17 @@ def test_leaving_before_its_end_keeps_what_has_moved_unless_another_is_in_force(
     ticks(qtbot, step, lambda: knows(step))
     with qtbot.waitSignal(step.told, timeout=PATIENCE_MS) as told:
         step.leave()
-    assert told.args[0].startswith("Free motion was left before its end and is kept: ")
+    assert told.args[0].startswith("Free motion was left early and is used")
     kept, note = visit.recordings.free_motion, step.note
     assert kept is not None
     assert kept.read_back is not None
     assert len(kept.read_back.imu) == len(LEG_SITES)
-    assert note.startswith("enough motion for ")
+    assert note.startswith("enough movement for")
     assert note.endswith("of 2 ankle centres")
     assert told.args[0] == f"Free motion was left before its end and is kept: {note}."
     step.enter()
     assert not visit.recordings.is_recording
-    step.on_other(0)
+    press(step, "Record again")
     ticks(qtbot, step, lambda: visit.recordings.is_recording and knows(step))
     with qtbot.waitSignal(step.told, timeout=PATIENCE_MS) as told:
         step.leave()
@@ -244,7 +245,7 @@ def test_a_knee_that_is_no_hinge_is_not_counted_as_enough_but_named(
     tell(step, worn, FreeMotionState(closed | {Joint.LEFT_KNEE: loose}))
     with qtbot.waitSignal(step.done, timeout=PATIENCE_MS):  # more motion would not make it one
         ticks(qtbot, step, lambda: GaugeState.LOOSE in states(step.page))
-        assert step.page.band.hint.sentence == "Left knee: no hinge"
+        assert step.page.band.hint.sentence == "Left knee: not a hinge"
     assert step.note == "enough motion for 1 of 2 knees, 2 of 2 ankle centres; left knee: no hinge"
     assert step.state is StepState.ATTENTION
     assert Sound.READY not in heard
@@ -258,7 +259,7 @@ def test_a_free_motion_that_holds_is_not_recorded_again_unasked(
     assert not visit.recordings.is_recording
     assert step.page.band.hint.sentence == "Free motion recorded"
     with qtbot.waitSignal(step.done):
-        step.on_primary()
+        press(step)
 
 
 def test_a_missing_foot_sensor_and_a_foot_without_joint_have_no_gauge(
@@ -325,10 +326,10 @@ def test_swapped_labels_change_places_and_what_was_recorded_is_corrected(
     step.enter()
     ticks(qtbot, step, lambda: visit.recordings.is_recording and knows(step))
     visit.sensors.doubt(swapped(Site.LEFT_THIGH, Site.LEFT_SHANK))
-    step.on_primary()
+    press(step)
     assert visit.sensors.sensor_at[Site.LEFT_THIGH] == f"DEMO-{Site.LEFT_SHANK}"
     with qtbot.waitSignal(step.done, timeout=PATIENCE_MS):
-        step.on_primary()
+        press(step)
 
     def is_corrected() -> bool:
         recording = visit.recordings.free_motion
@@ -352,12 +353,12 @@ def test_sensors_that_are_mixed_up_are_detected_and_one_key_puts_them_right(
     visit.sensors.assign_all({name: mixed.get(site, site) for name, site in worn.items()})
     step.enter()
     ticks(qtbot, step, lambda: step.labels.is_in_doubt)
-    step.on_primary()
+    press(step)
     assert visit.sensors.site_of == worn
     assert visit.recordings.is_recording
     ticks(qtbot, step, lambda: knows(step))
     with qtbot.waitSignal(step.done, timeout=PATIENCE_MS):
-        step.on_primary()
+        press(step)
     assert not step.labels.is_in_doubt
 
 
@@ -367,7 +368,7 @@ def test_labels_swapped_in_a_visit_that_is_closed_amid_the_motion_are_in_the_lib
     step.enter()
     ticks(qtbot, step, lambda: visit.recordings.is_recording and knows(step))
     visit.sensors.doubt(swapped(Site.LEFT_THIGH, Site.LEFT_SHANK))
-    step.on_primary()
+    press(step)
     with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
         visit.close()
     qtbot.waitUntil(lambda: visit.is_idle, timeout=PATIENCE_MS)
@@ -413,7 +414,7 @@ def test_two_legs_that_begin_together_are_told_apart_by_asking(
     assert [button.text() for button in question.buttons if not button.isHidden()] == ["Undo"]
     step.page.answered.emit(1)
     assert step.labels.named is None
-    assert "Which one wears" in question.notice.text
+    assert "Both legs moved at once" in question.notice.text
     step.page.answered.emit(0)
     assert question.notice.text == f"Understood: {shanks[0]} is on the left leg."
 

@@ -119,7 +119,7 @@ def test_a_code_in_use_is_said_and_offered(page: PatientPage) -> None:
     page.open_pressed.connect(opened.append)
     type_into(page.code.line_edit, "P-0147")
     page.show_code_taken("P-0147")
-    assert "P-0147 exists. Open it, or choose another code." in page.code.line_edit.accessibleName()
+    assert "P-0147 already already exists. Open it, or choose another code." in page.code.line_edit.accessibleName()
     button = next(one for one in page.findChildren(QAbstractButton) if one.text() == "Open this patient")
     assert button.isVisible()
     QTest.keyClick(button, Qt.Key.Key_Return)
@@ -132,9 +132,9 @@ def test_a_code_in_use_is_said_and_offered(page: PatientPage) -> None:
 @pytest.mark.parametrize(
     ("birth_year", "words"),
     [
-        (None, "Type the birth year"),
-        (1968, "Of other ages than 58: drawn, but nothing is said of a distance from it."),
-        (2000, "Of the patient's age."),
+        (None, "Enter the birth year to check whether the reference fits the age"),
+        (1968, "The reference does not cover age 58. It is shown, but differences from it are not reported."),
+        (2000, "The speed must also fit, which requires the body height"),
         (2016, "children of 10"),
     ],
 )

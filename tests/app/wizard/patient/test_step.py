@@ -18,6 +18,7 @@ from app.wizard.visit import Visit
 from app.workers.library_controller import LibraryController
 from core.body import Joint, Side, Site
 from core.samples import Patient, Recording, RecordingKind, SensorInfo, Session
+from tests.app.wizard.pressing import press
 
 
 @pytest.fixture
@@ -42,7 +43,7 @@ def test_going_on_waits_until_the_library_has_the_patient(qtbot: QtBot, visit: V
     type_in(step, Patient(code="DEMO-7", prosthetic_side="left"))
     assert step.note == "Left prosthetic"
     with qtbot.waitSignal(step.done, timeout=5000):
-        step.on_primary()
+        press(step)
     assert visit.patient.stored is not None
     assert step.state is StepState.DONE
     qtbot.waitUntil(lambda: visit.session is not None)
@@ -54,7 +55,7 @@ def test_a_code_in_use_stops_and_offers_that_patient(
     controller.run(make, None, None, step)
     type_in(step, Patient(code="demo-8"))
     with qtbot.waitSignal(visit.patient.code_taken, timeout=5000), qtbot.assertNotEmitted(step.done):
-        step.on_primary()
+        press(step)
     assert step.page.code.is_wrong
     assert step.bar().note == "Not saved: demo-8 is another patient's code."
     with qtbot.waitSignal(visit.patient.changed, timeout=5000):
@@ -62,7 +63,7 @@ def test_a_code_in_use_stops_and_offers_that_patient(
     assert step.page.draft.patient.birth_year == 1950
     qtbot.waitUntil(lambda: not step.page.code.is_wrong)
     with qtbot.waitSignal(step.done, timeout=5000):
-        step.on_primary()
+        press(step)
 
 
 def test_what_is_typed_of_a_known_patient_is_saved(qtbot: QtBot, visit: Visit, step: PatientStep) -> None:
@@ -144,7 +145,7 @@ def test_a_patient_of_a_list_read_before_a_change_is_read_anew(
     type_in(step, replace(listed[0].details, mass_kg=70.0))  # before the library has answered
     assert not visit.patient.is_saved
     with qtbot.waitSignal(step.done, timeout=5000):
-        step.on_primary()
+        press(step)
     stored = visit.patient.stored
     assert stored is not None
     assert visit.patient.details == stored.details == step.page.draft.patient
@@ -165,6 +166,6 @@ def test_another_patient_chosen_while_the_first_is_read_anew_is_the_one(
     visit.patient.choose(made[1])
     step.enter()
     with qtbot.waitSignal(step.done, timeout=5000):
-        step.on_primary()
+        press(step)
     assert visit.patient.stored == made[1]
     qtbot.waitUntil(lambda: visit.session is not None and visit.session.patient_id == made[1].id, timeout=5000)

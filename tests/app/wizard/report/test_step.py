@@ -14,11 +14,12 @@ from app.exports.proposed_names import free_name, session_name
 from app.reports.patient.document import ReportPreview
 from app.storage.exchange import import_session
 from app.storage.operators import CLINIC
-from app.storage.stored import LibraryError
+from app.storage.stored import Action, LibraryError
 from app.theme.notifier import ThemeNotifier
 from app.widgets.rail_row import StepState
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.report.leaving_dialog import LeavingDialog
+from app.wizard.report.printing import PRINTED_PPI
 from app.wizard.report.step import ReportStep
 from app.wizard.visit import Visit
 from app.workers.library_controller import LibraryController
@@ -27,6 +28,7 @@ from core.body import Site
 from core.results import Analysis
 from core.samples import RecordingKind, Session
 from tests.app.wizard.begun_visit import begin
+from tests.app.wizard.pressing import press
 
 WAIT_MS = 60_000  # on a busy machine
 
@@ -115,6 +117,26 @@ def test_a_file_that_was_not_written_is_named_with_its_reason(
     assert told == [("Not every file was written.", lines[0])]
 
 
+def test_what_is_printed_is_in_the_audit_before_a_page_is_made(
+    qtbot: QtBot, step: ReportStep, visit: Visit, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    state, session = visit.controller.state, visit.session
+    assert state is not None
+    assert session is not None
+    noted: list[list[str]] = []
+
+    def pages(_preview: ReportPreview, _request: object, ppi: float) -> list[bytes]:
+        if ppi == PRINTED_PPI:  # else for the look before
+            noted.append([entry.action for entry in state.library.library.audit.entries(f"session:{session.id}")])
+        return []
+
+    monkeypatch.setattr(ReportPreview, "pages", pages)
+    qtbot.waitUntil(step.can_save, timeout=WAIT_MS)
+    step.printer.confirmed.emit()
+    qtbot.waitUntil(lambda: bool(noted), timeout=WAIT_MS)
+    assert noted[-1][-1] == Action.PRINT
+
+
 def dialog_of(qtbot: QtBot, step: ReportStep) -> LeavingDialog:
     """What is asked before files without a name are saved."""
     qtbot.waitUntil(lambda: step.page.findChild(LeavingDialog) is not None, timeout=WAIT_MS)
@@ -137,7 +159,7 @@ def test_what_leaves_without_the_name_is_shown_first_and_nothing_typed_but_what_
     visit.record.resume(library.sessions.get(imported.session_id))
     patients.change(patient, replace(patient.details, birth_year=1950, device="Qx1 knee", aids="Qx2 stick"))
     step.page.report.formats.choose(["xlsx", "fhir"])
-    step.on_primary()
+    press(step)
     dialog = dialog_of(qtbot, step)
     shown = dict(dialog.shown)
     assert shown["patient"] != patient.details.code
@@ -164,7 +186,7 @@ def test_what_leaves_without_the_name_is_shown_first_and_nothing_typed_but_what_
 
 def test_nothing_is_asked_where_no_file_leaves_without_the_name(qtbot: QtBot, step: ReportStep, visit: Visit) -> None:
     step.page.report.formats.choose(["csv", "rrd"])
-    step.on_primary()
+    press(step)
     assert step.dialog is not None
     assert step.page.findChild(LeavingDialog) is None
     assert visit.session is not None
@@ -185,7 +207,7 @@ def test_of_a_free_motion_alone_no_report_is_offered(step: ReportStep, visit: Vi
 
 def test_whoever_cancels_writes_nothing(qtbot: QtBot, step: ReportStep) -> None:
     step.page.report.formats.choose(["fhir"])
-    step.on_primary()
+    press(step)
     dialog = dialog_of(qtbot, step)
     dialog.cancel.click()
     qtbot.waitUntil(lambda: step.page.findChild(LeavingDialog) is None, timeout=WAIT_MS)
@@ -276,13 +298,14 @@ def test_an_earlier_visit_that_cannot_be_read_leaves_no_page_of_another_comparis
 def test_ctrl_s_saves_as_its_cap_says(qtbot: QtBot, visit: Visit, monkeypatch: pytest.MonkeyPatch) -> None:
     step = ReportStep(ThemeNotifier(), visit, visit.controller)
     qtbot.addWidget(step.page)
+    pressed = []
+    monkeypatch.setattr(step, "_save", lambda: pressed.append("save"))
     primary = step.bar().primary
     assert primary is not None
     assert primary.key == "Ctrl S"
-    pressed = []
-    monkeypatch.setattr(step, "on_primary", lambda: pressed.append("save"))
+    primary.run()
     assert step.on_intent(Intent(KeyAction.SAVE))
-    assert pressed == ["save"]
+    assert pressed == ["save", "save"]
     assert not step.on_intent(Intent(KeyAction.RUN))
 
 

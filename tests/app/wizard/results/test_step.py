@@ -32,6 +32,7 @@ from core.verdicts.measurement_error import ErrorSource
 from devices.simulation.walker import DEMONSTRATION, simulate
 from tests.app.library_answers import asked
 from tests.app.room import words_cut
+from tests.app.wizard.pressing import press
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
@@ -117,7 +118,7 @@ def test_a_sign_is_turned_kept_in_the_history_and_undone(
     qtbot: QtBot, controller: LibraryController, visit: Visit, step: ResultsStep, session_id: UUID
 ) -> None:
     before = angle_of(visit, Joint.LEFT_KNEE)
-    step.on_quiet(0)
+    press(step, "Correct")
     page = step.page.correct()
     assert step.page.currentWidget() is page
     with qtbot.waitSignal(step.offered), qtbot.waitSignal(visit.evaluation.done, timeout=30_000):
@@ -138,7 +139,7 @@ def test_a_sign_is_turned_kept_in_the_history_and_undone(
 
 
 def test_a_walk_is_left_out_comes_back_and_changes_its_condition(qtbot: QtBot, visit: Visit, step: ResultsStep) -> None:
-    step.on_quiet(0)
+    press(step, "Correct")
     (row,) = step.page.correct().walk_rows.values()
     assert row.condition.line_edit.accessibleName() == "Condition of walk 1"
     with (
@@ -146,7 +147,7 @@ def test_a_walk_is_left_out_comes_back_and_changes_its_condition(qtbot: QtBot, v
         qtbot.waitSignal(visit.evaluation.done, timeout=30_000),
     ):
         row.kept.click()
-    assert offered.args == ["Walk 1 is left out."]
+    assert offered.args == ["Walk 1 is excluded."]
     assert visit.evaluation.analysis is not None
     assert not any(recording.gait for recording in visit.evaluation.analysis.recordings)
     with qtbot.waitSignal(visit.evaluation.done, timeout=30_000):
@@ -161,7 +162,7 @@ def test_a_walk_is_left_out_comes_back_and_changes_its_condition(qtbot: QtBot, v
     for is_kept in (False, True):
         with qtbot.waitSignal(visit.evaluation.done, timeout=30_000):
             step.page.correct().kept_turned.emit(key, is_kept)
-    assert said == ["A AFO is left out.", "A AFO counts."]
+    assert said == ["A AFO is excluded.", "A AFO is included."]
     assert step.page.results().recordings.currentText() == "A AFO"
     assert [recording.details.condition for recording in visit.recordings.walks] == ["AFO"]
     step.page.correct().closed.emit()
@@ -188,7 +189,7 @@ def test_the_last_visit_is_read_from_the_library_to_stand_beside_the_walk(
         results.beside.setCurrentIndex(results.beside.findData(Beside.LAST_VISIT))
         assert results.cycles.charts.knee.beside.text() == "Reading earlier visits."  # nobody waits for it
     assert results.cycles.charts.knee.beside.text() == "Thin: 2026-09-01."
-    assert results.answer.text.startswith("No change from 2026-09-01 is larger than its error.")
+    assert results.answer.text.startswith("All judged changes from 2026-09-01 are within measurement error.")
     assert results.cycles.charts.knee.chart.described.beside
 
 
@@ -197,9 +198,9 @@ def test_rerun_that_is_missing_is_told(
 ) -> None:
     monkeypatch.setattr(reviewing, "viewer_program", lambda: None)
     with qtbot.waitSignal(visit.refused) as told:
-        step.on_quiet(1)
+        press(step, "Review in Rerun")
     assert told.args is not None
-    assert "Rerun is not installed here" in told.args[0]
+    assert "Rerun is not installed on this computer" in told.args[0]
 
 
 def test_how_a_joint_was_found_is_shown_saved_audited_and_left_again(
@@ -235,7 +236,7 @@ def test_how_a_joint_was_found_is_shown_saved_audited_and_left_again(
 def test_swapped_sides_are_read_anew_and_swapped_back(qtbot: QtBot, visit: Visit, step: ResultsStep) -> None:
     strides = {side: len(gait.strides) for side, gait in walk_of(visit).gait.items()}
     left, right = angle_of(visit, Joint.LEFT_KNEE), angle_of(visit, Joint.RIGHT_KNEE)
-    step.on_quiet(0)
+    press(step, "Correct")
     with qtbot.waitSignal(visit.evaluation.done, timeout=30_000):
         step.page.correct().swap.click()
     swapped = {side: len(gait.strides) for side, gait in walk_of(visit).gait.items()}
@@ -314,7 +315,7 @@ def test_strides_are_left_out_by_hand_taken_back_one_by_one_and_stay_out_after_a
 
 
 def test_no_word_of_the_corrections_is_cut(step: ResultsStep) -> None:
-    step.on_quiet(0)
+    press(step, "Correct")
     page = step.page.correct()
     for room in ((1064, 672), (736, 432), (1680, 952)):
         step.page.set_room(*room)

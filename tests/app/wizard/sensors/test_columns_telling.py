@@ -20,6 +20,7 @@ from devices.emulators.csv_lines import LineVoice
 from devices.emulators.transports import Emulation, PseudoTerminal
 from devices.live import SourceRefusedError
 from devices.transport.ports import PortInfo
+from tests.app.wizard.pressing import press
 
 
 def still(number: int) -> tuple[float, ...]:
@@ -72,12 +73,12 @@ def test_what_is_guessed_is_shown_with_what_comes_and_is_kept(
     form = asked(qtbot, step)
     assert form.isVisible()
     assert step.telling.columns == EMULATED
-    assert form.notice.text.startswith("200 samples a second, 9.8 m/s²: this can be so.")
+    assert form.notice.text.startswith("200 samples per second, 9.8 m/s²: plausible.")
     primary = step.bar().primary
     assert primary is not None
     assert (primary.text, primary.is_enabled) == ("Use these columns", True)
     with qtbot.waitSignal(visit.refused, timeout=5000) as refused:
-        step.on_primary()
+        press(step)
     assert refused.args == ["Searched.", "again."]
     assert kept.known_columns() == {place: EMULATED, "/dev/other": EMULATED}
     assert not step.telling.is_on
@@ -91,7 +92,7 @@ def test_what_cannot_be_is_said(qtbot: QtBot, step: SensorsStep) -> None:
     form.force.setCurrentIndex(form.force.findData("g"))
     form.time.setCurrentIndex(form.time.findData("s"))
     step.telling.tick()
-    assert "samples come in a second" in form.notice.text
+    assert "samples per second" in form.notice.text
     form.meanings[3].setCurrentIndex(form.meanings[3].findData(str(Meaning.RATE_X)))
     step.telling.tick()
     assert "each once" in form.notice.text

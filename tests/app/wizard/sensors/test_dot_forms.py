@@ -75,9 +75,9 @@ def test_space_turns_a_tick_and_enter_goes_on(form: DotForm, qtbot: QtBot) -> No
 @pytest.mark.parametrize(
     ("record_hz", "said", "unsaid"),
     [
-        (120, "synchronised once more", "What is lost over the air is missing"),
+        (120, "synchronised once more", "Data lost in radio transmission are missing"),
         (60, "Its curves come once it is fetched.", "synchronised once more"),
-        (0, "What is lost over the air is missing", "fetched"),
+        (0, "Data lost in radio transmission are missing", "fetched"),
     ],
 )
 def test_each_way_to_record_walks_says_its_price(form: DotForm, record_hz: int, said: str, unsaid: str) -> None:
@@ -114,10 +114,10 @@ def test_everything_of_the_memories_has_its_room(look: ThemeNotifier, qtbot: QtB
     qtbot.addWidget(form)
     form.resize(*size)
     form.show_lines(HELD)
-    form.tell("1 recording is not kept in this library, and would be lost.", "Press once more to erase.")
+    form.tell("1 recording is not saved in this library and would be lost.", "This cannot be undone")
     form.show()
     assert words_cut(form) == []
-    assert form.title == "2 recordings are in the sensors' memories"
+    assert form.title == "2 recordings in the sensor memory"
     assert form.chosen_number == 1, "the first that can be fetched"
 
 

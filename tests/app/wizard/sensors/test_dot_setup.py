@@ -13,6 +13,7 @@ from devices.dot.messages import SyncResult, start_recording
 from devices.dot.samples import DRIVER
 from devices.emulators.dot_memory import RECORDING
 from tests.app.wizard.emulated_dots import WAIT_MS, dot_choice, has_asked_all, rows_of
+from tests.app.wizard.pressing import press
 from tests.devices.dot.fast_radio import FastRadio
 
 
@@ -82,11 +83,11 @@ def test_synchronising_is_told_step_by_step_and_gives_sensors_on_one_clock(
     shown = []
     visit.sensors.sync.changed.connect(lambda: shown.append(asked.page.progress.shown))
     with qtbot.waitSignal(visit.sensors.opened, timeout=WAIT_MS):
-        asked.on_primary()
+        press(asked)
         assert asked.bar() == BarState()
-        assert "Wait until they are, or cancel it." in asked.cannot_leave
+        assert "The sensors are being synchronised" in asked.cannot_leave
         qtbot.waitUntil(asked.page.progress.isVisible, timeout=WAIT_MS)
-    assert any(one.sentence.startswith("The sensors compare their clocks by themselves.") for one in shown)
+    assert any(one.sentence.startswith("The sensors are comparing their clocks") for one in shown)
     shares = [one.share for one in shown if one.share is not None and one.lines]
     assert shares == sorted(shares)
     assert asked.cannot_leave == ""
@@ -102,15 +103,15 @@ def test_a_sensor_that_does_not_follow_is_named_and_can_be_left_out(
     qtbot: QtBot, asked: SensorsStep, visit: Visit, radio: FastRadio
 ) -> None:
     radio.dots[1].faults.sync_results = [SyncResult.FEW_SAMPLES] * 2
-    asked.on_primary()
+    press(asked)
     qtbot.waitUntil(lambda: not asked.setup.is_synchronising and bool(asked.bar().others), timeout=WAIT_MS)
     assert "Not synchronised: DOT 0002 (heard too little of the others)." in asked.page.dots.notice.text
     assert words_of(asked, 1)[4] == "received too little from the others"
     assert words_of(asked, 0)[4] == ""
     assert verb(asked.bar()) == ("Try again", True)
-    assert [other.text for other in asked.bar().others] == ["Leave out DOT 0002"]
+    assert [other.text for other in asked.bar().others] == ["Continue without DOT 0002"]
     with qtbot.waitSignal(visit.sensors.opened, timeout=WAIT_MS):
-        asked.on_other(0)
+        press(asked, "Continue without DOT 0002")
     assert visit.sensors.acquisition is not None
     assert visit.sensors.acquisition.sensors == ("DOT 0001",)
 
@@ -118,7 +119,7 @@ def test_a_sensor_that_does_not_follow_is_named_and_can_be_left_out(
 def test_whoever_cancels_comes_back_to_the_list_and_nobody_stays_synchronised(
     qtbot: QtBot, asked: SensorsStep, radio: FastRadio, visit: Visit
 ) -> None:
-    asked.on_primary()
+    press(asked)
     qtbot.waitUntil(lambda: asked.page.progress.shown.lines[0].state is not LineState.TO_DO, timeout=WAIT_MS)
     asked.page.progress.stop.click()
     assert asked.page.progress.shown.title == "The sensors are being released"
@@ -136,8 +137,8 @@ def test_what_a_sensor_records_is_stopped_before_anything_is_set(
     step.page.source_chosen.emit(DRIVER)
     qtbot.waitUntil(lambda: words_of(step, 0)[4] == "recording to memory", timeout=WAIT_MS)
     assert verb(step.bar()) == ("Stop these recordings", True)
-    assert "stays in their memories" in step.bar().note
-    step.on_primary()
+    assert "Their recordings stay in the sensor memory" in step.bar().note
+    press(step)
     qtbot.waitUntil(lambda: verb(step.bar())[0] == "Synchronise 2 sensors", timeout=WAIT_MS)
     assert dot.memory.state != RECORDING
     assert len(dot.memory.files) == 1

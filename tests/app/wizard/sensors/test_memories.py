@@ -22,6 +22,7 @@ from devices.dot.messages import start_recording
 from devices.dot.samples import DRIVER
 from devices.emulators.dot import EmulatedDot
 from tests.app.wizard.emulated_dots import WAIT_MS, dot_choice, open_dots, rows_of
+from tests.app.wizard.pressing import press
 from tests.devices.dot.fast_radio import FastRadio
 
 SEPARATE_UTC_S = 1_700_000_000
@@ -53,7 +54,7 @@ def told_lines(step: SensorsStep) -> list[list[str]]:
 
 
 def look(qtbot: QtBot, step: SensorsStep) -> None:
-    step.on_quiet(0)
+    press(step, "Sensor memory")
     wait(qtbot, step)
 
 
@@ -84,7 +85,7 @@ def test_empty_memories_are_told_and_live_comes_back(qtbot: QtBot, opened: Senso
     assert opened.page.memories.isVisible()
     assert opened.page.memories.title == "The sensor memory is empty"
     assert visit.sensors.are_in_memory
-    opened.on_primary()
+    press(opened)
     qtbot.waitUntil(lambda: not visit.sensors.are_in_memory and visit.sensors.sync.is_idle, timeout=WAIT_MS)
     assert opened.page.memories.isHidden()
     assert visit.sensors.dots is not None
@@ -102,11 +103,11 @@ def test_what_is_kept_is_erased_after_a_second_press(
     assert bar.primary.text == "Back to the sensors"
     assert [other.text for other in bar.others] == ["Erase sensor memory"]
     assert bar.quiet == ()  # it is offered once
-    opened.on_other(0)
+    press(opened, "Erase sensor memory")
     assert [len(dot.memory.files) for dot in radio.dots] == [1, 1]
-    assert "kept in this library, every sample of it" in opened.page.memories.notice.text
+    assert "recording in the sensor memory is saved completely in this library" in opened.page.memories.notice.text
     assert [other.text for other in opened.bar().others] == ["Erase now"]
-    opened.on_other(0)
+    press(opened, "Erase now")
     wait(qtbot, opened)
     assert [len(dot.memory.files) for dot in radio.dots] == [0, 0]
     assert opened.page.memories.title == "The sensor memory is empty"
@@ -114,12 +115,12 @@ def test_what_is_kept_is_erased_after_a_second_press(
 
 
 def test_no_other_sensors_are_opened_while_these_are_asked(qtbot: QtBot, opened: SensorsStep, visit: Visit) -> None:
-    opened.on_quiet(0)
+    press(opened, "Sensor memory")
     open_ones = visit.sensors.acquisition
     with qtbot.waitSignal(opened.told) as told:
         opened.page.source_chosen.emit(DRIVER)
     assert told.args is not None
-    assert "Wait until they have answered" in told.args[0]
+    assert "The sensors are being queried" in told.args[0]
     assert not opened.on_intent(Intent(KeyAction.IDENTIFY)), "a light was lit of a sensor that is not in sight"
     wait(qtbot, opened)
     assert visit.sensors.acquisition is open_ones
@@ -145,7 +146,7 @@ def test_what_a_closed_visit_left_in_the_sensors_is_fetched_where_the_session_go
     bar = opened.bar()
     assert bar.primary is not None
     assert bar.primary.text == "Fetch it"
-    opened.on_primary()
+    press(opened)
     wait(qtbot, opened)
     qtbot.waitUntil(lambda: len(recordings.walks) == 2, timeout=WAIT_MS)
     fetched = recordings.walks[1]
@@ -172,11 +173,11 @@ def test_what_is_not_of_this_library_is_not_fetched_and_is_named_before_it_is_lo
     bar = opened.bar()
     assert bar.primary is not None
     assert bar.primary.text == "Back to the sensors"
-    opened.on_other(0)
-    assert "1 recording is not kept in this library, and would be lost." in opened.page.memories.notice.text
+    press(opened, "Erase sensor memory")
+    assert "1 recording is not saved in this library and would be lost." in opened.page.memories.notice.text
     assert [other.text for other in opened.bar().others] == ["Erase now, losing unsaved data"]
     assert [len(dot.memory.files) for dot in radio.dots] == [1, 1]
-    opened.on_other(0)
+    press(opened, "Erase now, losing unsaved data")
     wait(qtbot, opened)
     assert [len(dot.memory.files) for dot in radio.dots] == [0, 0]
 
@@ -195,7 +196,7 @@ def test_a_sensor_that_is_out_of_reach_is_told_and_asked_again(
     assert bar.primary.text == "Try again"
     assert [quiet.text for quiet in bar.quiet] == ["Back to the sensors"]
     radio.dots[1].faults.unreachable_until_ns = 0
-    opened.on_primary()
+    press(opened)
     wait(qtbot, opened)
     assert opened.page.memories.notice.isHidden()
     assert opened.page.memories.title == "The sensor memory is empty"

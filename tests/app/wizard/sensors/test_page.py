@@ -139,7 +139,7 @@ def test_a_worn_place_says_that_dropping_swaps(page: SensorsPage) -> None:
     data = data_of("0A31")  # the event does not keep it alive
     move = QDragMoveEvent(at, Qt.DropAction.MoveAction, data, Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier)
     page.places.dragMoveEvent(move)
-    assert page.notice.text == "L thigh is already worn by 0A09. Drop here to swap the two."
+    assert page.notice.text == "L thigh already has sensor 0A09. Drop here to swap the two."
 
 
 @pytest.mark.parametrize("is_sensor", [True, False])
@@ -226,13 +226,13 @@ def test_a_tile_takes_the_selected_sensor(page: SensorsPage, assigned: list[tupl
 
 def test_shaken_sensors_take_the_places_in_turn(page: SensorsPage, assigned: list[tuple[str, Site | None]]) -> None:
     page.show_way(Way.SHAKE)
-    assert "Shake the sensor of the left thigh." in page.notice.text
+    assert "Shake the left thigh sensor." in page.notice.text
     page.show_shaken("0A22")
     assert assigned == [("0A22", Site.LEFT_THIGH)]
     page.show_sensors(rows(None, None, None, None, None, Site.LEFT_THIGH))
-    assert "Shake the sensor of the left shank." in page.notice.text
+    assert "Shake the left shank sensor." in page.notice.text
     page.places.tiles[Site.RIGHT_FOOT].click()
-    assert "Shake the sensor of the right foot." in page.notice.text
+    assert "Shake the right foot sensor." in page.notice.text
     page.show_shaken("0A22")
     assert len(assigned) == 1, "one that has its place only flashes it"
     page.show_shaken("0A31")
@@ -244,7 +244,7 @@ def test_two_shaken_at_once_tell_nothing(page: SensorsPage) -> None:
     page.show_shaken_together(["0A22", "0A2C"])
     assert page.notice.text == "Both 0A22 and 0A2C were shaken. Shake one at a time."
     page.show_shaken_together([])
-    assert "Shake the sensor of the left thigh." in page.notice.text
+    assert "Shake the left thigh sensor." in page.notice.text
 
 
 def test_shaking_assigns_nothing_unless_that_way_is_chosen(
@@ -321,7 +321,7 @@ def test_rows_keep_the_focus_while_they_are_shown_anew(page: SensorsPage) -> Non
     page.focus()
     page.show_sensors(rows(Site.LEFT_FOOT))
     assert page.list.rows["0A09"].hasFocus()
-    assert "worn on L foot" in page.list.rows["0A09"].accessibleName()
+    assert "position: L foot" in page.list.rows["0A09"].accessibleName()
 
 
 def test_a_silent_sensor_is_looked_for_and_a_heard_one_lit(page: SensorsPage, qtbot: QtBot) -> None:
@@ -453,7 +453,7 @@ def test_a_seventh_is_dropped_on_the_tile_of_the_pelvis(
 def test_shaken_in_turn_the_pelvis_comes_last(page: SensorsPage, assigned: list[tuple[str, Site | None]]) -> None:
     page.show_way(Way.SHAKE)
     page.show_sensors(seven(*LEG_SITES))
-    assert page.notice.text.startswith("Shake the sensor of the pelvis.")
+    assert page.notice.text.startswith("Shake the pelvis sensor.")
     page.show_shaken(SEVENTH)
     assert assigned == [(SEVENTH, Site.PELVIS)]
 

@@ -19,6 +19,7 @@ from app.workers.library_controller import LibraryController
 from core.body import LEG_SITES
 from core.samples import Patient, RecordingKind, SensorInfo, Session
 from devices.files.session_folder import write_session
+from tests.app.wizard.pressing import press
 from tests.safety.live_material import numbered, numbered_session
 
 
@@ -83,9 +84,9 @@ def test_a_session_of_the_library_is_chosen_by_code_and_date(
     assert (line.code, line.when, line.sessions) == ("P-7", "24 Oct 2026", "3 recordings")  # type: ignore[union-attr]  # lines of patients only
     bar = step.bar()
     assert bar.primary is not None
-    assert (bar.primary.text, bar.primary.is_enabled) == ("Replay it", True)
+    assert (bar.primary.text, bar.primary.is_enabled) == ("Replay", True)
     with qtbot.waitSignal(visit.sensors.opened, timeout=10_000):
-        step.on_primary()
+        press(step)
     assert visit.sensors.site_of == {f"S-{site}": site for site in LEG_SITES}
     assert visit.sensors.choice is not None
     assert visit.sensors.choice.name == "Replay of P-7, 24 Oct 2026"
@@ -160,7 +161,7 @@ def test_only_demonstration_patients_are_offered_a_replay(qtbot: QtBot, visit: V
 def test_discarded_walks_are_not_played(short_session: Session) -> None:
     """Nor is a session of which nothing is left."""
     discarded = tuple(replace(recording, is_kept=False) for recording in short_session.recordings)
-    with pytest.raises(LibraryError, match="Nothing was recorded"):
+    with pytest.raises(LibraryError, match="This session has no recording that can be replayed"):
         replay_of(replace(short_session, recordings=discarded), "it")
     empty = replace(short_session.recordings[2], name="walk 2", imu={})
     choice = replay_of(replace(short_session, recordings=(*discarded[:2], short_session.recordings[2], empty)), "it")

@@ -134,10 +134,10 @@ def test_streams_are_asked_for_by_a_choice_only_that_says_whom(monkeypatch: pyte
     *_, search, here, network, _with_pelvis = sources
     assert (search.key, asked) == (SEARCH, [])
     assert (here.name, here.asks) == ("Streams from programs on this computer", ("", ""))
-    assert network.name == "Streams in the network of 192.0.2.9"
+    assert network.name == "Streams on the network of 192.0.2.9"
     assert network.asks == (
-        "This asks every computer in the network of 192.0.2.9 whether it streams sensors: by UDP to 224.0.0.183, port "
-        "16571, then those that answer. Nothing about the patient is sent.",
+        "This asks every computer on the network of 192.0.2.9 for sensor streams, by UDP to "
+        "224.0.0.183, port 16571. It then contacts those that answer. No patient data are sent.",
         "Choose it again to ask.",
     )
     with pytest.raises(SourceRefusedError, match="No motion stream found"):

@@ -14,6 +14,7 @@ from app.wizard.keys import Intent, KeyAction
 from app.wizard.sensors.page import Way
 from app.wizard.sensors.step import REPLAY, SensorsStep
 from app.wizard.standing.step import StandStillStep
+from app.wizard.step import StepId
 from app.wizard.visit import Visit
 from app.wizard.walking.step import WalkingStep
 from app.wizard.wizard import Wizard
@@ -22,6 +23,7 @@ from core.body import Site
 from core.samples import Session
 from devices.live import SourceRefusedError
 from devices.simulation.replay import ReplaySource
+from tests.app.wizard.pressing import press
 
 TICKS_FOR_ROWS = 24  # of which three times rows and eight times traces are shown
 
@@ -72,7 +74,7 @@ def test_sensors_are_placed_by_keys_and_told_to_the_library(
     assert verb is not None
     assert verb.is_wished
     with qtbot.waitSignal(step.done):
-        step.on_primary()
+        press(step)
     with qtbot.waitSignal(visit.changed, timeout=5000):
         step.leave()
     assert visit.session is not None
@@ -115,11 +117,11 @@ def test_a_silent_sensor_is_asked_for_again_and_keeps_its_place(
     bar = step.bar()
     assert bar.primary is not None
     assert bar.primary.text == "Reconnect R foot"
-    assert [verb.text for verb in bar.others] == ["Go on without right ankle"]
+    assert [verb.text for verb in bar.others] == ["Continue without right ankle"]
     assert "R foot has been silent" in step.page.notice.text
     source.wake(foot)
     with qtbot.waitSignal(visit.sensors.opened, timeout=10_000):
-        step.on_primary()
+        press(step)
     assert visit.sensors.site_of == worn
     tick(step)
     assert not any(row.sensor.is_lossy for row in step.page.list.rows.values()), "what it lost while silent is past"
@@ -232,13 +234,15 @@ def test_simulated_sensors_are_refused_at_once_on_a_patient_of_the_clinic(
 ) -> None:
     visit = simulated_on_a_patient
     bar = step.bar()
-    assert bar.note == "These sensors are simulated, and DEMO-7 is no demonstration patient: nothing would be recorded."
+    assert bar.note == (
+        "These sensors are simulated and DEMO-7 is not a demonstration patient. Nothing would be recorded."
+    )
     assert bar.primary is not None
     assert (bar.primary.text, bar.others[0].text) == ("Choose other sensors", "Start with a demonstration patient")
     assert (step.state, step.note) == (StepState.ATTENTION, "not for this patient")
     for other in (StandStillStep, FreeMotionStep, WalkingStep):
         assert other(ThemeNotifier(), visit).cannot_enter == bar.note
-    step.on_primary()
+    press(step)
     assert visit.sensors.acquisition is None
     assert step.page.nothing.isVisible()
     assert not visit.cannot_record
@@ -259,7 +263,7 @@ def test_who_has_simulated_sensors_is_led_to_a_demonstration_patient(
     qtbot: QtBot, simulated_on_a_patient: Visit, step: SensorsStep
 ) -> None:
     with qtbot.waitSignal(step.demonstration_wanted):
-        step.on_other(0)
+        press(step, "Start with a demonstration patient")
     step.leave()
     qtbot.wait(50)
     session = simulated_on_a_patient.session
@@ -274,7 +278,7 @@ def test_the_demonstration_begins_with_its_patient_found_or_to_be_made(
     monkeypatch.setattr("app.wizard.wizard.DEMO_PATIENT", code)
     wizard.begin(None)
     first = wizard.visit
-    wizard.steps[0].demonstration_wanted.emit()
+    wizard.steps[StepId.PATIENT].demonstration_wanted.emit()
     assert wizard.visit is not first
     assert wizard.visit is not None
     patient = wizard.visit.patient

@@ -19,6 +19,7 @@ from core.body import Joint, Site
 from core.samples import RecordingKind
 from devices.simulation.replay import ReplaySource
 from tests.app.wizard.begun_visit import begin
+from tests.app.wizard.pressing import press
 
 SPACE = Intent(KeyAction.RUN)
 
@@ -69,7 +70,7 @@ def test_three_seconds_are_recorded_and_the_wizard_goes_on_by_itself(
         assert block.time_s[-1] - block.time_s[0] >= 3.0
     assert set(visit.rests) == set(worn)
     assert step.state is StepState.DONE
-    assert step.note.endswith("s, zero set")
+    assert step.note.endswith("s, standing reference")
 
 
 def test_no_zero_is_called_set_while_the_library_has_not_taken_the_standing(
@@ -127,7 +128,7 @@ def test_who_cannot_stand_is_not_recorded(qtbot: QtBot, step: StandStillStep, vi
     qtbot.waitUntil(lambda: not visit.recordings.is_recording, timeout=10_000)
     qtbot.waitUntil(lambda: visit.recordings.standing is None, timeout=10_000)
     with qtbot.waitSignal(step.done):
-        step.on_primary()
+        press(step)
     step.page.can_stand_pressed.emit()
     assert not visit.has_skipped_standing
     assert step.page.view.phase is StandPhase.READY

@@ -15,6 +15,7 @@ from app.wizard.walking.walk_list import WalkState
 from app.wizard.worn_sensors import SourceChoice
 from core.timed.protocols import TimedProtocol
 from tests.app.wizard.emulated_dots import WAIT_MS, dot_choice, open_dots
+from tests.app.wizard.pressing import press
 from tests.devices.dot.fast_radio import FastRadio
 
 RUN = Intent(KeyAction.RUN)
@@ -54,7 +55,7 @@ def texts(bar: BarState) -> tuple[str, list[str]]:
 
 
 def make_ready(qtbot: QtBot, visit: Visit, step: WalkingStep) -> None:
-    step.on_primary()
+    press(step)
     assert visit.sensors.sync.is_running
     qtbot.waitUntil(lambda: visit.sensors.are_ready_for_walks and visit.sensors.sync.is_idle, timeout=WAIT_MS)
 
@@ -89,7 +90,7 @@ def test_a_walk_in_memories_is_made_ready_recorded_and_fetched(
     assert texts(step.bar())[0] == "Start walk"
     assert step.page.memory.isHidden()
     assert step.cannot_leave == ""
-    assert "Set them back to live" in visit.cannot_calibrate
+    assert "Return them to live on the Sensors step first" in visit.cannot_calibrate
     step.on_intent(RUN)
     qtbot.waitUntil(lambda: visit.recordings.has_begun, timeout=WAIT_MS)
     assert step.page.memory.shown.title == "The sensors are recording to memory"
@@ -100,7 +101,7 @@ def test_a_walk_in_memories_is_made_ready_recorded_and_fetched(
     qtbot.wait(60)
     step.on_intent(RUN)
     assert step.bar().note == "The walk is being fetched."
-    assert "Wait until it is, or fetch it later." in step.cannot_leave
+    assert "A walk is being fetched" in step.cannot_leave
     assert step.note == "being fetched"
     assert [row.state for row in step.page.rows] == [WalkState.IN_SENSORS]
     qtbot.waitUntil(lambda: len(visit.recordings.walks) == 1, timeout=WAIT_MS)
@@ -113,6 +114,10 @@ def test_a_walk_in_memories_is_made_ready_recorded_and_fetched(
     assert not any(dot.memory.cut_recordings for dot in radio.dots)
     assert step.page.memory.isHidden()
     assert step.cannot_leave == ""
+    step.memory.go_live()
+    qtbot.waitUntil(lambda: not visit.sensors.are_in_memory and visit.sensors.sync.is_idle, timeout=WAIT_MS)
+    with qtbot.waitSignal(step.done):
+        press(step, "Results")
 
 
 @pytest.mark.endurance
@@ -122,14 +127,14 @@ def test_a_walk_may_be_fetched_later_and_a_lost_sensor_is_named_and_tried_again(
     step = walking(120)
     make_ready(qtbot, visit, step)
     walk_out_of_reach(qtbot, visit, radio, step)
-    assert step.page.memory.shown.what == "DOT 0002 is out of reach."
+    assert step.page.memory.shown.what == "DOT 0002 is out of range."
     assert texts(step.bar())[:1] == ("Fetch again",)
-    step.on_other(0)
+    press(step, "Fetch later")
     assert texts(step.bar()) == ("Start walk", ["Fetch 1 walk", "Patient screen"])
     assert step.page.memory.isHidden()
     assert [one.name for one in visit.recordings.in_sensors] == ["walk 1"]
     radio.dots[1].faults.unreachable_until_ns = 0
-    step.on_quiet(0)
+    press(step, "Fetch 1 walk")
     qtbot.waitUntil(lambda: len(visit.recordings.walks) == 1, timeout=WAIT_MS)
     assert "Fetch 1 walk" not in texts(step.bar())[1]
     (fetched,) = visit.recordings.walks
@@ -155,7 +160,7 @@ def test_a_walk_that_is_fetched_later_holds_up_no_live_one_and_stands_before_it(
     qtbot.waitUntil(lambda: [one.details.name for one in visit.recordings.walks] == ["walk 2"], timeout=WAIT_MS)
     assert not visit.recordings.is_recording
     assert texts(step.bar())[1] == ["Fetch 1 walk", "Patient screen"]
-    step.on_quiet(0)
+    press(step, "Fetch 1 walk")
     qtbot.waitUntil(lambda: len(visit.recordings.walks) == 2, timeout=WAIT_MS)
     assert [one.details.name for one in visit.recordings.walks] == ["walk 1", "walk 2"]
 
@@ -167,7 +172,7 @@ def test_a_visit_that_is_left_with_a_walk_in_the_sensors_ends(
     step = walking(120)
     make_ready(qtbot, visit, step)
     walk_out_of_reach(qtbot, visit, radio, step)
-    step.on_other(0)
+    press(step, "Fetch later")
     visit.close()
     qtbot.waitUntil(lambda: visit.is_idle, timeout=WAIT_MS)
 
@@ -180,11 +185,11 @@ def test_at_the_live_rate_they_are_ready_at_once_and_live_again_for_a_timed_test
     qtbot.waitUntil(lambda: visit.sensors.are_ready_for_walks and visit.sensors.sync.is_idle, timeout=WAIT_MS)
     assert texts(step.bar()) == ("Start walk", ["Patient screen"])
     step.page.next.test.chosen.emit(TimedProtocol.UP_AND_GO.value)
-    assert "Timed tests need what the sensors send live" in step.bar().note
+    assert "Choose no test, or record walks live" in step.bar().note
     assert texts(step.bar()) == ("Start timed up and go", ["Record walks live", "Patient screen"])
     step.on_intent(RUN)
     assert not visit.recordings.is_recording
-    step.on_quiet(0)
+    press(step, "Record walks live")
     qtbot.waitUntil(lambda: not visit.sensors.are_in_memory and visit.sensors.sync.is_idle, timeout=WAIT_MS)
     assert all(dot.is_streaming and dot.is_synchronised for dot in radio.dots)
     assert texts(step.bar()) == ("Start timed up and go", ["Patient screen"])
@@ -197,11 +202,11 @@ def test_a_failure_before_walks_is_named_and_walks_may_be_sent_live_instead(
 ) -> None:
     step = walking(120)
     radio.dots[1].faults.sync_results = [0x07] * 2
-    step.on_primary()
+    press(step)
     qtbot.waitUntil(lambda: visit.sensors.sync.failure[0] != "" and visit.sensors.sync.is_idle, timeout=WAIT_MS)
     assert step.page.memory.shown.what == "Not synchronised: DOT 0002 (its clock runs too differently)."
     assert texts(step.bar()) == ("Try again", ["Record walks live", "Patient screen"])
-    step.on_other(0)
+    press(step, "Record walks live")
     qtbot.waitUntil(lambda: not visit.sensors.are_loose and visit.sensors.sync.is_idle, timeout=WAIT_MS)
     assert texts(step.bar())[0] == "Start walk"
     assert step.page.memory.isHidden()

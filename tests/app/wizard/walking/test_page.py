@@ -56,7 +56,7 @@ def test_a_kept_walk_is_renamed_where_it_was_made(qtbot: QtBot, page: WalkingPag
     assert renamed.args == ["1", "Own shoes"]
     page.show_walks((replace(KEPT, label="Own shoes"), DISCARDED))
     assert not field.isVisible()
-    assert [one.accessibleName() for one in page.walks.buttons] == ["Rename A Own shoes", "Keep B Shoes after all"]
+    assert [one.accessibleName() for one in page.walks.buttons] == ["Rename A Own shoes", "Include B Shoes again"]
 
 
 def test_a_name_that_stays_or_is_empty_renames_nothing(qtbot: QtBot, page: WalkingPage) -> None:
@@ -158,7 +158,7 @@ def test_a_message_moves_nothing_while_a_walk_is_recorded(page: WalkingPage, qtb
 
 def test_a_stopped_walk_is_kept_or_discarded(page: WalkingPage, qtbot: QtBot) -> None:
     page.show_walks((KEPT, ASKING), "L 12, R 11 strides")
-    assert {"Keep 12 strides", "Discard", "L 12, R 11 strides", "include or exclude?"} <= set(texts(page))
+    assert {"Include 12 strides", "Discard", "L 12, R 11 strides", "include or exclude?"} <= set(texts(page))
     with qtbot.waitSignal(page.keep_pressed) as kept:
         page.stopped.keep.click()
     assert kept.args == ["3"]
@@ -172,7 +172,7 @@ def test_a_stopped_walk_is_kept_or_discarded(page: WalkingPage, qtbot: QtBot) ->
 def test_what_was_discarded_can_come_back(page: WalkingPage, qtbot: QtBot) -> None:
     page.show_walks((KEPT, DISCARDED))
     (undo,) = [one for one in page.walks.buttons if one.accessibleName().startswith("Keep")]
-    assert undo.accessibleName() == "Keep B Shoes after all"
+    assert undo.accessibleName() == "Include B Shoes again"
     with qtbot.waitSignal(page.undo_pressed) as undone:
         QTest.keyClick(undo, Qt.Key.Key_Return)
     assert undone.args == ["2"]
@@ -180,7 +180,7 @@ def test_what_was_discarded_can_come_back(page: WalkingPage, qtbot: QtBot) -> No
 
 def test_a_recovered_walk_asks_as_a_stopped_one_does(page: WalkingPage, qtbot: QtBot) -> None:
     page.show_walks((KEPT, RECOVERED))
-    assert {"recovered, needs review", "B  Shoes: recovered", "Keep 9 strides"} <= set(texts(page))
+    assert {"recovered, needs review", "B  Shoes: recovered", "Include 9 strides"} <= set(texts(page))
     page.show_walks((KEPT, RECOVERED, ASKING))
     assert "C  AFO: stopped" in texts(page)  # the newest question first
 
@@ -253,7 +253,7 @@ def test_a_second_walk_of_a_condition_keeps_its_letter_and_what_is_discarded_has
     assert [one.accessibleName() for one in page.walks.buttons] == [
         "Rename A Barefoot",
         "Rename A2 Barefoot",
-        "Keep Barefoot after all",
+        "Include Barefoot again",
     ]
 
 
@@ -293,7 +293,7 @@ def test_a_provisional_ankle_is_said(page: WalkingPage) -> None:
 def test_rows_are_read_with_their_state(page: WalkingPage) -> None:
     page.show_walks((KEPT, DISCARDED, RECORDING))
     names = [row.accessibleName() for row in page.walks.findChildren(QWidget) if hasattr(row, "field")]
-    assert names == ["A, Barefoot, 18 strides, kept", "B, Shoes, discarded", "C, AFO, recording"]
+    assert names == ["A, Barefoot, 18 strides, kept", "B, Shoes, excluded", "C, AFO, recording"]
 
 
 @pytest.mark.parametrize("is_compact", [False, True])
@@ -348,7 +348,7 @@ def test_no_word_is_cut_in_a_language_as_long_as_german(
         inside = area.widget()
         if area.isVisible() and inside is not None:
             assert inside.width() <= area.viewport().width()
-    page.show_message("R foot has been silent for 2 s.", "Recording goes on. Right ankle and phases are missing.")
+    page.show_message("R foot: no signal for 2 s.", "Recording goes on. Right ankle and phases are missing.")
     assert words_cut(page) == []
 
 

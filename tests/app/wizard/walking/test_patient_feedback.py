@@ -204,7 +204,9 @@ def test_reasons_are_said_in_words_of_what_is_gated_only() -> None:
     assert reasons_against(LEG_SITES, ALL, SURE, frozenset()) == {}
     told = {**SURE, Joint.LEFT_KNEE: replace(SURE[Joint.LEFT_KNEE], zero=ZeroKind.NONE)}
     reasons = reasons_against(LEG_SITES, ALL, told, frozenset({Side.RIGHT}))
-    assert reasons[TargetMeasure.KNEE_SWING_PEAK, Side.LEFT].startswith("No zero was set")
+    assert reasons[TargetMeasure.KNEE_SWING_PEAK, Side.LEFT].startswith(
+        "There is no standing reference, so absolute angles are not reported"
+    )
     assert (TargetMeasure.KNEE_SWING_PEAK, Side.RIGHT) not in reasons
     assert "prosthetic foot rolls on" in reasons[TargetMeasure.STANCE_RATIO, Side.LEFT]
     assert reasons_against((), (), {}, frozenset())[TargetMeasure.CADENCE, None] == "There is no foot sensor."
@@ -218,7 +220,7 @@ def test_reasons_are_said_in_words_of_what_is_gated_only() -> None:
     assert [*reasons.values()] == ["These sensors have not been still yet. Let the patient stand still first."]
     assert (TargetMeasure.KNEE_SWING_PEAK, Side.RIGHT) in reasons
     assert reasons_against(LEG_SITES, ALL, {}, frozenset())[TargetMeasure.KNEE_SWING_PEAK, Side.LEFT].startswith(
-        "The knee's"
+        "It needs both sensors and a free motion"
     )
 
 

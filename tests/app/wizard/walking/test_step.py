@@ -16,6 +16,7 @@ from app.theme.notifier import ThemeNotifier
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.results.step import ResultsStep
 from app.wizard.resuming import rests_of
+from app.wizard.step import StepId
 from app.wizard.visit import Visit
 from app.wizard.walking.readout import WalkingReadout
 from app.wizard.walking.step import WalkingStep
@@ -28,6 +29,7 @@ from core.targets import Target, TargetMeasure, TargetTally, tallies_of
 from devices.simulation.replay import ReplaySource
 from tests.app.wizard.begun_visit import begin
 from tests.app.wizard.patient_time import PATIENCE_MS, PatientTime
+from tests.app.wizard.pressing import press
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
@@ -127,7 +129,7 @@ def test_space_starts_and_stops_and_keeps(
     assert [one.stored.details.alignment for one in visit.recordings.walks] == [None, turned]
     assert not bar_says_change(step)
     assert next_label(step) == "Next: Alignment C"
-    step.on_other(0)  # return to A
+    press(step, "Return to A")
     assert next_label(step) == "Next: Alignment A"
     step.undo()
     assert next_label(step) == "Next: Alignment C"
@@ -209,7 +211,7 @@ def test_a_walk_is_discarded_and_comes_back(
     walk(qtbot, step, visit, patient_time, 4.0)
     with qtbot.waitSignal(step.offered) as offered:
         step.on_intent(Intent(KeyAction.DISCARD))
-    assert offered.args == ["A Alignment A discarded."]
+    assert offered.args == ["A Alignment A excluded."]
     qtbot.waitUntil(lambda: not visit.recordings.walks[0].details.is_kept)
     assert states(step) == [("", "Alignment A", WalkState.DISCARDED)]
     step.undo()
@@ -288,7 +290,7 @@ def test_a_silent_sensor_is_said_and_so_is_its_return(
 def test_sensors_strapped_anew_go_back_to_standing(qtbot: QtBot, step: WalkingStep, visit: Visit) -> None:
     with qtbot.waitSignal(step.jumped) as jumped:
         step.page.walks.restrapped.click()
-    assert jumped.args == [2]
+    assert jumped.args == [StepId.STAND_STILL]
     assert visit.recordings.is_restrapped
     assert step.cannot_enter
     assert not step.on_intent(Intent(KeyAction.KEEP))
@@ -307,7 +309,7 @@ def test_who_left_before_the_sensors_were_live_again_is_not_fetched_back(
 def test_while_no_sensor_is_heard_the_charts_go_on_with_a_gap(
     qtbot: QtBot, step: WalkingStep, visit: Visit, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    step.on_primary()
+    press(step)
     qtbot.waitUntil(lambda: visit.recordings.is_recording, timeout=PATIENCE_MS)
     acquisition, shown = visit.sensors.acquisition, list[WalkingReadout]()
     assert acquisition is not None
@@ -337,7 +339,7 @@ def test_while_no_sensor_is_heard_no_walk_is_started(
     primary = step.bar().primary
     assert primary is not None
     assert not primary.is_enabled
-    assert step.bar().note.startswith("No sensor is heard.")
+    assert step.bar().note.startswith("Switch them on, or move the receiver closer")
     one_heard = {**silent, next(iter(silent)): replace(next(iter(silent.values())), silent_s=0.0)}
     monkeypatch.setattr(acquisition, "status", lambda: one_heard)
     with qtbot.waitSignal(step.changed, timeout=5000):

@@ -33,7 +33,7 @@ def shown(qtbot: QtBot, *attempts: TimedAttempt) -> list[list[str]]:
 
 def test_the_mean_is_of_the_attempts_that_count(qtbot: QtBot) -> None:
     rows = shown(qtbot, attempt(1, 9.0), attempt(2, 20.0, is_kept=False), attempt(3, 8.0))
-    assert rows[1][0] == "A2 Shoes, discarded"
+    assert rows[1][0] == "A2 Shoes, excluded"
     assert rows[3:] == [["Mean of 2", "8.5", "10.0", "1.18", "105", ""]]
 
 

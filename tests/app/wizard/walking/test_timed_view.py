@@ -40,7 +40,7 @@ def test_a_distance_that_cannot_be_told_is_a_dash_with_its_reason() -> None:
     assert distance_words(WAITING) == ("0.0", "")
     assert distance_words(TIMING) == ("6.1", "")
     silent = replace(TIMING, readout=replace(TIMING.readout, silent=(Site.LEFT_FOOT,)))
-    assert distance_words(silent) == ("\N{EN DASH}", "silent: L foot")
+    assert distance_words(silent) == ("\N{EN DASH}", "no signal: L foot")
     lost = replace(TIMING.readout, distance_m=math.nan, reasons=(NotMeasured.NO_FEET,))
     assert distance_words(replace(TIMING, readout=lost)) == ("\N{EN DASH}", "No foot sensor was worn")
     use_language("de")

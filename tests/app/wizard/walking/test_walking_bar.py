@@ -1,5 +1,6 @@
 """The bar below the Walking step: its quiet actions do what they say, and what is no walk is not called one."""
 
+from functools import partial
 from types import SimpleNamespace
 from typing import Any, cast
 
@@ -13,13 +14,13 @@ from app.wizard.walking.bench_control import Bench
 from app.wizard.walking.memory_control import MemoryControl
 from app.wizard.walking.timed_control import TimedControl
 from app.wizard.walking.walk_start import WalkStart
-from app.wizard.walking.walking_bar import QuietAction, WalkingBar
+from app.wizard.walking.walking_bar import WalkingBar, Walks
 from app.wording.recordings import shown_names
 from core.samples import Recording, RecordingKind
 from core.timed.protocols import PlannedTest, TimedProtocol
 from tests.app.wizard.walking.bench_material import WALKED, bench_visit
 
-SYNCHRONISE = BarAction("Synchronise again")
+SYNCHRONISE = BarAction("Synchronise again", lambda: None)
 
 
 @pytest.fixture
@@ -52,11 +53,20 @@ def timed() -> SimpleNamespace:
 
 
 @pytest.fixture
-def bar(visit: Any, bench: Bench, timed: SimpleNamespace) -> WalkingBar:
+def walks() -> SimpleNamespace:
+    """Notes what is done."""
+    pressed: list[str] = []
+    does = ("run", "stop", "go_on", "keep_at_bench", "discard", "return_to_first", "toggle_patient_screen")
+    return SimpleNamespace(pressed=pressed, **{name: partial(pressed.append, name) for name in does})
+
+
+@pytest.fixture
+def bar(visit: Any, walks: SimpleNamespace, bench: Bench, timed: SimpleNamespace) -> WalkingBar:
     """Of sensors whose clocks have drifted apart."""
     memory = SimpleNamespace(bar=lambda: None, quiet=lambda *, wants_live: SYNCHRONISE)
     start = SimpleNamespace(is_possible=False, missing_now="")
     return WalkingBar(
+        cast("Walks", walks),
         visit,
         cast("WalkStart", start),
         bench,
@@ -65,22 +75,37 @@ def bar(visit: Any, bench: Bench, timed: SimpleNamespace) -> WalkingBar:
     )
 
 
-def told(bar: WalkingBar) -> list[tuple[QuietAction, str]]:
-    assert bar.state("Shoes").quiet == tuple(bar.quiet.values())
-    return [(what, action.text) for what, action in bar.quiet.items()]
+def told(bar: WalkingBar) -> list[str]:
+    return [action.text for action in bar.state("Shoes").quiet]
 
 
-def test_at_the_bench_discard_discards_also_while_clocks_drift(visit: Any, bar: WalkingBar) -> None:
-    assert told(bar) == [(QuietAction.BENCH, "Walks"), (QuietAction.DISCARD, "Discard")]
+def test_at_the_bench_discard_discards_also_while_clocks_drift(
+    visit: Any, walks: SimpleNamespace, bar: WalkingBar
+) -> None:
+    assert told(bar) == ["Walks", "Discard"]
+    bar.state("Shoes").quiet[1].run()
+    assert walks.pressed == ["discard"]
     visit.recordings.walks[-1].is_decided = True
-    assert told(bar) == [(QuietAction.BENCH, "Walks")]
+    assert told(bar) == ["Walks"]
+
+
+def test_at_the_bench_it_says_what_the_next_walk_is_walked_with(visit: Any, bench: Bench, bar: WalkingBar) -> None:
+    visit.recordings.walks[-1].is_decided = True
+    again = bar.state("Shoes")
+    assert [one.text for one in again.others] == ["Return to A", "C again"]
+    bench.entry.step("turns", 1)
+    visit.recordings.walks[-1].is_decided = False
+    asked = bar.state("Shoes")
+    assert [one.text for one in asked.others] == ["Return to A", "Walk with D"]
+    assert asked.primary is not None
+    assert (asked.primary.text, asked.note) == ("Keep C", "")
 
 
 def test_beside_the_list_of_walks_the_clocks_can_be_synchronised(visit: Any, bench: Bench, bar: WalkingBar) -> None:
     bench.is_wished = False
     visit.recordings.walks[-1].is_decided = True
-    assert list(bar.quiet) == [QuietAction.BENCH, QuietAction.MEMORY, QuietAction.PATIENT_SCREEN]
-    assert bar.quiet[QuietAction.MEMORY] is SYNCHRONISE
+    assert told(bar) == ["Bench", "Synchronise again", "Patient screen"]
+    assert bar.state("Shoes").quiet[1] is SYNCHRONISE
 
 
 @pytest.mark.parametrize(
@@ -120,5 +145,5 @@ def test_a_timed_test_that_the_next_walk_is_stands_on_the_bar(
     assert "10-metre" not in words()[0]
     timed.planned = PlannedTest(TimedProtocol.TEN_METRES)
     label = "Alignment C" if is_bench else "Alignment D"
-    start = "Keep, start 10-metre walk" if is_asked and not is_bench else "Start 10-metre walk"
+    start = "Include, start 10-metre walk" if is_asked and not is_bench else "Start 10-metre walk"
     assert words() == (start, f"Next: test, {label}")
