@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 from babel.messages.pofile import read_po
 
+from app.cli.main import SUBCOMMANDS
 from app.films.film import Film
 from app.help.help_topics import Topic, help_file, topic_title
 from app.wording.translation import use_language
@@ -260,3 +261,9 @@ def test_a_page_that_a_language_lacks_is_shown_in_english() -> None:
     finally:
         use_language("en")
     assert help_file("keys.md") == HELP / "keys.md"
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_every_subcommand_has_its_row_on_the_page_of_the_command_line(language: str) -> None:
+    rows = re.findall(r"(?m)^\| `([a-z]+)\b[^`]*` \|", text_of(language, Topic.COMMAND_LINE))
+    assert sorted(rows) == sorted(SUBCOMMANDS)
