@@ -33,7 +33,7 @@ from app.summary.request import ReportRequest
 from app.summary.visits import by_condition, condition_in_words
 from app.wording.alignment import NO_PROOF, change_in_words
 from app.wording.translation import capitalised, joined, tr
-from app.wording.verdicts import verdict_word
+from app.wording.verdicts import verdict_alone, verdict_word
 from core.body import JointKind, Side
 from core.parameters import KNEE_RANGE, STANCE
 from core.verdicts.measurement_error import ComparisonKind, sigma_of
@@ -148,7 +148,7 @@ def _parts_table(comparison: Comparison) -> Block:
                 typed(part.name, CONDITION_LENGTH),
                 strides,
                 fixed(part.of_both("speed_m_s"), 2),
-                *map(verdict_word, worst_of),
+                *map(verdict_alone, worst_of),
             ]
         )
     return table(columns, rows, is_dense=True)
