@@ -711,8 +711,8 @@ def test_from_the_latest_visit_as_base_the_one_before_is_told(
 def test_the_conclusion_speaks_of_all_sentences_there_are(analysis: Analysis, session: Session) -> None:
     (visits,) = visits_by_condition([walked(day, analysis, session, walk_1="A") for day in ("May", "July")])
     row = next(row for row in Comparison(Contrast.VISITS, visits.parts).rows if row.is_told)
-    assert conclusion(["a", "b", "c", "d"], [row.difference]) == ["a", "b", "c", "The table shows all of them."]
-    assert conclusion(["a", "b", "c"], [row.difference]) == ["a", "b", "c"]
+    assert conclusion(["a", "b", "c", "d"], [row]) == ["a", "b", "c", "The table shows all of them."]
+    assert conclusion(["a", "b", "c"], [row]) == ["a", "b", "c"]
 
 
 def test_the_trend_of_a_row_says_its_values_and_where_there_is_none(

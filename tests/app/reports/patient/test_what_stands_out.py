@@ -16,7 +16,8 @@ from app.summary import comparison
 from app.summary.answer import Outcome, answer_of
 from app.summary.comparison import Comparison, Contrast
 from app.summary.facts import Facts
-from app.summary.measure_sentences import measure_in_words, unit_and_decimals
+from app.summary.measure_sentences import unit_and_decimals
+from app.wording.measures import name_in_sentence
 from app.summary.measures import MEASURES, Measure
 from app.summary.numbers_in_words import NOTHING
 from app.summary.request import AnalysedVisit, ReportRequest
@@ -319,7 +320,7 @@ def test_every_quantity_has_its_unit_and_what_is_compared_has_a_name() -> None:
     assert units["knee_stance_to_swing_deg"] == "°"
     assert set(units.values()) == {"°", "%", "s", "m", "m/s"}
     for column in {*BETWEEN_LEGS, *(measure.column for measure in MEASURES)}:
-        assert measure_in_words(column)
+        assert name_in_sentence(column)
 
 
 def test_a_range_and_the_movement_that_makes_it_are_told_once(request_of_demonstration: ReportRequest) -> None:
