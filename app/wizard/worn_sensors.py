@@ -12,7 +12,7 @@ from PySide6.QtCore import QObject, Signal
 from app.storage.stored import PlacedSensor
 from app.widgets.sensor_tile import SILENT_FROM_S
 from app.wizard.sensor_sync import SensorSync
-from app.wording.translation import capitalised, filled, later, name_of, tr
+from app.wording.translation import capitalised, filled, joined, later, name_of, tr
 from app.workers.background import Background, Report, Work
 from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site, hip_of
 from core.placement.labels import groups_of
@@ -243,9 +243,9 @@ class WornSensors(QObject):
         doubted = [site for site in Site if site in self.detected]
         names = [name_of(site) for site in doubted]
         what = tr("{first} and {last} look swapped.") if len(names) == 2 else tr("{sites} look mixed up.")
-        what = what.format(sites=", ".join(names), first=names[0], last=names[-1])
+        what = what.format(sites=joined(names), first=names[0], last=names[-1])
         wrong = [name_of(joint) for joint in self.joints if not self.detected.keys().isdisjoint(_ends(joint))]
-        then = tr("Angles would be wrong: {joints}.").format(joints=", ".join(wrong)) if wrong else ""
+        then = tr("Angles would be wrong: {joints}.").format(joints=joined(wrong)) if wrong else ""
         return capitalised(what), then
 
     def use_detected(self) -> None:
@@ -284,7 +284,7 @@ class WornSensors(QObject):
         if not lost or not worn:
             return ""
         return tr("No sensor at {sites}: no angles for {joints}.").format(
-            sites=", ".join(name_of(site) for site in missing), joints=", ".join(lost)
+            sites=joined([name_of(site) for site in missing]), joints=joined(lost)
         )
 
     def _close(self) -> None:

@@ -231,7 +231,7 @@ def _table(comparison: Comparison, shown: Facts, sides: Sequence[Side]) -> Block
     columns = [Column(tr("Measure, °"), "1fr", is_number=False), *(Column(part.letter) for part in comparison.parts)]
     for part in comparison.others:
         if is_visits:
-            columns += [Column(tr("Change 2 − 1")), Column(tr("Error")), Column(tr("In words"), is_number=False)]
+            columns += [Column(tr("Change 2 − 1")), Column(tr("Error")), Column(tr("Result"), is_number=False)]
         else:
             base = comparison.base_of(part)
             against = tr("{this} vs {first}").format(this=part.letter, first=base.letter)

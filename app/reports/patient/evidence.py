@@ -103,7 +103,7 @@ def evidence_table(facts: Facts) -> list[Block]:
             tr("at most {limit}°").format(limit=fixed(LIMITS.thirds_deg, 0)),
         ),
         ("strap", tr("Strap"), lambda joint, _: _strap(facts, joint), tr("not moved")),
-        ("zero", tr("Standing reference"), lambda _, found: _zero(found), tr("standing, or goniometer")),
+        ("zero", tr("Standing reference"), lambda _, found: _zero(found), tr("posture, or goniometer")),
     ]
     rows: list[Row] = [
         [
@@ -349,7 +349,7 @@ def _strap(facts: Facts, joint: Joint) -> str:
 
 
 def _zero(found: JointCalibration) -> str:
-    names = {ZeroKind.STANDING: tr("standing"), ZeroKind.GONIOMETER: tr("goniometer"), ZeroKind.NONE: tr("none")}
+    names = {ZeroKind.STANDING: tr("posture"), ZeroKind.GONIOMETER: tr("goniometer"), ZeroKind.NONE: tr("none")}
     return names[found.zero]
 
 

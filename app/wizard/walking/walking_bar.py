@@ -53,7 +53,7 @@ class WalkingBar:
         if is_between and self._bench.is_shown:
             offered[QuietAction.BENCH] = BarAction(tr("Walks"))
             if asked_walk(self._visit.recordings) is not None:
-                offered[QuietAction.DISCARD] = BarAction(tr("Exclude"), "D")
+                offered[QuietAction.DISCARD] = BarAction(tr("Exclude"), "X")
         elif is_between:
             if self._bench.is_offered:
                 offered[QuietAction.BENCH] = BarAction(tr("Alignment"))
