@@ -213,10 +213,10 @@ def _events(study: AgreementStudy) -> Iterator[str]:
     lengths = lengths_together(study)
     if len(lengths) > 1:
         error = lengths[:, 0] - lengths[:, 1]
-        bias = 100 * float(error.mean()) / float(lengths[:, 1].mean())
+        percent = 100 * float(error.mean()) / float(lengths[:, 1].mean())
         said = tr("Stride length: {count} strides, bias {bias} %, SD {sd} cm.")
-        sd = f"{100 * float(error.std(ddof=1)):.2f}"
-        yield said.format(count=len(lengths), bias=f"{bias:+.2f}", sd=sd)
+        spread = f"{100 * float(error.std(ddof=1)):.2f}"
+        yield said.format(count=len(lengths), bias=f"{percent:+.2f}", sd=spread)
 
 
 def _of(walk: ComparedWalk, joint: Joint, of_walk: Callable[[Agreement], float]) -> float:

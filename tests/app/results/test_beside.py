@@ -83,9 +83,9 @@ def words_beside(page: ResultPage) -> list[str]:
 
 def test_another_walk_is_offered_with_its_condition_and_the_shown_one_is_not(page: ResultPage) -> None:
     offered = [page.beside.itemText(row) for row in range(page.beside.count())]
-    assert offered == ["Versus reference", "Legs only", "Beside B AFO", "Versus last visit"]
+    assert offered == ["Versus reference", "Legs only", "Versus B AFO", "Versus last visit"]
     show(page, "walk 2")
-    assert page.beside.itemText(2) == "Beside A shoes"
+    assert page.beside.itemText(2) == "Versus A shoes"
 
 
 def test_the_other_walk_is_drawn_thin_and_named(page: ResultPage, analysis: Analysis, session: Session) -> None:
@@ -154,8 +154,8 @@ def test_the_marks_are_those_of_the_change(page: ResultPage, analysis: Analysis,
 @pytest.mark.parametrize(
     ("typed", "title", "head"),
     [
-        ("AFO", "Beside B AFO", "B AFO"),
-        ("AFO with a carbon spring and a wedge", "Beside B AFO with a carbon spring…", "B AFO with a carbon…"),
+        ("AFO", "Versus B AFO", "B AFO"),
+        ("AFO with a carbon spring and a wedge", "Versus B AFO with a carbon spring…", "B AFO with a carbon…"),
     ],
 )
 def test_a_long_name_is_cut_in_the_table_and_whole_where_it_is_read_aloud(
@@ -179,7 +179,7 @@ def test_a_withheld_joint_has_no_thin_curve_and_no_difference(
     choose(page, "walk 2")
     knee, ankle = page.cycles.charts.frames
     assert [curve.side for curve in knee.chart.described.beside] == [Side.RIGHT]
-    assert words_beside(page) == ["Thin: B AFO. L: withheld in B AFO.", "Thin: B AFO."]
+    assert words_beside(page) == ["Thin: B AFO. L: not reported in B AFO.", "Thin: B AFO."]
     assert [curve.side for curve in ankle.chart.described.beside] == list(Side)
     alone = walks_alone(gated, session.recordings)
     found = beside_walk(alone["walk 1"], alone["walk 2"], is_simulated=True)
@@ -196,7 +196,7 @@ def test_without_a_common_zero_shapes_are_laid_over_one_another_and_that_is_said
         [WalkedVisit("2026-06-20", other, session.recordings), WalkedVisit("2026-11-14", analysis, session.recordings)],
     )
     knee, ankle = words_beside(page)
-    assert knee == "Thin: 2026-06-20. No common zero: range and shape hold, height does not."
+    assert knee == "Thin: 2026-06-20. No common standing reference: compare range of motion and curve shape, not absolute angles."
     assert ankle == "Thin: 2026-06-20."
     assert page.cycles.charts.knee.chart.is_about_mean
     for curve in page.cycles.charts.knee.chart.described.beside:
@@ -275,9 +275,9 @@ def test_where_no_change_can_be_told_as_one_that_is_said(analysis: Analysis, ses
         return beside_walk(alone["walk 1"], alone["walk 2"], is_simulated=True)
 
     inside, beyond = Judgement.INSIDE_ERROR, Judgement.EXCEEDS_ERROR
-    none = "No change from B AFO is larger than its error."
+    none = "All judged changes from B AFO are within measurement error. Largest: walking speed +0.39\N{NO-BREAK SPACE}m/s (±0.08\N{NO-BREAK SPACE}m/s\u2020)."
     assert told(found(), judgement=inside, is_worth_a_sentence=False) == none
-    near = "No change from B AFO is far larger than its error. The table marks those that exceed it."
+    near = "Some changes from B AFO are beyond measurement error, none clearly. The table marks them. Largest: walking speed +0.39\N{NO-BREAK SPACE}m/s (±0.08\N{NO-BREAK SPACE}m/s\u2020)."
     assert told(found(), judgement=beyond, is_worth_a_sentence=False) == near
     nothing = "Nothing can be compared with B AFO."
     assert told(found(), judgement=Judgement.TOO_FEW_STRIDES, is_worth_a_sentence=False) == nothing
@@ -299,8 +299,8 @@ def test_a_figure_is_subtracted_before_it_is_rounded(analysis: Analysis, session
         vars(found)["rows"] = (row,)
         return answer_beside(found).first.replace("\N{NO-BREAK SPACE}", " ")
 
-    assert first(1.184, 0.796) == "Walking speed: 0.388 m/s more than B AFO, 1.184 against 0.796."
-    assert first(1.19, 0.80) == "Walking speed: 0.39 m/s more than B AFO, 1.19 against 0.80."
+    assert first(1.184, 0.796) == "Walking speed is 1.184 m/s in this walk, 0.388 m/s more than in B AFO (0.796 m/s)."
+    assert first(1.19, 0.80) == "Walking speed is 1.19 m/s in this walk, 0.39 m/s more than in B AFO (0.80 m/s)."
 
 
 def test_a_leg_that_the_other_walk_has_not_measured_is_named(

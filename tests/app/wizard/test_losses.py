@@ -17,8 +17,8 @@ def test_a_silent_sensor_is_news_once() -> None:
     assert losses.update({Site.RIGHT_FOOT: 2.1}, 10.0) == (Site.RIGHT_FOOT,)
     assert losses.update({Site.RIGHT_FOOT: 3.1}, 11.0) == ()
     assert losses.message(True, ALL, 11.0) == (
-        "R foot has been silent for 3 s.",
-        "Recording goes on. Missing until it is back: right ankle, right phases.",
+        "R foot: no signal for 3 s.",
+        "Recording continues. Missing until the signal is back: right ankle, right gait phases.",
     )
 
 
@@ -26,8 +26,8 @@ def test_between_walks_it_says_what_to_do() -> None:
     losses = Losses()
     losses.update({Site.LEFT_SHANK: 4.2}, 10.0)
     assert losses.message(False, ALL, 10.0) == (
-        "L shank has been silent for 4 s.",
-        "Switch it off and on, or go on without these angles: left knee, left ankle.",
+        "L shank: no signal for 4 s.",
+        "Switch the sensor off and on, or continue without these angles: left knee, left ankle.",
     )
 
 
@@ -36,7 +36,7 @@ def test_its_return_is_told_with_how_long_it_was() -> None:
     losses.update({Site.RIGHT_FOOT: 3.1}, 10.0)
     losses.update({Site.RIGHT_FOOT: 0.02}, 10.1)
     assert losses.message(True, ALL, 11.0) == (
-        "R foot is back after 3.1 s.",
+        "R foot: signal back after 3.1 s.",
         "Strides in between are excluded.",
     )
     assert losses.message(True, ALL, 20.0) == NOTHING
@@ -53,17 +53,17 @@ def test_two_are_told_together() -> None:
     losses = Losses()
     losses.update({Site.RIGHT_FOOT: 3.1, Site.LEFT_FOOT: 5.0, Site.LEFT_SHANK: 0.0}, 10.0)
     assert losses.message(True, [], 10.0) == (
-        "L foot, R foot have been silent for 5 s.",
-        "Recording goes on. Missing until they are back: left phases, right phases.",
+        "L foot, R foot: no signal for 5 s.",
+        "Recording continues. Missing until the signal is back: left gait phases, right gait phases.",
     )
-    assert losses.message(False, [], 10.0)[1] == "Switch them off and on, or continue without them."
+    assert losses.message(False, [], 10.0)[1] == "Switch the sensors off and on, or continue without them."
 
 
 def test_where_none_is_heard_the_receiver_is_told_of_and_their_return_is_told_together() -> None:
     losses = Losses()
     losses.update(dict.fromkeys(LEG_SITES, 3.0), 10.0)
     then = "Check that the receiver is plugged in and near the patient, and that the sensors are switched on."
-    assert losses.message(False, ALL, 10.0) == ("No sensor has been heard for 3 s.", then)
+    assert losses.message(False, ALL, 10.0) == ("No signal from any sensor for 3 s.", then)
     assert losses.message(True, ALL, 10.0)[1] == f"Recording goes on. {then}"
     losses.update({**dict.fromkeys(LEG_SITES, 0.02), Site.LEFT_FOOT: 3.5}, 10.5)
     losses.update(dict.fromkeys(LEG_SITES, 0.02), 11.0)
@@ -80,13 +80,13 @@ def test_a_silent_pelvis_costs_the_hips_and_says_that_the_rest_goes_on() -> None
     losses = Losses()
     assert losses.update({Site.PELVIS: 3.1, Site.LEFT_FOOT: 0.0}, 10.0) == (Site.PELVIS,)
     assert losses.message(True, [*ALL, *HIPS], 11.0) == (
-        "The pelvis has been silent for 3 s.",
+        "Pelvis: no signal for 3 s.",
         "Recording continues, including knees and ankles. Hip angles are missing until the signal is back.",
     )
-    assert losses.message(False, [*ALL, *HIPS], 11.0)[1] == "Switch it off and on, or continue without hip angles."
+    assert losses.message(False, [*ALL, *HIPS], 11.0)[1] == "Switch the pelvis sensor off and on, or continue without hip angles."
     losses.update({Site.PELVIS: 0.02, Site.LEFT_FOOT: 0.0}, 12.0)
     assert losses.message(True, [*ALL, *HIPS], 12.5) == (
-        "Pelvis is back after 3.1 s.",
+        "Pelvis: signal back after 3.1 s.",
         "Only hip angles are missing in between.",
     )
 
@@ -95,7 +95,7 @@ def test_a_silent_thigh_costs_its_knee_and_its_hip() -> None:
     losses = Losses()
     losses.update({Site.LEFT_THIGH: 3.1, Site.PELVIS: 0.0}, 10.0)
     assert losses.message(True, [*ALL, *HIPS], 11.0)[1] == (
-        "Recording goes on. Missing until it is back: left knee, left hip."
+        "Recording continues. Missing until the signal is back: left knee, left hip."
     )
 
 
@@ -103,5 +103,5 @@ def test_a_pelvis_that_is_silent_with_a_foot_is_one_of_two() -> None:
     losses = Losses()
     losses.update({Site.LEFT_FOOT: 3.1, Site.PELVIS: 3.1, Site.RIGHT_FOOT: 0.0}, 10.0)
     what, then = losses.message(True, [*ALL, *HIPS], 11.0)
-    assert what == "L foot, pelvis have been silent for 3 s."
+    assert what == "L foot, pelvis: no signal for 3 s."
     assert then.endswith("left ankle, left hip, right hip, left phases.")

@@ -29,7 +29,7 @@ def test_what_differs_most_is_the_answer_and_its_error_stands_beside_it(
 ) -> None:
     found = answer(request_of_demonstration, with_more(analysis, Side.LEFT, "knee_range_rad", -20.0))
     assert found.outcome is Outcome.DIFFERS
-    assert found.first == "The left knee moves 21.3° less over the stride than the right: 41.7° against 63.0°."
+    assert found.first == "The left knee has 21.3° less range of motion than the right: 41.7° against 63.0°."
     assert found.then.startswith("Measurement error between the legs: 9.")
 
 

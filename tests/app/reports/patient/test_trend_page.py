@@ -82,7 +82,7 @@ def test_a_withheld_visit_is_a_gap_and_the_change_counts_from_the_first_that_can
     seen = visits(walk(20, is_withheld=True), walk(31), walk(33), walk(35, is_withheld=True), walk(52))
     blocks = page(request_of_demonstration, seen)
     knee = rows(blocks)["Knee flexion, stance to swing, °", "L"]
-    assert knee[:5] == ["withheld", "31.0", "33.0", "withheld", "52.0"]
+    assert knee[:5] == ["not reported", "31.0", "33.0", "not reported", "52.0"]
     assert knee[5:7] == ["+19.0", "+21.0"]
     assert "31.0° at visit 2" in sentences(blocks)[0]
 
@@ -116,8 +116,8 @@ def test_a_chart_says_its_values_and_joins_none_over_a_gap(value: float) -> None
     gap = [whole[0], TrendValue(1, math.nan, math.nan), whole[2]]
     drawn, broken = (trend_chart("Knee", 1, days, {Side.LEFT: values}, is_simulated=False) for values in (whole, gap))
     assert f"1: {value:.1f}" in drawn.alt
-    assert "withheld" in broken.svg
-    assert "withheld" not in drawn.svg
+    assert "not reported" in broken.svg
+    assert "not reported" not in drawn.svg
     joins = [svg.count('stroke-width="1.2"') for svg in (drawn.svg, broken.svg)]
     assert joins == [2, 0]
 
@@ -139,8 +139,7 @@ def test_a_goal_is_dotted_with_who_and_when_and_a_sentence_says_how_the_last_vis
     seen = visits(*(walk(knee_deg=knee_deg) for knee_deg in (31.0, 36.0, 39.0, 45.0, 52.0)))
     blocks = page(with_goals(request_of_demonstration, knee_goal(41.0)), seen)
     assert sentences(blocks)[-1] == (
-        "Goal: Knee, stance to swing, left: at least 41°; measured 52.0°, reached by more than the error (9.3°). "
-        "First reached at visit 4."
+        "Goal: Knee flexion, stance to swing, left: at least 41°; measured 52.0°, reached, beyond measurement error (±9.3°). First reached at visit 4."
     )
     (drawn,) = (block["pictures"] for block in blocks if block["kind"] == "figures")
     assert "goal L 41°, agreed 16 Sep" in str(drawn)
@@ -196,7 +195,7 @@ def with_test(time_s: float, speed_m_s: float = 1.0, protocol: TimedProtocol = T
 
 def test_timed_tests_stand_in_the_table_and_speed_is_told_once(request_of_demonstration: ReportRequest) -> None:
     blocks = page(request_of_demonstration, visits(with_test(20.0, 0.6), with_test(8.0, 1.0)))
-    assert rows(blocks)["10-metre walk, m/s", ""] == ["0.50", "1.25", "–", "+0.75", "0.20†", "exceeds"]
+    assert rows(blocks)["10-metre walk, m/s", ""] == ["0.50", "1.25", "–", "+0.75", "0.20†", "beyond"]
     told = [one for one in sentences(blocks) if "m/s" in one]
     assert len(told) == 1
     assert told[0].startswith("10-metre walk: 0.50 m/s at visit 1, 1.25 m/s at visit 2; +0.75 m/s, error between")
