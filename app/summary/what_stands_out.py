@@ -172,7 +172,7 @@ def _similar_legs(facts: Facts) -> list[str]:
     if len(facts.gait) < len(Side):
         return []
     found = {column: compare_legs(facts.part, column, facts.first_and_second) for column in BETWEEN_LEGS}
-    column = max(found, key=lambda one: found[one].ratio)
+    column = max(found, key=lambda one: (found[one].ratio > 0, not found[one].is_borrowed, found[one].ratio))
     if not found[column].ratio:
         return []
     unit, decimals = unit_and_decimals(column)

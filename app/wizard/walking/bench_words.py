@@ -42,9 +42,10 @@ def bench_answer(found: Comparison, prosthetic: Side) -> Answer:
         error = tr("Beyond measurement error (±{error}).") if worth else tr("Just beyond measurement error (±{error}).")
         error = error.format(error=error_in_sentence(most))
         return Answer(Outcome.DIFFERS, change_sentence(*_of_side(most)), f"{error} {_beside(found, prosthetic)}")
-    column, _, _, *told = about = _of_side(most)
+    column, _, size, *told = _of_side(most)
+    similar = similar_sentence(column, tr("Prosthetic side"), size, *told)
     likely = likely_sentence(column, most.difference, *told)
-    return Answer(Outcome.NOTHING, similar_sentence(*about), f"{likely} {_beside(found, prosthetic)}")
+    return Answer(Outcome.NOTHING, similar, f"{likely} {_beside(found, prosthetic)}")
 
 
 def speeds_in_words(shown: Part, other: Part) -> str:

@@ -206,7 +206,7 @@ def test_every_reason_to_leave_a_stride_out_has_its_words(walk: RecordingAnalysi
 def test_what_few_strides_cost_is_said_by_side(walk: RecordingAnalysis) -> None:
     assert few_strides_in_words(alone(with_used(with_used(walk, Side.LEFT, 10), Side.RIGHT, 11))) == ""
     said = few_strides_in_words(alone(with_used(with_used(walk, Side.LEFT, 2), Side.RIGHT, 9)))
-    assert said == "L: under 3 strides, so without a mean. R: under 10 strides, so without spread."
+    assert said == "L: fewer than 3 strides, no mean. R: fewer than 10 strides, no SD."
     assert (
         few_strides_in_words(alone(with_used(with_used(walk, Side.LEFT, 0), Side.RIGHT, 11))) == ""
     )  # there is no mean

@@ -71,8 +71,8 @@ def test_where_all_counts_there_is_nothing_to_note() -> None:
 
 
 def test_the_sentence_says_what_is_shown_and_how_many_stand_behind_it() -> None:
-    assert sentence(found(WHOLE, FEW)) == "Knee range: means of 14 sessions, by condition."
-    assert sentence(found(WHOLE, grouping=Grouping.ALL)) == "Knee range: mean of 12 sessions."
+    assert sentence(found(WHOLE, FEW)) == "Knee range of motion: means of 14 sessions, by condition."
+    assert sentence(found(WHOLE, grouping=Grouping.ALL)) == "Knee range of motion: mean of 12 sessions."
     none = replace(WHOLE, sessions=0, mean=math.nan, half_interval=math.nan)
     assert sentence(found(none)) == "No session has an included value of this measure."
 
@@ -162,11 +162,11 @@ def test_without_a_table_it_is_said_how_one_comes_to_be(qtbot: QtBot, page: Ques
 @pytest.mark.parametrize(
     ("grouping", "names"),
     [
-        (Grouping.AGE, {"0": "under 18 years", "18": "18 to 39 years", "80": "80 years and over", "": "not stated"}),
+        (Grouping.AGE, {"0": "under 18 years", "18": "18 to 39 years", "80": "80 years and over", "": "not recorded"}),
         (Grouping.SPEED, {"0": "under 0.4 m/s", "0.8": "0.8 to 1.2 m/s", "1.6": "1.6 m/s and over"}),
         (Grouping.LEG, {"prosthetic": "prosthetic leg", "other": "sound leg", "neither": "no leg affected"}),
         (Grouping.SIDE, {"left": "left leg", "both": "both legs"}),
-        (Grouping.CONDITION, {"left": "left", "": "not stated"}),
+        (Grouping.CONDITION, {"left": "left", "": "not recorded"}),
     ],
 )
 def test_a_group_is_called_what_it_is(grouping: Grouping, names: dict[str, str]) -> None:

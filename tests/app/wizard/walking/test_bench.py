@@ -94,10 +94,12 @@ def test_what_is_discarded_is_no_part_of_the_chain() -> None:
 def test_the_sentence_tells_the_prosthetic_sides_change_with_both_values() -> None:
     outcome, first, then = told_of(part("B", left=leg(Side.LEFT, knee_range_deg=70.0)), part("A"))
     assert outcome is Outcome.DIFFERS
-    assert first.startswith("With B the prosthetic side has 10.0° more than with A: knee")
-    assert "70.0° against 60.0°" in first
-    assert then.startswith("Larger than its error (")
-    assert "The sound side does not change beyond error. Sensors stayed on. Speed 1.18 and 1.18 m/s." in then
+    assert first == "Prosthetic-side knee has 70.0° range of motion with B, 10.0° more than with A (60.0°)."
+    assert then.startswith("Beyond measurement error (±")
+    assert (
+        "The sound side does not change beyond measurement error. Sensors stayed on. Walking speed 1.18 and 1.18 m/s."
+        in then
+    )
 
 
 def swinging(range_deg: float, swing_deg: float) -> SideGait:
@@ -108,19 +110,19 @@ def swinging(range_deg: float, swing_deg: float) -> SideGait:
 
 
 @pytest.mark.parametrize(
-    ("swing_deg", "told"), [(68.0, "knee, stance to swing"), (58.5, "knee range"), (48.0, "knee range")]
+    ("swing_deg", "told"), [(68.0, "from stance to swing"), (58.5, "range of motion"), (48.0, "range of motion")]
 )
 def test_of_a_range_and_the_excursion_that_makes_it_the_excursion_is_told(swing_deg: float, told: str) -> None:
     """Not where the excursion hardly changes, nor where it changes the other way and less."""
     _, first, _ = told_of(part("B", left=swinging(70.0, swing_deg)), part("A", left=swinging(59.0, 57.0)))
-    assert f": {told}, " in first
+    assert f" {told} with B, " in first
 
 
 def test_where_only_the_sound_side_changes_no_sentence_is_of_the_prosthetic_one() -> None:
     outcome, first, then = told_of(part("B", right=leg(Side.RIGHT, knee_range_deg=70.0)), part("A"))
     assert outcome is Outcome.NOTHING
-    assert first == "The prosthetic side is similar with A and B: knee range 60.0° and 60.0°."
-    assert then.startswith("The change of 0.0° may be measurement error: anything from \N{MINUS SIGN}")
+    assert first == "Prosthetic side: knee range of motion is similar with A and with B, 60.0° and 60.0°."
+    assert then.startswith("The change of 0.0° may be measurement error: likely between \N{MINUS SIGN}")
     assert "The sound side also changes beyond measurement error." in then
 
 
@@ -146,15 +148,15 @@ def test_a_change_that_the_table_marks_is_told_with_its_error_however_little_it_
     assert not row.difference.is_worth_a_sentence
     outcome, first, then = told_of(one, other)
     assert outcome is Outcome.DIFFERS
-    assert first.startswith("With B the prosthetic side has 3.5° more than with A: knee range, 63.5° against 60.0°.")
-    assert then.startswith("Just larger than its error (")
+    assert first == "Prosthetic-side knee has 63.5° range of motion with B, 3.5° more than with A (60.0°)."
+    assert then.startswith("Just beyond measurement error (±")
 
 
 def test_what_may_be_error_is_told_with_what_fits() -> None:
     outcome, first, then = told_of(part("B", left=leg(Side.LEFT, knee_range_deg=61.0)), part("A"))
     assert outcome is Outcome.NOTHING
-    assert first == "The prosthetic side is similar with A and B: knee range 60.0° and 61.0°."
-    assert then.startswith("The change of +1.0° may be measurement error: anything from \N{MINUS SIGN}1.")
+    assert first == "Prosthetic side: knee range of motion is similar with A and with B, 60.0° and 61.0°."
+    assert then.startswith("The change of +1.0° may be measurement error: likely between \N{MINUS SIGN}1.")
 
 
 @pytest.mark.parametrize("is_biased", [True, False])
@@ -177,8 +179,8 @@ def test_stance_of_a_prosthetic_foot_is_compared_at_the_bench_nowhere(
 
 def test_under_ten_strides_nothing_is_judged() -> None:
     outcome, first, then = told_of(part("B", left=leg(Side.LEFT, 7, knee_range_deg=80.0)), part("A"))
-    assert (outcome, first) == (Outcome.OPEN, "B beside A: too few strides to judge a change.")
-    assert then == "Provisional: B has 7 strides of the prosthetic side, 10 give an error."
+    assert (outcome, first) == (Outcome.OPEN, "B and A: too few strides to assess a change.")
+    assert then == ("Provisional: B has 7 strides on the prosthetic side; 10 are needed for a measurement error.")
 
 
 def test_few_strides_are_ten() -> None:
@@ -216,7 +218,7 @@ def test_each_alignment_stands_against_the_one_it_was_changed_from_until_another
 def test_to_return_it_says_what_to_undo_and_can_be_taken_back(bench: Bench) -> None:
     assert bench.return_to_first() == "Back to A: Pylon \N{MINUS SIGN}2 mm"
     assert bench.chain.base == "Alignment A"
-    assert bench.next_title == "Next change, from A. To undo first: Pylon \N{MINUS SIGN}2 mm"  # as long as it is so
+    assert bench.next_title == "Next change, from A. Undo first: Pylon \N{MINUS SIGN}2 mm"  # as long as it is so
     assert bench.return_to_first() == ""  # it is there
     assert bench.undo_return()
     assert bench.chain.base == "Alignment C"
@@ -258,9 +260,9 @@ def test_a_walk_after_the_return_stands_beside_the_first_and_changes_nothing_tha
     bench.begun()
     state = bench.state()
     assert state is not None
-    assert [(row.letter, row.title) for row in state.rows][-1] == ("A2", "A again")
+    assert [(row.letter, row.title) for row in state.rows][-1] == ("A2", "Repeat A")
     assert shown(bench) == ("A2", "A")
-    assert state.answer.first.startswith("With A2 the prosthetic side has 6.0° more than with A:")
+    assert "with A2, 6.0° more than with A (" in state.answer.first
     assert sentence_of(bench, 1) == before
     assert bench.chain.next_letter == "D"
 
@@ -318,12 +320,12 @@ def test_a_discarded_walks_change_is_told_again_of_the_next(bench: Bench, visit:
 
 def test_the_bar_says_what_the_next_walk_is_walked_with(bench: Bench) -> None:
     again = bench_bar(bench, None, "", "", can_start=True)
-    assert [one.text for one in again.others] == ["Return to A", "C again"]
+    assert [one.text for one in again.others] == ["Return to A", "Repeat C"]
     bench.entry.step("turns", 1)
     asked = bench_bar(bench, "C", "", "", can_start=True)
     assert [one.text for one in asked.others] == ["Return to A", "Walk with D"]
     assert asked.primary is not None
-    assert (asked.primary.text, asked.note) == ("Keep C", "")
+    assert (asked.primary.text, asked.note) == ("Include C", "")
 
 
 def test_no_bench_where_no_side_is_sound_or_nothing_was_walked(bench: Bench, visit: SimpleNamespace) -> None:
@@ -415,12 +417,12 @@ def test_each_curve_says_what_may_be_read_of_it(page: WalkingPage, bench: Bench)
     state = bench.state()
     assert state is not None
     page.bench.show_state(state)
-    assert [frame.verdict.text() for frame in page.bench.frames] == ["read", "read"]
+    assert [frame.verdict.text() for frame in page.bench.frames] == ["Good", "Good"]
     axis = replace(calibrations()[Joint.LEFT_KNEE], axis_sd_rad=np.deg2rad(8.0))
     unsure = {**calibrations(), Joint.LEFT_KNEE: axis}
     doubted = replace(state.parts[0], walks=(judged_walk(walk(), unsure),))
     page.bench.show_state(replace(state, parts=[doubted, *state.parts[1:]]))
-    assert [frame.verdict.text() for frame in page.bench.frames] == ["with care", "read"]
+    assert [frame.verdict.text() for frame in page.bench.frames] == ["Caution", "Good"]
 
 
 def test_the_next_change_is_told_by_keys_and_reads_as_it_prints(page: WalkingPage, bench: Bench) -> None:
@@ -434,9 +436,9 @@ def test_the_next_change_is_told_by_keys_and_reads_as_it_prints(page: WalkingPag
     ):
         for _ in range(times):
             QTest.keyClick(card.steppers[name], key)
-    assert card.written.text() == "Written as: Foot, front screw ½ turn out, +2° plantar"
+    assert card.written.text() == "Recorded as: Foot, anterior screw ½ turn out, +2° plantar"
     assert card.next_title.text() == "D: changed from C"
-    assert card.steppers["turns"].accessibleName() == "Turns: ½ out"
+    assert card.steppers["turns"].accessibleName() == "Screw turns: ½ out"
     card.parts.setCurrentIndex(list(ProsthesisPart).index(PYLON))
     QTest.keyClicks(card.words.line_edit, "clamp")
     assert bench.entry.parts[-1] == PartChange(PYLON, text="clamp")
