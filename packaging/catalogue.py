@@ -29,6 +29,7 @@ REFUSALS = {
     "BluetoothMissingError": 0,
     "OtherStreamError": 0,
     "FileRefusedError": 1,
+    "ExpectedError": 0,
     "LibraryError": 0,
     "LibraryBusyError": 0,
     "LibraryFaultError": 0,

@@ -30,8 +30,8 @@ from app.charts.marks import Deviation
 from app.charts.places import USUAL_EMPTY_PERCENT, Box, MarkPlace, ground_of, place_mark
 from app.charts.stride_chart import Axis, StrideChart, StrideCurve, toe_offs_in_order
 from app.theme.colours import PAPER
-from app.wording.translation import capitalised, tr
-from app.wording.verdicts import verdict_word
+from app.wording.translation import tr
+from app.wording.verdicts import verdict_alone
 from core.body import Side
 from core.gait.cycles import POINTS
 from core.samples import FloatArray
@@ -179,7 +179,7 @@ def _band(frame: Frame, band: Band) -> list[str]:
 
 
 def _withheld_word() -> str:
-    return capitalised(verdict_word(Verdict.WITHHELD))
+    return verdict_alone(Verdict.WITHHELD)
 
 
 def _hatches(frame: Frame) -> list[str]:

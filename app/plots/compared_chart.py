@@ -16,8 +16,8 @@ from app.widgets.card import Card
 from app.widgets.chip import Chip
 from app.widgets.icons import IconMark
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
-from app.widgets.verdict_chip import BRIEF
 from app.wording.translation import tr
+from app.wording.verdicts import verdict_alone
 from core.body import JointKind, Side
 from core.verdicts.model import Verdict
 
@@ -74,7 +74,7 @@ class ComparedFrame(Card):
     def show_verdict(self, verdict: Verdict) -> None:
         """Say beside the joint what may be read of all its curves."""
         self._verdict_mark.set_icon(VERDICT_ICONS[verdict])
-        self.verdict.setText(tr(BRIEF[verdict]))
+        self.verdict.setText(verdict_alone(verdict))
         for part in (self._verdict_mark, self.verdict):
             part.setVisible(verdict is not Verdict.NOT_MEASURED)
 

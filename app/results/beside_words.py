@@ -5,16 +5,17 @@ from dataclasses import replace
 
 from app.results.compared_table import head_cell, value_cell
 from app.results.compared_words import (
+    beyond_sentence,
     change_in_words,
+    difference_sentence,
     error_in_figures,
-    error_in_sentence,
     is_judged,
-    unit_behind,
+    largest_sentence,
     why_not_told,
 )
 from app.summary.answer import Answer, Outcome
 from app.summary.comparison import Compared, Comparison
-from app.summary.numbers_in_words import DAGGER, NOTHING, fixed, in_words, judged_in_words
+from app.summary.numbers_in_words import DAGGER, NOTHING, in_words, judged_in_words
 from app.summary.plain_text import shortened
 from app.theme.icons import Icon
 from app.widgets.fact_strip import KeyFigure
@@ -78,39 +79,19 @@ def answer_beside(found: Comparison) -> Answer:
     worth = [row for row in told if row.difference.is_worth_a_sentence]
     if worth:
         most = max(worth, key=lambda row: row.difference.ratio)
-        then = tr("Beyond measurement error (±{error}).").format(error=error_in_sentence(most))
-        return Answer(Outcome.DIFFERS, _sentence(most), then)
+        first = difference_sentence(most, tr("in this walk"), tr("in {part}").format(part=walk))
+        return Answer(Outcome.DIFFERS, first, beyond_sentence(most))
     if not told:
         return Answer(Outcome.OPEN, tr("Nothing can be compared with {walk}.").format(walk=walk), "")
+    most = max(told, key=lambda row: row.difference.ratio)
     if any(row.exceeds for row in told):
-        first = tr("Some changes from {walk} are beyond measurement error, none clearly.").format(walk=walk)
-        return Answer(Outcome.OPEN, first, tr("The table marks them."))
-    return Answer(
-        Outcome.NOTHING, tr("All judged changes from {walk} are within measurement error.").format(walk=walk), ""
-    )
-
-
-def _sentence(row: Compared) -> str:
-    """Subtracted before rounding; where rounded figures disagree with that, all have a decimal more."""
-    measure, change = row.measure, row.difference.difference
-    value, other = row.value.mean, row.other.mean
-    decimals = measure.decimals
-    if round(round(value, decimals) - round(other, decimals), decimals) != round(change, decimals):
-        decimals += 1
-    name = tr(measure.name)
-    name = name.rpartition(",")[0] if unit_behind(measure) and not measure.kind else name  # the unit is with the figure
-    pattern = (
-        tr("{measure}: {size} less than {walk}, {value} versus {other}.")
-        if change < 0
-        else tr("{measure}: {size} more than {walk}, {value} versus {other}.")
-    )
-    return pattern.format(
-        measure=name if measure.is_of_walk else f"{row.side.letter} {name}",
-        size=fixed(abs(change), decimals) + unit_behind(measure),
-        walk=row.against.name,
-        value=fixed(value, decimals),
-        other=fixed(other, decimals),
-    )
+        first = tr("Some changes from {walk} are beyond measurement error, none clearly.")
+        if most.difference.is_borrowed:
+            first = tr("Some changes from {walk} are beyond an error borrowed from another joint.")
+        then = f"{tr('The table marks them.')} {largest_sentence(most)}"
+        return Answer(Outcome.OPEN, first.format(walk=walk), then)
+    first = tr("All judged changes from {walk} are within measurement error.").format(walk=walk)
+    return Answer(Outcome.NOTHING, first, largest_sentence(most))
 
 
 def _in_short(row: Compared) -> str:

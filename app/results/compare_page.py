@@ -421,7 +421,7 @@ class ComparePage(Themed):
         self.error.setText(error_in_words([row.difference for row in told], is_borrowed=is_borrowed))
         worth = [sentence(row) for row in sorted(told, key=weight_in(found)) if row.difference.is_worth_a_sentence]
         latest = found.latest if self.kind is Contrast.VISITS else None
-        said = conclusion(worth, [row.difference for row in told], latest) if found.others else []
+        said = conclusion(worth, told, latest) if found.others else []
         if visits is not None and visits.without:
             without = tr("Not compared, no walk in this condition: {visits}.")
             said.append(without.format(visits=", ".join(visits.without)))
@@ -448,7 +448,7 @@ class ComparePage(Themed):
             error_in_words(differences, is_borrowed=any(joint.kind is JointKind.ANKLE for joint in part.joints))
         )
         worth = [row for row in sorted(told, key=side_weight) if row.difference.is_worth_a_sentence]
-        said = conclusion([side_sentence(row, first, second) for row in worth], differences)
+        said = conclusion([side_sentence(row, first, second) for row in worth], told)
         self._say(said, parts[:1], is_marked=bool(worth))
         title = f"{self._affected_words}: {first.letter} {MINUS} {second.letter}"
         self.card.show_sides(self.side_rows, first, second, title, self.conclusion.text())

@@ -5,12 +5,14 @@ from collections.abc import Callable, Sequence
 from app.summary.comparison import Compared, Comparison, Reservation, SideRow
 from app.summary.conditions import Part
 from app.summary.error_sources import sources_in_words
+from app.summary.measure_sentences import Told, change_sentence, legs_sentence, who_in_sentence
 from app.summary.measures import Measure
 from app.summary.numbers_in_words import DAGGER, NOTHING, fixed, signed
 from app.summary.walk_figures import reason_in_words
 from app.wording.dates import day_in_words
+from app.wording.measures import name_in_sentence
 from app.wording.recordings import name_in_words
-from app.wording.translation import capitalised, later, side_name, tr, within_sentence
+from app.wording.translation import later, side_name, tr
 from app.wording.verdicts import verdict_word
 from core.body import Joint, Side
 from core.verdicts.measurement_error import Difference, Judgement
@@ -44,9 +46,7 @@ def change_in_words(value: float, measure: Measure) -> str:
 
 
 def unit_behind(measure: Measure) -> str:
-    """As it stands behind a figure; a share of the stride is named before it, since "3 % more" means another thing."""
-    if measure.unit == "%":
-        return ""
+    """As it stands behind a figure."""
     return measure.unit if measure.unit == "°" else f"\N{NO-BREAK SPACE}{tr(measure.unit)}"
 
 
@@ -95,39 +95,40 @@ def side_weight(row: SideRow) -> float:
 
 def sentence(row: Compared) -> str:
     """A difference that lies beyond the measurement error."""
-    pattern = tr("{measure} {change} from {first} to {last}: beyond measurement error (±{error}).")
-    if not row.measure.is_of_walk:
-        pattern = tr("{side} {measure} {change} from {first} to {last}: beyond measurement error (±{error}).")
-    measure = tr(row.measure.name)
-    return pattern.format(
-        side=capitalised(side_name(row.side)),
-        measure=measure if row.measure.is_of_walk else within_sentence(measure),
-        change=change_in_words(row.difference.difference, row.measure),
-        first=row.against.letter,
-        last=row.part.letter,
-        error=error_in_sentence(row),
-    )
+    return f"{difference_sentence(row, _where(row.part), _where(row.against))} {beyond_sentence(row)}"
+
+
+def difference_sentence(row: Compared, now: str, before: str) -> str:
+    """What a measure is in a part, and by how much it differs; `now` and `before` say where, as "in B"."""
+    who = who_in_sentence(row.measure.column, row.side)
+    told = Told(now, row.value.mean), Told(before, row.other.mean)
+    return change_sentence(row.measure.column, who, row.difference.difference, *told)
+
+
+def _where(part: Part) -> str:
+    if part.letter.isdigit():
+        return tr("at visit {visit}").format(visit=part.letter)
+    return tr("in {part}").format(part=part.letter)
+
+
+def beyond_sentence(row: Compared | SideRow) -> str:
+    """That a difference is beyond its error, which is named."""
+    return tr("Beyond measurement error (±{error}).").format(error=error_in_sentence(row))
 
 
 def side_sentence(row: SideRow, first: Side, second: Side) -> str:
     """A difference between the legs that lies beyond the measurement error."""
-    pattern = tr("{measure} {change}, {first} versus {second}: beyond measurement error (±{error}).")
-    return pattern.format(
-        measure=tr(row.measure.name),
-        change=change_in_words(row.difference.difference, row.measure),
-        first=first.letter,
-        second=second.letter,
-        error=error_in_sentence(row),
-    )
+    legs, values = (side_name(first), side_name(second)), (row.first.mean, row.second.mean)
+    return f"{legs_sentence(row.measure.column, row.difference, legs, values)} {beyond_sentence(row)}"
 
 
-def conclusion(worth: Sequence[str], told: Sequence[Difference], latest: Part | None = None) -> list[str]:
-    """The sentences that are worth it; without one, whether any difference exceeds its error.
+def conclusion(worth: Sequence[str], told: Sequence[Compared | SideRow], latest: Part | None = None) -> list[str]:
+    """The sentences that are worth it; without one, whether any difference exceeds its error, and the largest.
 
     Parameters
     ----------
     told
-        The differences that the table shows; of no others anything is said.
+        The rows that the table shows; of no others anything is reported.
     latest
         The visit that all of them lead to; None: they are those of any parts.
     """
@@ -135,16 +136,34 @@ def conclusion(worth: Sequence[str], told: Sequence[Difference], latest: Part | 
         return [*worth[:MOST_SAID], tr("The table shows all of them.")]
     if worth:
         return list(worth)
-    if any(found.exceeds for found in told):
-        none = tr("Some differences are beyond measurement error, none clearly. The table marks them.")
-        of_visit = tr("Some changes to visit {visit} are beyond measurement error, none clearly. The table marks them.")
-    elif any(found.error > 0 for found in told):
-        none = tr("All judged differences are within measurement error.")
-        of_visit = tr("All judged changes to visit {visit} are within measurement error.")
-    else:
+    judged = [row for row in told if is_judged(row)]
+    most = max(judged, key=lambda row: row.difference.ratio, default=None)
+    if most is None:
         none = tr("The differences could not be judged.")
         of_visit = tr("The changes to visit {visit} could not be judged.")
-    return [none if latest is None else of_visit.format(visit=latest.letter)]
+    elif not any(row.exceeds for row in judged):
+        none = tr("All judged differences are within measurement error.")
+        of_visit = tr("All judged changes to visit {visit} are within measurement error.")
+    elif most.difference.is_borrowed:
+        none = tr("Some differences are beyond an error borrowed from another joint. The table marks them.")
+        of_visit = tr(
+            "Some changes to visit {visit} are beyond an error borrowed from another joint. The table marks them."
+        )
+    else:
+        none = tr("Some differences are beyond measurement error, none clearly. The table marks them.")
+        of_visit = tr("Some changes to visit {visit} are beyond measurement error, none clearly. The table marks them.")
+    said = none if latest is None else of_visit.format(visit=latest.letter)
+    return [said] if most is None else [said, largest_sentence(most)]
+
+
+def largest_sentence(row: Compared | SideRow) -> str:
+    """The difference of most errors with its error: "Largest: left knee range of motion +4.7° (±9.2°)."."""
+    measure = name_in_sentence(row.measure.column)
+    if isinstance(row, Compared) and not row.measure.is_of_walk:
+        measure = tr("{side} {measure}").format(side=side_name(row.side), measure=measure)
+    change = signed(row.difference.difference, row.measure.decimals) + unit_behind(row.measure)
+    said = tr("Largest: {measure} {change} (±{error}).")
+    return said.format(measure=measure, change=change, error=error_in_sentence(row))
 
 
 def error_in_words(told: Sequence[Difference], *, is_borrowed: bool) -> str:

@@ -24,7 +24,7 @@ from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed
 from app.widgets.toggle import Toggle
 from app.wording.translation import name_of, tr
-from app.wording.verdicts import verdict_word
+from app.wording.verdicts import verdict_alone, verdict_word
 from core.body import Joint, Side, Site
 from core.findings import Finding
 from core.hip.results import HipAngle
@@ -230,7 +230,7 @@ class LineCard(Themed):
         self._look, self._line = look, line
         is_grave = line.is_grave
         tone, quiet = ("caution_ink", "caution_ink") if is_grave else ("ink", "ink2")
-        title = f"{line.where}: {verdict_word(line.verdict)}" if line.where else verdict_word(line.verdict)
+        title = f"{line.where}: {verdict_word(line.verdict)}" if line.where else verdict_alone(line.verdict)
         self.setAccessibleName(" ".join(filter(None, [f"{title}.", line.why, line.to_do])))
         self.repeat: Button | None = None
         words = QVBoxLayout()
@@ -325,4 +325,4 @@ class JointsFigure(BodyFigure):
             side = Qt.AlignmentFlag.AlignLeft if is_right else Qt.AlignmentFlag.AlignRight
             # beside the hips the letters of both legs stand
             words = QRectF(0, box.bottom() + px(2) if joint.is_hip else box.top() - px(18), self.width(), px(16))
-            painter.drawText(words, side | Qt.AlignmentFlag.AlignVCenter, verdict_word(verdict))
+            painter.drawText(words, side | Qt.AlignmentFlag.AlignVCenter, verdict_alone(verdict))

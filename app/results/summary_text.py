@@ -46,7 +46,7 @@ def _of_row(row: Figure, goals: Sequence[Goal]) -> KeyFigure:
     value = row.both if row.both is not None else fmean(told.values()) if told else math.nan
     is_known = math.isfinite(value)
     withheld = row.unknown_both or next(iter(row.unknown.values()), "")
-    note = ""
+    note = spoken = ""
     if not is_known:
         note = tr(withheld) if withheld else tr("not measured")
     elif row.with_care:
@@ -56,12 +56,13 @@ def _of_row(row: Figure, goals: Sequence[Goal]) -> KeyFigure:
     elif row.band is not None:
         low, high = (fixed(edge, row.decimals) for edge in row.band)
         note = tr("ref. {low} to {high}").format(low=low, high=high)
+        spoken = tr("reference {low} to {high}").format(low=low, high=high)
     if is_known and goals:  # in place of the legs' values or the band, but not of a doubt
         doubt = [note] if row.with_care else []
-        note = ", ".join([*doubt, *map(goal_mark, goals)])
+        note, spoken = ", ".join([*doubt, *map(goal_mark, goals)]), ""
     shown = fixed(value, row.decimals) if is_known else NOTHING
     unit = row.unit if is_known else ""
-    words = tr("{name}: {value}.").format(name=row.name, value=" ".join(filter(None, [shown, unit, note])))
+    words = tr("{name}: {value}.").format(name=row.name, value=" ".join(filter(None, [shown, unit, spoken or note])))
     return KeyFigure(row.column, row.name, shown, unit, note, words)
 
 

@@ -32,10 +32,10 @@ from app.storage.stored import (
     WhatGoes,
 )
 from app.storage.unit_of_work import UnitOfWork
-from app.wording.translation import tr
+from app.wording.translation import filled, tr
 from core.goals import brought_together, goals_text
 from core.samples import Patient
-from devices.files.session_toml import PATIENT
+from devices.files.session_toml import PATIENT, ExpectedError
 
 AT_IT = datetime.timedelta(hours=12)  # a working day: who opened a patient within it may have it open still
 
@@ -295,8 +295,7 @@ def _checked(told: Patient) -> Patient:
         try:
             if value is not None:
                 check(value)
-        except ValueError as error:
-            raise LibraryError(
-                tr("{field} must be {wanted}").format(field=key, wanted=error), "Correct the value"
-            ) from None
+        except ExpectedError as error:
+            what = tr("{field} must be {required}").format(field=key, required=filled(error.what, error.values))
+            raise LibraryError(what, "Correct the value") from None
     return told

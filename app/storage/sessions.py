@@ -34,10 +34,10 @@ from app.storage.stored import (
     StoredSession,
 )
 from app.storage.unit_of_work import UnitOfWork
-from app.wording.translation import tr
+from app.wording.translation import filled, tr
 from core.body import LEG_JOINTS, Joint, Site
 from core.samples import Session
-from devices.files.session_toml import SIGN, ZERO
+from devices.files.session_toml import SIGN, ZERO, ExpectedError
 
 NO_LIMITS = Limits()
 SEARCHED = (SessionRow.notes, SessionRow.operator, SessionRow.surface, SessionRow.comment, PatientRow.code)
@@ -269,8 +269,9 @@ def _refuse_wrong_joints(told: Session) -> None:
             ZERO[joint][1](math.degrees(zero_rad))
         for joint, sign in told.turned_sign.items():
             SIGN[joint][1](sign)
-    except ValueError as error:
-        raise LibraryError(tr("The joint value must be {wanted}").format(wanted=error), "Correct the value") from None
+    except ExpectedError as error:
+        what = tr("The joint value must be {required}").format(required=filled(error.what, error.values))
+        raise LibraryError(what, "Correct the value") from None
 
 
 def existing_session(session: OrmSession, session_id: UUID) -> SessionRow:

@@ -11,10 +11,11 @@ from app.storage.clinic.server_state import refuse_closed
 from app.storage.database.engine import Database
 from app.storage.database.models import OperatorRow, PatientRow, RecordingRow, SessionRow
 from app.storage.stored import BEGINNING, Checkpoint, LibraryError, NotAllowedError, Operator, Role
-from app.wording.translation import tr
+from app.wording.translation import later, tr
 
 END = "end_of_audit"  # by this name a session keeps how far its entries go
 ADDED = "entries_added"  # and by this one how many it added
+ROLES = {Role.VIEWER: later("viewer"), Role.CLINICIAN: later("clinician"), Role.ADMINISTRATOR: later("administrator")}
 DEMO = "DEMO"  # how codes of patients begin that simulated recordings may be kept for
 
 
@@ -78,7 +79,7 @@ class UnitOfWork:
             row = session.get(OperatorRow, code)
             if row is None or not row.is_active or not row.role.includes(needed):
                 raise NotAllowedError(
-                    tr("This requires the role {role}").format(role=needed), "Ask someone with this role"
+                    tr("This requires the role {role}").format(role=tr(ROLES[needed])), "Ask someone with this role"
                 )
             yield session
             session.flush()

@@ -1,16 +1,25 @@
-"""A measure's name, unit and decimals inside a sentence, and how it differs between the legs."""
+"""A measure's unit and decimals inside a sentence, and how it differs between the legs."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
 
 from app.summary.facts import Facts, role
-from app.summary.numbers_in_words import fixed
-from app.summary.panels import peak_name
-from app.wording.measures import IN_SENTENCE, decimals, short_unit, unit_symbol
-from app.wording.timed_tests import name_of_test
-from app.wording.translation import capitalised, tr
+from app.summary.numbers_in_words import fixed, signed
+from app.wording.measures import decimals, name_in_sentence, short_unit, unit_symbol
+from app.wording.translation import capitalised, later, name_of, side_name, tr
 from core import parameters
+from core.body import Joint, JointKind, Side
 from core.parameters import Unit, unit_of
 from core.timed.measures import PROTOCOLS
 from core.verdicts.measurement_error import Difference
 from core.verdicts.quantities import joint_of as joint_of_column
+
+
+class Told(NamedTuple):
+    """Where a value was measured, as "in B" or "on 1 July", and the value."""
+
+    where: str
+    value: float
 
 
 def unit_and_decimals(column: str) -> tuple[str, int]:
@@ -23,20 +32,116 @@ def unit_and_decimals(column: str) -> tuple[str, int]:
     return f"{space}{unit_symbol(unit)}", unit.decimals
 
 
-def measure_in_words(column: str) -> str:
-    """A column's name inside a sentence."""
-    if column in PROTOCOLS:
-        return name_of_test(PROTOCOLS[column])
-    if column in IN_SENTENCE:
-        return tr(IN_SENTENCE[column])
-    kind = tr("knee") if column.startswith("knee") else tr("ankle")
-    return f"{kind} {peak_name(column)}"
+CLAUSES = {
+    parameters.KNEE: later("{who} flexes {value} from stance to swing"),
+    "knee_while_loading_deg": later("{who} flexes {value} in loading response"),
+    "knee_straightening_deg": later("{who} extends {value} in mid-stance"),
+    "knee_swing_peak_deg": later("{who} reaches {value} flexion in swing"),
+    parameters.KNEE_RANGE: later("{who} has {value} range of motion"),
+    parameters.PUSH_OFF: later("{who} plantarflexes {value} at push-off"),
+    "ankle_rocker_deg": later("{who} dorsiflexes {value} in stance"),
+    "ankle_heel_rocker_deg": later("{who} plantarflexes {value} in loading response"),
+    "ankle_toes_lifted_deg": later("{who} dorsiflexes {value} in swing"),
+    parameters.ANKLE_RANGE: later("{who} has {value} range of motion"),
+    parameters.STANCE: later("{who}: stance takes {value}"),
+}
+OTHER_OF_LEG, OTHER = later("{who}: {measure} is {value}"), later("{measure} is {value}")
+
+
+def change_sentence(column: str, who: str, difference: float, now: Told, before: Told) -> str:
+    """What a measure is now, and by how much it is more or less than before: "Left knee flexes 54° in B, 5° more ..."
+
+    Parameters
+    ----------
+    who
+        The joint, or the leg of a measure of no joint; empty of one of the whole walk.
+    difference
+        Subtracted before rounding; where rounded figures disagree with that, all have a decimal more.
+    now, before
+        Where it was measured, as "in B" or "on 1 July", and its value.
+    """
+    values = now.value, before.value, abs(difference)
+    value, other, size = _figures(column, values, _decimals(column, now.value, before.value, difference))
+    pattern = CLAUSES.get(column, OTHER_OF_LEG if who else OTHER)
+    clause = tr(pattern).format(who=who, measure=name_in_sentence(column), value=value)
+    said = (
+        tr("{clause} {now}, {size} less than {before} ({other}).")
+        if difference < 0
+        else tr("{clause} {now}, {size} more than {before} ({other}).")
+    )
+    return capitalised(said.format(clause=clause, now=now.where, size=size, before=before.where, other=other))
+
+
+def similar_sentence(column: str, who: str, difference: float, now: Told, before: Told) -> str:
+    """The same where the difference may be error: both values."""
+    decimals = _decimals(column, now.value, before.value, difference)
+    value, other = _figures(column, (now.value, before.value), decimals)
+    said = tr("{who}: {measure} is similar {before} and {now}, {other} and {value}.")
+    if not who:
+        said = tr("{measure} is similar {before} and {now}, {other} and {value}.")
+    measure = name_in_sentence(column)
+    text = said.format(who=who, measure=measure, before=before.where, now=now.where, other=other, value=value)
+    return capitalised(text)
+
+
+def likely_sentence(column: str, found: Difference, now: Told, before: Told) -> str:
+    """What a difference within its error may be."""
+    decimals = _decimals(column, now.value, before.value, found.difference)
+    unit = _unit(column)
+    edges = found.difference, found.difference - found.error, found.difference + found.error
+    size, low, high = (signed(edge, decimals) + unit for edge in edges)
+    said = tr("The change of {size} may be measurement error: likely between {low} and {high}.")
+    return said.format(size=size, low=low, high=high)
+
+
+def who_in_sentence(column: str, side: Side) -> str:
+    """The joint that a measure is of, else the leg; empty where it is of both."""
+    if column in parameters.OF_WALK:
+        return ""
+    joint = joint_of_column(column, side)
+    return capitalised(name_of(joint) if joint is not None else side_name(side))
+
+
+def who_of_role(facts: Facts, side: Side, column: str) -> str:
+    """The joint or leg that a measure is of, with what is known of the side."""
+    joint = joint_of_column(column, side)
+    return role(facts, side) if joint is None else joint_of_role(role(facts, side), joint)
+
+
+def joint_of_role(leg: str, joint: Joint) -> str:
+    """A joint of the leg that is named so: "right (prosthetic) knee"."""
+    kind = {JointKind.HIP: tr("hip"), JointKind.KNEE: tr("knee"), JointKind.ANKLE: tr("ankle")}[joint.kind]
+    return tr("{side} {joint}").format(side=leg, joint=kind)
+
+
+def _decimals(column: str, value: float, other: float, difference: float) -> int:
+    _, decimals = unit_and_decimals(column)
+    disagree = round(round(value, decimals) - round(other, decimals), decimals) != round(difference, decimals)
+    return decimals + disagree
+
+
+def _unit(column: str) -> str:
+    """As it stands behind a number; a share is that of the gait cycle, since "2 % more" means another thing."""
+    is_share = unit_of(column) is Unit.PERCENT
+    return f"\N{NO-BREAK SPACE}{tr('% of the gait cycle')}" if is_share else unit_and_decimals(column)[0]
+
+
+def _figures(column: str, values: Sequence[float], decimals: int) -> list[str]:
+    return [fixed(value, decimals) + _unit(column) for value in values]
 
 
 def leg_beside_leg(facts: Facts, column: str, found: Difference) -> str:
-    """How one leg's figure differs from the other's, in the words of who would say it."""
-    first, second = facts.first_and_second
+    """How one leg's figure differs from the other's."""
+    sides = facts.first_and_second
+    first, second = (role(facts, side) for side in sides)
+    value, other = (facts.value(side, column).mean for side in sides)
+    return legs_sentence(column, found, (first, second), (value, other))
+
+
+def legs_sentence(column: str, found: Difference, legs: tuple[str, str], values: tuple[float, float]) -> str:
+    """How the first leg's figure differs from the second's, which `legs` names."""
     unit, decimals = unit_and_decimals(column)
+    first, second = legs
     is_less = found.difference < 0
     match column:
         case parameters.KNEE_RANGE | parameters.ANKLE_RANGE:
@@ -67,6 +172,18 @@ def leg_beside_leg(facts: Facts, column: str, found: Difference) -> str:
                 if is_less
                 else tr("The {joint} extends {size} more in mid-stance than the {second}: {value} against {other}.")
             )
+        case parameters.PUSH_OFF:
+            pattern = (
+                tr("The {joint} plantarflexes {size} less at push-off than the {second}: {value} against {other}.")
+                if is_less
+                else tr("The {joint} plantarflexes {size} more at push-off than the {second}: {value} against {other}.")
+            )
+        case "ankle_rocker_deg":
+            pattern = (
+                tr("The {joint} dorsiflexes {size} less in stance than the {second}: {value} against {other}.")
+                if is_less
+                else tr("The {joint} dorsiflexes {size} more in stance than the {second}: {value} against {other}.")
+            )
         case "stance_percent":
             pattern = (
                 tr(
@@ -91,15 +208,13 @@ def leg_beside_leg(facts: Facts, column: str, found: Difference) -> str:
                 if is_less
                 else tr("{measure} is {size} higher on the {first} than on the {second}: {value} and {other}.")
             )
-    joint = joint_of_column(column, first)
+    joint = joint_of_column(column, Side.LEFT)
     return pattern.format(
-        measure=capitalised(measure_in_words(column)),
-        joint=tr("{side} {joint}").format(side=role(facts, first), joint=tr("knee") if joint.is_knee else tr("ankle"))
-        if joint
-        else "",
-        first=role(facts, first),
-        second=role(facts, second),
+        measure=capitalised(name_in_sentence(column)),
+        joint="" if joint is None else joint_of_role(first, joint),
+        first=first,
+        second=second,
         size=fixed(abs(found.difference), decimals) + unit,
-        value=fixed(facts.value(first, column).mean, decimals) + unit,
-        other=fixed(facts.value(second, column).mean, decimals) + unit,
+        value=fixed(values[0], decimals) + unit,
+        other=fixed(values[1], decimals) + unit,
     )

@@ -50,4 +50,4 @@ class Measure:
 
 
 MEASURES = tuple(Measure(column, WITH_UNIT.get(column) or NAMES[column]) for column in COMPARED)
-FITTED = tuple(Measure(column, NAMES[column]) for column in ALIGNED)
+FITTED = tuple(Measure(column, WITH_UNIT.get(column) or NAMES[column]) for column in ALIGNED)

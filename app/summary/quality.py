@@ -214,8 +214,8 @@ def _axes(facts: Facts) -> str:
 def _zero(facts: Facts) -> str:
     kinds = {found.zero for found in facts.calibrated.values()}
     said = {
-        ZeroKind.STANDING: tr("standing"),
-        ZeroKind.GONIOMETER: tr("standing, with goniometer"),
+        ZeroKind.STANDING: tr("posture"),
+        ZeroKind.GONIOMETER: tr("posture, with goniometer value"),
         ZeroKind.NONE: tr("none: no absolute angles"),
     }
     if not kinds:
@@ -226,7 +226,7 @@ def _zero(facts: Facts) -> str:
         joints = [name_of(joint) for joint, found in facts.calibrated.items() if found.zero is ZeroKind.NONE]
         return tr("none for the {joints}").format(joints=joined(joints))
     joints = [name_of(joint) for joint, found in facts.calibrated.items() if found.zero is ZeroKind.GONIOMETER]
-    return tr("standing; goniometer for the {joints}").format(joints=joined(joints))
+    return tr("posture; goniometer value for the {joints}").format(joints=joined(joints))
 
 
 def slipped_straps(facts: Facts) -> list[Site]:

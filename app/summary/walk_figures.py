@@ -66,7 +66,7 @@ HIP_ROWS = (
     ("range_deg", later("Range of motion"), None),
     ("flexion_peak_deg", later("Peak flexion"), None),
     ("extension_peak_deg", later("Peak extension"), None),
-    ("abduction_range_deg", later("Abduction, range"), None),
+    ("abduction_range_deg", later("Abduction range of motion"), None),
     ("abduction_peak_deg", later("Peak abduction"), None),
     ("adduction_peak_deg", later("Peak adduction"), None),
 )

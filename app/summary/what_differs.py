@@ -5,10 +5,11 @@ from dataclasses import dataclass
 
 from app.summary.comparison import compare_legs
 from app.summary.facts import Facts
-from app.summary.measure_sentences import measure_in_words, unit_and_decimals
+from app.summary.measure_sentences import unit_and_decimals
 from app.summary.numbers_in_words import Band
 from app.summary.walk_figures import NO_HEIGHT, NO_ZERO, doubt_in
-from app.wording.translation import capitalised, tr
+from app.wording.measures import measure_name
+from app.wording.translation import tr
 from app.wording.verdicts import verdict_word
 from core.body import Side
 from core.gait.spatiotemporal import MeanAndSd
@@ -61,7 +62,7 @@ def _row(facts: Facts, column: str) -> LegsRow:
     verdicts = {side: _verdict(facts, side, column) for side in Side}
     found = {side: facts.value(side, column) for side in Side}
     unknown = {side: why for side in Side if (why := _unknown(facts, side, column, verdicts[side]))}
-    name = capitalised(measure_in_words(column))
+    name = measure_name(column)
     return LegsRow(
         column=column,
         name=name,

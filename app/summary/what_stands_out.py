@@ -8,12 +8,19 @@ from enum import IntEnum
 from app.summary import quality
 from app.summary.comparison import Compared, Comparison, Contrast, compare_legs
 from app.summary.facts import KINDS, Facts, joint_of, role
-from app.summary.measure_sentences import leg_beside_leg, measure_in_words, unit_and_decimals
+from app.summary.measure_sentences import (
+    Told,
+    change_sentence,
+    leg_beside_leg,
+    unit_and_decimals,
+    who_of_role,
+)
 from app.summary.numbers_in_words import band_in_figures, fixed, signed
 from app.summary.panels import HEIGHTS, peak_name
 from app.summary.plain_text import CONDITION_LENGTH, typed
 from app.summary.trend_lines import TrendLine, trend_columns, trend_lines, walked_visits
 from app.wording.dates import date
+from app.wording.measures import name_in_sentence
 from app.wording.translation import capitalised, later, name_of, tr
 from core.body import Joint, Side
 from core.parameters import (
@@ -144,6 +151,7 @@ def nothing_found(facts: Facts, comparison: Comparison | None) -> list[str]:
             )
         )
     elif judged and (has_angles or not any(map(facts.is_measured, Joint))):
+        said += _similar_legs(facts)
         said.append(tr("All judged differences are within measurement error."))
     elif judged:
         said.append(
@@ -157,6 +165,20 @@ def nothing_found(facts: Facts, comparison: Comparison | None) -> list[str]:
             )
         )
     return said or [tr("Nothing could be judged.")]
+
+
+def _similar_legs(facts: Facts) -> list[str]:
+    """The values of the legs where they differ by most errors, none of them beyond one."""
+    if len(facts.gait) < len(Side):
+        return []
+    found = {column: compare_legs(facts.part, column, facts.first_and_second) for column in BETWEEN_LEGS}
+    column = max(found, key=lambda one: (found[one].ratio > 0, not found[one].is_borrowed, found[one].ratio))
+    if not found[column].ratio:
+        return []
+    unit, decimals = unit_and_decimals(column)
+    left, right = (fixed(facts.value(side, column).mean, decimals) + unit for side in Side)
+    said = tr("Left and right are similar: {measure} {left} and {right}.")
+    return [said.format(measure=name_in_sentence(column), left=left, right=right)]
 
 
 def judged_differences(facts: Facts, comparison: Comparison | None) -> dict[str, Difference]:
@@ -208,18 +230,10 @@ def _since_visits(facts: Facts) -> Iterator[Candidate]:
         ):
             if found is None or not found.is_worth_a_sentence:
                 continue
-            unit, decimals = unit_and_decimals(line.column)
             values = {one.visit: one.value for one in line.values}
-            measure = measure_in_words(line.column)
-            of_leg = measure if line.side is None else f"{role(facts, line.side)}, {measure}"
-            said = tr("{what}: {value}, on {day} {other}; difference {difference}, error {error}.").format(
-                what=capitalised(of_leg),
-                value=fixed(line.values[-1].value, decimals) + unit,
-                day=date(walked[at].day),
-                other=fixed(values[at], decimals) + unit,
-                difference=signed(found.difference, decimals) + unit,
-                error=fixed(found.error, decimals) + unit,
-            )
+            day = tr("on {day}").format(day=date(walked[at].day))
+            now, before = Told(tr("in this visit"), line.values[-1].value), Told(day, values[at])
+            said = _with_error(facts, line.column, line.side, found, now, before)
             topic = _topic(line.side, line.column, found.difference > 0)
             yield Candidate(_rank(line.column), found.ratio, (topic,), said, column=line.column, since=since)
 
@@ -283,7 +297,7 @@ def _beyond_band(facts: Facts, bands: tuple[str, str]) -> Iterator[Candidate]:
                     else tr("{measure}, {side}: {value}; {group} {band}: more than 2\u00a0SD above.")
                 )
                 said = pattern.format(
-                    measure=capitalised(measure_in_words(column)),
+                    measure=capitalised(name_in_sentence(column)),
                     side=role(facts, side),
                     group=tr(bands[1]),
                     value=fixed(value.mean, decimals) + unit,
@@ -342,24 +356,22 @@ def _speed_error(kind: ComparisonKind, mean_m_s: float) -> float:
 
 def _changed(facts: Facts, comparison: Comparison | None, row: Compared) -> str:
     """One figure of one part beside that of the first."""
-    unit, decimals = unit_and_decimals(row.measure.column)
     is_visits = comparison is not None and comparison.kind is Contrast.VISITS
-    pattern = (
-        tr("{what}: {value}, earlier visit {other}; difference {difference}, error {error}.")
-        if is_visits
-        else tr("{what}: {this} {value}, {first} {other}; difference {difference}, error {error}.")
-    )
-    measure = measure_in_words(row.measure.column)
-    of_leg = tr("{side}, {measure}").format(side=role(facts, row.side), measure=measure)
-    return pattern.format(
-        what=capitalised(measure if row.measure.is_of_walk else of_leg),
-        value=fixed(row.value.mean, decimals) + unit,
-        other=fixed(row.other.mean, decimals) + unit,
-        this=typed(row.part.name, CONDITION_LENGTH),
-        first=typed(row.against.name, CONDITION_LENGTH),
-        difference=signed(row.difference.difference, decimals) + unit,
-        error=fixed(row.difference.error, decimals) + unit,
-    )
+    names = (typed(part.name, CONDITION_LENGTH) for part in (row.part, row.against))
+    now, before = (tr("in {part}").format(part=name) for name in names)
+    if is_visits:
+        now, before = tr("in this visit"), tr("in the earlier visit")
+    side = None if row.measure.is_of_walk else row.side
+    told = Told(now, row.value.mean), Told(before, row.other.mean)
+    return _with_error(facts, row.measure.column, side, row.difference, *told)
+
+
+def _with_error(facts: Facts, column: str, side: Side | None, found: Difference, now: Told, before: Told) -> str:
+    """A change, and what it exceeds."""
+    who = "" if side is None else who_of_role(facts, side, column)
+    unit, decimals = unit_and_decimals(column)
+    said = change_sentence(column, who, found.difference, now, before)
+    return f"{said} {tr('Measurement error: {error}.').format(error=fixed(found.error, decimals) + unit)}"
 
 
 def _peaks(facts: Facts) -> Iterable[tuple[Side, str]]:

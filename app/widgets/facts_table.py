@@ -130,9 +130,9 @@ def _lag(found: JointCalibration | HipIdentification) -> Fact:
 def _zero(found: JointCalibration) -> Fact:
     match found.zero:
         case ZeroKind.STANDING:
-            return Fact(tr("standing"))
+            return Fact(tr("posture"))
         case ZeroKind.GONIOMETER:
-            return Fact(tr("{angle} standing").format(angle=_degrees(found.offset_rad)))
+            return Fact(tr("goniometer, {angle}").format(angle=_degrees(found.offset_rad)))
         case _:
             return Fact(tr("none"), needs_look=True)
 
@@ -180,7 +180,7 @@ HIP_QUESTIONS: tuple[tuple[str, str, Callable[[HipIdentification], Fact]], ...] 
     (later("Centre to sensors"), later("Distance from the hip centre to the pelvis and thigh sensors."), _centre),
     (later("Hip spacing"), later("How far the left hip centre lies to the left of the right one."), _apart),
     (later("Clock lag"), later("Time added to the clock of the distal sensor."), _lag),
-    (later("Standing reference"), later("Posture taken as zero."), lambda _: Fact(tr("standing"))),
+    (later("Standing reference"), later("Posture taken as zero."), lambda _: Fact(tr("posture"))),
 )
 QUESTIONS: tuple[tuple[str, str, Callable[[JointCalibration], Fact]], ...] = (
     (later("Axis from"), later("Recording used to determine the joint axis."), _axis_from),

@@ -10,8 +10,7 @@ from app.widgets.chip import CHIP, LINE, leg_name, paint_chip
 from app.widgets.painted_text import LEFT, PaintedText
 from app.widgets.text import SEMIBOLD
 from app.widgets.themed import Themed
-from app.wording.translation import later, tr
-from app.wording.verdicts import verdict_word
+from app.wording.verdicts import verdict_alone, verdict_word
 from core.body import Side
 from core.verdicts.model import Verdict
 
@@ -19,12 +18,6 @@ HEIGHT = 30
 PADDING = 6
 ICON = 16
 GAP = 6
-BRIEF = {
-    Verdict.READ: later("good"),
-    Verdict.CARE: later("caution"),
-    Verdict.WITHHELD: later("not reported"),
-    Verdict.NOT_MEASURED: later("none"),
-}
 
 
 class VerdictChip(Themed):
@@ -93,7 +86,7 @@ class VerdictChip(Themed):
 
     @property
     def _word(self) -> str:
-        return tr(BRIEF[self._verdict]) if self._is_brief else verdict_word(self._verdict)
+        return verdict_alone(self._verdict)
 
     def _icon_left(self) -> int:
         px = self._look.theme.px

@@ -9,8 +9,7 @@ from app.theme.theme import CONTROL_RADIUS
 from app.widgets.chip import Chip
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed
-from app.wording.translation import capitalised
-from app.wording.verdicts import verdict_word
+from app.wording.verdicts import verdict_alone
 from core.body import Side
 from core.verdicts.model import Verdict
 
@@ -27,7 +26,7 @@ class WithheldPanel(Themed):
         super().__init__()
         self._look = look
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Preferred)
-        self._word = Text(look, capitalised(verdict_word(Verdict.WITHHELD)), size=12, weight=SEMIBOLD)
+        self._word = Text(look, verdict_alone(Verdict.WITHHELD), size=12, weight=SEMIBOLD)
         self._why = Text(look, size=12, wraps=True)
         self._row = QHBoxLayout(self)
         self._row.addWidget(Chip(look, side), 0, Qt.AlignmentFlag.AlignVCenter)

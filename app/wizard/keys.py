@@ -75,6 +75,7 @@ _PLAIN: dict[int, KeyAction] = {
     _Key.Key_Space: KeyAction.RUN,
     _Key.Key_K: KeyAction.KEEP,
     _Key.Key_D: KeyAction.DISCARD,
+    _Key.Key_X: KeyAction.DISCARD,
     _Key.Key_L: KeyAction.LEFT_LEG,
     _Key.Key_R: KeyAction.RIGHT_LEG,
     _Key.Key_I: KeyAction.IDENTIFY,

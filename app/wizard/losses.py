@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 
-from app.wording.translation import capitalised, name_of, tr
+from app.wording.translation import capitalised, name_of, tr, tr_n
 from core.body import Joint, Segment, Side, Site
 
 TOLD_AFTER_S = 2.0
@@ -71,28 +71,33 @@ class Losses:
             )
             return what, f"{tr('Recording continues.')} {then}" if is_recording else then
         names = ", ".join(name_of(site) for site in self.silent)
-        is_one = len(self._silent_s) == 1
+        count = len(self._silent_s)
         if self.silent == (Site.PELVIS,):
             what = tr("Pelvis: no signal for {seconds} s.").format(seconds=longest_s)
             goes_on = tr(
                 "Recording continues, including knees and ankles. Hip angles are missing until the signal is back."
             )
-            return what, goes_on if is_recording else tr("Switch it off and on, or continue without hip angles.")
-        have = tr("{sensor}: no signal for {seconds} s.")
-        said = tr("{sensor}: no signal for {seconds} s.") if is_one else have
+            return what, goes_on if is_recording else tr(
+                "Switch the pelvis sensor off and on, or continue without hip angles."
+            )
+        what = tr("{sensor}: no signal for {seconds} s.").format(sensor=names, seconds=longest_s)
         lost = [name_of(joint) for joint in joints if {joint.proximal, joint.distal} & self._silent_s.keys()]
         phases = {Side.LEFT: tr("left gait phases"), Side.RIGHT: tr("right gait phases")}
         feet = [phases[site.leg_side] for site in self.silent if site.segment is Segment.FOOT]
         if is_recording:
             missing = ", ".join([*lost, *feet])
-            they = tr("Recording continues. Missing until the signal is back: {missing}.")
-            it = tr("Recording continues. Missing until the signal is back: {missing}.")
-            then = (it if is_one else they).format(missing=missing)
+            then = tr("Recording continues. Missing until the signal is back: {missing}.").format(missing=missing)
         elif lost:
-            they = tr("Switch them off and on, or continue without these angles: {joints}.")
-            it = tr("Switch it off and on, or continue without these angles: {joints}.")
-            then = (it if is_one else they).format(joints=", ".join(lost))
+            said = tr_n(
+                "Switch the sensor off and on, or continue without these angles: {joints}.",
+                "Switch the sensors off and on, or continue without these angles: {joints}.",
+                count,
+            )
+            then = said.format(joints=", ".join(lost))
         else:
-            they = tr("Switch them off and on, or continue without them.")
-            then = tr("Switch it off and on, or continue without it.") if is_one else they
-        return capitalised(said.format(sensor=names, seconds=longest_s)), then
+            then = tr_n(
+                "Switch the sensor off and on, or continue without it.",
+                "Switch the sensors off and on, or continue without them.",
+                count,
+            )
+        return capitalised(what), then

@@ -127,12 +127,13 @@ class MemoryFetches(QObject):
         if self.is_running:
             return "", ""
         if self._is_broken:
-            return tr("Fetching stopped early."), tr("Fetch it again. See the log for details.")
+            return tr("Fetching stopped early."), tr("Fetch the recording again. See the log for details.")
         for sensor, problem in self._failed.items():
             if isinstance(problem, SourceRefusedError):
                 return f"{filled(problem.what, problem.values)}.", f"{filled(problem.remedy, problem.values)}."
             what = tr("{sensor} is out of range.").format(sensor=sensor)
-            return what, tr("Its recording is still in the sensor. Bring it closer, then fetch it again.")
+            then = tr("The recording is still in the sensor. Bring {sensor} closer, then fetch the recording again.")
+            return what, then.format(sensor=sensor)
         return "", ""
 
     def add(self, recorder: Recorder) -> None:

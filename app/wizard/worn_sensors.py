@@ -13,7 +13,7 @@ from app.storage.stored import PlacedSensor
 from app.system.progress import Report
 from app.widgets.sensor_tile import SILENT_FROM_S
 from app.wizard.sensor_sync import SensorSync
-from app.wording.translation import capitalised, filled, later, name_of, tr
+from app.wording.translation import capitalised, filled, joined, later, name_of, tr
 from app.workers.background import Background, Work
 from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site, hip_of
 from core.placement.labels import groups_of
@@ -244,9 +244,9 @@ class WornSensors(QObject):
         doubted = [site for site in Site if site in self.detected]
         names = [name_of(site) for site in doubted]
         what = tr("{first} and {last} look swapped.") if len(names) == 2 else tr("{sites} look mixed up.")
-        what = what.format(sites=", ".join(names), first=names[0], last=names[-1])
+        what = what.format(sites=joined(names), first=names[0], last=names[-1])
         wrong = [name_of(joint) for joint in self.joints if not self.detected.keys().isdisjoint(_ends(joint))]
-        then = tr("Angles would be wrong: {joints}.").format(joints=", ".join(wrong)) if wrong else ""
+        then = tr("Angles would be wrong: {joints}.").format(joints=joined(wrong)) if wrong else ""
         return capitalised(what), then
 
     def use_detected(self) -> None:
@@ -285,7 +285,7 @@ class WornSensors(QObject):
         if not lost or not worn:
             return ""
         return tr("No sensor at {sites}: no angles for {joints}.").format(
-            sites=", ".join(name_of(site) for site in missing), joints=", ".join(lost)
+            sites=joined([name_of(site) for site in missing]), joints=joined(lost)
         )
 
     def _close(self) -> None:

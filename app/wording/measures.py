@@ -1,7 +1,7 @@
 """What is a measure called that goals and a patient's course are of? Its name, its unit, and how it is written."""
 
 from app.wording.timed_tests import name_of_test
-from app.wording.translation import figure_text, later, side_name, tr
+from app.wording.translation import figure_text, later, side_name, tr, within_sentence
 from core.goals import Goal, GoalOf
 from core.parameters import Unit, unit_of
 from core.timed.measures import PROTOCOLS
@@ -24,8 +24,8 @@ NAMES = {
     "knee_at_initial_contact_deg": later("Knee at initial contact"),
     "knee_loading_peak_deg": later("Peak knee flexion, loading"),
     "knee_stance_minimum_deg": later("Least knee flexion, stance"),
-    "knee_swing_peak_deg": later("Knee peak flexion, swing"),
-    "knee_swing_peak_percent": later("Peak knee flexion, swing, timing"),
+    "knee_swing_peak_deg": later("Peak knee flexion, swing"),
+    "knee_swing_peak_percent": later("Time of peak knee flexion, swing"),
     "ankle_range_deg": later("Ankle range of motion"),
     "ankle_push_off_deg": later("Ankle plantarflexion, push-off"),
     "ankle_rocker_deg": later("Ankle dorsiflexion, stance"),
@@ -38,7 +38,7 @@ NAMES = {
     "ankle_swing_dorsiflexion_deg": later("Peak dorsiflexion, swing"),
     "hip_range_deg": later("Hip range of motion"),
     "hip_flexion_peak_deg": later("Peak hip flexion"),
-    "hip_extension_peak_deg": later("Hip peak extension"),
+    "hip_extension_peak_deg": later("Peak hip extension"),
     "hip_abduction_range_deg": later("Hip abduction range of motion"),
     "hip_abduction_peak_deg": later("Peak hip abduction"),
     "hip_adduction_peak_deg": later("Peak hip adduction"),
@@ -47,11 +47,11 @@ NAMES = {
     "pelvis_rotation_range_deg": later("Pelvic rotation range"),
     "pelvis_tilt_range_deg": later("Pelvic tilt range"),
     "pelvis_lean_deg": later("Pelvic tilt, mean"),
-    "knee_terminal_extension_deg": later("Knee least flexion, late swing"),
+    "knee_terminal_extension_deg": later("Least knee flexion, late swing"),
     "knee_extended_before_contact_percent": later("Knee extended before contact"),
     "foot_heel_rise_deg": later("Heel rise"),
     "foot_pitch_at_contact_deg": later("Foot angle at contact"),
-    "foot_flat_percent": later("Foot flat (% gait cycle)"),
+    "foot_flat_percent": later("Foot flat"),
     "shank_over_flat_foot_deg": later("Shank forward tilt, foot flat"),
 }
 WITH_UNIT = {  # as they head rows of figures that have no unit of their own
@@ -59,26 +59,8 @@ WITH_UNIT = {  # as they head rows of figures that have no unit of their own
     "stride_length_m": later("Stride length, m"),
     "speed_m_s": later("Walking speed, m/s"),
     "cadence_steps_min": later("Cadence, steps/min"),
-}
-IN_SENTENCE = {
-    "stance_percent": later("stance phase"),
-    "step_time_s": later("step time"),
-    "stride_length_m": later("stride length"),
-    "speed_m_s": later("walking speed"),
-    "cadence_steps_min": later("cadence"),
-    "knee_stance_to_swing_deg": later("knee flexion, stance to swing"),
-    "knee_while_loading_deg": later("knee flexion, loading response"),
-    "knee_straightening_deg": later("knee extension, mid-stance"),
-    "ankle_push_off_deg": later("ankle plantarflexion, push\u2011off"),
-    "ankle_rocker_deg": later("ankle rocker"),
-    "ankle_heel_rocker_deg": later("ankle plantarflexion, loading response"),
-    "ankle_toes_lifted_deg": later("ankle dorsiflexion, swing"),
-    "knee_range_deg": later("knee range of motion"),
-    "ankle_range_deg": later("ankle range of motion"),
-    "hip_range_deg": later("hip range of motion"),
-    "hip_extension_peak_deg": later("hip peak extension"),
-    "pelvis_obliquity_range_deg": later("pelvic obliquity range"),
-    "pelvis_drop_deg": later("pelvic drop in swing"),
+    "foot_flat_percent": later("Foot flat (% gait cycle)"),
+    "knee_extended_before_contact_percent": later("Knee extended before contact (% gait cycle)"),
 }
 LESS = "L \N{MINUS SIGN} R"
 NO_BREAK = "\N{NO-BREAK SPACE}"
@@ -88,6 +70,26 @@ def measure_name(column: str, *, is_between: bool = False) -> str:
     """As it heads a row: "Stance L - R"."""
     name = _name(column)
     return tr("{measure} {less}").format(measure=name, less=LESS) if is_between else name
+
+
+def name_in_sentence(column: str) -> str:
+    """As it stands inside a sentence."""
+    return within_sentence(_name(column)) if column in NAMES else _name(column)
+
+
+def name_with_unit(column: str) -> str:
+    """As it heads figures that have no unit of their own: "Stance (% gait cycle)", "Step time, s"."""
+    if column in WITH_UNIT:
+        return tr(WITH_UNIT[column])
+    if column in PROTOCOLS:
+        return with_unit(_name(column), short_unit(column).strip())
+    return with_unit(_name(column), unit_symbol(_unit(column)))
+
+
+def with_unit(name: str, unit: str) -> str:
+    """A name and its unit; a share is that of the gait cycle."""
+    pattern = tr("{measure} (% gait cycle)") if unit == Unit.PERCENT.symbol else tr("{measure}, {unit}")
+    return pattern.format(measure=name, unit=unit)
 
 
 def spoken_name(column: str, *, is_between: bool = False) -> str:

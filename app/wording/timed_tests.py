@@ -156,7 +156,10 @@ def course_sentence(test: TimedTest) -> str:
     return tr("First third {first:.2f} m/s, last third {last:.2f} m/s.").format(first=speeds[0], last=speeds[-1])
 
 
-MEASURED = (later("6-minute walk, insole sensors"), later("6-minute walk, human rater"))  # in the sources of errors
+MEASURED = {  # what the sources of errors measured, by their words in files
+    "six minutes by sensors in insoles": later("6-minute walk, insole sensors"),
+    "six minutes by a rater": later("6-minute walk, human rater"),
+}
 
 
 def error_words(error: KnownError) -> str:
@@ -176,4 +179,4 @@ def _source_words(error: KnownError) -> str:
     """Who says so: of a paper what was measured, and the paper as it is cited."""
     if error.courses:
         return tr("worst of {count} simulated runs").format(count=error.courses)
-    return ", ".join(filter(None, [tr(error.how) if error.how else "", error.paper]))
+    return ", ".join(filter(None, [tr(MEASURED[error.how]) if error.how else "", error.paper]))

@@ -28,301 +28,306 @@ WITH_COMMAS = {"de"}  # languages that write fractions so
 
 SENTENCES = {
     # what the reader noticed
-    "unknown_key": "the key “{name}” is unknown. It is kept unchanged.",
-    "unknown_column": "the column “{name}” is unknown. It is kept unchanged.",
+    "unknown_key": "The key “{name}” is unknown. It is kept unchanged.",
+    "unknown_column": "The column “{name}” is unknown. It is kept unchanged.",
     "file_left_out": (
-        "“{name}” was not imported, because its sensor position is unknown. Add it to the map to import it."
+        "The file “{name}” was not imported, because its sensor position is unknown. Add it to the map to import it."
     ),
-    "doubled_stamps": "rows that repeat the previous time: {count}. The first of each was used.",
+    "doubled_stamps": "Some rows ({count}) repeat the previous time. The first of each was used.",
     "stamps_mended": (
-        "wrong time stamps: {count}, the first at sample {first}, off by {off_s:.6g} s. Times were interpolated "
-        "between the samples around them; samples left out: {left_out}."
+        "Some time stamps ({count}) are wrong, the first at sample {first}, off by {off_s:.6g} s. Times were "
+        "interpolated between the samples around them; samples left out: {left_out}."
     ),
-    "damaged_stretches": "damaged segments: {count}. They were skipped; their data are missing.",
+    "damaged_stretches": "Some segments ({count}) are damaged. They were skipped; their data are missing.",
     "slower_kept": (
-        "angular rate and acceleration have different rates: {kept} samples with both were used, "
-        "{count} others excluded. Set one rate for both in MT Manager."
+        "Angular rate and acceleration have different rates: {kept} samples with both were used, {count} others "
+        "excluded. Set one rate for both in MT Manager."
     ),
-    "infinite_values": "infinite values: {count}. They count as missing.",
+    "infinite_values": "Some values ({count}) are infinite. They count as missing.",
     "last_line_open": (
-        "the last line has no line end; its last value may be cut off. Copy the file again if it matters."
+        "The last line has no line end; its last value may be cut off. Copy the file again if it matters."
     ),
-    "no_sites": "no sensor data. This recording cannot be analysed.",
+    "no_sites": "This recording has no sensor data. It cannot be analysed.",
     "rate_from_orientation": (
-        "no angular rates were recorded; they were derived from the sensor's orientation. Fast "
-        "movements appear smoother than they were."
+        "No angular rates were recorded; they were derived from the sensor's orientation. Fast movements appear "
+        "smoother than they were."
     ),
     "columns_understood": (
-        "the columns were read as acceleration ({acc}, in {acc_unit}), angular rate ({gyr}, in "
-        "{gyr_unit}) and time ({time}). Check this once for each program that writes such files."
+        "The columns were read as acceleration ({acc}, in {acc_unit}), angular rate ({gyr}, in {gyr_unit}) and "
+        "time ({time}). Check this once for each program that writes such files."
     ),
-    "columns_left_out": "unknown columns were not read: {names}.",
-    "unit_by_size": "the file gives no unit for {names}. From the size of the values, {unit} was assumed.",
+    "columns_left_out": "Unknown columns were not read: {names}.",
+    "unit_by_size": "The file gives no unit for {names}. From the size of the values, {unit} was assumed.",
     "time_from_rate": (
-        "the file contains no times; samples are assumed to be evenly spaced at {rate_hz:g} Hz. Lost "
-        "samples go unnoticed; export times or a counter as well."
+        "The file contains no times; samples are assumed to be evenly spaced at {rate_hz:g} Hz. Lost samples go "
+        "unnoticed; export times or a counter as well."
     ),
     "times_straightened": (
-        "packet times, up to {away_ms:.0f} ms early or late, were fitted to a straight line. Losses "
-        "shorter than {loss_ms:.0f} ms go unnoticed; send samples with the sensor's own times."
+        "Packet times, up to {away_ms:.0f} ms early or late, were fitted to a straight line. Losses shorter than "
+        "{loss_ms:.0f} ms go unnoticed; send samples with the sensor's own times."
     ),
     "stream_not_ended": (
-        "the recording of this stream was not closed, or counted samples are missing. Copy the file "
-        "again; if that does not help, they are lost."
+        "The recording of this stream was not closed, or counted samples are missing. Copy the file again; if "
+        "that does not help, they are lost."
     ),
     "clock_not_measured": (
-        "the clock of “{host}”, which sent this sensor, was not measured. Its recording starts with "
-        "the others'; record again with all computers in one network."
+        "The clock of “{host}”, which sent this sensor, was not measured. Its recording starts with the others'; "
+        "record again with all computers in one network."
     ),
     "orientation_left_out": (
-        "the orientation ({names}) does not turn gravity upwards, so it is not earth from sensor. It was not used."
+        "The orientation ({names}) does not turn gravity upwards, so it is not earth from sensor. It was not used."
     ),
     "gravity_from_orientation": (
-        "the acceleration was recorded without gravity, which was added back from the sensor's "
-        "orientation. Where the orientation is off, the acceleration is too."
+        "The acceleration was recorded without gravity, which was added back from the sensor's orientation. Where "
+        "the orientation is off, the acceleration is too."
     ),
     "gravity_for_acceleration": (
-        "no acceleration was recorded; gravity alone is used. Events that need acceleration, such as "
-        "initial contact, cannot be detected."
+        "No acceleration was recorded; gravity alone is used. Events that need acceleration, such as initial "
+        "contact, cannot be detected."
     ),
     "not_synchronised": (
-        "this sensor was not synchronised with the others; its start was set to theirs, and joints "
-        "whose movement does not show the remaining offset are excluded. Synchronise the sensors "
-        "before the next recording."
+        "This sensor was not synchronised with the others; its start was set to theirs, and joints whose movement "
+        "does not show the remaining offset are excluded. Synchronise the sensors before the next recording."
     ),
     "sensor_changed": (
-        "a different sensor was worn in the recording before. The earlier calibration does not apply; "
-        "record free motion again."
+        "A different sensor was worn in the recording before. The earlier calibration does not apply; record free "
+        "motion again."
     ),
     # what the data look like
     "too_few_samples": (
-        "too few samples ({samples}). This recording cannot be analysed; record at least three seconds."
+        "This recording has too few samples ({samples}) and cannot be analysed. Record at least three seconds."
     ),
-    "all_zero": "every sample is zero. Its joints are excluded; check this sensor.",
-    "bridged": ("{missing_percent:.1f} % of the samples are missing, in short gaps. The angles continue across them."),
+    "all_zero": "Every sample of this sensor is zero. Its joints are excluded; check this sensor.",
+    "bridged": "{missing_percent:.1f} % of the samples are missing, in short gaps. The angles continue across them.",
     "gaps": (
-        "samples are missing ({missing_percent:.1f} % in all; gaps: {count}, longest {longest_s:.2f} "
-        "s). The angles have gaps there."
+        "Samples are missing ({missing_percent:.1f} % in all; gaps: {count}, longest {longest_s:.2f} s). The "
+        "angles have gaps there."
     ),
     "many_gaps": (
-        "samples are missing ({missing_percent:.1f} % in all; gaps: {count}, longest {longest_s:.2f} "
-        "s). Too few remain for a result; record again, closer to the receiver."
+        "Samples are missing ({missing_percent:.1f} % in all; gaps: {count}, longest {longest_s:.2f} s). Too few "
+        "remain for a result; record again, closer to the receiver."
     ),
     "pause": (
-        "no sensor recorded anything for {length_s:.1f} s from {from_s:.1f} s on. The strides before and after this "
-        "pause are used."
+        "No sensor recorded anything for {length_s:.1f} s from {from_s:.1f} s on. The strides before and after "
+        "this pause are used."
     ),
     "rate_off": (
-        "{rate_hz:.1f} samples per second came, {nominal_hz:.1f} were set. Check the sample rate of this sensor, then "
-        "record again."
+        "{rate_hz:.1f} samples per second came, {nominal_hz:.1f} were set. Check the sample rate of this sensor, "
+        "then record again."
     ),
     "every_second_lost": (
-        "every second sample is missing ({lost_percent:.0f} % lost): {rate_hz:.1f} per second came, {nominal_hz:.1f} "
-        "were set. Check the sample rate of this sensor, move the receiver nearer, then record again."
+        "Every second sample is missing ({lost_percent:.0f} % lost): {rate_hz:.1f} per second came, "
+        "{nominal_hz:.1f} were set. Check the sample rate of this sensor, move the receiver nearer, then record "
+        "again."
     ),
     "acc_in_g": (
-        "the median acceleration is {median_m_s2:.2f} m/s² instead of about 9.81 m/s², as if in g. "
-        "Its joints are excluded; convert the file and import it again."
+        "The median acceleration is {median_m_s2:.2f} m/s² instead of about 9.81 m/s², as if in g. The sensor's "
+        "joints are excluded; convert the file and import it again."
     ),
     "acc_implausible": (
-        "the median acceleration is {median_m_s2:.2f} m/s² instead of about 9.81 m/s². Its joints are "
+        "The median acceleration is {median_m_s2:.2f} m/s² instead of about 9.81 m/s². The sensor's joints are "
         "excluded; check this sensor."
     ),
     "rate_in_deg_s": (
-        "angular rates reach {p99_rad_s:.0f} rad/s, as if in degrees per second. Convert the file and import it again."
+        "Angular rates reach {p99_rad_s:.0f} rad/s, as if in degrees per second. Convert the file and import it again."
     ),
     "acc_reversed": (
-        "acceleration and angular rate do not match: this sensor turns opposite to the adjacent "
-        "segment, so its joints are excluded. Reverse the sign of its accelerations or correct its "
-        "axis order, then import it again."
+        "Acceleration and angular rate do not match: this sensor turns opposite to the adjacent segment, so its "
+        "joints are excluded. Reverse the sign of its accelerations or correct its axis order, then import it "
+        "again."
     ),
     "time_in_ms": (
-        "the times look like {unit}, not seconds: the step between samples is {step:.1f}. Convert the "
-        "file and import it again."
+        "The times look like {unit}, not seconds: the step between samples is {step:.1f}. Convert the file and "
+        "import it again."
     ),
     "same_data": (
-        "both contain the same data, so their joints are excluded. Find the copied file and import the right one."
+        "Both sensors contain the same data, so their joints are excluded. Find the copied file and import the "
+        "right one."
     ),
     "clock_offset": (
-        "the clock differs by {offset_s:.1f} s from the others, too much to correct. Use one receiver "
+        "The sensor's clock differs by {offset_s:.1f} s from the others, too much to correct. Use one receiver "
         "for all sensors, then record again."
     ),
     "clock_jumps": (
-        "the clock jumps forward by {jump_s:.1f} s, {after_s:.1f} s after the start. Its joints are "
-        "excluded; split the recording there, then import it again."
+        "The sensor's clock jumps forward by {jump_s:.1f} s, {after_s:.1f} s after the start. The sensor's joints "
+        "are excluded; split the recording there, then import it again."
     ),
     "impossible_values": (
-        "samples beyond the range of any sensor: {count}. They count as missing; check the sensor and its file."
+        "Some samples ({count}) are beyond the range of any sensor. They count as missing; check the sensor and "
+        "its file."
     ),
     "stuck": (
-        "the sensor repeated the same values for {percent:.1f} % of the time. These count as missing; "
-        "restart the sensor before the next recording."
+        "The sensor repeated the same values for {percent:.1f} % of the time. These count as missing; restart the "
+        "sensor before the next recording."
     ),
     "stuck_throughout": (
-        "the sensor repeated the same values all the time. Its joints are excluded; restart the sensor."
+        "The sensor repeated the same values all the time. Its joints are excluded; restart the sensor."
     ),
     "low_rate": (
-        "only {rate_hz:.0f} samples per second; 60 or more are required. Angles are uncertain by several degrees."
+        "The sensor sent only {rate_hz:.0f} samples per second; 60 or more are required. Angles are uncertain by "
+        "several degrees."
     ),
     "clipped": (
-        "{percent:.1f} % of the samples are at the limit of the sensor's range. Peaks are cut off; "
-        "choose a wider range."
+        "{percent:.1f} % of the samples are at the limit of the sensor's range. Peaks are cut off; choose a wider "
+        "range."
     ),
-    "missing_site": "no sensor was worn here. There are no {joint} angles.",
+    "missing_site": "No sensor was worn here. There are no {joint} angles.",
     "gyro_bias_unknown": (
-        "the sensors were never still, so their gyroscope offsets are unknown. Angles may drift; let "
-        "the patient stand for three seconds before the next walk."
+        "The sensors were never still, so their gyroscope offsets are unknown. Angles may drift; let the patient "
+        "stand for three seconds before the next walk."
     ),
     "moved_while_standing": (
-        "the patient moved while standing, so there is no standing reference. Repeat standing still."
+        "The patient moved while standing, so there is no standing reference. Repeat standing still."
     ),
     "rate_kind_found": (
-        "the file does not state what its angular rates represent; {kind} rates fit the data best. "
-        "Enter this as rate_kind in session.toml."
+        "The file does not state what its angular rates represent; {kind} rates fit the data best. Enter this as "
+        "rate_kind in session.toml."
     ),
     # what was found of the joints
     "no_joint": (
-        "no joint angle could be computed. Sensors on two adjacent segments, such as thigh and shank, "
-        "must be worn and move."
+        "No joint angle could be computed. Sensors on two adjacent segments, such as thigh and shank, must be "
+        "worn and move."
     ),
-    "feet_only": "only the feet have sensors, so there are steps but no joint angles.",
+    "feet_only": "Only the feet have sensors, so there are steps but no joint angles.",
     "too_little_motion": (
-        "no joint axis was found: too little movement or too few usable samples. Record ten seconds of free motion."
+        "No joint axis was found: too little movement or too few usable samples. Record ten seconds of free motion."
     ),
     "sign_in_doubt": (
-        "two solutions fit almost equally well (margin {margin:.2f}, 1.5 required). Check the sensor "
-        "positions, or record free motion."
+        "Two solutions fit almost equally well (margin {margin:.2f}, 1.5 required). Check the sensor positions, "
+        "or record free motion."
     ),
     "clinical_sign_uncertain": (
-        "flexion and extension cannot be distinguished (margin {margin:.2f}), so only range of motion "
-        "is reported. Check the curve, then confirm or reverse the sign."
+        "Flexion and extension cannot be distinguished (margin {margin:.2f}), so only range of motion is "
+        "reported. Check the curve, then confirm or reverse the sign."
     ),
-    "sign_turned": "the sign was reversed by hand. The corrected angle is shown.",
-    "sign_confirmed": "the sign was confirmed by hand. It is used as detected.",
+    "sign_turned": "The sign was reversed by hand. The corrected angle is shown.",
+    "sign_confirmed": "The sign was confirmed by hand. It is used as detected.",
     "not_a_hinge": (
-        "rotates about more than one axis (residual {hinge_residual_rad_s:.2f} rad/s). The angle is "
-        "the rotation about its main axis."
+        "The joint rotates about more than one axis (residual {hinge_residual_rad_s:.2f} rad/s). The angle is the "
+        "rotation about its main axis."
     ),
-    "is_a_hinge": "moves like a true hinge. The stricter method was used, and the angle is more certain.",
+    "is_a_hinge": "The joint moves like a true hinge. The stricter method was used, and the angle is more certain.",
     "flexion_did_not_dominate": (
-        "the detected axis is {elevation_deg:.0f}° from horizontal, so flexion was not the main "
-        "movement. Repeat free motion with more flexion of this joint."
+        "The detected axis is {elevation_deg:.0f}° from horizontal, so flexion was not the main movement. Repeat "
+        "free motion with more flexion of this joint."
     ),
     "turns_contradict": (
-        "the feet show {feet} turns in this test, the pelvis {pelvis}. Check which is right before using the turns."
+        "The feet show {feet} turns in this test, the pelvis {pelvis}. Check which is right before using the turns."
     ),
     "clock_moved": (
-        "the distal sensor's clock is {lag_ms:+.0f} ms off here, but not in the other recordings. "
-        "This was corrected; one receiver for all sensors avoids it."
+        "The distal sensor's clock is {lag_ms:+.0f} ms off here, but not in the other recordings. This was "
+        "corrected; one receiver for all sensors avoids it."
     ),
     "clock_drifts": (
-        "this sensor's clock runs {drift_percent:+.1f} % faster than the others of its leg. Its "
-        "samples do not match theirs in time; check its sample rate, or use one receiver for all "
-        "sensors, then record the walk again."
+        "This sensor's clock runs {drift_percent:+.1f} % faster than the others of its leg. Its samples do not "
+        "match theirs in time; check its sample rate, or use one receiver for all sensors, then record the walk "
+        "again."
     ),
-    "lag_corrected": "the distal sensor's clock was {lag_ms:+.0f} ms off. This was corrected.",
+    "lag_corrected": "The distal sensor's clock was {lag_ms:+.0f} ms off. This was corrected.",
     "not_the_same_joint": (
-        "the two sensors do not move like the two sides of one joint. Check which sensor is where, or use one receiver "
-        "for all sensors."
+        "The two sensors do not move like the two sides of one joint. Check which sensor is where, or use one "
+        "receiver for all sensors."
     ),
-    "centre_unknown": "the joint centre could not be determined from this movement. The angle does not need it.",
+    "centre_unknown": "The joint centre could not be determined from this movement. The angle does not need it.",
     "ankle_axis_from_rates": (
-        "no soft-tissue vibration at this foot; the axis comes directly from foot and shank rotation in walking."
+        "This foot shows no soft-tissue vibration; the axis comes directly from foot and shank rotation in walking."
     ),
     "axis_from_walking": (
-        "the joint axis comes from walking alone and is less certain. Record ten seconds of free motion."
+        "The joint axis comes from walking alone and is less certain. Record ten seconds of free motion."
     ),
     "zero_unknown": (
-        "has no standing reference, since no standing was recorded for it. Range of motion and curve "
+        "The joint has no standing reference, since no standing was recorded for it. Range of motion and curve "
         "shape are valid, absolute angles are not."
     ),
     "goniometer_without_standing": (
-        "the goniometer value was not used, since no standing was recorded. Let the patient stand for three seconds."
+        "The goniometer value was not used, since no standing was recorded. Let the patient stand for three seconds."
     ),
     "joint_left_out": (
-        "is excluded, because one of its sensors gave no usable data. The reason is given with that sensor."
+        "The joint is excluded, because one of its sensors gave no usable data. The reason is given with that sensor."
     ),
     "no_standing": (
-        "no standing recording, so there is no standing reference. Range of motion and curve shape "
-        "are valid, absolute angles are not."
+        "No standing was recorded, so there is no standing reference. Range of motion and curve shape are valid, "
+        "absolute angles are not."
     ),
     "zero_from_goniometer": (
-        "is {value_deg:.1f}° in standing, as measured with the goniometer. All angles refer to it."
+        "The joint is at {value_deg:.1f}° in standing, as measured with the goniometer. All angles refer to it."
     ),
     "published_sign_unsure": (
-        "the published method could not match the directions of the two axes with certainty. Its curve may be mirrored."
+        "The published method could not match the directions of the two axes with certainty. Its curve may be mirrored."
     ),
     "events_from_shank": (
-        "the foot has no usable sensor, so steps are detected from the shank. Initial contact and "
-        "toe-off are known, distances are not."
+        "The foot has no usable sensor, so steps are detected from the shank. Initial contact and toe-off are "
+        "known, distances are not."
     ),
     "doubtful_strides": (
-        "strides with doubtful initial contact: {count}. The foot moved in another direction than its "
+        "Some strides ({count}) have a doubtful initial contact. The foot moved in another direction than its "
         "toes point, so averages exclude them."
     ),
-    "foot_against_shank": "the foot has no ankle joint. Its angle is the foot relative to the shank.",
+    "foot_against_shank": "The foot has no ankle joint. Its angle is the foot relative to the shank.",
     "prosthetic_toe_off": (
-        "prosthetic toe-off is timed by the first movement of the sole, tested on simulated feet "
-        "only. Stance of this foot is not assessed."
+        "Prosthetic toe-off is timed by the first movement of the sole, tested on simulated feet only. Stance of "
+        "this foot is not assessed."
     ),
-    "no_strides": ("no complete stride was found. Check that this is a walk, and that sensors are on feet or shanks."),
+    "no_strides": "No complete stride was found. Check that this is a walk, and that sensors are on feet or shanks.",
     "side_without_strides": (
-        "no complete stride was found, though the other side has some. Check the sensor position, "
-        "then record another walk."
+        "No complete stride was found, though the other side has some. Check the sensor position, then record "
+        "another walk."
     ),
     "strides_all_left_out": (
-        "all detected strides ({count}) were excluded: {reasons}. There are no averages; correct this "
-        "and record the walk again."
+        "All detected strides ({count}) were excluded: {reasons}. There are no averages; correct this and record "
+        "the walk again."
     ),
-    "strides_left_out_by_hand": "{count} of {of} {side} strides excluded by hand.",
+    "strides_left_out_by_hand": "Of {of} {side} strides, {count} were excluded by hand.",
     "no_mean": (
-        "usable strides on the {side}: {count}; a mean needs {wanted}. Record another walk, or assess "
-        "single strides only."
+        "The {side} has {count} usable strides; a mean needs {wanted}. Record another walk, or assess single "
+        "strides only."
     ),
     "angle_without_mean": (
-        "strides used: {used}, without gaps in this angle: {count}; a mean needs {wanted}. Record "
-        "again, closer to the receiver."
+        "Of {used} strides used, {count} have no gaps in this angle; a mean needs {wanted}. Record again, "
+        "closer to the receiver."
     ),
     "no_spread": (
-        "only {left} left and {right} right strides; a standard deviation needs {wanted}. Record "
+        "There are only {left} left and {right} right strides; a standard deviation needs {wanted}. Record "
         "another walk, or continue without a standard deviation."
     ),
     "no_spread_of_side": (
-        "only {count} {side} strides; a standard deviation needs {wanted}. Record another walk, or "
+        "There are only {count} {side} strides; a standard deviation needs {wanted}. Record another walk, or "
         "continue without a standard deviation."
     ),
-    "no_peak": ("no {peak}. The angle has no turning point in that phase, so no value is reported."),
+    "no_peak": "No value for {peak} is reported: the angle has no turning point in that phase.",
     "published_differs": (
-        "the published method differs by {difference_deg:.1f}° in curve shape. Compare both curves "
-        "before relying on it."
+        "The published method differs by {difference_deg:.1f}° in curve shape. Compare both curves before relying "
+        "on it."
     ),
     # what the session is made of
-    "recording_discarded": "this recording is excluded. It stays in the folder and is not analysed.",
+    "recording_discarded": "This recording is excluded. It stays in the folder and is not analysed.",
     "recording_recovered": (
-        "the program closed during this recording, which is complete up to the last record on disk. "
-        "Ending the program loses at most 0.1 s in 99 of 100 cases; a power cut loses up to 0.5 s and "
-        "any data not yet on disk."
+        "The program closed during this recording, which is complete up to the last record on disk. Ending the "
+        "program loses at most 0.1 s in 99 of 100 cases; a power cut loses up to 0.5 s and any data not yet on "
+        "disk."
     ),
     "recording_changed": (
-        "its file no longer matches the recording as it was stopped. Only the verified part was used; "
-        "restore it from a backup."
+        "The file no longer matches the recording as it was stopped. Only the verified part was used; restore it "
+        "from a backup."
     ),
     "strap_slipped": (
-        "the strap moved at about {from_s} s, by about {turn_deg}°. Strides of this leg are excluded "
-        "from 5 s before; tighten the strap and repeat free motion."
+        "The strap moved at about {from_s} s, by about {turn_deg}°. Strides of this leg are excluded from 5 s "
+        "before; tighten the strap and repeat free motion."
     ),
-    "restrapped": "the sensors were reattached before this recording. Earlier recordings do not calibrate it.",
+    "restrapped": "The sensors were reattached before this recording. Earlier recordings do not calibrate it.",
     "calibration_after_walk": (
-        "was calibrated with a recording made after the walk, as there is none before. This is valid "
-        "only if no sensor moved in between."
+        "Calibration comes from a recording made after the walk, as there is none before. This is valid only if "
+        "no sensor moved in between."
     ),
-    "simulated": "these data are simulated. They come from no patient.",
-    "axis_uncertain": "calibration certainty is only ±{axis_sd_deg:.1f}°. Record free motion, or move longer.",
-    "short_recording": "short recording. Its angles are less certain.",
+    "simulated": "These data are simulated. They come from no patient.",
+    "axis_uncertain": "Calibration certainty is only ±{axis_sd_deg:.1f}°. Record free motion, or move longer.",
+    "short_recording": "This recording is short. Its angles are less certain.",
     "labels_look_swapped": (
-        "look swapped, as the movement fits better the other way round. Swap them, or keep the positions."
+        "These sensors look swapped, as the movement fits better the other way round. Swap them, or keep the positions."
     ),
-    "labels_look_mixed": ("look mixed up, as another order fits the movement better. Check the sensor positions."),
+    "labels_look_mixed": (
+        "These sensors look mixed up, as another order fits the movement better. Check the sensor positions."
+    ),
 }
 
 # what a finding's numbers name by the words of the files, as the sentences say it

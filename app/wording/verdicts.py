@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from app.wording.translation import figure_text, later, tr
+from app.wording.translation import capitalised, figure_text, joined, later, name_of, tr
 from core.verdicts.model import GateReason, Verdict
 
 VERDICTS = {
@@ -11,6 +11,7 @@ VERDICTS = {
     Verdict.WITHHELD: later("not reported"),
     Verdict.NOT_MEASURED: later("not measured"),
 }
+SHARES = ("hip_disagreement",)  # gates whose figures are shares of one, written in percent
 DECIMALS = {"deg": 1, "ms": 1, "m/s": 2, "%": 1, "s": 1, "m": 2}
 
 
@@ -39,11 +40,11 @@ WORDS = {
         later("Check the sensor positions, or record free motion."),
     ),
     "labels": GateWords(
-        later("Sensors look swapped: another order fits the movement better."),
+        later("{sites} look swapped: another order fits the movement better."),
         later("Check the sensor positions."),
     ),
     "hip_disagreement": GateWords(
-        later("Pelvis and thigh sensors disagree on the acceleration at the hip ({value} of it, limit {limit})."),
+        later("Pelvis and thigh sensors disagree on the acceleration at the hip (by {value}, limit {limit})."),
         _STRAP_PELVIS,
     ),
     "hip_centre": GateWords(later("The hip joint centre lies {value} from a sensor (limit {limit})."), _STRAP_PELVIS),
@@ -147,7 +148,14 @@ WITHOUT_FIGURES = {
     "axis": GateWords(later("Calibration certainty is not known."), later("Record free motion.")),
     "lag": GateWords(later("The two sensors could not be synchronised from the movement."), _ONE_RECEIVER),
     "strap": GateWords(later("Strap moved before this walk."), _FREE_MOTION),
-    "step_share": WORDS["step_share"],
+    "labels": GateWords(
+        later("Sensors look swapped: another order fits the movement better."),
+        later("Check the sensor positions."),
+    ),
+    "step_share": GateWords(
+        later("Left and right sensors are not synchronised: step times differ, with equal stance times."),
+        _ONE_RECEIVER,
+    ),
     "clocks": GateWords(
         later("Left and right sensors are not synchronised. Timing between the legs is not reported."),
         _ONE_RECEIVER,
@@ -157,10 +165,13 @@ WITHOUT_FIGURES = {
 
 def gate_words(reason: GateReason) -> GateWords:
     """Why this gate is not passed, and what to do, in the language of the application."""
-    words = WITHOUT_FIGURES[reason.gate] if reason.value is None and reason.gate in WITHOUT_FIGURES else None
-    words = words or WORDS[reason.gate]
-    value, limit = (_figure(figure, reason.unit) for figure in (reason.value, reason.limit))
-    return GateWords(tr(words.why).format(value=value, limit=limit), tr(words.to_do) if words.to_do else "")
+    is_bare = reason.value is None and not reason.sites and reason.gate in WITHOUT_FIGURES
+    words = (WITHOUT_FIGURES if is_bare else WORDS)[reason.gate]
+    is_share = reason.gate in SHARES
+    value, limit = (_figure(figure, reason.unit, is_share=is_share) for figure in (reason.value, reason.limit))
+    sites = capitalised(joined([name_of(site) for site in reason.sites]))
+    why = tr(words.why).format(value=value, limit=limit, sites=sites)
+    return GateWords(why, tr(words.to_do) if words.to_do else "")
 
 
 def gate_sentence(reason: GateReason) -> str:
@@ -173,9 +184,16 @@ def verdict_word(verdict: Verdict) -> str:
     return tr(VERDICTS[verdict])
 
 
-def _figure(value: float | None, unit: str) -> str:
+def verdict_alone(verdict: Verdict) -> str:
+    """The same where it stands alone, as in a cell, a chip or a title."""
+    return capitalised(verdict_word(verdict))
+
+
+def _figure(value: float | None, unit: str, *, is_share: bool = False) -> str:
     if value is None:
         return tr("unknown")
+    if is_share:
+        return f"{figure_text(100.0 * value, '.0f')}\N{NO-BREAK SPACE}%"
     if not unit:
         return f"{value:.0f}" if value == round(value) else figure_text(value, ".2f")
     number = figure_text(value, f".{DECIMALS[unit]}f")

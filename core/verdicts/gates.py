@@ -241,7 +241,8 @@ def _leg_verdicts(
 def _labels(recording: RecordingAnalysis, *sites: Site) -> Iterator[GateReason]:
     """A joint of which a sensor sits elsewhere may still look like one: thigh and foot turn about parallel axes too."""
     if not recording.doubted_sites.isdisjoint(sites):
-        yield GateReason("labels", Verdict.WITHHELD)
+        doubted = tuple(site for site in Site if site in recording.doubted_sites)
+        yield GateReason("labels", Verdict.WITHHELD, sites=doubted)
 
 
 def _calibrated(found: JointCalibration) -> Iterator[GateReason]:

@@ -174,7 +174,7 @@ class Difference:
 
     `difference` and `error` are NaN where withheld or not known; both are, of what is never compared.
     `is_worth_a_sentence`: it exceeds what a sentence on page one needs. `is_unverified`: the error rests on a figure
-    whose source could not be read.
+    whose source could not be read; `is_borrowed`: it is that of another joint or quantity.
     """
 
     difference: float
@@ -183,6 +183,7 @@ class Difference:
     sources: tuple[ErrorSource, ...] = ()
     is_worth_a_sentence: bool = False
     is_unverified: bool = False
+    is_borrowed: bool = False
 
     @property
     def exceeds(self) -> bool:
@@ -259,6 +260,7 @@ def compare(
         sources=_sources(name, kind, one, other, has_speed=by_speed > 0 and abs(speed_apart_m_s) >= SPEED_TOLD_M_S),
         is_worth_a_sentence=abs(difference) > factor * error and not sigma.is_borrowed,
         is_unverified=not sigma.is_verified,
+        is_borrowed=sigma.is_borrowed,
     )
 
 

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 
-from core.body import LEG_JOINTS, Joint, Side
+from core.body import LEG_JOINTS, Joint, Side, Site
 
 
 class Verdict(StrEnum):
@@ -29,8 +29,8 @@ def worst(verdicts: Iterable[Verdict]) -> Verdict:
 class GateReason:
     """One gate that was not passed: what was found, what would have passed, both in `unit`.
 
-    `value` and `limit` are None where the evidence is no figure. `verdict` is what this gate alone decides. The
-    sentence of each gate stands in `app.wording.verdicts`.
+    `value` and `limit` are None where the evidence is no figure. `verdict` is what this gate alone decides. `sites` are
+    the sensors it is about, where these are others than its place's. `app.wording.verdicts` has each gate's sentence.
     """
 
     gate: str
@@ -38,6 +38,7 @@ class GateReason:
     value: float | None = None
     limit: float | None = None
     unit: str = ""
+    sites: tuple[Site, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -45,24 +45,34 @@ class Plan:
     rates_derived: frozenset[Site]
 
 
+class ExpectedError(ValueError):
+    """A value is not what it has to be: `what` that is, with `values` for its braces."""
+
+    def __init__(self, what: str, **values: object) -> None:
+        self.what, self.values = what, values
+        super().__init__(what.format(**values))
+
+
 def _text(value: object) -> str:
     if isinstance(value, datetime.datetime | datetime.date | datetime.time):
         return value.isoformat()
     if not isinstance(value, str):
-        raise ValueError("a text in quotation marks")
+        raise ExpectedError("a text in quotation marks")
     return value
 
 
 def _truth(value: object) -> bool:
     if not isinstance(value, bool):
-        raise ValueError("true or false")
+        raise ExpectedError("true or false")
     return value
 
 
 def _number(lowest: float, highest: float, unit: str) -> Check:
     def check(value: object) -> float:
         if isinstance(value, bool) or not isinstance(value, int | float) or not lowest <= value <= highest:
-            raise ValueError(f"a number of {unit} from {lowest:g} to {highest:g}")
+            raise ExpectedError(
+                "a number from {lowest:g} to {highest:g} {unit}", lowest=lowest, highest=highest, unit=unit
+            )
         return float(value)
 
     return check
@@ -70,13 +80,13 @@ def _number(lowest: float, highest: float, unit: str) -> Check:
 
 def _year(value: object) -> int:
     if isinstance(value, bool) or not isinstance(value, int) or not 1850 <= value <= 2200:
-        raise ValueError("a year such as 1950")
+        raise ExpectedError("a year such as 1950")
     return value
 
 
 def _sign(value: object) -> int:
     if isinstance(value, bool) or not isinstance(value, int) or value not in (1, -1):
-        raise ValueError("1 or -1")
+        raise ExpectedError("1 or -1")
     return value
 
 
@@ -85,7 +95,7 @@ def _one_of(words: Iterable[str], make: Callable[[str], Any] = str) -> Check:
 
     def check(value: object) -> Any:
         if not isinstance(value, str) or value not in allowed:
-            raise ValueError(f"one of {', '.join(word for word in allowed if word)}")
+            raise ExpectedError("one of {words}", words=", ".join(word for word in allowed if word))
         return make(value)
 
     return check
@@ -93,7 +103,7 @@ def _one_of(words: Iterable[str], make: Callable[[str], Any] = str) -> Check:
 
 def _filled(value: object) -> str:
     if not isinstance(value, str) or not value.strip():
-        raise ValueError("a text that is not empty")
+        raise ExpectedError("a text that is not empty")
     return value
 
 
@@ -102,7 +112,7 @@ def _inside(value: object) -> str:
     parts = re.split(r"[/\\]", value) if isinstance(value, str) else [""]
     is_absolute = not parts[0] or ":" in parts[0]
     if not isinstance(value, str) or is_absolute or ".." in parts or "\0" in value or not PurePosixPath(value).name:
-        raise ValueError("the name of a folder inside of the session folder")
+        raise ExpectedError("the name of a folder inside of the session folder")
     return value
 
 
@@ -144,8 +154,8 @@ PATIENT: Mapping[str, Known] = {
     "code": ("code", _text),
     "birth_year": ("birth_year", _year),
     "sex": ("sex", _text),
-    "height_m": ("height_m", _number(0.3, 2.8, "metres")),
-    "mass_kg": ("mass_kg", _number(1.0, 500.0, "kilograms")),
+    "height_m": ("height_m", _number(0.3, 2.8, "m")),
+    "mass_kg": ("mass_kg", _number(1.0, 500.0, "kg")),
     "device": ("device", _text),
     "aids": ("aids", _text),
     "affected_side": ("affected_side", _one_of(SIDES)),
@@ -155,7 +165,7 @@ SENSOR: Mapping[str, Known] = {
     "serial": ("serial", _text),
     "model": ("model", _text),
     "firmware": ("firmware", _text),
-    "rate_hz": ("rate_hz", _number(0.001, 100_000.0, "hertz")),
+    "rate_hz": ("rate_hz", _number(0.001, 100_000.0, "Hz")),
     "rate_kind": ("rate_kind", _one_of(RateKind, RateKind)),
     "clock": ("clock", _text),
 }
@@ -171,7 +181,7 @@ RECORDING: Mapping[str, Known] = {
 }
 REQUIRED = ("name", "kind", "folder")
 TABLES = ("session", "patient", "sensors", "zero", "sign")
-ZERO: Mapping[str, Known] = {joint.value: (joint.value, _number(-180.0, 180.0, "degrees")) for joint in LEG_JOINTS}
+ZERO: Mapping[str, Known] = {joint.value: (joint.value, _number(-180.0, 180.0, "°")) for joint in LEG_JOINTS}
 SIGN: Mapping[str, Known] = {joint.value: (joint.value, _sign) for joint in LEG_JOINTS}
 
 

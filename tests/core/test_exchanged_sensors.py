@@ -52,7 +52,7 @@ def test_exchanged_sensors_of_a_leg_are_named_and_what_they_show_is_withheld(
 ) -> None:
     analysis = analyse(swapped(worn, *exchanged))
     (finding,) = about_labels(analysis)
-    assert sentence(finding).startswith(f"{named}, free motion: seem swapped")
+    assert sentence(finding).startswith(f"{named}, free motion: These sensors look swapped")
     walk = analysis.recordings[-1]
     for joint in walk.joints:
         assert walk.verdicts.joint(joint).shape.verdict is Verdict.WITHHELD

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from app.wording.measures import NAMES, unit_symbol
+from app.wording.measures import NAMES, unit_symbol, with_unit
 from app.wording.translation import later, tr
 from core.parameters import SPEED, unit_of
 
@@ -19,7 +19,7 @@ class MeasureWords:
 
     @property
     def with_unit(self) -> str:
-        return f"{self.name}, {self.unit}" if self.unit else self.name
+        return with_unit(self.name, self.unit) if self.unit else self.name
 
 
 def measure_words(column: str) -> MeasureWords:

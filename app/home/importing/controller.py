@@ -10,6 +10,7 @@ from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QFileDialog
 
 from app.home.importing.import_page import ImportPage
+from app.home.importing.import_words import program_name
 from app.importing.untrusted_files import gather_foreign, read_foreign_session, read_foreign_trial
 from app.storage.exchange import import_session
 from app.system.progress import Report
@@ -107,7 +108,7 @@ class Importing(QObject):
     def begin(self) -> None:
         """Show how to begin."""
         self.forget()
-        self.page.show_nothing(list(PROGRAMS.values()))
+        self.page.show_nothing([program_name(key) for key in PROGRAMS])
         self.page.show_unread((), can_try_again=False)
         self.asked.emit()
 
@@ -191,7 +192,7 @@ class Importing(QObject):
     def _on_read(self, read: _Read) -> None:
         self._again = read.again
         if not read.found:
-            self.page.show_nothing(list(PROGRAMS.values()))
+            self.page.show_nothing([program_name(key) for key in PROGRAMS])
         sentences = [str(refusal) for refusal in read.refused]
         more = len(sentences) - MOST_SENTENCES
         if more > 0:
@@ -220,7 +221,7 @@ class Importing(QObject):
             code = session.patient.code
             self.page.show_session(where, names, code, session.findings, is_simulated=session.is_simulated)
         elif shown.draft is not None:
-            program = PROGRAMS[shown.draft.recordings[0].trial.format]
+            program = program_name(shown.draft.recordings[0].trial.format)
             self.page.show_draft(where, program, shown.draft)
         self.asked.emit()
 

@@ -12,6 +12,7 @@ from app.wording.translation import figure_text, later, tr, tr_n
 from core.body import Site
 from core.samples import FloatArray, ImuBlock, RecordingKind
 from core.signal.tracks import MAX_REPORTED_GAP_S
+from devices.files.trial import PROGRAMS
 
 if TYPE_CHECKING:
     from app.importing.import_drafts import DraftSensor, Origin
@@ -119,3 +120,20 @@ def _gravity(blocks: Sequence[ImuBlock]) -> str:
 def _clock(trial: "ImportedTrial") -> str:
     clocks = {sensor.info.clock for sensor in trial.sensors}
     return tr("each sensor has its own clock") if len(clocks) > 1 else ""
+
+
+def program_name(key: str) -> str:
+    """A program whose files can be read, and what these files are."""
+    words = {
+        "movella-dot": tr("Movella DOT (files of its app)"),
+        "xsens-mti": tr("Xsens MTi (raw bytes)"),
+        "ximu3": tr("x-IMU3 (bytes or CSV)"),
+        "shimmer": tr("Shimmer (card or Consensys)"),
+        "apdm": tr("APDM (Moveo, Mobility Lab or Motion Studio)"),
+        "opensim": tr("OpenSim (orientations)"),
+        "xdf": tr("LabRecorder (XDF files)"),
+        "matlab": tr("any program (MATLAB, named variables)"),
+        "parquet": tr("any program (Parquet, named columns)"),
+        "csv": tr("any program (CSV, named columns)"),
+    }
+    return words.get(key, PROGRAMS[key])

@@ -12,6 +12,7 @@ from app.reports.agreement.printed import (
     KINDS,
     clock_words,
     dagger_words,
+    event_name,
     figures_of_table_1,
     optical_words,
     other_angles_words,
@@ -37,7 +38,7 @@ from app.reports.patient.document import CODE_LENGTH, PAGES, draw_pages, set_pag
 from app.summary.numbers_in_words import fixed, signed
 from app.summary.plain_text import isolated, plain, shortened, typed
 from app.summary.report_dates import day
-from app.wording.translation import capitalised, later, spoken_language, tr
+from app.wording.translation import later, spoken_language, tr
 from core.agreement.figures import NAMED_PHASES, Agreement
 from core.body import JointKind
 from core.gait.phases import Phase
@@ -220,7 +221,7 @@ def _phases(study: AgreementStudy, patient: Patient) -> Block:
 def _of_events(study: AgreementStudy) -> list[str]:
     said = [
         tr("{event}: {found} of {count} found, {more} extra; {bias} ms late, SD {sd} ms.").format(
-            event=capitalised(kind.replace("_", " ")),
+            event=event_name(kind),
             found=found.found,
             count=found.count,
             more=found.more,

@@ -87,7 +87,7 @@ def printed(study: AgreementStudy, patient: Patient) -> Iterator[str]:
             yield f"  {number}: {clock_words(walk)}"
     yield from _events(study)
     for one in study.left_over:
-        yield f"- {one_line(one)}: no walk and trial belong together here, so it was not compared."
+        yield f"- {tr('{name}: no walk and trial match, so it was not compared.').format(name=one_line(one))}"
     yield from (f"- {said}" for said in verdict_words(study))
     if walks:
         yield ""
@@ -95,24 +95,40 @@ def printed(study: AgreementStudy, patient: Patient) -> Iterator[str]:
         yield dagger_words()
 
 
+def event_name(kind: str) -> str:
+    """An event as it heads a sentence."""
+    names = {"initial_contact": tr("initial contact"), "toe_off": tr("toe-off")}
+    return capitalised(names.get(kind, kind.replace("_", " ")))
+
+
 def clock_words(walk: ComparedWalk) -> str:
     """How the reference was brought to a walk."""
     found = walk.alignment
-    assert found is not None  # only walks with angles are told of
-    said = (
-        f"{one_line(walk.recording.name)}: the reference's clock shows {found.clock.offset_s:+.4f} s "
-        f"(sd {1e3 * found.offset_sd_s:.1f} ms) and runs {1e6 * found.clock.rate:+.0f} ppm "
-        f"(sd {1e6 * found.rate_sd:.0f})"
-    )
+    assert found is not None  # only walks with angles are reported
+    said = [
+        tr(
+            "{walk}: the reference's clock shows {offset_s:+.4f} s (SD {offset_sd_ms:.1f} ms) and runs {rate:+.0f} ppm "
+            "(SD {rate_sd:.0f})"
+        ).format(
+            walk=one_line(walk.recording.name),
+            offset_s=found.clock.offset_s,
+            offset_sd_ms=1e3 * found.offset_sd_s,
+            rate=1e6 * found.clock.rate,
+            rate_sd=1e6 * found.rate_sd,
+        )
+    ]
     turned = [name_of(joint) for joint, sign in found.sign.items() if sign < 0]
     if turned:
-        said += f"; it counts the other way: {', '.join(turned)}"
+        said.append(tr("sign reversed: {joints}").format(joints=", ".join(turned)))
     if not found.is_offset_certain:
-        said += "; another offset fits nearly as well, so it may be off by a stride"
+        said.append(tr("another offset fits nearly as well, so it may be off by a stride"))
     for trial, other in walk.more:
         name = ", ".join(filter(None, [trial.file, trial.trial.name]))
-        said += f"; that of {one_line(name)} {other.clock.offset_s:+.4f} s (sd {1e3 * other.offset_sd_s:.1f} ms)"
-    return f"{said}."
+        more = tr("offset of {name}: {offset_s:+.4f} s (SD {offset_sd_ms:.1f} ms)")
+        said.append(
+            more.format(name=one_line(name), offset_s=other.clock.offset_s, offset_sd_ms=1e3 * other.offset_sd_s)
+        )
+    return f"{'; '.join(said)}."
 
 
 def used_words(study: AgreementStudy) -> list[str]:
@@ -189,15 +205,18 @@ def _more(joint: Joint, role: str, found: Agreement) -> str:
 
 def _events(study: AgreementStudy) -> Iterator[str]:
     for kind, found in events_together(study).items():
-        yield (
-            f"{capitalised(kind.replace('_', ' '))}: {found.found} of {found.count} found, {found.more} more; "
-            f"{_short(1e3 * found.bias_s)} ms late, sd {_short(1e3 * found.sd_s)} ms."
+        said = tr("{event}: {found} of {count} found, {more} extra; {bias} ms late, SD {sd} ms.")
+        bias, sd = _short(1e3 * found.bias_s), _short(1e3 * found.sd_s)
+        yield said.format(
+            event=event_name(kind), found=found.found, count=found.count, more=found.more, bias=bias, sd=sd
         )
     lengths = lengths_together(study)
     if len(lengths) > 1:
         error = lengths[:, 0] - lengths[:, 1]
-        bias = 100 * float(error.mean()) / float(lengths[:, 1].mean())
-        yield f"Stride length: {len(lengths)} strides, bias {bias:+.2f} %, sd {100 * float(error.std(ddof=1)):.2f} cm."
+        percent = 100 * float(error.mean()) / float(lengths[:, 1].mean())
+        said = tr("Stride length: {count} strides, bias {bias} %, SD {sd} cm.")
+        spread = f"{100 * float(error.std(ddof=1)):.2f}"
+        yield said.format(count=len(lengths), bias=f"{percent:+.2f}", sd=spread)
 
 
 def _of(walk: ComparedWalk, joint: Joint, of_walk: Callable[[Agreement], float]) -> float:

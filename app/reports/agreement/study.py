@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from app.wording.recordings import shown_names
+from app.wording.translation import later
 from core.agreement.clock import APART_S, MIN_OVERLAP_S, Alignment, FoundOffset, Misfit, align, find_offset
 from core.agreement.curves import ComparedTrial, TimedAngle, angle_at
 from core.agreement.events import (
@@ -380,15 +381,15 @@ def _refusal(
     theirs = sorted({str(joint) for one in trials for joint in one.trial.angles})
     ours = sorted({str(joint) for walk in walks for joint in walk.measured})
     if Misfit.NOT_ALIKE in misfits:
-        what = "its angles move unlike those of any walk of the session"
+        what = later("its angles move unlike those of any walk of the session")
         return FileRefusedError(
             where, what, "Give the reference of this session, and check that left and right are not swapped in it"
         )
     if Misfit.TOO_LITTLE_MOTION in misfits:
-        what = "the joints hardly move in it, so its clock cannot be found"
+        what = later("the joints hardly move in it, so its clock cannot be found")
         return FileRefusedError(where, what, "Give the reference of a walk, not of standing, in degrees")
     if Misfit.TOO_SHORT in misfits:
-        what = "there are not two seconds of motion without gaps that both systems saw"
+        what = later("there are not two seconds of motion without gaps that both systems saw")
         return FileRefusedError(where, what, "Give the reference of a whole walk, at 20 or more samples a second")
     return FileRefusedError(
         where,

@@ -14,7 +14,6 @@ from app.summary.comparison import Compared, Comparison, Contrast, Reservation
 from app.summary.conditions import Part, left_out_of_parts
 from app.summary.error_sources import sources_in_words
 from app.summary.facts import Facts, joint_of, part_of, role
-from app.summary.measure_sentences import measure_in_words
 from app.summary.measures import MEASURES, Measure
 from app.summary.numbers_in_words import (
     CARE,
@@ -32,13 +31,13 @@ from app.summary.report_dates import day
 from app.summary.request import ReportRequest
 from app.summary.visits import by_condition, condition_in_words
 from app.wording.alignment import NO_PROOF, change_in_words
+from app.wording.measures import measure_name, name_with_unit
 from app.wording.translation import capitalised, joined, tr
-from app.wording.verdicts import verdict_word
+from app.wording.verdicts import verdict_alone, verdict_word
 from core.body import JointKind, Side
 from core.parameters import KNEE_RANGE, STANCE
 from core.verdicts.measurement_error import ComparisonKind, sigma_of
 from core.verdicts.model import Verdict, worst
-from core.verdicts.quantities import EXCURSIONS_BY_COLUMN, OF_HIPS
 
 CHANGES_LENGTH = 300  # letters: three lines of the table
 PLOT_WIDTH = 53 * MM  # with the table of three parts, or a line more of words, this fills a Letter page
@@ -148,7 +147,7 @@ def _parts_table(comparison: Comparison) -> Block:
                 typed(part.name, CONDITION_LENGTH),
                 strides,
                 fixed(part.of_both("speed_m_s"), 2),
-                *map(verdict_word, worst_of),
+                *map(verdict_alone, worst_of),
             ]
         )
     return table(columns, rows, is_dense=True)
@@ -232,7 +231,7 @@ def _table(comparison: Comparison, shown: Facts, sides: Sequence[Side]) -> Block
     columns = [Column(tr("Measure, °"), "1fr", is_number=False), *(Column(part.letter) for part in comparison.parts)]
     for part in comparison.others:
         if is_visits:
-            columns += [Column(tr("Change 2 − 1")), Column(tr("Error")), Column(tr("In words"), is_number=False)]
+            columns += [Column(tr("Change 2 − 1")), Column(tr("Error")), Column(tr("Result"), is_number=False)]
         else:
             base = comparison.base_of(part)
             against = tr("{this} vs {first}").format(this=part.letter, first=base.letter)
@@ -279,21 +278,7 @@ def _compared(comparison: Comparison, measure: Measure, side: Side, part: Part) 
 
 
 def _measure(column: str) -> str:
-    of_leg = {
-        "stance_percent": tr("Stance (% gait cycle)"),
-        "stride_length_m": tr("Stride length, m"),
-        "speed_m_s": tr("Speed, m/s"),
-        "cadence_steps_min": tr("Cadence, steps/min"),
-    }
-    if column in of_leg:
-        return of_leg[column]
-    if column in OF_HIPS:
-        return capitalised(measure_in_words(column))
-    kind = tr("Knee") if column.startswith("knee") else tr("Ankle")
-    if column in EXCURSIONS_BY_COLUMN:
-        return f"{kind}: {panels.excursion_name(column)}"
-    name = tr("range of motion") if column.endswith("_range_deg") else panels.peak_name(column)
-    return f"{kind}: {name}"
+    return measure_name(column) if column.endswith("_deg") else name_with_unit(column)
 
 
 def _what_else_changed(comparison: Comparison) -> str:

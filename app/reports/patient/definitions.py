@@ -62,12 +62,25 @@ def definitions(kind: str) -> Picture:
     names = []
     for column, place in PLACES.items():
         if column.startswith(kind):
-            name = tr("ROM") if column.endswith("_range_deg") else excursion_name(column)
+            name = _label(column)
             names.append(name)
             ends = [(x(percent), y(value)) for percent, value in _ends(column, angle_deg)]
             parts += _bracket(x(place.percent), ends, name, place)
     alt = tr("Schematic curve over 100 % of the gait cycle with brackets: {names}.").format(names=", ".join(names))
     return picture(parts, WIDTH, HEIGHT, alt)
+
+
+def _label(column: str) -> str:
+    """The movement in a word or two, for there is little room: at the ankle, when it is."""
+    short = {
+        "ankle_heel_rocker_deg": tr("loading"),
+        "ankle_rocker_deg": tr("stance"),
+        "ankle_push_off_deg": tr("push\u2011off"),
+        "ankle_toes_lifted_deg": tr("swing"),
+        KNEE_RANGE: tr("ROM"),
+        ANKLE_RANGE: tr("ROM"),
+    }
+    return short.get(column) or excursion_name(column)
 
 
 def _ends(column: str, angle_deg: FloatArray) -> list[tuple[float, float]]:

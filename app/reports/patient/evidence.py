@@ -10,7 +10,7 @@ from app.summary.facts import Facts, joint_of
 from app.summary.numbers_in_words import DAGGER, NOTHING, dagger_note, fixed, signed, signed_error
 from app.summary.quality import slipped_straps
 from app.wording.translation import capitalised, name_of, side_name, tr
-from app.wording.verdicts import verdict_word
+from app.wording.verdicts import verdict_alone
 from core.body import Joint, JointKind, Side, hip_of
 from core.calibration.clinical_sign import MIN_MARGIN
 from core.calibration.same_joint import DOUBTFUL_DISAGREEMENT, MAX_DISAGREEMENT
@@ -103,7 +103,7 @@ def evidence_table(facts: Facts) -> list[Block]:
             tr("at most {limit}°").format(limit=fixed(LIMITS.thirds_deg, 0)),
         ),
         ("strap", tr("Strap"), lambda joint, _: _strap(facts, joint), tr("not moved")),
-        ("zero", tr("Standing reference"), lambda _, found: _zero(found), tr("standing, or goniometer")),
+        ("zero", tr("Standing reference"), lambda _, found: _zero(found), tr("posture, or goniometer")),
     ]
     rows: list[Row] = [
         [
@@ -117,7 +117,7 @@ def evidence_table(facts: Facts) -> list[Block]:
         for gate, label, said, limit in gates
     ]
     for label, part in ((tr("ROM, shape"), "shape"), (tr("Absolute angle"), "height")):
-        words = [verdict_word(getattr(facts.verdicts.joint(joint), part).verdict) for joint in joints]
+        words = [verdict_alone(getattr(facts.verdicts.joint(joint), part).verdict) for joint in joints]
         rows.append([Cell(label, is_bold=True), *(Cell(word, is_bold=True) for word in words), ""])
     return [heading(tr("Basis of each rating")), table(columns, rows, is_dense=True)]
 
@@ -197,7 +197,7 @@ def hips_table(facts: Facts) -> list[Block]:
         (tr("Abduction"), [assessment_of(said, joint.side, "hip_abduction_peak_deg") for joint in hips]),
     ]
     for label, found in verdicts:
-        words = [Cell(verdict_word(one.verdict), is_bold=True) for one in found]
+        words = [Cell(verdict_alone(one.verdict), is_bold=True) for one in found]
         rows.append([Cell(label, is_bold=True), *words, ""])
     clocks = clocks_in_words(facts)
     return [table(columns, rows, is_dense=True), *([note(clocks)] if clocks else [])]
@@ -345,7 +345,7 @@ def _strap(facts: Facts, joint: Joint) -> str:
 
 
 def _zero(found: JointCalibration) -> str:
-    names = {ZeroKind.STANDING: tr("standing"), ZeroKind.GONIOMETER: tr("goniometer"), ZeroKind.NONE: tr("none")}
+    names = {ZeroKind.STANDING: tr("posture"), ZeroKind.GONIOMETER: tr("goniometer"), ZeroKind.NONE: tr("none")}
     return names[found.zero]
 
 

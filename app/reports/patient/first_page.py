@@ -20,7 +20,7 @@ from app.summary.report_dates import moment
 from app.summary.request import ReportRequest
 from app.summary.what_stands_out import MAX_AWAY_SD, caveat, nothing_found, printed_findings
 from app.wording.translation import capitalised, figure_text, joined, name_of, side_name, tr, tr_n
-from app.wording.verdicts import verdict_word
+from app.wording.verdicts import verdict_alone
 from core.body import Joint, JointKind, Side
 from core.parameters import KNEE
 from core.verdicts.model import Assessment, Verdict, worst
@@ -156,7 +156,7 @@ def _dotted(found: Assessment) -> dict[str, object]:
 
 
 def _dot_and_word(verdict: Verdict) -> tuple[dict[str, object], str]:
-    return dot(verdict).as_data(), verdict_word(verdict)
+    return dot(verdict).as_data(), verdict_alone(verdict)
 
 
 def curves(facts: Facts, comparison: Comparison | None) -> dict[str, object]:
@@ -212,7 +212,7 @@ def _beside(facts: Facts, joint: Joint) -> list[dict[str, object]]:
     lines = [_line(name, "label"), _line(f"{fixed(found.mean, 1)}°", "value")]
     if is_spread_enough(found.n):
         lines.append(_line(tr("SD {sd}°").format(sd=fixed(found.sd, 1)), "grey"))
-    lines.append(_line(verdict_word(verdicts.shape.verdict), "small", dot(verdicts.shape.verdict)))
+    lines.append(_line(verdict_alone(verdicts.shape.verdict), "small", dot(verdicts.shape.verdict)))
     lines += [_line(said) for said in _against_band(facts, joint)]
     lines.append(_line(tr("Absolute angle"), "label"))
     offset_deg = facts.offset_deg(side, kind)
@@ -222,7 +222,7 @@ def _beside(facts: Facts, joint: Joint) -> list[dict[str, object]]:
             _line(tr("{offset}° vs reference").format(offset=signed(offset_deg, 1))),
             _line(tr("between labs ±7°"), "grey"),
         ]
-    lines.append(_line(verdict_word(verdicts.height.verdict), "small", dot(verdicts.height.verdict)))
+    lines.append(_line(verdict_alone(verdicts.height.verdict), "small", dot(verdicts.height.verdict)))
     return lines
 
 

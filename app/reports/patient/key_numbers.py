@@ -18,6 +18,7 @@ from app.summary.numbers_in_words import (
 )
 from app.summary.what_differs import LegsRow, what_differs
 from app.summary.what_stands_out import BANDS_ON_PAPER, ranked_findings
+from app.wording.measures import with_unit
 from app.wording.translation import tr
 from core.body import Side
 from core.parameters import KNEE, KNEE_RANGE, PUSH_OFF, STANCE, STEP_TIME
@@ -65,7 +66,7 @@ def _cells(row: LegsRow) -> list[Cell | str]:
     unit = row.unit.strip()
     dagger = DAGGER if found.is_unverified else ""
     return [
-        "; ".join([f"{row.name}, {unit}", *map(goal_mark, row.goals)]),
+        "; ".join([with_unit(row.name, unit), *map(goal_mark, row.goals)]),
         *values,
         Cell(signed(found.difference, row.decimals) if found.is_told else NOTHING, is_bold=found.exceeds),
         f"{fixed(found.error, row.decimals)}{dagger}" if row.is_judged else NOTHING,

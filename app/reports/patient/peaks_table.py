@@ -127,7 +127,7 @@ def _side_column(facts: Facts, side: Side) -> Column:
 def measure(column: str) -> str:
     """Name a row, with the window its peak is looked for in."""
     if column == "hip_abduction_range_deg":
-        return tr("Abduction, range of motion")
+        return tr("Abduction range of motion")
     if column.startswith("hip") and column.endswith("_peak_deg"):
         return capitalised(peak_name(column))
     if column.endswith("_at_initial_contact_deg"):

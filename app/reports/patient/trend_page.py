@@ -8,19 +8,19 @@ from app.charts.drawing import Picture
 from app.reports.blocks import Block, Cell, Column, Row, bullets, figures, heading, note, table
 from app.reports.patient.trend_chart import trend_chart
 from app.summary.course_lanes import CourseVisit
-from app.summary.facts import Facts, role
+from app.summary.facts import Facts
 from app.summary.goals import goal_mark, goal_sentence, in_course
-from app.summary.measure_sentences import measure_in_words, unit_and_decimals
+from app.summary.measure_sentences import Told, change_sentence, unit_and_decimals, who_of_role
 from app.summary.numbers_in_words import DAGGER, NOTHING, dagger_note, fixed, in_brief, signed
 from app.summary.plain_text import CONDITION_LENGTH, shortened, typed
 from app.summary.trend_lines import TrendLine, trend_columns, trend_lines, walked_visits
 from app.summary.visits import condition_in_words
 from app.wording.dates import date, short_date
-from app.wording.measures import least_span, measure_name, short_unit, unit_name
-from app.wording.translation import capitalised, tr
+from app.wording.measures import least_span, name_with_unit
+from app.wording.translation import tr
 from core.body import Side
 from core.goals import Goal, GoalOf
-from core.parameters import KNEE, PUSH_OFF, SPEED, STANCE
+from core.parameters import SPEED
 from core.timed.measures import COLUMNS, PROTOCOLS
 from core.timed.protocols import TimedProtocol
 
@@ -106,7 +106,7 @@ def _chart(column: str, lines: Sequence[TrendLine], days: Sequence[datetime.date
     goals = [(goal.value, _agreed_in_words(goal)) for goal in held]
     least = least_span(column) if column in PROTOCOLS else 0.0
     return trend_chart(
-        _name(column), decimals, days, drawn, is_simulated=facts.is_simulated, goals=goals, least_span=least
+        name_with_unit(column), decimals, days, drawn, is_simulated=facts.is_simulated, goals=goals, least_span=least
     )
 
 
@@ -114,21 +114,6 @@ def _agreed_in_words(goal: Goal) -> str:
     """A goal and when it was agreed, by whom."""
     by = f", {typed(shortened(goal.by, BY_LENGTH), BY_LENGTH)}" if goal.by else ""
     return tr("{goal}, agreed {day}").format(goal=goal_mark(goal), day=short_date(goal.agreed)) + by
-
-
-def _name(column: str) -> str:
-    names = {
-        KNEE: tr("Knee flexion, stance to swing, °"),
-        PUSH_OFF: tr("Ankle plantarflexion, push\u2011off, °"),
-        STANCE: tr("Stance (% gait cycle)"),
-        SPEED: tr("Walking speed, m/s"),
-    }
-    if column in names:
-        return names[column]
-    if column in PROTOCOLS:
-        return tr("{measure}, {unit}").format(measure=measure_name(column), unit=short_unit(column).strip())
-    unit = "°" if column.endswith("_deg") else unit_name(column)
-    return tr("{measure}, {unit}").format(measure=measure_name(column), unit=unit)
 
 
 def _sentences(lines: Sequence[TrendLine], facts: Facts, visits: int) -> list[str]:
@@ -165,19 +150,11 @@ def _sentence(line: TrendLine, facts: Facts, visits: int) -> str:
     assert found is not None  # those without one are not told
     unit, decimals = unit_and_decimals(line.column)
     first = next(one for one in line.values if one.visit == line.first)
-    name = measure_in_words(line.column)
-    who = name if line.side is None else f"{role(facts, line.side)}, {name}"
-    said = tr(
-        "{who}: {a} at visit {first}, {b} at visit {last}. Change {change} (error between visits {error})."
-    ).format(
-        who=capitalised(who),
-        a=fixed(first.value, decimals) + unit,
-        b=fixed(last.value, decimals) + unit,
-        first=line.first + 1,
-        last=visits,
-        change=signed(found.difference, decimals) + unit,
-        error=fixed(found.error, decimals) + unit,
-    )
+    now, before = (tr("at visit {visit}").format(visit=number) for number in (visits, line.first + 1))
+    who = "" if line.side is None else who_of_role(facts, line.side, line.column)
+    changed = change_sentence(line.column, who, found.difference, Told(now, last.value), Told(before, first.value))
+    error = tr("Error between visits: {error}.").format(error=fixed(found.error, decimals) + unit)
+    said = f"{changed} {error}"
     since = line.since_last
     if since is None or line.before == line.first:
         return said
@@ -206,7 +183,7 @@ def _table(lines: Sequence[TrendLine], visits: int) -> Block:
     for line in lines:
         _, decimals = unit_and_decimals(line.column)
         values = {one.visit: one.value for one in line.values}
-        cells: list[Cell | str] = [_name(line.column), line.side.letter if line.side is not None else ""]
+        cells: list[Cell | str] = [name_with_unit(line.column), line.side.letter if line.side is not None else ""]
         for visit in shown:
             is_withheld = visit in values and not math.isfinite(values[visit])
             cells.append(tr("not reported") if is_withheld else fixed(values.get(visit, math.nan), decimals))

@@ -239,7 +239,7 @@ def _last_visit(session: "StoredSession") -> LastVisit:
     walks = [one for one in told.recordings if one.kind is RecordingKind.WALKING and one.is_kept]
     facts = [
         (tr("Walks"), ", ".join(dict.fromkeys(walk.condition or walk.name for walk in walks)) or tr("none included")),
-        (tr("Standing reference"), _zero_in_words(told)),
+        (tr("Standing angle (goniometer)"), _zero_in_words(told)),
     ]
     if session.placements:
         sensors = session.placements[-1].site_of

@@ -291,8 +291,9 @@ class ResultsStep(Step):
             return
         before, walk = recording.details.condition, self._visit.recordings.shown_names[recording.details.name]
         self._change_condition(key, condition)
+        said = tr("{walk}: condition now {condition}.") if condition else tr("{walk}: condition not recorded.")
         self._offer(
-            tr("{walk}: condition now {condition}.").format(walk=walk, condition=condition or tr("not recorded")),
+            said.format(walk=walk, condition=condition),
             lambda: self._change_condition(key, before),
         )
 

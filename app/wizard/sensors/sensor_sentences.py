@@ -131,7 +131,7 @@ def _said_of_silent(sensor: SensorRow, has_hips: bool) -> tuple[str, str]:
     seconds = max(round(sensor.silent_s), 1)
     what = tr("{name}: no signal for {seconds} s.").format(name=_called(sensor), seconds=seconds)
     if sensor.site is None:
-        return what, tr("Switch it off and on.")
+        return what, tr("Switch the sensor off and on.")
     lost = {
         Site.LEFT_THIGH: tr("left knee angles"),
         Site.LEFT_SHANK: tr("left knee and ankle angles"),
@@ -146,7 +146,7 @@ def _said_of_silent(sensor: SensorRow, has_hips: bool) -> tuple[str, str]:
             Site.LEFT_THIGH: tr("left knee and hip angles"),
             Site.RIGHT_THIGH: tr("right knee and hip angles"),
         }
-    return what, tr("Switch it off and on, or continue without {angles}.").format(angles=lost[sensor.site])
+    return what, tr("Switch the sensor off and on, or continue without {angles}.").format(angles=lost[sensor.site])
 
 
 def _said_of_missing_foot(foot: Site) -> tuple[str, str]:

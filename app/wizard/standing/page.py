@@ -18,7 +18,7 @@ from app.widgets.notice import Notice
 from app.widgets.stillness import INSET, STEPS, CountRing, MovementBars, RingFace
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.themed import Themed
-from app.wording.translation import capitalised, name_of, tr
+from app.wording.translation import capitalised, name_of, tr, tr_n
 from core.body import LEG_JOINTS, Joint, Side, Site
 from core.calibration.rest import MAX_SPREAD_RAD_S
 from core.live.standing import WANTED_S
@@ -399,7 +399,7 @@ def verdict(view: StandStillView, is_short: bool = False) -> tuple[Icon | None, 
         return Icon.SILENT, what, waits if is_short else f"{waits} {tr('Switch the sensor off and on.')}", True
     if view.moving:
         what = tr("{sites} moving").format(sites=_names(view.moving))
-        return Icon.WAVE, what, _moved(view, is_short), True
+        return Icon.WAVE, what, _moved(view), True
     if not view.is_known:
         return None, "", "", False
     then = tr("Movement restarts the count.")
@@ -423,24 +423,13 @@ def way_round(view: StandStillView, is_short: bool = False) -> tuple[Icon | None
     return Icon.INFO, "", then, False
 
 
-def _moved(view: StandStillView, is_short: bool) -> str:
-    sides = {Site(sensor).side for sensor in view.moving if sensor in set(Site)}
-    legs = [_leg_moved(side) for side in sides if side is not None]
-    what = tr("Both legs moved.") if len(legs) > 1 else "".join(legs)
-    if sides == {None}:
-        what = tr("The pelvis moved.")
-    again = tr("The count restarts automatically.") if view.phase is StandPhase.COUNTING else ""
-    return again or what if is_short else " ".join(filter(None, [what, again]))
-
-
-def _leg_moved(side: Side) -> str:
-    return tr("The left leg moved.") if side is Side.LEFT else tr("The right leg moved.")
+def _moved(view: StandStillView) -> str:
+    """What follows where something is counted."""
+    return tr("The count restarts automatically.") if view.phase is StandPhase.COUNTING else ""
 
 
 def _all_still(count: int) -> str:
-    few = (tr("Sensor is still"), tr("Both are still"), tr("All three are still"), tr("All four are still"))
-    words = (*few, tr("All five are still"), tr("All six are still"), tr("All seven are still"))
-    return words[count - 1] if count <= len(words) else tr("All are still")
+    return tr_n("{count} sensor still", "All {count} sensors still", count).format(count=count)
 
 
 def _names(sensors: Sequence[str]) -> str:

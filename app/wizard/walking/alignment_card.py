@@ -142,7 +142,7 @@ class AlignmentCard(Card):
         angle_words, shift_words = direction_words(entry.part)
         shown = {
             "angle_deg": (angle_words, "°"),
-            "turns": (tr("Turns"), ""),
+            "turns": (tr("Screw turns"), ""),
             "shift_mm": (shift_words, tr(" mm")),
             "height_mm": (tr("Height, longer +"), tr(" mm")),
         }

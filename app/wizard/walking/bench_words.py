@@ -2,13 +2,14 @@
 
 import math
 
-from app.results.compared_words import error_in_sentence, is_judged, unit_behind
+from app.results.compared_words import error_in_sentence, is_judged
 from app.summary.answer import Answer, Outcome
 from app.summary.comparison import Compared, Comparison
 from app.summary.conditions import Part
-from app.summary.numbers_in_words import fixed, signed
+from app.summary.measure_sentences import Told, change_sentence, likely_sentence, similar_sentence
+from app.summary.numbers_in_words import fixed
 from app.summary.what_stands_out import FAMILIES
-from app.wording.translation import tr, within_sentence
+from app.wording.translation import tr
 from core.body import Side
 from core.verdicts.norms import MIN_STRIDES_FOR_SD
 
@@ -20,14 +21,16 @@ def bench_answer(found: Comparison, prosthetic: Side) -> Answer:
     shown, other = found.parts[1], found.against
     few = [part for part in (shown, other) if part.strides(prosthetic) < MIN_STRIDES_FOR_SD]
     if few:
-        counts = tr("{letter} has {count}").format(letter=few[0].letter, count=few[0].strides(prosthetic))
         first = tr("{one} and {other}: too few strides to assess a change.").format(
             one=shown.letter, other=other.letter
         )
-        wanted = tr(
-            "Provisional: {counts} strides on the prosthetic side; {wanted} are needed for a measurement error."
+        then = tr(
+            "Provisional: {letter} has {count} strides on the prosthetic side; {required} are needed for a "
+            "measurement error."
         )
-        return Answer(Outcome.OPEN, first, wanted.format(counts=counts, wanted=MIN_STRIDES_FOR_SD))
+        count = few[0].strides(prosthetic)
+        then = then.format(letter=few[0].letter, count=count, required=MIN_STRIDES_FOR_SD)
+        return Answer(Outcome.OPEN, first, then)
     own = [row for row in found.rows if _is_told_of(row) and row.side is prosthetic]
     if not own:
         first = tr("Prosthetic side: nothing can be compared between {one} and {other}.")
@@ -38,8 +41,11 @@ def bench_answer(found: Comparison, prosthetic: Side) -> Answer:
     if beyond:
         error = tr("Beyond measurement error (±{error}).") if worth else tr("Just beyond measurement error (±{error}).")
         error = error.format(error=error_in_sentence(most))
-        return Answer(Outcome.DIFFERS, _sentence(most), f"{error} {_beside(found, prosthetic)}")
-    return Answer(Outcome.NOTHING, _similar(most), f"{_what_fits(most)} {_beside(found, prosthetic)}")
+        return Answer(Outcome.DIFFERS, change_sentence(*_of_side(most)), f"{error} {_beside(found, prosthetic)}")
+    column, _, size, *told = _of_side(most)
+    similar = similar_sentence(column, tr("Prosthetic side"), size, *told)
+    likely = likely_sentence(column, most.difference, *told)
+    return Answer(Outcome.NOTHING, similar, f"{likely} {_beside(found, prosthetic)}")
 
 
 def speeds_in_words(shown: Part, other: Part) -> str:
@@ -61,60 +67,15 @@ def _without_family(rows: list[Compared]) -> list[Compared]:
     return [row for row in rows if (FAMILIES.get(row.measure.column), row.difference.difference > 0) not in told]
 
 
-def _sentence(row: Compared) -> str:
-    name, unit, decimals = _name(row), _unit(row), _decimals(row)
-    pattern = (
-        tr("Prosthetic side, {measure}: {value} with {letter}, {size} less than with {other} ({before}).")
-        if row.difference.difference < 0
-        else tr("Prosthetic side, {measure}: {value} with {letter}, {size} more than with {other} ({before}).")
-    )
-    return pattern.format(
-        letter=row.part.letter,
-        other=row.against.letter,
-        size=fixed(abs(row.difference.difference), decimals) + unit,
-        measure=within_sentence(name),
-        value=fixed(row.value.mean, decimals) + unit,
-        before=fixed(row.other.mean, decimals) + unit,
-    )
-
-
-def _similar(row: Compared) -> str:
-    """What changed most, where it may be error."""
-    unit, decimals = _unit(row), _decimals(row)
-    said = tr("The prosthetic side is similar with {other} and {one}: {measure} {before} and {value}.")
-    return said.format(
-        one=row.part.letter,
-        other=row.against.letter,
-        measure=within_sentence(_name(row)),
-        value=fixed(row.value.mean, decimals) + unit,
-        before=fixed(row.other.mean, decimals) + unit,
-    )
-
-
-def _what_fits(row: Compared) -> str:
-    found, unit, decimals = row.difference, _unit(row), _decimals(row)
-    said = tr("The change of {size} may be measurement error: likely between {low} and {high}.")
-    edges = (found.difference, found.difference - found.error, found.difference + found.error)
-    size, low, high = (signed(edge, decimals) + unit for edge in edges)
-    return said.format(size=size, low=low, high=high)
-
-
-def _name(row: Compared) -> str:
-    """Of the measure; the unit is with the figure."""
-    name = tr(row.measure.name)
-    return name if row.measure.kind else name.rpartition(",")[0]
-
-
-def _unit(row: Compared) -> str:
-    return unit_behind(row.measure) or "\N{NO-BREAK SPACE}%"
-
-
-def _decimals(row: Compared) -> int:
-    """Subtracted before rounding; where rounded figures disagree with that, all have a decimal more."""
-    decimals, value, other = row.measure.decimals, row.value.mean, row.other.mean
-    difference = row.difference.difference
-    disagree = round(round(value, decimals) - round(other, decimals), decimals) != round(difference, decimals)
-    return decimals + disagree
+def _of_side(row: Compared) -> tuple[str, str, float, Told, Told]:
+    """The prosthetic side's measure, whose it is, its difference, and both values with their alignments."""
+    joint = row.measure.joint(row.side)
+    who = tr("Prosthetic side")
+    if joint is not None:
+        who = tr("Prosthetic-side {joint}").format(joint=tr(joint.kind))
+    now, before = (tr("with {part}").format(part=part.letter) for part in (row.part, row.against))
+    told = Told(now, row.value.mean), Told(before, row.other.mean)
+    return row.measure.column, who, row.difference.difference, *told
 
 
 def _beside(found: Comparison, prosthetic: Side) -> str:

@@ -125,8 +125,8 @@ class StoppedCard(Card):
     def __init__(self, look: ThemeNotifier) -> None:
         self._title = Text(look, size=16, weight=SEMIBOLD, wraps=True)
         self._facts = Text(look, size=14, tone="ink2", wraps=True)
-        self.keep = Button(look, "", ButtonKind.PRIMARY, key="K")
-        self.discard = Button(look, tr("Exclude"), ButtonKind.SECONDARY, key="D")
+        self.keep = Button(look, "", ButtonKind.PRIMARY, key="I")
+        self.discard = Button(look, tr("Exclude"), ButtonKind.SECONDARY, key="X")
         self._row, self._verbs = QBoxLayout(ACROSS), QHBoxLayout()
         super().__init__(look)
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)

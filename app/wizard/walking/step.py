@@ -231,7 +231,7 @@ class WalkingStep(Step):
                 self._timed.choose_next()
             case KeyAction.LEAVE if self._timed.is_running:
                 self.stop()
-            case KeyAction.KEEP if self._asked is not None:
+            case KeyAction.KEEP | KeyAction.IDENTIFY if self._asked is not None:
                 self._keep(self._asked, is_kept=True)
             case KeyAction.DISCARD if self._asked is not None:
                 self.discard()

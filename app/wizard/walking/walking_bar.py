@@ -53,7 +53,7 @@ class WalkingBar:
         if is_between and self._bench.is_shown:
             yield BarAction(tr("Walks"), self._bench.turn)
             if asked_walk(self._visit.recordings) is not None:
-                yield BarAction(tr("Exclude"), self._walks.discard, "D")
+                yield BarAction(tr("Exclude"), self._walks.discard, "X")
         elif is_between:
             if self._bench.is_offered:
                 yield BarAction(tr("Alignment"), self._bench.turn)

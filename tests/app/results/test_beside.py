@@ -26,6 +26,8 @@ from devices.simulation.walker_body import Tissue
 from tests.app.changed_analysis import recalibrated
 from tests.app.room import settle
 
+MINUS = "\N{MINUS SIGN}"
+
 
 @pytest.fixture(scope="module")
 def session() -> Session:
@@ -119,8 +121,8 @@ def test_the_table_and_the_key_figures_tell_the_change_with_its_verdict(
     assert speed.exceeds  # 0.8 m/s is far off
     assert {found.error_kind(part) for part in found.others} == {ComparisonKind.ATTACHED}
     (told,) = (figure for figure in page.key_figures.figures if figure.name == "Walking speed")
-    assert told.note == f"+{speed.difference.difference:.2f} exceeds error"
-    assert told.words.endswith("beside B AFO.")
+    assert told.note == f"+{speed.difference.difference:.2f} beyond error"
+    assert told.words.endswith("versus B AFO.")
     first = page.differs.table.cells.rows[0]
     assert [cell.words for cell in first.cells[1:5:3]] == ["Walking speed, m/s", f"+{speed.difference.difference:.2f}"]
     assert first.cells[-1].words == "beyond error"
@@ -164,7 +166,7 @@ def test_a_long_name_is_cut_in_the_table_and_whole_where_it_is_read_aloud(
     alone = walks_alone(analysis, with_conditions(session, walk_1="shoes", walk_2=typed).recordings)
     heads = [column.head for column in beside_columns(beside_walk(alone["walk 1"], alone["walk 2"], is_simulated=True))]
     assert (heads[1].words, heads[3].words) == (title, head)
-    assert (heads[1].said, heads[3].said) == (f"Beside B {typed}", f"B {typed}")
+    assert (heads[1].said, heads[3].said) == (f"Versus B {typed}", f"B {typed}")
     settle()
     assert page.minimumSizeHint().width() <= page.width()
 
@@ -194,7 +196,9 @@ def test_without_a_common_zero_shapes_are_laid_over_one_another_and_that_is_said
         [WalkedVisit("2026-06-20", other, session.recordings), WalkedVisit("2026-11-14", analysis, session.recordings)],
     )
     knee, ankle = words_beside(page)
-    assert knee == "Thin: 2026-06-20. No common zero: range and shape hold, height does not."
+    assert knee == (
+        "Thin: 2026-06-20. No common standing reference: compare range of motion and curve shape, not absolute angles."
+    )
     assert ankle == "Thin: 2026-06-20."
     assert page.cycles.charts.knee.chart.is_about_mean
     for curve in page.cycles.charts.knee.chart.described.beside:
@@ -242,12 +246,18 @@ def test_a_condition_that_no_earlier_visit_has_stands_beside_nothing(
 def test_the_sentence_is_of_what_stands_beside_and_never_of_the_legs(page: ResultPage) -> None:
     of_legs = page.answer.text
     choose(page, "walk 2")
-    assert page.answer.text.startswith("Walking speed: 0.39\N{NO-BREAK SPACE}m/s more than B AFO, ")
-    assert "Beyond measurement error (±0.08\N{NO-BREAK SPACE}m/s†)." in page.answer.text  # of two walks, unverified
+    assert page.answer.text.startswith(
+        "Walking speed is 1.19\N{NO-BREAK SPACE}m/s in this walk, 0.39\N{NO-BREAK SPACE}m/s more than in B AFO ("
+    )
+    assert (
+        "Beyond measurement error (±0.08\N{NO-BREAK SPACE}m/s\N{DAGGER})." in page.answer.text
+    )  # of two walks, unverified
     assert of_legs not in page.answer.text
     show(page, "walk 2")
     choose(page, "walk 1")
-    assert page.answer.text.startswith("Walking speed: 0.39\N{NO-BREAK SPACE}m/s less than A shoes, ")
+    assert page.answer.text.startswith(
+        "Walking speed is 0.80\N{NO-BREAK SPACE}m/s in this walk, 0.39\N{NO-BREAK SPACE}m/s less than in"
+    )
     show(page, "walk 1")
     choose(page, Beside.BAND)
     assert page.answer.text == of_legs
@@ -271,9 +281,15 @@ def test_where_no_change_can_be_told_as_one_that_is_said(analysis: Analysis, ses
         return beside_walk(alone["walk 1"], alone["walk 2"], is_simulated=True)
 
     inside, beyond = Judgement.INSIDE_ERROR, Judgement.EXCEEDS_ERROR
-    none = "All judged changes from B AFO are within measurement error."
+    none = (
+        "All judged changes from B AFO are within measurement error. Largest: walking "
+        "speed +0.39\N{NO-BREAK SPACE}m/s (±0.08\N{NO-BREAK SPACE}m/s\u2020)."
+    )
     assert told(found(), judgement=inside, is_worth_a_sentence=False) == none
-    near = "No change from B AFO is far larger than its error. The table marks those that exceed it."
+    near = (
+        "Some changes from B AFO are beyond measurement error, none clearly. The table "
+        "marks them. Largest: walking speed +0.39\N{NO-BREAK SPACE}m/s (±0.08\N{NO-BREAK SPACE}m/s\u2020)."
+    )
     assert told(found(), judgement=beyond, is_worth_a_sentence=False) == near
     nothing = "Nothing can be compared with B AFO."
     assert told(found(), judgement=Judgement.TOO_FEW_STRIDES, is_worth_a_sentence=False) == nothing
@@ -295,8 +311,8 @@ def test_a_figure_is_subtracted_before_it_is_rounded(analysis: Analysis, session
         vars(found)["rows"] = (row,)
         return answer_beside(found).first.replace("\N{NO-BREAK SPACE}", " ")
 
-    assert first(1.184, 0.796) == "Walking speed: 0.388 m/s more than B AFO, 1.184 against 0.796."
-    assert first(1.19, 0.80) == "Walking speed: 0.39 m/s more than B AFO, 1.19 against 0.80."
+    assert first(1.184, 0.796) == "Walking speed is 1.184 m/s in this walk, 0.388 m/s more than in B AFO (0.796 m/s)."
+    assert first(1.19, 0.80) == "Walking speed is 1.19 m/s in this walk, 0.39 m/s more than in B AFO (0.80 m/s)."
 
 
 def test_a_leg_that_the_other_walk_has_not_measured_is_named(

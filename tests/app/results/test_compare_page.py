@@ -438,8 +438,9 @@ def test_visits_without_a_common_condition_are_not_compared_and_that_is_said(
     visits = [walked("May", analysis, session, walk_1="A", walk_2=""), walked("July", analysis, session, walk_1="B")]
     compare.show_visits(visits_by_condition(visits), conditions_in_words(visits))
     assert compare.nothing.text() == (
-        "This visit shares no condition with an earlier visit, so they are not compared. May: A, no "
-        "condition stated. July: B. “Any visits and conditions” compares any two you choose."
+        "This visit shares no condition with an earlier visit, so they are not compared. "
+        "May: A, no condition recorded. July: B. “Any visits and conditions” compares any"
+        " two you choose."
     )
     assert not compare.card.plot.isVisible()
     assert compare.kinds.itemText(compare.kinds.currentIndex()) == "Visits"
@@ -480,13 +481,17 @@ def test_between_legs_only_what_is_worth_a_sentence_is_said(
     page: ResultPage, analysis: Analysis, session: Session
 ) -> None:
     quiet = shown(page, analysis, session, Contrast.SIDES)
-    assert quiet == "All judged differences are within measurement error."
+    assert quiet == (
+        "All judged differences are within measurement error. Largest: knee range of "
+        "motion \N{MINUS SIGN}3.3° (±9.2°\u2020)."
+    )
     loud = shown(page, bent_more(analysis, 20.0), session, Contrast.SIDES)
-    assert "Knee range \N{MINUS SIGN}" in loud
-    assert "L vs R: larger than its error (" in loud
+    assert "The left knee has " in loud
+    assert "Beyond measurement error (±" in loud
     ankle = shown(page, bent_more(analysis, 20.0, Joint.RIGHT_ANKLE), session, Contrast.SIDES)
     assert "Ankle range of motion" not in ankle  # its error is borrowed: the table marks it, no sentence says it
-    assert ankle == "Some differences are beyond measurement error, none clearly. The table marks them."
+    assert ankle.startswith("Some differences are beyond an error borrowed from another joint. The table marks them.")
+    assert "Largest: ankle range of motion" in ankle
 
 
 def test_between_walks_only_what_is_worth_a_sentence_is_said(
@@ -498,7 +503,7 @@ def test_between_walks_only_what_is_worth_a_sentence_is_said(
     said = [row for row in found.rows if row.is_told and row.difference.is_worth_a_sentence]
     quiet = [row for row in found.rows if row.is_told and not row.difference.is_worth_a_sentence]
     assert quiet
-    assert page.compare.conclusion.text().count("beyond measurement error (±") == min(len(said), 3)
+    assert page.compare.conclusion.text().count("Beyond measurement error (±") == min(len(said), 3)
     few = replace(found, parts=(found.parts[0], found.parts[0]))
     assert not any(row.difference.is_worth_a_sentence for row in few.rows)
 
@@ -543,7 +548,7 @@ def test_an_error_that_could_not_be_verified_bears_a_dagger_in_the_table(
     shown(page, analysis, session, Contrast.SIDES)
     rows = {name: cells for _, name, *cells in table_words(page)}
     assert rows["Ankle range of motion"][2].endswith(" \N{DAGGER}")
-    assert "† based on a figure whose source could not be verified" in page.compare.error.text()
+    assert "\N{DAGGER} based on a figure" in page.compare.error.text()
     assert "The ankle uses the knee's error figure." in page.compare.error.text()
     assert "sensor attachment" in page.compare.error.text()
     shown(page, analysis, session, Contrast.CONDITIONS)
@@ -566,15 +571,15 @@ def test_what_is_withheld_stands_in_no_comparison(page: ResultPage, analysis: An
     doubtful = recalibrated(analysis, [Joint.RIGHT_ANKLE], is_same_joint=False, sign_margin=1.05)
     shown(page, doubtful, session, Contrast.SIDES)
     rows = {name: cells for _, name, *cells in table_words(page)}
-    assert rows["Ankle range of motion"][1:3] == ["withheld", "\N{EN DASH}"]
-    assert rows["Ankle range of motion"][0] not in ("withheld", "\N{EN DASH}")
-    assert "withheld" not in rows["Knee range"]
+    assert rows["Ankle range of motion"][1:3] == ["not reported", "\N{EN DASH}"]
+    assert rows["Ankle range of motion"][0] not in ("not reported", "\N{EN DASH}")
+    assert "not reported" not in rows["Knee range of motion"]
     shown(page, doubtful, session, Contrast.CONDITIONS)
     frame = page.compare.frames[Side.RIGHT, JointKind.ANKLE]
     assert frame.chart.curves == ()
-    assert "A: not reported. The two sensors do not move as neighbours" in frame.note
+    assert "A: not reported. Sensor positions could not be confirmed" in frame.note
     assert len(page.compare.frames[Side.LEFT, JointKind.ANKLE].chart.curves) == 2
-    assert "withheld" not in page.compare.frames[Side.LEFT, JointKind.ANKLE].note
+    assert "not reported" not in page.compare.frames[Side.LEFT, JointKind.ANKLE].note
 
 
 def test_two_strides_have_neither_a_curve_nor_a_toe_off(analysis: Analysis, session: Session) -> None:
@@ -604,12 +609,12 @@ def test_a_change_counts_from_the_first_visit_that_can_be_read_and_says_so(
     (visits,) = visits_by_condition([walked(name, found, session, walk_1="A") for name, found in days])
     found = Comparison(Contrast.VISITS, visits.parts)
     _, rows = comparison_table(found, 5)
-    ranges = [row.cells for row in rows if row.cells[1].words == "Knee range"]
+    ranges = [row.cells for row in rows if row.cells[1].words == "Knee range of motion"]
     of_range = {cells[0].side: cells for cells in ranges if isinstance(cells[0], TextCell)}
     first, third = (of_range[Side.LEFT][k] for k in (2, 6))
     assert isinstance(first, TextCell)
     assert isinstance(third, TextCell)
-    assert (first.mark, first.small) == (Icon.WITHHELD, "withheld")
+    assert (first.mark, first.small) == (Icon.WITHHELD, "not reported")
     assert third.small.startswith("from 2")
     assert "from 2" in third.words
     assert not any("from" in str(cell.words) for cell in of_range[Side.RIGHT])
@@ -649,7 +654,10 @@ def measures(page: ResultPage) -> set[str]:
     return {row.cells[1].words for row in page.compare.card.table.cells.rows}
 
 
-NONE_LARGER = "All judged changes to visit 3 are within measurement error."
+NONE_LARGER = (
+    "All judged changes to visit 3 are within measurement error. Largest: left knee "
+    "flexion, stance to swing 0.0° (±9.2°\u2020)."
+)
 
 
 def test_of_visits_the_change_to_the_latest_is_said_and_marked(
@@ -657,9 +665,9 @@ def test_of_visits_the_change_to_the_latest_is_said_and_marked(
 ) -> None:
     bent = bent_more(analysis, 30.0)
     told = visits_shown(page, session, (analysis, analysis, bent))
-    assert "Right knee range +30.0° from 1 to 3: larger than its error (" in told
+    assert "range of motion at visit 3, 30.0° more than at visit 1 (62.0°). Beyond measurement error (±" in told
     assert "°\N{DAGGER})." in told  # the error rests on a figure that could not be verified
-    assert marked(page) == [(Side.RIGHT, "Knee range")]
+    assert marked(page) == [(Side.RIGHT, "Knee range of motion")]
 
 
 def test_a_change_that_is_gone_at_the_latest_visit_is_neither_said_nor_marked(
@@ -678,7 +686,8 @@ def test_what_the_table_alone_marks_is_said_to_be_marked_there(
     """An ankle's error is borrowed, so that no sentence speaks of it."""
     ankle = bent_more(analysis, 30.0, Joint.RIGHT_ANKLE)
     assert visits_shown(page, session, (analysis, analysis, ankle)) == (
-        "Some changes to visit 3 are beyond measurement error, none clearly. The table marks them."
+        "Some changes to visit 3 are beyond an error borrowed from another joint. The "
+        "table marks them. Largest: right ankle range of motion +30.0° (±9.5°\u2020)."
     )
     assert marked(page) == [(Side.RIGHT, "Ankle range of motion")]
     assert visits_shown(page, session, (analysis, ankle, analysis)) == NONE_LARGER
@@ -703,15 +712,15 @@ def test_from_the_latest_visit_as_base_the_one_before_is_told(
     page.compare.bases.setCurrentIndex(2)
     heads = [column.head.words for column in page.compare.card.table.cells.columns]
     assert heads[-2:] == ["2 \N{MINUS SIGN} 3", "error"]
-    assert "Right knee range +30.0° from 3 to 2" in page.compare.conclusion.text()
-    assert marked(page) == [(Side.RIGHT, "Knee range")]
+    assert "range of motion at visit 2, 30.0° more than at visit 3 (62.0°)" in page.compare.conclusion.text()
+    assert marked(page) == [(Side.RIGHT, "Knee range of motion")]
 
 
 def test_the_conclusion_speaks_of_all_sentences_there_are(analysis: Analysis, session: Session) -> None:
     (visits,) = visits_by_condition([walked(day, analysis, session, walk_1="A") for day in ("May", "July")])
     row = next(row for row in Comparison(Contrast.VISITS, visits.parts).rows if row.is_told)
-    assert conclusion(["a", "b", "c", "d"], [row.difference]) == ["a", "b", "c", "The table shows all of them."]
-    assert conclusion(["a", "b", "c"], [row.difference]) == ["a", "b", "c"]
+    assert conclusion(["a", "b", "c", "d"], [row]) == ["a", "b", "c", "The table shows all of them."]
+    assert conclusion(["a", "b", "c"], [row]) == ["a", "b", "c"]
 
 
 def test_the_trend_of_a_row_says_its_values_and_where_there_is_none(
@@ -728,7 +737,7 @@ def test_the_trend_of_a_row_says_its_values_and_where_there_is_none(
     left = trends[Side.LEFT, "Knee flexion, stance to swing"]
     assert [math.isfinite(value) for value in left.values] == [True, False, True]
     assert left.places == pytest.approx((0.0, 0.5, 1.0))
-    assert left.said.startswith("L Knee, stance to swing, trend; grey: error: 1 ")
+    assert left.said.startswith("L Knee flexion, stance to swing, trend; grey: error: 1 ")
     assert ", 2 –, 3 " in left.said
     assert "–" not in trends[Side.RIGHT, "Knee flexion, stance to swing"].said
     assert trends[None, "Walking speed, m/s"].band is not None
@@ -745,12 +754,12 @@ def test_between_visits_the_table_is_brief_until_all_is_asked_for(
     visits_shown(page, session, (analysis, analysis, analysis))
     assert card.all_measures.isVisible()
     assert "Knee flexion, stance to swing" in measures(page)
-    assert not {"Knee range", "Ankle range of motion", "Knee peak flexion, swing"} & measures(page)
+    assert not {"Knee range of motion", "Ankle range of motion", "Peak knee flexion, swing"} & measures(page)
     card.all_measures.click()
-    assert {"Knee range", "Ankle range of motion", "Knee peak flexion, swing"} <= measures(page)
+    assert {"Knee range of motion", "Ankle range of motion", "Peak knee flexion, swing"} <= measures(page)
     card.all_measures.click()
     visits_shown(page, session, (analysis, analysis, bent_more(analysis, 30.0)))
-    assert "Knee range" in measures(page)  # what is marked is never left out
+    assert "Knee range of motion" in measures(page)  # what is marked is never left out
     assert "Ankle range of motion" not in measures(page)
     shown(page, analysis, session, Contrast.CONDITIONS)
     assert not card.all_measures.isVisible()

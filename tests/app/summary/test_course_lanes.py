@@ -122,7 +122,7 @@ def test_a_visit_that_is_not_computed_is_no_point_and_is_counted() -> None:
     assert [[point.visit for point in line.points] for one in found for line in one.lines] == [[0, 2]] * 3
     assert nothing_between(visits) == "1 visit is not calculated yet."
     assert nothing_between([visit(1, None), visit(2, None)]) == "2 visits are not calculated yet."
-    assert visit_in_words(1, found, visits) == "20 Mar. not computed yet."
+    assert visit_in_words(1, found, visits) == "20 Mar. not calculated yet."
 
 
 def test_one_visit_makes_no_trend_and_two_do() -> None:
@@ -138,17 +138,17 @@ def test_a_lane_says_every_value_with_its_day_and_unit() -> None:
     found = lanes(visits)
     said = lane_in_words(lane(found, SPEED_LANE), visits)
     assert said == (
-        "Walking speed: 0.71 metres per second on 20 Jun, 1.12 metres per second on 20 Nov. "
-        "+0.41 since 20 Jun, larger than error (0.20 †)."
+        "Walking speed: 0.71 metres per second on 20 Jun, 1.12 metres per second on 20 Nov. +0.41 "
+        "since 20 Jun, beyond error (0.20 †)."
     )
     stance = lane_in_words(lane(found, STANCE_LANE), visits)
     assert stance == (
-        "Stance of the left leg less that of the right: −4.0 percent of the stride on 20 Jun, "
-        "0.0 percent of the stride on 20 Nov. +4.0 since 20 Jun, not judged."
+        "Stance, left minus right: −4.0 percent of the gait cycle on 20 Jun, 0.0 percent of the gait "
+        "cycle on 20 Nov. +4.0 since 20 Jun, not judged."
     )
     assert visit_in_words(0, found, visits) == (
-        "20 Jun. Walking speed: 0.71 metres per second. Knee, stance to swing, left: 50 degrees. "
-        "Stance of the left leg less that of the right: −4.0 percent of the stride."
+        "20 Jun. Walking speed: 0.71 metres per second. Knee flexion, stance to swing, left: 50 "
+        "degrees. Stance, left minus right: −4.0 percent of the gait cycle."
     )
 
 
@@ -156,8 +156,8 @@ def test_with_two_conditions_each_value_has_its_own() -> None:
     visits = [visit(1, course((walked(), SHOES), (walked("walk 2"), "")))]
     said = lane_in_words(lane(lanes(visits), SPEED_LANE), visits)
     assert said == (
-        "Walking speed, shoes: 1.00 metres per second on 20 Feb. "
-        "Walking speed, no condition stated: 1.00 metres per second on 20 Feb."
+        "Walking speed, shoes: 1.00 metres per second on 20 Feb. Walking speed, no condition "
+        "recorded: 1.00 metres per second on 20 Feb."
     )
     nothing = lane_in_words(lane(lanes([visit(1, None)]), SPEED_LANE), [visit(1, None)])
     assert nothing == "Walking speed: no value."
@@ -177,11 +177,11 @@ def difference(
 @pytest.mark.parametrize(
     ("found", "said"),
     [
-        (difference(Judgement.EXCEEDS_ERROR), "larger than error (9.2)"),
-        (difference(Judgement.INSIDE_ERROR, is_unverified=True), "inside error (9.2 †)"),
+        (difference(Judgement.EXCEEDS_ERROR), "beyond error (9.2)"),
+        (difference(Judgement.INSIDE_ERROR, is_unverified=True), "within error (9.2 \u2020)"),
         (
             difference(Judgement.INSIDE_ERROR, sources=(ErrorSource.CHANCE, ErrorSource.SPEED)),
-            "inside error (9.2; different speed)",
+            "within error (9.2; different speed)",
         ),
         (difference(Judgement.NO_PUBLISHED_FIGURE, math.nan), "not judged"),
         (difference(Judgement.TOO_FEW_STRIDES, math.nan), "too few strides to judge"),
@@ -208,14 +208,14 @@ def test_what_is_next_is_the_first_that_holds() -> None:
     recovered = undecided_step(UUID(int=7), datetime.date(2026, 11, 2))
     gated_and_unwritten = latest(90, Joint.LEFT_KNEE, has_report=False)
     assert next_step(recovered, gated_and_unwritten, TODAY) == NextStep(
-        "include or exclude the walk of 2 Nov.", "Look", UUID(int=7)
+        "keep or discard the walk of 2 Nov.", "Look", UUID(int=7)
     )
     assert undecided_step(UUID(int=7), None).sentence == "include or exclude the last walk."
     assert next_step(None, latest(1, Joint.LEFT_KNEE, Joint.LEFT_ANKLE, has_report=False), TODAY) == NextStep(
         "left knee and left ankle could not be read on 22 Nov: see why.", "Look", UUID(int=1)
     )
     assert next_step(None, latest(90, has_report=False), TODAY) == NextStep(
-        "write the report for 25 Aug.", "Open", UUID(int=1)
+        "write the report of 25 Aug.", "Open", UUID(int=1)
     )
     assert next_step(None, latest(56), TODAY) == NextStep("the last visit was 8 weeks ago.")
     assert next_step(None, latest(55), TODAY) is None

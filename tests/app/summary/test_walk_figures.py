@@ -64,7 +64,7 @@ def named(figures: tuple[Figure, ...], name: str) -> Figure:
 
 def test_a_peak_is_the_mean_over_the_strides_used_alone(analysis: Analysis) -> None:
     few = walk_of(with_few_strides(analysis, left=4))
-    peak = named(peak_figures(alone(few), reference_curves())["knee"], "Peak flexion, swing").sides[Side.LEFT]
+    peak = named(peak_figures(alone(few), reference_curves())["knee"], "Swing peak").sides[Side.LEFT]
     cycles_deg = np.rad2deg(few.gait[Side.LEFT].cycles[Joint.LEFT_KNEE][:4])
     assert peak.n == 4
     assert peak.mean == pytest.approx(float(cycles_deg[:, 55:91].max(axis=1).mean()))
@@ -75,7 +75,7 @@ def test_the_band_of_a_peak_stands_where_the_groups_mean_curve_has_its_own(walk:
     group = reference_curves()
     at = 55 + int(np.argmax(group.knee_mean_deg[55:91]))
     low, high = group.knee_mean_deg[at] - group.knee_sd_deg[at], group.knee_mean_deg[at] + group.knee_sd_deg[at]
-    assert named(found["knee"], "Peak flexion, swing").band == pytest.approx((low, high))
+    assert named(found["knee"], "Swing peak").band == pytest.approx((low, high))
     assert named(found["knee"], "At initial contact").band == pytest.approx((-2.556, 3.963), abs=1e-3)
     assert named(found["ankle"], "Range").band is None  # a mean curve has no spread of ranges
     assert all(figure.band is None for figures in peak_figures(alone(walk), None).values() for figure in figures)
@@ -206,7 +206,7 @@ def test_every_reason_to_leave_a_stride_out_has_its_words(walk: RecordingAnalysi
 def test_what_few_strides_cost_is_said_by_side(walk: RecordingAnalysis) -> None:
     assert few_strides_in_words(alone(with_used(with_used(walk, Side.LEFT, 10), Side.RIGHT, 11))) == ""
     said = few_strides_in_words(alone(with_used(with_used(walk, Side.LEFT, 2), Side.RIGHT, 9)))
-    assert said == "L: fewer than 3 strides, so without a mean. R: under 10 strides, no SD."
+    assert said == "L: fewer than 3 strides, no mean. R: fewer than 10 strides, no SD."
     assert (
         few_strides_in_words(alone(with_used(with_used(walk, Side.LEFT, 0), Side.RIGHT, 11))) == ""
     )  # there is no mean

@@ -18,7 +18,7 @@ def test_a_silent_sensor_is_news_once() -> None:
     assert losses.update({Site.RIGHT_FOOT: 3.1}, 11.0) == ()
     assert losses.message(True, ALL, 11.0) == (
         "R foot: no signal for 3 s.",
-        "Recording continues. Missing until the signal is back: right ankle, right phases.",
+        "Recording continues. Missing until the signal is back: right ankle, right gait phases.",
     )
 
 
@@ -27,7 +27,7 @@ def test_between_walks_it_says_what_to_do() -> None:
     losses.update({Site.LEFT_SHANK: 4.2}, 10.0)
     assert losses.message(False, ALL, 10.0) == (
         "L shank: no signal for 4 s.",
-        "Switch it off and on, or continue without these angles: left knee, left ankle.",
+        "Switch the sensor off and on, or continue without these angles: left knee, left ankle.",
     )
 
 
@@ -54,9 +54,9 @@ def test_two_are_told_together() -> None:
     losses.update({Site.RIGHT_FOOT: 3.1, Site.LEFT_FOOT: 5.0, Site.LEFT_SHANK: 0.0}, 10.0)
     assert losses.message(True, [], 10.0) == (
         "L foot, R foot: no signal for 5 s.",
-        "Recording continues. Missing until the signal is back: left phases, right phases.",
+        "Recording continues. Missing until the signal is back: left gait phases, right gait phases.",
     )
-    assert losses.message(False, [], 10.0)[1] == "Switch them off and on, or continue without them."
+    assert losses.message(False, [], 10.0)[1] == "Switch the sensors off and on, or continue without them."
 
 
 def test_where_none_is_heard_the_receiver_is_told_of_and_their_return_is_told_together() -> None:
@@ -64,7 +64,7 @@ def test_where_none_is_heard_the_receiver_is_told_of_and_their_return_is_told_to
     losses.update(dict.fromkeys(LEG_SITES, 3.0), 10.0)
     then = "Check that the receiver is plugged in and near the patient, and that the sensors are switched on."
     assert losses.message(False, ALL, 10.0) == ("No signal from any sensor for 3 s.", then)
-    assert losses.message(True, ALL, 10.0)[1] == f"Recording goes on. {then}"
+    assert losses.message(True, ALL, 10.0)[1] == f"Recording continues. {then}"
     losses.update({**dict.fromkeys(LEG_SITES, 0.02), Site.LEFT_FOOT: 3.5}, 10.5)
     losses.update(dict.fromkeys(LEG_SITES, 0.02), 11.0)
     assert losses.message(True, ALL, 11.0)[0] == "All sensors: signal back after 3.5 s."
@@ -80,10 +80,13 @@ def test_a_silent_pelvis_costs_the_hips_and_says_that_the_rest_goes_on() -> None
     losses = Losses()
     assert losses.update({Site.PELVIS: 3.1, Site.LEFT_FOOT: 0.0}, 10.0) == (Site.PELVIS,)
     assert losses.message(True, [*ALL, *HIPS], 11.0) == (
-        "The pelvis has been silent for 3 s.",
+        "Pelvis: no signal for 3 s.",
         "Recording continues, including knees and ankles. Hip angles are missing until the signal is back.",
     )
-    assert losses.message(False, [*ALL, *HIPS], 11.0)[1] == "Switch it off and on, or continue without hip angles."
+    assert (
+        losses.message(False, [*ALL, *HIPS], 11.0)[1]
+        == "Switch the pelvis sensor off and on, or continue without hip angles."
+    )
     losses.update({Site.PELVIS: 0.02, Site.LEFT_FOOT: 0.0}, 12.0)
     assert losses.message(True, [*ALL, *HIPS], 12.5) == (
         "Pelvis: signal back after 3.1 s.",
@@ -104,4 +107,4 @@ def test_a_pelvis_that_is_silent_with_a_foot_is_one_of_two() -> None:
     losses.update({Site.LEFT_FOOT: 3.1, Site.PELVIS: 3.1, Site.RIGHT_FOOT: 0.0}, 10.0)
     what, then = losses.message(True, [*ALL, *HIPS], 11.0)
     assert what == "L foot, pelvis: no signal for 3 s."
-    assert then.endswith("left ankle, left hip, right hip, left phases.")
+    assert then.endswith("left ankle, left hip, right hip, left gait phases.")

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.wording.verdicts import WITHOUT_FIGURES, WORDS, gate_sentence, gate_words, verdict_word
+from app.wording.verdicts import WITHOUT_FIGURES, WORDS, gate_sentence, gate_words, verdict_alone, verdict_word
 from core.body import Joint, Side, Site
 from core.gait.clocks import ClockTie
 from core.results import RecordingAnalysis, ZeroKind
@@ -47,72 +47,104 @@ def clocks(**changes: Any) -> RecordingAnalysis:
 
 ONE = "Use one receiver for all sensors."
 CASES: list[tuple[RecordingAnalysis, dict[str, Any], str]] = [
-    (walk(), {"sign_margin": 1.2}, "The two sensors do not move as neighbours (margin 1.20, 1.50 wanted). Check which"),
-    (walk(), {"is_same_joint": False}, "The two sensors do not move as neighbours. Check which sensor is where, or"),
+    (
+        walk(),
+        {"sign_margin": 1.2},
+        "Sensor positions could not be confirmed (margin 1.20, required 1.50). Check the sensor positions, or",
+    ),
+    (
+        walk(),
+        {"is_same_joint": False},
+        "Sensor positions could not be confirmed. Check the sensor positions, or record free motion.",
+    ),
     (
         walk(),
         {"is_same_joint": False, "sign_margin": 1.89, "disagreement": 0.26},
-        "The two sensors disagree about their joint (disagreement 0.26, limit 0.20). Check which sensor is where, or",
+        "The two sensors disagree at their joint (disagreement 0.26, limit 0.20). Check the sensor positions, or",
     ),
     (
         walk(doubted_sites=frozenset({Site.LEFT_SHANK, Site.LEFT_FOOT})),
         {},
-        "The motion fits better if the sensors were worn in another order. Check which sensor is where.",
+        "L shank and L foot look swapped: another order fits the movement better. Check the sensor positions.",
     ),
-    (walk(), {"axis_sd_rad": np.deg2rad(7.0)}, "The joint's axis is known to 7.0° only (6.5° wanted). Record free"),
-    (walk(), {"axis_sd_rad": np.deg2rad(12.0)}, "The joint's axis is known to 12.0° only (9.0° wanted). Record free"),
-    (walk(), {"axis_sd_rad": None}, "How sure the joint's axis is, is not known. Record free motion."),
+    (
+        walk(),
+        {"axis_sd_rad": np.deg2rad(7.0)},
+        "Calibration certainty is only ±7.0° (limit ±6.5°). Record free motion, or move longer and in more",
+    ),
+    (
+        walk(),
+        {"axis_sd_rad": np.deg2rad(12.0)},
+        "Calibration certainty is only ±12.0° (limit ±9.0°). Record free motion, or move longer and in more",
+    ),
+    (walk(), {"axis_sd_rad": None}, "Calibration certainty is not known. Record free motion."),
     (
         walk(),
         {"lag_sd_s": 0.004},
-        f"How far the two sensors' clocks are apart is known to 4.0 ms only (2.0 ms wanted). {ONE}",
+        "The two sensors are synchronised only to ±4.0 ms (limit ±2.0 ms). Use one receiver for all sensors.",
     ),
     (
         walk(),
         {"lag_sd_s": 0.02},
-        f"How far the two sensors' clocks are apart is known to 20.0 ms only (10.0 ms wanted). {ONE}",
+        "The two sensors are synchronised only to ±20.0 ms (limit ±10.0 ms). Use one receiver for all sensors.",
     ),
-    (walk(), {"is_lag_at_border": True}, f"The motion does not show how far the two sensors' clocks are apart. {ONE}"),
+    (
+        walk(),
+        {"is_lag_at_border": True},
+        "The two sensors could not be synchronised from the movement. Use one receiver for all sensors.",
+    ),
     (
         walk(),
         {"is_sign_certain": False, "clinical_sign_margin": 0.1},
-        "from extension (margin 0.10, 0.50 wanted), so only the",
+        "Flexion and extension could not be distinguished (margin 0.10, required 0.50). Only range of motion is",
     ),
     (
         walk(),
         {"is_sign_certain": False},
-        "The motion does not tell flexion from extension, so only the range holds. Look at",
+        "Flexion and extension could not be distinguished. Only range of motion is reported. Check the curve,",
     ),
-    (walk(), {"zero": ZeroKind.NONE}, "No zero was set, so heights say nothing. Let the patient stand still for three"),
+    (
+        walk(),
+        {"zero": ZeroKind.NONE},
+        "There is no standing reference, so absolute angles are not reported. Let the patient stand still for",
+    ),
     (
         left(knee_range_deg=4.0),
         {},
-        "The range over the stride is 4.0° (limit 5.0°). Look at the curve and at the sensors.",
+        "Range of motion is 4.0° (limit 5.0°). Check the curve and the sensors.",
     ),
     (
         left(knee_range_deg=91.0),
         {},
-        "The range over the stride is 91.0° (limit 90.0°). Look at the curve and at the sensors.",
+        "Range of motion is 91.0° (limit 90.0°). Check the curve and the sensors.",
     ),
     (
         left(ankle_range_deg=2.0),
         {},
-        "The range over the stride is 2.0° (limit 3.0°). Look at the curve and at the sensors.",
+        "Range of motion is 2.0° (limit 3.0°). Check the curve and the sensors.",
     ),
-    (left(knee_least_deg=-25.0), {}, "The curve reaches -25.0° (limit -20.0°). Set the zero again."),
-    (left(ankle_least_deg=20.0), {}, "The curve reaches 45.0° (limit 40.0°). Set the zero again."),
+    (
+        left(knee_least_deg=-25.0),
+        {},
+        "The absolute angle reaches -25.0° (limit -20.0°). Record the standing reference again.",
+    ),
+    (
+        left(ankle_least_deg=20.0),
+        {},
+        "The absolute angle reaches 45.0° (limit 40.0°). Record the standing reference again.",
+    ),
     (
         walk(slipped_from_s={Side.LEFT: 12.5}),
         {},
-        "A strap slipped from 12.5 s on; later strides are left out. Tighten it",
+        "Strap moved; strides from 12.5 s on are excluded. Tighten the strap and record free motion again.",
     ),
     (
         walk(left=leg(Side.LEFT, 12, left_out=12), slipped_from_s={Side.LEFT: 0.0}),
         {},
-        "A strap slipped before this walk. Tighten",
+        "Strap moved before this walk. Tighten the strap and record free motion again.",
     ),
-    (walk(left=leg(Side.LEFT, 5)), {}, "Few strides (5 used, 10 wanted). Let the patient walk longer."),
-    (walk(left=leg(Side.LEFT, 2)), {}, "Few strides (2 used, 3 wanted). Let the patient walk longer."),
+    (walk(left=leg(Side.LEFT, 5)), {}, "Few strides (5 used, 10 required). Let the patient walk longer."),
+    (walk(left=leg(Side.LEFT, 2)), {}, "Few strides (2 used, 3 required). Let the patient walk longer."),
     (
         left(knee_range_deg=60.0 + 5.0 * (GROWING > 0.5)),
         {},
@@ -163,37 +195,45 @@ CASES: list[tuple[RecordingAnalysis, dict[str, Any], str]] = [
         {},
         "Every second sample of a sensor is missing: 50.1 % came (limit 90.0 %). Check its sample rate, move",
     ),
-    (left(stance_percent=39.0), {}, "Stance takes 39.0 % of the stride (limit 40.0 %): the events may be wrong."),
-    (left(stance_percent=86.0), {}, "Stance takes 86.0 % of the stride (limit 85.0 %): the events may be wrong."),
+    (left(stance_percent=39.0), {}, "Stance is 39.0 % of the gait cycle (limit 40.0 %). Gait events may be wrong."),
+    (left(stance_percent=86.0), {}, "Stance is 86.0 % of the gait cycle (limit 85.0 %). Gait events may be wrong."),
     (
         left(is_toe_off_biased=True),
         {},
         "A prosthetic foot rolls on, so toe-off is detected late. Stance is not compared or judged.",
     ),
     (left(length_m=1.4), {}, "Left and right stride length differ by 7.4 % (limit 5.0 %)."),
-    (left(length_m=3.3), {}, "The walking speed found is 3.00 m/s (limit 2.50 m/s): the distance may be wrong."),
-    (left(length_m=0.055), {}, "The walking speed found is 0.05 m/s (limit 0.10 m/s): the distance may be wrong."),
+    (left(length_m=3.3), {}, "Walking speed is 3.00 m/s (limit 2.50 m/s). Distance may be wrong."),
+    (left(length_m=0.055), {}, "Walking speed is 0.05 m/s (limit 0.10 m/s). Distance may be wrong."),
     (
         clocks(tie=ClockTie.UNKNOWN, residual_s=float("nan")),
         {},
-        "Left and right sensors are not synchronised",
+        "Left and right sensors are not synchronised. Timing between the legs is not reported. Use one receiver",
     ),
-    (clocks(residual_s=0.010), {}, f"The clocks of both legs may be 10.0 ms apart (5.0 ms at most). {ONE}"),
-    (clocks(lag_s=0.030), {}, f"The clocks of both legs may be 30.0 ms apart (5.0 ms at most). {ONE}"),
+    (
+        clocks(residual_s=0.010),
+        {},
+        "Left and right sensors may be 10.0 ms out of sync (limit 5.0 ms). Use one receiver for all sensors.",
+    ),
+    (
+        clocks(lag_s=0.030),
+        {},
+        "Left and right sensors may be 30.0 ms out of sync (limit 5.0 ms). Use one receiver for all sensors.",
+    ),
     (
         clocks(step_share_percent=57.0),
         {},
-        "The left step takes 57.0 % of both (limit 55.0 %), though both feet stand equally",
+        "Left and right sensors are not synchronised: the left step takes 57.0 % of both (limit 55.0 %), with",
     ),
     (
         clocks(step_share_percent=42.0),
         {},
-        "The left step takes 42.0 % of both (limit 45.0 %), though both feet stand equally",
+        "Left and right sensors are not synchronised: the left step takes 42.0 % of both (limit 45.0 %), with",
     ),
     (
         walk(drifting_percent={Site.LEFT_SHANK: 2.5}),
         {},
-        "One sensor's clock runs 2.5 % faster or slower than the others'. Use",
+        "One sensor's clock runs 2.5 % faster or slower than the others. Use one receiver for all sensors, then",
     ),
 ]
 
@@ -231,9 +271,10 @@ def test_every_gate_that_can_close_has_its_words_and_each_has_a_case() -> None:
 
 
 def test_a_gate_without_a_figure_says_that_it_is_unknown() -> None:
-    assert "is known to unknown only" not in gate_sentence(GateReason("axis", Verdict.WITHHELD, None, 9.0, "deg"))
+    for gate, unit in (("axis", "deg"), ("lag", "ms"), ("step_share", "%"), ("clocks", "ms"), ("pairing", "")):
+        assert "unknown" not in gate_sentence(GateReason(gate, Verdict.WITHHELD, None, 9.0, unit))
     assert gate_words(GateReason("speed", Verdict.WITHHELD, None, 2.5, "m/s")).why.startswith(
-        "The walking speed found is unknown"
+        "Walking speed is unknown"
     )
 
 
@@ -241,6 +282,21 @@ def test_each_verdict_has_its_word() -> None:
     assert {str(one): verdict_word(one) for one in Verdict} == {
         "read": "good",
         "care": "caution",
-        "withheld": "withheld",
+        "withheld": "not reported",
         "not_measured": "not measured",
     }
+
+
+def test_a_verdict_alone_begins_as_a_title_does() -> None:
+    assert [verdict_alone(one) for one in Verdict] == ["Good", "Caution", "Not reported", "Not measured"]
+
+
+def test_swapped_labels_are_named_where_they_are_known() -> None:
+    swapped = GateReason("labels", Verdict.WITHHELD, sites=(Site.LEFT_SHANK, Site.RIGHT_THIGH))
+    assert gate_words(swapped).why.startswith("L shank and R thigh look swapped")
+    assert gate_words(GateReason("labels", Verdict.WITHHELD)).why.startswith("Sensors look swapped")
+
+
+def test_a_share_is_written_in_percent() -> None:
+    why = gate_words(GateReason("hip_disagreement", Verdict.WITHHELD, 0.31, 0.2)).why
+    assert why.endswith("(by 31\N{NO-BREAK SPACE}%, limit 20\N{NO-BREAK SPACE}%).")

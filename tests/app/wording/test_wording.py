@@ -32,6 +32,8 @@ def test_a_sentence_says_where_and_carries_its_numbers(key: str) -> None:
     finding = sample(key)
     text = sentence(finding)
     assert text.startswith("Left knee, walk 1: ")
+    clause = text.removeprefix("Left knee, walk 1: ")
+    assert clause[0] == clause[0].upper()  # a whole sentence, with a subject of its own
     assert "{" not in text
     for number in finding.numbers.values():
         assert str(number) in text
@@ -85,7 +87,7 @@ def test_what_concerns_the_whole_session_names_no_place() -> None:
 
 def test_a_joint_among_the_numbers_is_put_into_words() -> None:
     told = sentence(Finding("missing_site", Severity.INFO, "left_foot", {"joint": "left_ankle"}))
-    assert told == "L foot: no sensor was worn here. There are no left ankle angles."
+    assert told == "L foot: No sensor was worn here. There are no left ankle angles."
 
 
 def test_a_finding_without_a_sentence_is_still_told_with_its_figures() -> None:
@@ -133,19 +135,20 @@ def test_a_column_that_is_named_as_a_reason_keeps_its_name() -> None:
         (
             "no_spread",
             {"left": 4, "right": 9, "wanted": 10},
-            "Walk 1: only 4 left and 9 right strides, 10 make a spread. Walk once more, or go on without a spread.",
+            "Walk 1: There are only 4 left and 9 right strides; a standard deviation needs 10. "
+            "Record another walk, or continue without a standard deviation.",
         ),
         (
             "strides_all_left_out",
             {"count": 11, "stop": 3, "turn": 8},
-            "Walk 1: all strides found (11) were left out: 8 turning, 3 stopping. "
-            "So there are no averages; put that right and record the walk again.",
+            "Walk 1: All detected strides (11) were excluded: 8 turning, 3 stopping. "
+            "There are no averages; correct this and record the walk again.",
         ),
         (
             "no_peak",
             {"peak": "ankle_push_off_plantarflexion"},
-            "Walk 1: no push-off plantarflexion, since the angle only passes through where it is looked for. "
-            "Nothing is given in its place.",
+            "Walk 1: No value for peak plantarflexion, push-off is reported: "
+            "the angle has no turning point in that phase.",
         ),
     ],
 )

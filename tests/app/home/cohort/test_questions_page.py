@@ -71,8 +71,8 @@ def test_where_all_counts_there_is_nothing_to_note() -> None:
 
 
 def test_the_sentence_says_what_is_shown_and_how_many_stand_behind_it() -> None:
-    assert sentence(found(WHOLE, FEW)) == "Knee range: means of 14 sessions, by condition."
-    assert sentence(found(WHOLE, grouping=Grouping.ALL)) == "Knee range: mean of 12 sessions."
+    assert sentence(found(WHOLE, FEW)) == "Knee range of motion: means of 14 sessions, by condition."
+    assert sentence(found(WHOLE, grouping=Grouping.ALL)) == "Knee range of motion: mean of 12 sessions."
     none = replace(WHOLE, sessions=0, mean=math.nan, half_interval=math.nan)
     assert sentence(found(none)) == "No session has an included value of this measure."
 

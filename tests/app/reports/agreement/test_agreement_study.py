@@ -120,7 +120,7 @@ def test_a_walk_of_another_name_is_not_compared(
         ("standing", "the joints hardly move in it"),
         ("short", "not two seconds of motion without gaps that both systems saw"),
         ("other", "its angles move unlike those of any walk"),
-        ("none", "it tells of no joint, the session of left_ankle, left_knee"),
+        ("none", "it contains no joint and the session contains left_ankle, left_knee"),
     ],
 )
 def test_what_cannot_be_compared_is_refused_with_its_reason(
@@ -164,7 +164,7 @@ def test_left_and_right_exchanged_is_said_and_where_they_are_not_it_is_not(
     other = {Joint(joint.replace(joint.side, joint.side.other)): curve for joint, curve in trial.angles.items()}
     found = study_of(analysis, [("ref.csv", ReferenceFile("csv", "angles", (replace(trial, angles=other),)))])
     assert [walk.is_exchanged for walk in found.walks] == [True]
-    assert "- Left and right look exchanged in the reference of walk 1: the other way round it fits better." in list(
+    assert "- Left and right look swapped in the reference of walk 1: swapping them gives a better fit." in list(
         printed(found, Patient())
     )
 
@@ -254,7 +254,7 @@ def test_table_1_is_printed_with_the_prosthesis_first(study: AgreementStudy) -> 
     over = study.over_walks(Joint.RIGHT_KNEE)
     assert over is not None
     assert lines[at + 2].split()[-1] == f"{np.rad2deg(over.whole.m_rad):.2f}"
-    assert any("Optical models of one walk disagree among themselves by 2 to 4° at the knee" in line for line in lines)
+    assert any("Optical models applied to one walk differ by 2 to 4° at the knee" in line for line in lines)
     published = study.over_walks(Joint.LEFT_KNEE, AngleKind.PUBLISHED)
     assert published is not None
     (said,) = [line for line in lines if "published fusion" in line]
@@ -277,10 +277,10 @@ def test_a_joint_that_is_withheld_is_named_and_another_is_not(study: AgreementSt
         )
         for walk, joint in zip(study.walks, (Joint.LEFT_KNEE, Joint.LEFT_ANKLE), strict=True)
     ]
-    lines = [line for line in printed(replace(study, walks=tuple(walks)), Patient()) if "withheld" in line]
+    lines = [line for line in printed(replace(study, walks=tuple(walks)), Patient()) if "not reported" in line]
     assert lines == [
-        "- Left knee: withheld in walk 1. Its figures stand here as evidence.",
-        "- Left ankle: withheld in walk 2. Its figures stand here as evidence.",
+        "- Left knee: not reported in walk 1. Its values are shown here as evidence.",
+        "- Left ankle: not reported in walk 2. Its values are shown here as evidence.",
     ]
 
 
@@ -317,7 +317,7 @@ def test_every_pass_of_a_walk_is_compared_and_the_samples_used_are_said(
         assert np.rad2deg(walk.figures[joint, AngleKind.RESULT].m_rad) < 0.6
     used = walk.used[Joint.LEFT_KNEE]
     said = list(printed(found, Patient()))
-    line = f"  Left knee: {used.used} of {used.recorded} samples are used; {used.outside} outside of the reference"
+    line = f"  Left knee: {used.used} of {used.recorded} samples are used; {used.outside} beyond the reference"
     assert any(one.startswith(line) for one in said)
     header, table = agreement_table(found)
     row = dict(zip(header, next(table), strict=True))

@@ -48,7 +48,7 @@ def test_a_row_tells_both_legs_their_difference_its_error_and_whether_it_exceeds
 ) -> None:
     analysis = with_more(request_of_demonstration.visit.analysis, Side.LEFT, "knee_stance_to_swing_rad", -20.0)
     said = cells(facts(request_of_demonstration, analysis), 0)
-    assert said[:4] == ["Knee bend from stance to swing, °", "40.7 ± 0.8", "62.0 ± 1.0", "\u221221.3"]
+    assert said[:4] == ["Knee flexion, stance to swing, °", "40.7 ± 0.8", "62.0 ± 1.0", "\u221221.3"]
     assert said[4].endswith("\u2020")
     assert 9.2 < float(said[4][:-1]) < 9.6
     assert said[5:] == ["no reference", ""]
@@ -86,7 +86,7 @@ def test_the_band_of_stance_is_that_of_the_table_of_time(request_of_demonstratio
 def test_a_measure_withheld_on_one_leg_says_so_and_on_both_is_left_out(request_of_demonstration: ReportRequest) -> None:
     analysis = request_of_demonstration.visit.analysis
     one = recalibrated(analysis, [Joint.LEFT_KNEE], is_same_joint=False, sign_margin=1.05)
-    assert cells(facts(request_of_demonstration, one), 0)[1:4:2] == ["withheld", "–"]
+    assert cells(facts(request_of_demonstration, one), 0)[1:4:2] == ["not reported", "–"]
     both = recalibrated(analysis, [Joint.LEFT_KNEE, Joint.RIGHT_KNEE], is_same_joint=False, sign_margin=1.05)
     assert not any(column.startswith("knee") for column in columns(facts(request_of_demonstration, both)))
 

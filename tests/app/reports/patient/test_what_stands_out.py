@@ -16,11 +16,12 @@ from app.summary import comparison
 from app.summary.answer import Outcome, answer_of
 from app.summary.comparison import Comparison, Contrast
 from app.summary.facts import Facts
-from app.summary.measure_sentences import measure_in_words, unit_and_decimals
+from app.summary.measure_sentences import unit_and_decimals
 from app.summary.measures import MEASURES, Measure
 from app.summary.numbers_in_words import NOTHING
 from app.summary.request import AnalysedVisit, ReportRequest
 from app.summary.what_stands_out import MAX_FINDINGS, printed_findings
+from app.wording.measures import name_in_sentence
 from core.body import Joint, Side
 from core.goals import Goal, GoalOf
 from core.parameters import BETWEEN_LEGS, BY_COLUMN, ParameterFile, QuantityClass, columns_of
@@ -31,7 +32,8 @@ from tests.app.changed_analysis import recalibrated, rewalked, walk_of, with_few
 from tests.app.hip_visits import hip_facts
 
 NO_DIFFERENCE = "All judged differences are within measurement error."
-ALL_INSIDE = "Every peak that could be judged lies within 2 SD of the band"
+ALL_INSIDE = "All judged peaks are within 2 SD of the reference"
+SIMILAR = "Left and right are similar: "
 ZERO = "Angles start from the patient's standing posture"
 
 
@@ -92,7 +94,9 @@ def test_where_nothing_differs_that_is_said_and_the_caveat_of_the_zero(
     request_of_demonstration: ReportRequest,
 ) -> None:
     first, last = said(request_of_demonstration)
-    assert first.startswith(f"{NO_DIFFERENCE} {ALL_INSIDE}")
+    assert first.startswith(SIMILAR)
+    assert "° and " in first
+    assert f"{NO_DIFFERENCE} {ALL_INSIDE}" in first
     assert last.startswith(ZERO)
 
 
@@ -106,11 +110,11 @@ def test_a_knee_that_moves_less_than_the_other_by_more_than_its_error(
     request_of_demonstration: ReportRequest, more_deg: float, is_told: bool
 ) -> None:
     analysis = with_more(request_of_demonstration.visit.analysis, Side.LEFT, "knee_range_rad", more_deg)
-    told = [sentence for sentence in said(request_of_demonstration, analysis) if "over the stride than" in sentence]
+    told = [sentence for sentence in said(request_of_demonstration, analysis) if "range of motion than" in sentence]
     assert bool(told) is is_told
     if is_told:
         first, second = told[0].split(". ")
-        assert first == "The left knee moves 21.3° less over the stride than the right: 41.7° vs 63.0°"
+        assert first == "The left knee has 21.3° less range of motion than the right: 41.7° against 63.0°"
         assert second.startswith("Measurement error between the legs: 9.")
     assert any(NO_DIFFERENCE in sentence for sentence in said(request_of_demonstration, analysis)) is not is_told
 
@@ -118,7 +122,7 @@ def test_a_knee_that_moves_less_than_the_other_by_more_than_its_error(
 def test_with_the_legs_exchanged_the_sentence_is_mirrored(request_of_demonstration: ReportRequest) -> None:
     for side, words in ((Side.LEFT, "less"), (Side.RIGHT, "more")):
         analysis = with_more(request_of_demonstration.visit.analysis, side, "knee_range_rad", -20.0)
-        assert f"° {words} over the stride than the right" in said(request_of_demonstration, analysis)[0]
+        assert f"° {words} range of motion than the right" in said(request_of_demonstration, analysis)[0]
 
 
 def test_an_ankle_between_legs_is_in_the_table_and_in_no_sentence(request_of_demonstration: ReportRequest) -> None:
@@ -126,7 +130,7 @@ def test_an_ankle_between_legs_is_in_the_table_and_in_no_sentence(request_of_dem
     sentences = said(request_of_demonstration, analysis)
     assert not any("nkle range" in sentence for sentence in sentences)
     assert not any(NO_DIFFERENCE in sentence for sentence in sentences)  # it would be untrue
-    assert "No difference is far enough beyond measurement error to be listed here" in sentences[0]
+    assert "The tables mark every difference beyond error." in sentences[0]
 
 
 @pytest.mark.parametrize(("more", "is_told"), [(2.0, False), (6.0, True)])
@@ -176,7 +180,7 @@ def test_a_stride_length_beyond_two_sd_of_its_band(
     told = [one for one in said(request_of_demonstration, analysis) if one.startswith("Stride length, ")]
     assert bool(told) is is_told
     if is_told:
-        assert "band [2]" in told[0]
+        assert "reference [2]" in told[0]
         assert told[0].endswith("more than 2 SD above.")
 
 
@@ -220,8 +224,8 @@ def test_a_curve_that_lies_ten_degrees_off_sends_to_the_zero_first(request_of_de
     analysis = request_of_demonstration.visit.analysis
     told = said(request_of_demonstration, raised(analysis, Joint.RIGHT_ANKLE, 20.0))
     assert any(
-        one.startswith("Right ankle: the whole curve lies +1")
-        and one.endswith("° from the reference. Check the standing reference first")
+        one.startswith("Right ankle: the whole curve is +1")
+        and one.endswith("° from the reference. Check the standing reference first.")
         for one in told
     )
     assert not any("the whole curve is" in one for one in said(request_of_demonstration))
@@ -234,29 +238,29 @@ def test_a_peak_beyond_two_sd_of_the_band_at_the_curves_height(
     request_of_demonstration: ReportRequest, more_deg: float, is_told: bool
 ) -> None:
     analysis = with_more(request_of_demonstration.visit.analysis, Side.LEFT, "knee_swing_peak_rad", more_deg)
-    told = [one for one in said(request_of_demonstration, analysis) if "Left knee most flexed, swing" in one]
+    told = [one for one in said(request_of_demonstration, analysis) if "Left knee peak flexion, swing" in one]
     assert bool(told) is is_told
     if is_told:
-        assert "band [1] at the curve's height" in told[0]
+        assert "reference [1] at the level of the curve" in told[0]
         assert told[0].endswith("more than 2 SD below.")
-    assert not any("band" in sentence for sentence in said(of_a_child(request_of_demonstration, analysis)))
+    assert not any("reference [" in sentence for sentence in said(of_a_child(request_of_demonstration, analysis)))
 
 
 def test_what_is_withheld_is_told_in_the_caveat_alone(request_of_demonstration: ReportRequest) -> None:
     shortened = with_more(request_of_demonstration.visit.analysis, Side.LEFT, "knee_range_rad", -20.0)
     analysis = recalibrated(shortened, [Joint.LEFT_KNEE], is_same_joint=False, sign_margin=1.05)
     sentences = said(request_of_demonstration, analysis)
-    assert not any("knee moves" in sentence for sentence in sentences)
-    assert sentences[-1].startswith("Left knee: The two sensors do not move as neighbours (margin 1.05, 1.50 wanted).")
-    assert not any("neighbours" in sentence for sentence in said(request_of_demonstration, shortened))
+    assert not any("knee has" in sentence for sentence in sentences)
+    assert sentences[-1].startswith("Left knee: Sensor positions could not be confirmed (margin 1.05, required 1.50).")
+    assert not any("could not be confirmed" in sentence for sentence in said(request_of_demonstration, shortened))
 
 
 def test_of_too_few_strides_nothing_is_told(request_of_demonstration: ReportRequest) -> None:
     shortened = with_more(request_of_demonstration.visit.analysis, Side.LEFT, "knee_range_rad", -30.0)
-    assert any("knee moves" in one for one in said(request_of_demonstration, shortened))
+    assert any("knee has" in one for one in said(request_of_demonstration, shortened))
     for count in (2, 9):
         analysis = with_few_strides(shortened, left=count)
-        assert not any("knee moves" in one for one in said(request_of_demonstration, analysis)), count
+        assert not any("knee has" in one for one in said(request_of_demonstration, analysis)), count
 
 
 def test_at_most_three_findings_are_told_one_of_each_joint_and_direction(
@@ -283,12 +287,13 @@ def test_at_most_three_findings_are_told_one_of_each_joint_and_direction(
 def test_a_change_between_conditions_is_told_only_beyond_its_error(request_of_alignments: ReportRequest) -> None:
     analysis = request_of_alignments.visit.analysis
     usual = said(request_of_alignments)
-    assert not any("alignment A; difference" in sentence for sentence in usual)
+    assert not any("range of motion in" in sentence for sentence in usual)
     last = analysis.recordings[-1]
     changed = with_more(replace(analysis, recordings=(last,)), Side.LEFT, "knee_range_rad", -25.0).recordings[-1]
     loud = said(request_of_alignments, judged(replace(analysis, recordings=(*analysis.recordings[:-1], changed))))
     assert any(
-        "knee range over the stride: " in one and "at \u2068alignment A\u2069; difference -2" in one for one in loud
+        "knee has" in one and "range of motion in" in one and "less than in \u2068alignment A\u2069" in one
+        for one in loud
     )
 
 
@@ -319,7 +324,7 @@ def test_every_quantity_has_its_unit_and_what_is_compared_has_a_name() -> None:
     assert units["knee_stance_to_swing_deg"] == "°"
     assert set(units.values()) == {"°", "%", "s", "m", "m/s"}
     for column in {*BETWEEN_LEGS, *(measure.column for measure in MEASURES)}:
-        assert measure_in_words(column)
+        assert name_in_sentence(column)
 
 
 def test_a_range_and_the_movement_that_makes_it_are_told_once(request_of_demonstration: ReportRequest) -> None:
@@ -328,13 +333,13 @@ def test_a_range_and_the_movement_that_makes_it_are_told_once(request_of_demonst
         with_more(analysis, Side.LEFT, "knee_range_rad", -25.0), Side.LEFT, "knee_stance_to_swing_rad", -20.0
     )
     said = " ".join(lines(request_of_demonstration, both))
-    assert "bends" in said
+    assert "flexes" in said
     assert "from stance to swing" in said
-    assert "moves" not in said
+    assert "has" not in said.split()
     alone = " ".join(lines(request_of_demonstration, with_more(analysis, Side.LEFT, "knee_range_rad", -25.0)))
-    assert "The left knee moves" in alone
+    assert "The left knee has" in alone
     loading = with_more(analysis, Side.LEFT, "knee_while_loading_rad", -20.0)
-    assert "while loading than the right" in " ".join(lines(request_of_demonstration, loading))
+    assert "in loading response than the right" in " ".join(lines(request_of_demonstration, loading))
     ankle = with_more(analysis, Side.LEFT, "ankle_push_off_rad", -25.0)
     assert "ankle" not in " ".join(lines(request_of_demonstration, ankle))  # its error is borrowed
 
@@ -348,13 +353,13 @@ def lines(request: ReportRequest, analysis: Analysis) -> list[str]:
     [
         ("knee_stance_to_swing_rad", -20.0, "less from stance to swing than the right: "),
         ("knee_stance_to_swing_rad", 20.0, "more from stance to swing than the right: "),
-        ("knee_while_loading_rad", -20.0, "less while loading than the right: "),
-        ("knee_while_loading_rad", 20.0, "more while loading than the right: "),
-        ("knee_straightening_rad", -20.0, "less in stance than the right: "),
-        ("knee_straightening_rad", 20.0, "more in stance than the right: "),
-        ("knee_range_rad", 20.0, "more over the stride than the right: "),
-        ("step_time_s", -0.2, "less left than right: "),
-        ("step_time_s", 0.2, "more left than right: "),
+        ("knee_while_loading_rad", -20.0, "less in loading response than the right: "),
+        ("knee_while_loading_rad", 20.0, "more in loading response than the right: "),
+        ("knee_straightening_rad", -20.0, "less in mid-stance than the right: "),
+        ("knee_straightening_rad", 20.0, "more in mid-stance than the right: "),
+        ("knee_range_rad", 20.0, "more range of motion than the right: "),
+        ("step_time_s", -0.2, "shorter on the left than on the right: "),
+        ("step_time_s", 0.2, "longer on the left than on the right: "),
     ],
 )
 def test_each_measure_and_direction_has_a_sentence_that_comes_beyond_the_error_only(
@@ -382,7 +387,7 @@ def test_of_excursions_as_large_against_their_errors_the_swing_is_told_first(
         analysis = with_more(analysis, Side.LEFT, name, more)
     told = lines(request_of_demonstration, analysis)
     assert "from stance to swing" in told[0]
-    assert "while loading" in told[1]
+    assert "in loading response" in told[1]
 
 
 def forged(monkeypatch: pytest.MonkeyPatch, wanted: str) -> None:
@@ -417,7 +422,7 @@ def test_every_column_that_is_compared_between_the_legs_has_a_sentence(
 ) -> None:
     forged(monkeypatch, column)
     (told,) = [one for one in printed_findings(hip_facts(), None) if one.column == column]
-    assert "less" in told.said or "shorter" in told.said
+    assert {"less", "shorter", "lower"} & set(told.said.split())
 
 
 def test_between_the_legs_no_height_is_compared() -> None:
