@@ -256,7 +256,7 @@ def test_the_sentence_is_of_what_stands_beside_and_never_of_the_legs(page: Resul
     show(page, "walk 2")
     choose(page, "walk 1")
     assert page.answer.text.startswith(
-        ("Walking speed is 0.80\N{NO-BREAK SPACE}m/s in this walk, 0.39\N{NO-BREAK SPACE}m/s less than in")
+        "Walking speed is 0.80\N{NO-BREAK SPACE}m/s in this walk, 0.39\N{NO-BREAK SPACE}m/s less than in"
     )
     show(page, "walk 1")
     choose(page, Beside.BAND)
