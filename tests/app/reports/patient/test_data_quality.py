@@ -43,14 +43,14 @@ def test_a_withheld_joint_comes_first_with_why_what_to_do_and_whose_motion_mends
     slanted = recalibrated(visit.analysis, [Joint.RIGHT_KNEE], axis_sd_rad=np.deg2rad(8.0))
     gated = recalibrated(slanted, [Joint.LEFT_ANKLE], axis_sd_rad=np.deg2rad(11.0))
     found = quality_of(visit, gated)
-    assert found.first == "2 of 4 joints can be read. Read with care: right knee. Withheld: left ankle."
+    assert found.first == "2 of 4 joints: Good. Caution: right knee. Not reported: left ankle."
     first, second, *_ = found.lines
     assert (first.where, first.verdict, first.side) == ("Left ankle", Verdict.WITHHELD, Side.LEFT)
-    assert first.why == "The joint's axis is known to 11.0° only (9.0° wanted)."
+    assert first.why == "Calibration certainty is only ±11.0° (limit ±9.0°)."
     assert first.to_do.startswith("Record free motion")
     assert (second.where, second.verdict, second.side) == ("Right knee", Verdict.CARE, Side.RIGHT)
     door = door_words(found)
-    assert door.first == "Left ankle: withheld."
+    assert door.first == "Left ankle: not reported."
     assert door.then == first.to_do
     assert door.is_caution
     assert answer_of(facts(visit, gated)).then.endswith("Withheld: left ankle.")
@@ -61,13 +61,13 @@ def test_a_withheld_joint_comes_first_with_why_what_to_do_and_whose_motion_mends
     [
         ((), (), "All four joints are reported."),
         (LEG_JOINTS, (), "All joints: Caution."),
-        ((Joint.LEFT_KNEE,), (), "3 of 4 joints can be read. Read with care: left knee."),
+        ((Joint.LEFT_KNEE,), (), "3 of 4 joints: Good. Caution: left knee."),
         (
             (Joint.LEFT_KNEE, Joint.RIGHT_KNEE),
             (Joint.LEFT_ANKLE, Joint.RIGHT_ANKLE),
-            "Read with care: left knee and right knee. Withheld: left ankle and right ankle.",
+            "Caution: left knee and right knee. Not reported: left ankle and right ankle.",
         ),
-        ((), (Joint.LEFT_ANKLE,), "3 of 4 joints can be read. Withheld: left ankle."),
+        ((), (Joint.LEFT_ANKLE,), "3 of 4 joints: Good. Not reported: left ankle."),
         ((), LEG_JOINTS, "No joint is reported for this walk."),
     ],
 )
@@ -104,8 +104,8 @@ def test_legs_whose_clocks_are_not_known_to_agree_can_each_be_read(visit: Analys
 def test_too_few_strides_withhold_a_leg(visit: AnalysedVisit) -> None:
     found = quality_of(visit, with_few_strides(visit.analysis, left=2))
     assert found.lines[0].where == "Left leg"
-    assert found.lines[0].why == "Few strides (2 used, 3 wanted)."
-    assert "2 of 4 joints can be read." in found.first
+    assert found.lines[0].why == "Few strides (2 used, 3 required)."
+    assert "2 of 4 joints: Good." in found.first
 
 
 def test_what_was_noticed_is_said_where_no_verdict_says_it_already(visit: AnalysedVisit) -> None:
