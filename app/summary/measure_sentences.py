@@ -43,6 +43,7 @@ CLAUSES = {
     "ankle_heel_rocker_deg": later("{who} plantarflexes {value} in loading response"),
     "ankle_toes_lifted_deg": later("{who} dorsiflexes {value} in swing"),
     parameters.ANKLE_RANGE: later("{who} has {value} range of motion"),
+    "hip_range_deg": later("{who} has {value} range of motion"),
     parameters.STANCE: later("{who}: stance takes {value}"),
 }
 OTHER_OF_LEG, OTHER = later("{who}: {measure} is {value}"), later("{measure} is {value}")
@@ -60,8 +61,9 @@ def change_sentence(column: str, who: str, difference: float, now: Told, before:
     now, before
         Where it was measured, as "in B" or "on 1 July", and its value.
     """
-    values = now.value, before.value, abs(difference)
-    value, other, size = _figures(column, values, _decimals(column, now.value, before.value, difference))
+    decimals = _decimals(column, now.value, before.value, difference)
+    value, size = _figures(column, (now.value, abs(difference)), decimals)
+    other = fixed(before.value, decimals) + unit_and_decimals(column)[0]
     pattern = CLAUSES.get(column, OTHER_OF_LEG if who else OTHER)
     clause = tr(pattern).format(who=who, measure=name_in_sentence(column), value=value)
     said = (

@@ -127,7 +127,7 @@ def test_free_motion_is_shown_whole_and_the_walk_comes_back_as_it_was_left(page:
 def test_a_walk_without_strides_says_so_and_shows_the_whole(page: ResultPage, analysis: Analysis) -> None:
     show(page, changed(analysis, gait={}))
     assert page.view.choice == WHOLE
-    assert page.view._segments[ANSWER].accessibleName() == "Answer, no strides"
+    assert page.view._segments[ANSWER].accessibleName() == "Summary, no strides"
     show(page, analysis)
     assert page.view.choice == ANSWER
 
@@ -207,7 +207,7 @@ def test_the_tables_hold_the_figures_of_the_strides_used(page: ResultPage, analy
 
 def test_under_ten_strides_no_spread_is_shown_and_under_three_no_mean(page: ResultPage, analysis: Analysis) -> None:
     table = page.cycles.peaks.table
-    for count, has_spread, words in ((10, True, ""), (9, False, "*"), (2, False, "withheld")):
+    for count, has_spread, words in ((10, True, ""), (9, False, "*"), (2, False, "not reported")):
         show(page, with_few_strides(analysis, left=count, right=count))
         cell = table.cells.rows[row_named(table, "Peak flexion, swing")].cells[1]
         assert isinstance(cell, TextCell)
@@ -307,9 +307,9 @@ def test_a_withheld_ankle_has_no_number_and_no_curve_and_says_what_to_do(page: R
     show(page, recalibrated(analysis, [Joint.RIGHT_ANKLE], is_same_joint=False, sign_margin=1.05))
     rows = rows_of(page)
     for name in ("Peak dorsiflexion, stance", "Peak plantarflexion, push-off", "Peak dorsiflexion, swing"):
-        assert rows[name][1] == "withheld"
-        assert rows[name][0] != "withheld"
-    assert rows["Double support %"][0] == "withheld"
+        assert rows[name][1] == "not reported"
+        assert rows[name][0] != "not reported"
+    assert rows["Double support %"][0] == "not reported"
     panel = page.cycles.charts.ankle.withheld
     assert (panel[Side.RIGHT].isVisible(), panel[Side.LEFT].isVisible()) == (True, False)
     assert panel[Side.RIGHT].text.startswith("Withheld. The two sensors do not move as neighbours")

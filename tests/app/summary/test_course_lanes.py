@@ -138,17 +138,18 @@ def test_a_lane_says_every_value_with_its_day_and_unit() -> None:
     found = lanes(visits)
     said = lane_in_words(lane(found, SPEED_LANE), visits)
     assert said == (
-        "Walking speed: 0.71 metres per second on 20 Jun, 1.12 metres per second on 20 Nov. +0.41 "
-        "since 20 Jun, beyond error (0.20 †)."
+        "Walking speed: 0.71 metres per second on 20 Jun, 1.12 metres per second on 20 "
+        "Nov. +0.41 since 20 Jun, beyond error (0.20 \u2020)."
     )
     stance = lane_in_words(lane(found, STANCE_LANE), visits)
     assert stance == (
-        "Stance, left minus right: −4.0 percent of the gait cycle on 20 Jun, 0.0 percent of the gait "
-        "cycle on 20 Nov. +4.0 since 20 Jun, not judged."
+        "Stance, left minus right: \N{MINUS SIGN}4.0 percent of the gait cycle on 20 Jun,"
+        " 0.0 percent of the gait cycle on 20 Nov. +4.0 since 20 Jun, not judged."
     )
     assert visit_in_words(0, found, visits) == (
-        "20 Jun. Walking speed: 0.71 metres per second. Knee flexion, stance to swing, left: 50 "
-        "degrees. Stance, left minus right: −4.0 percent of the gait cycle."
+        "20 Jun. Walking speed: 0.71 metres per second. Knee flexion, stance to swing, "
+        "left: 50 degrees. Stance, left minus right: \N{MINUS SIGN}4.0 percent of the "
+        "gait cycle."
     )
 
 
@@ -156,8 +157,8 @@ def test_with_two_conditions_each_value_has_its_own() -> None:
     visits = [visit(1, course((walked(), SHOES), (walked("walk 2"), "")))]
     said = lane_in_words(lane(lanes(visits), SPEED_LANE), visits)
     assert said == (
-        "Walking speed, shoes: 1.00 metres per second on 20 Feb. Walking speed, no condition "
-        "recorded: 1.00 metres per second on 20 Feb."
+        "Walking speed, shoes: 1.00 metres per second on 20 Feb. Walking speed, no "
+        "condition recorded: 1.00 metres per second on 20 Feb."
     )
     nothing = lane_in_words(lane(lanes([visit(1, None)]), SPEED_LANE), [visit(1, None)])
     assert nothing == "Walking speed: no value."

@@ -155,7 +155,7 @@ def test_a_single_file_of_no_program_is_refused_in_words(qtbot: QtBot, home: Hom
     (tmp_path / "notes.txt").write_text("to be left out\n")
     home.importing.read([tmp_path / "notes.txt"])
     qtbot.waitUntil(home.banner.isVisible, timeout=WAIT_MS)
-    assert home.banner.text == "This is of no program whose files can be read. Leave it out. Where: notes.txt."
+    assert home.banner.text == "This file format is not supported. Leave it out. Where: notes.txt."
     assert home.current is home.page
 
 

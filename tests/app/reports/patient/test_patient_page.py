@@ -62,7 +62,7 @@ def test_a_real_change_is_called_one_and_the_numbers_subtract(request_of_demonst
     match = re.search(r"Your left knee now bends (\d+) degrees\. At your first visit it was 31\.", found)
     assert match
     assert f"Your knee now bends {int(match[1]) - 31}° more than at the first visit." in found
-    assert "° is clearly more than that: this is a real change" in found
+    assert "this is a real change" in found
     assert "First visit, 2 September" in found
     assert "At the first visit it was 0.8." in found
     assert "their knees bend a little more by themselves" in found
