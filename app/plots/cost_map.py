@@ -53,7 +53,7 @@ class CostMap(Themed):
         )
         low, high = self.limits_deg_s
         apart = figure_text(math.degrees(cost.apart_rad), ".1f")
-        self.setAccessibleName(tr("Misfit of all axes, {sensor}").format(sensor=name))
+        self.setAccessibleName(tr("Fit error of all axes, {sensor}").format(sensor=name))
         self.setAccessibleDescription(said.format(sensor=name, apart=apart, low=f"{low:.0f}", high=f"{high:.0f}"))
         self._on_look_changed()
 

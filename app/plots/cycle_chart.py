@@ -302,7 +302,7 @@ class CycleFrame(Card):
     def _beside_in_words(self, found: Comparison, has_other_zero: bool) -> str:
         """Name the thin curves, and say of whom there is none."""
         against = found.against
-        said = [tr("Thin: {walk}.").format(walk=against.name)] if self.chart.beside else []
+        said = [tr("Thin line: {walk}.").format(walk=against.name)] if self.chart.beside else []
         worn = {self.kind.of(side) for side in self.chart.cycles}
         for joint in sorted(worn, key=list(Joint).index):
             if joint not in against.joints:

@@ -34,8 +34,8 @@ PELVIS_M, PELVIS_HALF_M = 0.14, 0.08  # as large as it looks right
 LANE, LANE_GAP, LANES_HEIGHT = 18, 8, 84
 NO_LEGS = later("Legs are drawn where a thigh sensor was received and a knee has an absolute angle.")
 APART = later("Left and right sensors are not synchronised: legs are drawn half a gait cycle apart.")
-DRAWN = later("Drawn from joint angles and thigh inclination; not measured directly.")
-DRAWN_WITH_PELVIS = later("Drawn from joint angles and the inclination of thighs and pelvis; not measured directly.")
+DRAWN = later("Drawn from joint angles and thigh inclination; not measured.")
+DRAWN_WITH_PELVIS = later("Drawn from joint angles and the inclination of thighs and pelvis; not measured.")
 
 
 class MovingLegs(Card):

@@ -148,9 +148,9 @@ def brief_standing(found: GoalStanding) -> str:
     """The same in a few words, where the goal stands beside."""
     return {
         GoalStanding.SHORT: tr("not reached, beyond error"),
-        GoalStanding.SHORT_INSIDE: tr("not reached, within error"),
-        GoalStanding.REACHED_INSIDE: tr("reached, within error"),
-        GoalStanding.REACHED: tr("reached, beyond error"),
+        GoalStanding.SHORT_INSIDE: tr("not reached; the difference is within measurement error"),
+        GoalStanding.REACHED_INSIDE: tr("reached, but within measurement error"),
+        GoalStanding.REACHED: tr("reached, beyond measurement error"),
         GoalStanding.NOT_JUDGED: tr("goal not judged"),
         GoalStanding.UNKNOWN: tr("goal not judged"),
     }[found]

@@ -205,7 +205,7 @@ def band_in_words(facts: Facts, *, is_at_height: bool) -> str:
     if group is None:
         return why_no_band(facts, facts.bands.why_no_curves)
     if not is_at_height and all(facts.has_no_zero(kind) for kind in KINDS if facts.has_joint(kind)):
-        return tr("No reference: without a standing reference there are no absolute angles to compare.")
+        return tr("No reference band: without a standing reference there are no absolute angles to compare.")
     said = [
         tr("Grey: reference (mean, ±1 and ±2 SD of {n} young adults, barefoot, treadmill, {speed} m/s) [1].").format(
             n=group.n, speed=fixed(group.speed_m_s, 2)

@@ -198,7 +198,7 @@ def sentence_of(view: SyncView) -> str:
         case SyncStage.PREPARING:
             return tr("Connecting to the sensors.")
         case SyncStage.WAITING:
-            return tr("The sensors are comparing their clocks. Leave them where they are.")
+            return tr("The sensors are comparing their clocks automatically. Leave them where they are.")
         case SyncStage.CONNECTING:
             return tr("Checking the result of {sensor}.").format(sensor=view.sensor)
         case SyncStage.LISTENING:

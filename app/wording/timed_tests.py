@@ -56,7 +56,7 @@ def end_words(protocol: TimedProtocol) -> str:
         TimedProtocol.SIX_MINUTES: tr("after 6:00"),
         TimedProtocol.UP_AND_GO: tr("seated again"),
         TimedProtocol.SIT_TO_STAND: tr("standing for the fifth time"),
-        TimedProtocol.STAIRS: tr("with the last step"),
+        TimedProtocol.STAIRS: tr("when the last step ends"),
     }[protocol]
 
 

@@ -112,7 +112,7 @@ WORDS = {
     ),
     "rate": GateWords(
         later("A sensor's samples came at {value} of the rate set (limit {limit})."),
-        later("Check its sample rate, then record again."),
+        later("Check the sensor's sample rate, then record again."),
     ),
     "every_second": GateWords(
         later("Every second sample of a sensor is missing: {value} came (limit {limit})."),
@@ -145,7 +145,7 @@ WITHOUT_FIGURES = {
     "sign": GateWords(
         later("Flexion and extension could not be distinguished. Only range of motion is reported."), _LOOK_AT_SIGN
     ),
-    "axis": GateWords(later("Calibration certainty is not known."), later("Record free motion.")),
+    "axis": GateWords(later("The certainty of the joint axis is not known."), later("Record free motion.")),
     "lag": GateWords(later("The two sensors could not be synchronised from the movement."), _ONE_RECEIVER),
     "strap": GateWords(later("Strap moved before this walk."), _FREE_MOTION),
     "labels": GateWords(

@@ -118,7 +118,7 @@ def _read_sensors(system: MotionSystem, asked_hz: float | None) -> list[UnreadFi
         raise FileRefusedError(
             f"{system.base.name}{CHANNELS}",
             "no tracked point has three ACCEL and three GYRO channels",
-            "Choose a recording of inertial sensors",
+            "Choose a recording from inertial sensors",
         )
     return unread
 

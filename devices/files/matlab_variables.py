@@ -89,7 +89,7 @@ class _MatlabFile:
         if depth > MOST_DEPTH or self._values > MOST_VALUES:
             raise FileRefusedError(
                 self._where,
-                "its structures are deeper or larger than a recording needs",
+                "its data are nested too deeply or are too large for a recording",
                 "Save only the sensor variables",
             )
 

@@ -215,7 +215,7 @@ def _common_rate(files: Sequence[MtFile], asked_hz: float | None) -> float:
     if not rates_hz:
         raise FileRefusedError(
             ", ".join(file.path.name for file in files),
-            "its update rate is missing",
+            "its sample rate is missing",
             "Give it in Hz (--rate), as set in MT Manager for the recording",
         )
     (first, rate_hz), *others = rates_hz.items()

@@ -319,10 +319,10 @@ def _check_workers(client: Any, address: str) -> None:
         raise FileRefusedError(one_line(address), what, "Start workers, then run the command again") from problem
     except (ImportError, AttributeError) as problem:
         what = "the workers of this cluster have no Gaitwright, or an older one"
-        raise FileRefusedError(one_line(address), what, "Install this version on all of them") from problem
+        raise FileRefusedError(one_line(address), what, "Install this version on all computers") from problem
     if theirs != software():
         what = "the workers of this cluster have another version of Gaitwright"
-        raise FileRefusedError(one_line(address), what, "Install this version on all of them")
+        raise FileRefusedError(one_line(address), what, "Install this version on all computers")
 
 
 def _translated(error: Exception) -> Exception:

@@ -124,7 +124,7 @@ class GoalsOfPatient(QObject):
         if edited.contests:
             contest = edited.contests[0]
             now = datetime.datetime.now().astimezone()
-            what = tr("{goal} was changed meanwhile ({who}). That change is kept.")
+            what = tr("{who} changed {goal} in the meantime. That change stays.")
             said = what.format(goal=field_word(contest.field), who=by_words(contest.by, contest.at, now))
             self.told.emit(said, tr("Check the current value. Yours is in the history."))
         else:

@@ -156,7 +156,7 @@ class Importing(QObject):
         else:
             self._controller.stop_long(self._on_stopped)
             self.asked.emit()
-            self.told.emit(tr("The import is being stopped."), tr("Data already added are removed."))
+            self.told.emit(tr("The import is being stopped."), tr("Any part of it already added is removed."))
 
     def forget(self) -> None:
         """Import nothing of what was read."""

@@ -391,7 +391,7 @@ def _library_in_words(server: str | None) -> str:
 
 
 def _too_many() -> str:
-    return tr("Too many wrong passphrases were entered. Wait for the next attempt, or use the recovery key.")
+    return tr("Wrong passphrases were entered before. Wait for the next attempt, or use the recovery key.")
 
 
 def _is_same_key(typed: str, shown: str) -> bool:

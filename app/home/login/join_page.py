@@ -27,9 +27,7 @@ class JoinPage(EntryPage):
         super().__init__(look)
         self._title = Text(look, size=26, weight=SEMIBOLD, wraps=True)
         self.lead = Text(look, tone="ink2", wraps=True)
-        self.server = ServerFields(
-            look, tr("Shared storage, by its name on this computer"), self, is_place_optional=True
-        )
+        self.server = ServerFields(look, tr("Shared storage, path on this computer"), self, is_place_optional=True)
         self._hint = Text(
             look,
             tr(

@@ -185,7 +185,7 @@ def _lift_row(facts: Facts) -> list[Cell | str]:
         found = facts.value(side, "clearance_m")
         in_cm = MeanAndSd(100 * found.mean, 100 * found.sd, found.n)
         cells.append(_mean_cell(facts, side, "clearance_m", in_cm, 1))
-    return [tr("Foot clearance (sensor), cm"), *cells, NOTHING, NOTHING, NOTHING, NOTHING]
+    return [tr("Foot clearance in swing (sensor), cm"), *cells, NOTHING, NOTHING, NOTHING, NOTHING]
 
 
 def _variation_row(facts: Facts) -> list[Cell | str]:

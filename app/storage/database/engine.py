@@ -430,7 +430,9 @@ def _sentence(error: DBAPIError | PoolTimeoutError | sqlite.Error) -> LibraryErr
     if "malformed" in words:
         return LibraryFaultError("The library file is damaged", "Restore the library from a backup")
     if "is full" in words:
-        return LibraryFaultError("The disk is full, so this was not saved", "Free disk space, then try again")
+        return LibraryFaultError(
+            "The disk is full, so this was not saved in the library", "Free disk space, then try again"
+        )
     if "readonly" in words or "unable to open" in words:
         return LibraryFaultError("The library file cannot be opened for writing", "Check the permissions of its folder")
     if type(cause).__module__.startswith("psycopg"):  # while a connection is made the server says why, if it answers

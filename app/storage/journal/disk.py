@@ -45,7 +45,7 @@ TOLD = {
         later("Delete or move files, then try again"),
     ),
     Trouble.DISK_GONE: (
-        later("The disk no longer accepts the recording, so it was stopped"),
+        later("The recording can no longer be written, so it was stopped"),
         later("Check the disk, then try again"),
     ),
     Trouble.MOVED: (

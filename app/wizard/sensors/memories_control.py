@@ -79,7 +79,7 @@ class MemoriesControl(QObject):
         """Why the step cannot be left now; empty where it can."""
         if self._is_fetching and (fetched := self._fetch.cannot_leave):
             return fetched
-        return tr("The sensors are being queried. Wait, or cancel.") if self.is_busy else ""
+        return tr("The sensors are being queried. Wait until they have answered, or cancel.") if self.is_busy else ""
 
     def show_on(self, form: "MemoriesForm", progress: "SensorsProgress") -> None:
         """Have these show what is found and done, from now on."""

@@ -206,7 +206,7 @@ class SensorsStep(Step):
         sensors, silent, enter = self._visit.sensors, self._silent_site, tr("Enter")
         if sensors.are_in_memory:
             back = BarAction(tr("Return to live"), self.setup.set_back, enter, is_wished=False)
-            return BarState(primary=back, note=tr("The sensors are ready for walks. They send no live data."))
+            return BarState(primary=back, note=tr("The sensors are ready for walks. They send no data."))
         if sensors.acquisition is None:
             return BarState(note="" if sensors.is_searching else tr("Choose where to search for sensors."))
         if reason := self._visit.cannot_record:

@@ -74,7 +74,7 @@ class StandStillStep(Step):
         if not self._has_stood:
             return ""
         said = (
-            tr("{seconds:.1f} s, standing reference")
+            tr("{seconds:.1f} s, standing reference set")
             if self._visit.recordings.standing is not None
             else tr("being loaded")
         )

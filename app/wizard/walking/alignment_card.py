@@ -154,7 +154,7 @@ class AlignmentCard(Card):
             stepper.show_value(caption, said)
         self.words.set_text(entry.text)
         line = change_in_words(entry.parts)
-        self.written.setText(tr("Recorded as: {change}").format(change=line) if line else tr("No change recorded."))
+        self.written.setText(tr("Recorded as: {change}").format(change=line) if line else tr("Nothing changed yet."))
 
     def _build(self) -> None:
         self._head.addWidget(Text(self._look, tr("Alignments"), size=16, weight=SEMIBOLD))

@@ -67,7 +67,7 @@ class WalkRow:
             WalkState.ASKING: tr("include or exclude?"),
             WalkState.KEPT: strides,
             WalkState.DISCARDED: tr("excluded"),
-            WalkState.IN_SENSORS: tr("in the sensors"),
+            WalkState.IN_SENSORS: tr("stored on the sensors"),
             WalkState.RECOVERED: tr("recovered, needs review"),
         }[self.state]
 

@@ -228,7 +228,7 @@ def test_references_in_a_circle_end(tmp_path: Path) -> None:
     path = written_7_3(tmp_path / "a.mat", {"s": [np.ones(3), np.ones(3)]})
     with h5py.File(path, "r+") as file:
         file["s"][...] = np.array([[file["s"].ref, file["s"].ref]], dtype=h5py.ref_dtype).T
-    with pytest.raises(FileRefusedError, match="its structures are deeper or larger than a recording needs"):
+    with pytest.raises(FileRefusedError, match="its data are nested too deeply or are too large for a recording"):
         matlab_trial([path])
 
 

@@ -415,7 +415,7 @@ def test_each_curve_says_what_may_be_read_of_it(page: WalkingPage, bench: Bench)
 def test_the_next_change_is_told_by_keys_and_reads_as_it_prints(page: WalkingPage, bench: Bench) -> None:
     card = page.bench.alignments
     page.bench.told.connect(lambda: page.bench.show_entry(bench.next_title))
-    assert card.written.text() == "No change recorded."
+    assert card.written.text() == "Nothing changed yet."
     for name, key, times in (
         ("turns", Qt.Key.Key_Plus, 4),
         ("angle_deg", Qt.Key.Key_Up, 5),
