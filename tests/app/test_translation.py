@@ -24,7 +24,7 @@ ROOMS = (
 SPOKEN = {"tr", "tr_n", "later"}
 # what takes strings that nobody sees: logs, keys, signals, names of attributes and threads
 UNSEEN = re.compile(
-    r"(^|\.)(_log\.\w+|QKeySequence|QShortcut|Signal|Thread|getattr|import_module|strftime"
+    r"(^|\.)(_log\.\w+|QKeySequence|QShortcut|Signal|Thread|getattr|import_module|TypeVar|strftime"
     r"|setObjectName|setStyle|setStyleSheet|recordings\.mark)$"  # a mark is data
 )
 UNSEEN_ERRORS = re.compile(

@@ -112,9 +112,8 @@ def test_of_200_planted_names_none_is_in_the_logs_and_none_in_a_report(
 
 
 def test_a_line_keeps_our_own_words_numbers_and_ids(folder: Path) -> None:
-    logging.getLogger("app.system.logs").warning(
-        "%s of %s: %d, %.1f, %s, %s", Trouble.DISK_FULL, ID, 3, 2.5, KeyError, "Anna"
-    )
+    text = "%s of %s: %d, %.1f, %s, %s"
+    logging.getLogger("app.system.logs").warning(text, Trouble.DISK_FULL, ID, 3, 2.5, KeyError, "Anna")
     assert written(folder).endswith(
         f"WARNING app.system.logs line {_line_of('Anna')}: DISK_FULL of {ID}: 3, 2.5, KeyError, (str)\n"
     )
@@ -178,7 +177,7 @@ def test_every_message_of_ours_is_a_fixed_text() -> None:
 def test_the_program_itself_ends_without_a_traceback_and_without_a_core_dump(tmp_path: Path) -> None:
     ends = """
 import sys
-from app import cli
+from app.cli import main as cli
 cli._parser = lambda: 1 / 0
 sys.argv = ["gaitwright", "analyse", "Anna"]
 cli.main()
@@ -199,7 +198,7 @@ cli.main()
 def test_a_running_program_leaves_no_core_dump() -> None:
     asks = """
 import resource, sys
-from app import cli
+from app.cli import main as cli
 sys.argv = ["gaitwright", "--help"]
 try:
     cli.main()
