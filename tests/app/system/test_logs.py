@@ -178,7 +178,7 @@ def test_every_message_of_ours_is_a_fixed_text() -> None:
 def test_the_program_itself_ends_without_a_traceback_and_without_a_core_dump(tmp_path: Path) -> None:
     ends = """
 import sys
-from app import cli
+from app.cli import main as cli
 cli._parser = lambda: 1 / 0
 sys.argv = ["gaitwright", "analyse", "Anna"]
 cli.main()
@@ -199,7 +199,7 @@ cli.main()
 def test_a_running_program_leaves_no_core_dump() -> None:
     asks = """
 import resource, sys
-from app import cli
+from app.cli import main as cli
 sys.argv = ["gaitwright", "--help"]
 try:
     cli.main()
