@@ -504,9 +504,10 @@ def test_what_became_of_work_without_the_server_is_said_and_of_other_libraries_n
         (
             {"is_away": True},
             "You are working offline, without the clinic's server.",
-            "They move to the server at the first login after it responds again",
+            "They move to the server at the first login after it responds again. Clinic patients are not shown. "
+            "They are matched later by code.",
         ),
-        ({"brought_from_away": 1}, "1 session that was made without", "on it now."),
+        ({"brought_from_away": 1}, "1 offline session is now on", "the clinic's server."),
         (
             {"still_away": Refusal("It is full.", "Ask.")},
             "Offline sessions are still on this computer only",

@@ -356,7 +356,7 @@ def test_the_table_says_how_each_joint_was_found(results: ResultPage) -> None:
         ["Margin", "3.4", "3.4", "1.1", "3.4"],
         ["Direction", "certain", "certain", "certain", "uncertain"],
         ["Clock lag", "\N{MINUS SIGN}12 ms", "\N{MINUS SIGN}12 ms", "none", "none"],
-        ["Zero", "standing", "none", "standing", "none"],
+        ["Standing reference", "posture", "none", "posture", "none"],
     ]
     model = results.quality.facts.cells
     every = [(r, c) for r in range(6) for c in range(5)]

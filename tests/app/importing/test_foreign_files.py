@@ -80,7 +80,8 @@ def test_an_8_gb_file_is_refused_with_two(
     out = tmp_path / ("out.pdf" if command == "report" else "out")
     assert main([command, str(folder), "--out", str(out), *more]) == 2
     assert refusal(capsys) == (
-        "walk_1/left_shank.csv: this file has 8000 MB, more than a recording should need. Choose a file of up to 1000 MB."
+        "walk_1/left_shank.csv: this file has 8000 MB, more than a recording should need. "
+        "Choose a file of up to 1000 MB."
     )
     assert not out.exists()
 
@@ -101,7 +102,10 @@ def test_a_file_that_takes_too_long_is_refused_with_two(
     monkeypatch.setattr(limited_reader, "DEADLINE_S", 0.0)
     the_reader().close()  # to start again takes longer
     assert main(["analyse", str(folder), "--out", str(tmp_path / "out")]) == 2
-    assert "session.toml: reading this takes longer than a recording needs. Export it again" in capsys.readouterr().err
+    assert (
+        "session.toml: reading this takes longer than a recording should need. Export it again"
+        in capsys.readouterr().err
+    )
     monkeypatch.undo()
     read_foreign_session(folder, nothing)
 

@@ -192,7 +192,7 @@ def test_a_refusal_begins_with_what_happened_and_ends_with_where(tmp_path: Path)
         Room(start_bytes=10**18).check(tmp_path, 0.0)
     what, remedy = refusal_of(caught.value)
     assert what.startswith("Not enough disk space to record: 1000000000000 MB needed, ")
-    assert remedy == f"Delete or move files that are not needed. Where: {tmp_path}."
+    assert remedy == f"Delete or move files you do not need. Where: {tmp_path}."
 
 
 @pytest.mark.usefixtures("pseudo_language")

@@ -90,7 +90,7 @@ def test_a_link_that_carries_too_little_for_lists_is_the_adapters_fault(radio: V
     radio.run(record([sensor], UTC_S, 120))
     radio.pass_s(1.0)
     radio.run(stop(sensor))
-    with pytest.raises(DotRefusedError, match=r"arrives cut\. Use another Bluetooth adapter"):
+    with pytest.raises(DotRefusedError, match=r"arrive incomplete\. Use another Bluetooth adapter"):
         radio.run(list_files(sensor))
 
 

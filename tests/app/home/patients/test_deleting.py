@@ -65,7 +65,7 @@ def test_a_patient_whom_another_opened_today_is_deleted_with_a_warning_and_not_u
         with qtbot.waitSignal(home.deleting.refused, timeout=WAIT_MS) as told:
             dialog.delete.click()
         assert told.args is not None
-        assert told.args[0] == "Somebody else changed this meanwhile."
+        assert told.args[0] == "Someone else has changed this in the meantime."
     assert codes(home) == ["P-0163", "P-0147"]
 
 
