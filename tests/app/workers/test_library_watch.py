@@ -172,7 +172,7 @@ def test_what_cannot_be_brought_home_is_said_once_and_kept(
     with qtbot.waitSignal(controller.refused, timeout=WAIT_MS) as said:
         elsewhere.rename(folder)
     assert said.args is not None
-    assert "could not be added to it yet (No space left on device)" in said.args[0]
+    assert "could not be added yet (No space left on device)" in said.args[0]
     assert opened.shelter is not None
     assert str(opened.shelter.folder) in said.args[1]
     monkeypatch.undo()

@@ -80,7 +80,7 @@ def test_a_link_that_carries_too_little_for_samples_says_so_and_gives_none(radio
     wearing = WornDots(radio, [DotFaults(), DotFaults()], through=through(40))
     with pytest.raises(NotSynchronisedError) as refused:
         wearing.open()
-    assert set(refused.value.failed.values()) == {"data from it arrive incomplete"}
+    assert set(refused.value.failed.values()) == {"what it sends arrives cut"}
 
 
 def test_a_link_that_carries_too_little_for_lists_is_the_adapters_fault(radio: VirtualRadio) -> None:
