@@ -143,7 +143,7 @@ def _status(wanted: argparse.Namespace, _progress: Report) -> list[str]:
         return [
             f"{wanted.library} is a station of {shown_address(station.database)}.",
             f"Recordings are kept in {opened.shared.place}.",
-            f"{waiting} recordings wait here to be handed over." if waiting else "All recordings were handed over.",
+            f"{waiting} recordings wait here for transfer." if waiting else "All recordings were transferred.",
         ]
 
 

@@ -89,7 +89,7 @@ def opened_library(wanted: argparse.Namespace, *, is_to_be_moved: bool = False) 
         with opening as opened:
             yield opened
     except (LibraryError, KeyRefusedError) as refusal:
-        remedy = f"{refusal.remedy} ({WHO} CODE)" if refusal.remedy == "Say who you are" else refusal.remedy
+        remedy = f"{refusal.remedy} ({WHO} CODE)" if refusal.remedy == "Enter your user code" else refusal.remedy
         raise FileRefusedError(str(folder), refusal.what, remedy) from refusal
     except JournalRefusedError as refusal:
         raise FileRefusedError(refusal.where, refusal.what, refusal.remedy) from refusal
@@ -195,7 +195,7 @@ def _recover_one(opened: "OpenedLibrary", one: "Interrupted", into: LibrarySessi
     if not recovered.recorded_s:
         return f"{told}: it was ended before anything was recorded."
     where = f"{PREFIX}{recovered.stored.session_id}"
-    return f"{told}: {clock(recovered.recorded_s, 2)} was recovered. Look at it in {where}, then keep or discard."
+    return f"{told}: {clock(recovered.recorded_s, 2)} was recovered. Review it in {where}, then include or exclude it."
 
 
 def _adopt(opened: "OpenedLibrary", one: "Interrupted", into: LibrarySession | None, report: Report) -> str:

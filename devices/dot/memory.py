@@ -259,7 +259,7 @@ async def erase_kept(sensor: DotSensor, kept: Collection[int], utc_s: int) -> No
     unkept = [file for file in await list_files(sensor) if file.started_utc_s not in kept]
     if unkept:
         raise DotRefusedError(
-            "{sensor} contains {count} more recordings", "Fetch them first", sensor=sensor.name, count=len(unkept)
+            "{sensor} contains more recordings ({count})", "Fetch them first", sensor=sensor.name, count=len(unkept)
         )
     sensor.fetched_last = None
     await sensor.order(Order.ERASE, erase(utc_s).data[1:])

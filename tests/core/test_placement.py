@@ -322,7 +322,7 @@ def test_the_analysis_names_swapped_labels_in_words(circling: Session) -> None:
     found = analyse(swapped(leg, T, S))
     (finding,) = (f for f in found.findings if f.key == "labels_look_swapped")
     assert finding.severity is Severity.WARNING
-    assert sentence(finding).startswith("L thigh and L shank, free motion: seem swapped")
+    assert sentence(finding).startswith("L thigh and L shank, free motion: These sensors look swapped")
     assert not [f for f in analyse(leg).findings if f.key.startswith("labels")]
 
 

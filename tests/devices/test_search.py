@@ -78,8 +78,8 @@ def test_each_sensor_is_found_by_its_driver(emulated: list[PortInfo], tmp_path: 
     }
     assert all(one.is_simulated for one in found.sensors)
     assert [str(one.refusal).partition(". ")[0] for one in found.passed] == [
-        f"No sensor was heard at {tmp_path / 'd'}",
-        f"{tmp_path / 'nothing'} is not there",
+        f"No signal from a sensor at {tmp_path / 'd'}",
+        f"{tmp_path / 'nothing'} was not found",
     ]
     source = found.of("ximu3")[0].make()
     source.open()

@@ -136,4 +136,4 @@ def test_who_is_not_understood_is_no_sensor(
 
 def test_a_port_that_cannot_be_opened_says_why(clock: TickingClock, monkeypatch: pytest.MonkeyPatch) -> None:
     (passed,) = found_at(lambda: None, monkeypatch).passed
-    assert "script is not there" in str(passed.refusal)
+    assert "script was not found" in str(passed.refusal)

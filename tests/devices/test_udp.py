@@ -83,7 +83,7 @@ def test_the_port_is_free_again_and_refused_where_another_program_has_it(port: i
         channel.close()
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
         other.bind(("", port))
-        with pytest.raises(SourceRefusedError, match="used by another program"):
+        with pytest.raises(SourceRefusedError, match="in use by another program"):
             channel.open()
 
 

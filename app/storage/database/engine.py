@@ -444,7 +444,7 @@ def _sentence(error: DBAPIError | PoolTimeoutError | sqlite.Error) -> LibraryErr
                 "There is no server of this name in the network", "Compare the address with the server's"
             )
     if (isinstance(error, DBAPIError) and error.connection_invalidated) or "connection" in words:
-        return ServerSilentError("The clinic's server does not answer", "Try again when it is back")
+        return ServerSilentError("The clinic's server does not respond", "Try again when it is back")
     if "disk I/O" in words:
         return LibraryFaultError("The library file cannot be read or written", "Check the disk, then try again")
     return LibraryFaultError(

@@ -206,7 +206,7 @@ def test_a_name_that_is_taken_is_refused_and_nothing_is_recorded(
     recorder = Recorder.begin(opened, acquisition, session_id, walk(), room=ANY_ROOM)
     recorder.stop(opened)
     files = list(opened.recordings.iterdir())
-    with pytest.raises(LibraryError, match="of this name already"):
+    with pytest.raises(LibraryError, match="already has a recording of this name"):
         Recorder.begin(opened, acquisition, session_id, walk(), room=ANY_ROOM)
     assert list(opened.recordings.iterdir()) == files
     Recorder.begin(opened, acquisition, session_id, walk("walk 2"), room=ANY_ROOM).stop(opened)

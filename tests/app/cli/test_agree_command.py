@@ -30,8 +30,8 @@ def test_it_writes_tables_curves_figures_and_a_report(folder: Path, capsys: pyte
     arguments = ["agree", "--reference", str(folder / "ref.csv"), str(folder / "session"), "--out", str(out)]
     assert main(arguments) == 0
     said = capsys.readouterr().out
-    assert "M: RMSE with its mean removed, degrees" in said
-    assert "walk 2: no walk and trial belong together here" in said
+    assert "M: RMSE, mean removed, degrees" in said
+    assert "walk 2: no walk and trial match, so it was not compared" in said
     assert said.rstrip().endswith("1 recording compared. Research use. Not a medical device.")
     assert json.loads((out / "agreement.json").read_text(encoding="utf-8"))["format"] == "gaitwright-agreement/1"
     with (out / "agreement.csv").open(newline="") as file:

@@ -202,7 +202,7 @@ def test_without_a_screen_the_window_says_so(
     for name in ("DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM"):
         monkeypatch.delenv(name, raising=False)
     assert main([]) == 2
-    assert "rrd from the results on a computer that has one" in refusal(capsys)
+    assert "There is no screen here. See gaitwright --help for what works without one." in refusal(capsys)
 
 
 def test_on_a_terminal_progress_is_one_line_that_renews_itself(
@@ -329,7 +329,7 @@ def test_a_place_that_cannot_be_written_is_refused(
 ) -> None:
     (tmp_path / "file").write_text("mine")
     assert analyse(session, tmp_path / "file" / "out") == 2
-    assert "is not writable" in refusal(capsys)
+    assert "cannot be written" in refusal(capsys)
 
 
 def test_a_full_disk_leaves_the_old_results(
@@ -523,11 +523,11 @@ def test_an_import_tells_the_program_by_the_content(tmp_path: Path, capsys: pyte
     assert main(["import", str(mt), "--map", "left_thigh=opal.csv", "--out", str(tmp_path / "other")]) == 0
     capsys.readouterr()
     assert main(["import", str(mt), "--as", "apdm", "--map", "left_thigh=A", "--out", str(tmp_path / "third")]) == 2
-    assert "opal.csv: this is no export of APDM's programs" in refusal(capsys)
+    assert "opal.csv: this is not an export from APDM software" in refusal(capsys)
     strange = tmp_path / "taxes.csv"
     strange.write_text("year,amount\n2026,1\n")
     assert main(["import", str(strange), *where]) == 2
-    assert "taxes.csv: no format that can be imported is recognised in it" in refusal(capsys)
+    assert "taxes.csv: its format is not recognised. Supported formats:" in refusal(capsys)
     assert len(files_in(tmp_path / "session")) == 2
 
 

@@ -50,7 +50,7 @@ def test_the_columns_are_listed(path: Path, capsys: pytest.CaptureFixture[str]) 
     [
         (["SELECT knee FROM parameters"], '"knee"'),
         (["SELECT * FROM read_csv('/etc/passwd')"], "/etc/passwd"),
-        (["COPY parameters TO 'x.csv'"], "COPY is not answered here"),
+        (["COPY parameters TO 'x.csv'"], "COPY is not allowed"),
         ([], "nothing is asked"),
         ([COUNT, "--columns"], "at once"),
         ([COUNT, "--out", "{table}"], "this already exists and is not a CSV file"),
@@ -72,7 +72,7 @@ def test_a_refusal_is_one_line_that_names_it(
 
 def test_a_table_that_is_not_there_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["query", COUNT, "--in", str(tmp_path / "none.parquet")]) == 2
-    assert "none.parquet: this is not there. Choose the parameters.parquet" in capsys.readouterr().err
+    assert "none.parquet: not found. Choose the parameters.parquet" in capsys.readouterr().err
 
 
 def test_the_question_of_its_help_can_be_asked(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

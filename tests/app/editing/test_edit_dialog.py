@@ -44,8 +44,8 @@ def test_each_line_says_both_values_and_whose_they_are(dialog: EditDialog) -> No
     assert (mine.value, mine.whose) == ("182 cm", "Yours")
     assert (theirs.value, theirs.whose) == ("180 cm", "Theirs: B. Berger, today 10:32")
     assert nothing.value == "not recorded"
-    assert unknown.whose == "Theirs: somebody else"
-    assert mine.accessibleName() == "Body height, Yours: 182 cm"
+    assert unknown.whose == "Theirs: another user"
+    assert mine.accessibleName() == "Height, Yours: 182 cm"
 
 
 @pytest.mark.parametrize(

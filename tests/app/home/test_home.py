@@ -216,7 +216,7 @@ def test_a_stopped_import_says_what_came_of_it_once_that_is_known(
     assert "being stopped" in home.banner.text
     assert "added to the library" not in home.banner.text
     go_on.set()
-    what = "was done before it could be stopped. The session is in" if is_done else "stopped. No session was added to"
+    what = "finished before it could be stopped. The session is in" if is_done else "stopped. No session was added to"
     qtbot.waitUntil(lambda: what in home.banner.text, timeout=WAIT_MS)
     assert controller.state is not None
     library = controller.state.library.library
@@ -316,7 +316,7 @@ def test_a_recovered_walk_is_asked_for_at_every_start_until_it_is_decided(
     open_library(qtbot, controller, home, folder)
     qtbot.waitUntil(home.banner.isVisible, timeout=WAIT_MS)
     asked = "walk 3 of P-0163 was recovered earlier and still awaits a decision."
-    assert home.banner.text == f"{asked} Look at it, then keep or discard."
+    assert home.banner.text == f"{asked} Review it, then include or exclude it."
     qtbot.waitUntil(lambda: [one.needs_look for one in lines(home)] == [True, False], timeout=WAIT_MS)
     qtbot.waitUntil(lambda: [one.id for one in sessions(home) if one.needs_look] == [session_id], timeout=WAIT_MS)
     home.session_opened.emit(session_id)  # looking is not deciding
@@ -384,7 +384,7 @@ def test_what_the_library_did_not_answer_for_goes_into_its_session_or_out(
     home.show()
     open_library(qtbot, controller, home, folder)
     qtbot.waitUntil(home.banner.isVisible, timeout=WAIT_MS)
-    assert "of walk 3 was recorded while the library did not answer. It is in its session now." in home.banner.text
+    assert "of walk 3 was recorded while the library did not respond. It is now in its session." in home.banner.text
     qtbot.waitUntil(lambda: any(line.needs_look for line in sessions(home)), timeout=WAIT_MS)
     home.banner.dismiss.click()
     assert home.banner.text.startswith("2 recordings, 00:00 in total, are not assigned to a session.")
@@ -480,7 +480,9 @@ def test_an_older_state_of_the_library_is_said_and_an_administrator_may_accept_i
     assert not home.notices.rollback.isVisible()
     home.show_library(replace(state, operator=replace(state.operator, role=role), rollback=Rollback(first, 9)))
     said = home.notices.rollback.text
-    assert said.startswith("This library is older than when this computer saw it last. What was done from entry 5 to 9")
+    assert said.startswith(
+        "This library is older than the one last opened on this computer. Audit entries 5 to 9 are not"
+    )
     button = home.notices.rollback.findChildren(Button)[0]
     assert button.isVisible() is (role is Role.ADMINISTRATOR)
     assert ("Inform an administrator, who can check this and accept it if a backup was restored" in said) is (
@@ -502,9 +504,10 @@ def test_what_became_of_work_without_the_server_is_said_and_of_other_libraries_n
         (
             {"is_away": True},
             "You are working offline, without the clinic's server.",
-            "They move to the server at the first login after it responds again",
+            "They move to the server at the first login after it responds again. Clinic patients are not shown. "
+            "They are matched later by code.",
         ),
-        ({"brought_from_away": 1}, "1 session that was made without", "on it now."),
+        ({"brought_from_away": 1}, "1 offline session is now on", "the clinic's server."),
         (
             {"still_away": Refusal("It is full.", "Ask.")},
             "Offline sessions are still on this computer only",
@@ -619,8 +622,8 @@ def test_a_walk_that_ended_with_the_program_is_asked_about_at_the_next_start(
     home = new_home(qtbot, controller, settings)
     open_library(qtbot, controller, home, folder)
     qtbot.waitUntil(home.banner.isVisible, timeout=WAIT_MS)
-    asked = "The program was closed before A Shoes of P-0163 was kept or discarded."
-    assert home.banner.text.replace("B Shoes", "A Shoes") == f"{asked} Look at it, then keep or discard."
+    asked = "The program was closed before A Shoes of P-0163 was included or excluded."
+    assert home.banner.text.replace("B Shoes", "A Shoes") == f"{asked} Review it, then include or exclude it."
     qtbot.waitUntil(lambda: [one.id for one in sessions(home) if one.needs_look] == [session_id], timeout=WAIT_MS)
     (marked,) = (line for line in sessions(home) if line.needs_look)
     assert marked.state == "include or exclude?"

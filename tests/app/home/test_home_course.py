@@ -80,7 +80,7 @@ def test_the_course_of_the_patient_who_is_chosen_stands_beside_the_list(qtbot: Q
         ("2 recordings", "report saved"),
         ("48 strides", "report saved"),
     ]
-    assert home.page.panel.next.text() == "Next: write the report of 14 Nov."
+    assert home.page.panel.next.text() == "Next: write the report for 14 Nov."
     other = next(line.id for line in home.page.patients.lines if line.id != home.page.patient_id)
     home.page.patients.choose_line(other)
     assert not card.isVisible()  # at once: nobody else's course stands under this code
@@ -100,7 +100,7 @@ def test_visits_that_cannot_be_computed_are_said_and_the_others_stay(qtbot: QtBo
     home.page.panel.course.compute.click()
     assert home.current is home.working
     qtbot.waitUntil(lambda: home.current is home.page, timeout=WAIT_MS)
-    assert home.banner.text.startswith("1 visit could not be computed. Open it to see why.")
+    assert home.banner.text.startswith("1 visit could not be calculated. Open the visit to see why.")
     qtbot.waitUntil(lambda: len(home.page.panel.course.visits) == 5, timeout=WAIT_MS)
     assert home.page.panel.course.visits[1].course is None
 
@@ -109,7 +109,7 @@ def test_computing_can_be_stopped(qtbot: QtBot, home: Home) -> None:
     home.page.panel.course.compute.click()
     home.working.stop.click()
     assert home.current is home.page
-    assert home.banner.text.startswith("This was stopped. The visits that were computed stay in the course.")
+    assert home.banner.text.startswith("Stopped. Visits calculated so far stay in Progress.")
     qtbot.waitUntil(lambda: len(home.page.panel.course.visits) == 5, timeout=WAIT_MS)
 
 
@@ -156,7 +156,7 @@ def test_what_is_next_of_a_patient(tmp_path: Path) -> None:
 
         assert said() == ""
         first = add_visit(library, patient.id, 0, course_of_visit(0, is_knee_withheld=True))
-        assert said() == "left knee could not be read on 20 Jun: see why."
+        assert said() == "check left knee, not reported on 20 Jun."
         second = add_visit(library, patient.id, 1, course_of_visit(1))
         assert said() == "write the report for 11 Jul."
         library.audit.note(Action.EXPORT, about("session", second), format=REPORT_FORMAT, is_document=True)
@@ -238,7 +238,7 @@ def test_a_goal_that_another_changed_meanwhile_is_not_written_over(
     QTest.keyClicks(page.value.line_edit, "1.2")
     page.submit()
     qtbot.waitUntil(lambda: home.banner.isVisible(), timeout=WAIT_MS)
-    assert home.banner.text.startswith("Goal, Walking speed was changed meanwhile by ")
+    assert home.banner.text.startswith("Goal, Walking speed was changed meanwhile (H. Keller, ")
     assert page.rows[0].limit.text() == "at least 0.90\N{NO-BREAK SPACE}m/s"
     assert page.value.text == "1.2"  # what was typed stays
 

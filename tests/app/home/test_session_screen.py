@@ -354,9 +354,9 @@ def test_the_table_says_how_each_joint_was_found(results: ResultPage) -> None:
         ["Axis from", "free motion", "free motion", "free motion, walking", "free motion, walking"],
         ["Calibration certainty", "± 4.2°", "± 4.2°", "± 4.2°", "± 4.2°"],
         ["Margin", "3.4", "3.4", "1.1", "3.4"],
-        ["Direction", "sure", "sure", "sure", "uncertain"],
+        ["Direction", "certain", "certain", "certain", "uncertain"],
         ["Clock lag", "\N{MINUS SIGN}12 ms", "\N{MINUS SIGN}12 ms", "none", "none"],
-        ["Zero", "standing", "none", "standing", "none"],
+        ["Standing reference", "posture", "none", "posture", "none"],
     ]
     model = results.quality.facts.cells
     every = [(r, c) for r in range(6) for c in range(5)]
@@ -371,7 +371,7 @@ def test_the_table_says_how_each_joint_was_found(results: ResultPage) -> None:
 
 def test_findings_are_told_the_gravest_first(results: ResultPage) -> None:
     told = [row.accessibleName() for row in results.quality.findings.findChildren(FindingRow)]
-    assert [text.split(":")[0] for text in told] == ["grave", "warning", "info"]
+    assert [text.split(":")[0] for text in told] == ["serious", "warning", "info"]
     assert "0.42 s" in told[1]
 
 
@@ -519,7 +519,7 @@ def test_tab_goes_in_the_order_of_reading(qtbot: QtBot, window: SessionScreen, r
         "Recording",
         "Result",
         "Knee and ankle angles of walk 1",
-        "Data: R foot",
+        "Data quality: R foot",
         "Open a session folder",
         "Open the demonstration",
         "Show calibration",

@@ -80,7 +80,8 @@ def test_an_8_gb_file_is_refused_with_two(
     out = tmp_path / ("out.pdf" if command == "report" else "out")
     assert main([command, str(folder), "--out", str(out), *more]) == 2
     assert refusal(capsys) == (
-        "walk_1/left_shank.csv: this is 8000 MB large, more than a recording needs. Choose a file of up to 1000 MB."
+        "walk_1/left_shank.csv: this file has 8000 MB, more than a recording should need. "
+        "Choose a file of up to 1000 MB."
     )
     assert not out.exists()
 
@@ -90,7 +91,7 @@ def test_an_8_gb_file_is_not_imported(tmp_path: Path, capsys: pytest.CaptureFixt
         file.truncate(8_000_000_000)
     where = ["--map", "left_thigh=a.txt", "--out", str(tmp_path / "session")]
     assert main(["import", str(tmp_path / "a.txt"), "--as", "xsens-mtmanager", *where]) == 2
-    assert "a.txt: this is 8000 MB large, more than a recording needs." in refusal(capsys)
+    assert "a.txt: this file has 8000 MB, more than a recording should need." in refusal(capsys)
     assert not (tmp_path / "session").exists()
 
 
@@ -101,14 +102,17 @@ def test_a_file_that_takes_too_long_is_refused_with_two(
     monkeypatch.setattr(limited_reader, "DEADLINE_S", 0.0)
     the_reader().close()  # to start again takes longer
     assert main(["analyse", str(folder), "--out", str(tmp_path / "out")]) == 2
-    assert "session.toml: reading this takes longer than a recording needs. Export it again" in capsys.readouterr().err
+    assert (
+        "session.toml: reading this takes longer than a recording should need. Export it again"
+        in capsys.readouterr().err
+    )
     monkeypatch.undo()
     read_foreign_session(folder, nothing)
 
 
 def test_a_reader_that_fails_for_no_foreseen_reason_is_a_refusal_too(folder: Path) -> None:
     reading = limited_reader.LimitedReading(the_reader(), nothing)
-    with pytest.raises(ReadingEndedError, match="for a reason that the log names") as caught:
+    with pytest.raises(ReadingEndedError, match="reading stopped early; the reason is in the log") as caught:
         reading.read_trial("no-such-format", [folder / "session.toml"], None)
     assert caught.value.cause == child.UNFORESEEN
     assert foreign_files.the_reader().process is None

@@ -36,8 +36,8 @@ REFUSED = pytest.mark.parametrize("number", [errno.EIO, errno.EROFS], ids=["EIO"
 PATIENCE_S = 30.0
 MOST_WRITES = 3000  # by far more than a save or a backup needs
 SENTENCES = {
-    "The library's file cannot be read or written. Check the disk, then try again.",
-    "The library's file cannot be opened for writing. See to the rights of its folder.",
+    "The library file cannot be read or written. Check the disk, then try again.",
+    "The library file cannot be opened for writing. Check the permissions of its folder.",
 }
 
 
@@ -194,7 +194,7 @@ def test_a_backup_of_it_is_refused_and_made_once_it_can_be_noted(
     into = tmp_path / "backups"
     into.mkdir()
     disk.fail(number)
-    with pytest.raises(LibraryError, match="library's file cannot be"):
+    with pytest.raises(LibraryError, match="library file cannot be"):
         back_up(opened, into)
     disk.mend()
     with again(opened) as later:

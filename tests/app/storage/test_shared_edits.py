@@ -139,7 +139,7 @@ def test_a_patient_who_is_gone_is_not_edited_out_of_sight(stations: TwoStations,
     else:
         patients.delete(patients.get(stations.patient_id))
     upon = patient_fields(FULL)
-    with pytest.raises(LibraryError, match="merged into another" if is_merged else "deleted meanwhile"):
+    with pytest.raises(LibraryError, match="been merged with another" if is_merged else "since been deleted"):
         stations.ours.edits.patient(stations.patient_id, upon, upon | {"height_m": 1.82})
     assert patients.get(stations.patient_id).details.height_m == 1.68
 

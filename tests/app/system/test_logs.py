@@ -112,10 +112,12 @@ def test_of_200_planted_names_none_is_in_the_logs_and_none_in_a_report(
 
 
 def test_a_line_keeps_our_own_words_numbers_and_ids(folder: Path) -> None:
-    text = "%s of %s: %d, %.1f, %s, %s"
-    logging.getLogger("app.system.logs").warning(text, Trouble.DISK_FULL, ID, 3, 2.5, KeyError, "Anna")
+    logging.getLogger("app.system.logs").warning(
+        "%s of %s: %d, %.1f, %s, %s", Trouble.DISK_FULL, ID, 3, 2.5, KeyError, "Anna"
+    )
+    line = _line_of('getLogger("app.system.logs").warning(')
     assert written(folder).endswith(
-        f"WARNING app.system.logs line {_line_of('Anna')}: DISK_FULL of {ID}: 3, 2.5, KeyError, (str)\n"
+        f"WARNING app.system.logs line {line}: DISK_FULL of {ID}: 3, 2.5, KeyError, (str)\n"
     )
 
 

@@ -38,7 +38,7 @@ def test_passphrases_are_judged_by_how_long_they_hold(passphrase: str, expected:
         ("aaaaaaaaaa", "repeats itself"),
         ("1234567890", "a common password"),
         ("Passwort2024", "a common password"),
-        ("hijklmnopqrstu", "follow each other"),
+        ("hijklmnopqrstu", "are in sequence"),
         ("zse45rdxcvgy7", "side by side"),
         ("24.12.1968", "a date or a year"),
         ("q9x vv zt b", "It is too short for the characters it uses"),
@@ -54,7 +54,7 @@ def test_a_refusal_says_why_and_what_to_do(passphrase: str, why: str) -> None:
 
 def test_a_long_random_phrase_is_told_no_fault() -> None:
     said = strength_in_words("lamp river onion seventeen cloud", SHORTEST)
-    assert said == "Strong: guessing it would take longer than anybody waits."
+    assert said == "Strong: guessing it would take longer than anyone would wait."
 
 
 def test_what_anybody_knows_of_an_operator_is_worth_little() -> None:
@@ -67,7 +67,7 @@ def test_what_anybody_knows_of_an_operator_is_worth_little() -> None:
 
 
 def test_what_is_too_short_is_told_so() -> None:
-    assert "10 letters" in strength_in_words("short", SHORTEST)
+    assert "At least 10 characters" in strength_in_words("short", SHORTEST)
     assert held_for_s("") == 0.0
 
 

@@ -191,8 +191,8 @@ def test_a_refusal_begins_with_what_happened_and_ends_with_where(tmp_path: Path)
     with pytest.raises(JournalRefusedError) as caught:
         Room(start_bytes=10**18).check(tmp_path, 0.0)
     what, remedy = refusal_of(caught.value)
-    assert what.startswith("A recording needs 1000000000000 MB of free disk, and ")
-    assert remedy == f"Delete or move files that are not needed. Where: {tmp_path}."
+    assert what.startswith("Not enough disk space to record: 1000000000000 MB needed, ")
+    assert remedy == f"Delete or move files you do not need. Where: {tmp_path}."
 
 
 @pytest.mark.usefixtures("pseudo_language")
@@ -319,7 +319,7 @@ def test_a_keyring_without_the_key_sends_back_to_the_passphrase(
     with qtbot.waitSignal(controller.not_opened, timeout=WAIT_MS) as told:
         controller.open_remembered(folder, "hk")
     assert told.args is not None
-    assert told.args[1] == "Type it."
+    assert told.args[1] == "Enter it."
 
 
 def test_a_library_that_another_program_holds_is_not_opened(

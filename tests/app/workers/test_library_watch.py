@@ -98,7 +98,7 @@ def test_it_is_missed_within_a_second_and_said_where_recordings_go(
         folder.rename(elsewhere)
     assert time.monotonic() - began_s < 1.5
     what, then = said.args or ["", ""]
-    assert what == f"The library is gone from {folder}."
+    assert what == f"The library is no longer in {folder}."
     assert opened.shelter is not None
     assert str(opened.shelter.folder) in then
     assert "connect its disk" in then
@@ -172,7 +172,7 @@ def test_what_cannot_be_brought_home_is_said_once_and_kept(
     with qtbot.waitSignal(controller.refused, timeout=WAIT_MS) as said:
         elsewhere.rename(folder)
     assert said.args is not None
-    assert "could not be added to it yet (No space left on device)" in said.args[0]
+    assert "could not be added yet (No space left on device)" in said.args[0]
     assert opened.shelter is not None
     assert str(opened.shelter.folder) in said.args[1]
     monkeypatch.undo()
@@ -332,7 +332,7 @@ def test_a_passphrase_for_a_library_that_is_gone_counts_as_no_wrong_one(
     for _ in range(4):
         controller.unlock("hk", PASSPHRASE, delay, asker.on_done, asker.on_failed, asker)
     qtbot.waitUntil(lambda: len(asker.refusals) == 4, timeout=WAIT_MS)
-    assert {what for what, _ in asker.refusals} == {f"The library is gone from {folder}."}
+    assert {what for what, _ in asker.refusals} == {f"The library is no longer in {folder}."}
     assert delay.left_s("hk") == 0.0
     assert not folder.exists()
     elsewhere.rename(folder)

@@ -77,7 +77,7 @@ def test_without_the_library_the_other_sensors_are_found_and_it_says_what_to_ins
     result = search((), free_port(), radio=Radio())
     assert result.sensors == ()
     assert isinstance(result.deaf, BluetoothMissingError)
-    assert "extra bluetooth" in str(result.deaf)
+    assert "Install gaitwright[bluetooth]" in str(result.deaf)
 
 
 @pytest.mark.endurance

@@ -80,7 +80,7 @@ def test_a_link_that_carries_too_little_for_samples_says_so_and_gives_none(radio
     wearing = WornDots(radio, [DotFaults(), DotFaults()], through=through(40))
     with pytest.raises(NotSynchronisedError) as refused:
         wearing.open()
-    assert set(refused.value.failed.values()) == {"data from it arrive incomplete"}
+    assert set(refused.value.failed.values()) == {"what it sends arrives cut"}
 
 
 def test_a_link_that_carries_too_little_for_lists_is_the_adapters_fault(radio: VirtualRadio) -> None:
@@ -90,7 +90,7 @@ def test_a_link_that_carries_too_little_for_lists_is_the_adapters_fault(radio: V
     radio.run(record([sensor], UTC_S, 120))
     radio.pass_s(1.0)
     radio.run(stop(sensor))
-    with pytest.raises(DotRefusedError, match=r"arrives cut\. Use another Bluetooth adapter"):
+    with pytest.raises(DotRefusedError, match=r"arrive incomplete\. Use another Bluetooth adapter"):
         radio.run(list_files(sensor))
 
 

@@ -252,7 +252,7 @@ def test_a_stream_is_found_by_the_search_and_its_sensors_are_counted(outlets: li
 
 def test_who_was_asked_on_this_computer_is_asked_nowhere_else(outlets: list[Outlet]) -> None:
     outlets.append(Outlet())
-    with pytest.raises(SourceRefusedError, match=f"asked in the network of {THIS_COMPUTER}"):
+    with pytest.raises(SourceRefusedError, match=f"already searches the network of {THIS_COMPUTER}"):
         find_streams("192.0.2.9")
 
 
@@ -265,5 +265,5 @@ def test_a_stream_that_ends_is_lost_and_then_not_there(outlets: list[Outlet], mo
         heard([source], 10.0)
     source.close()
     monkeypatch.setattr("devices.drivers.lsl.OPEN_S", 0.5)
-    with pytest.raises(SourceRefusedError, match="is not there"):
+    with pytest.raises(SourceRefusedError, match="was not found"):
         source.open()

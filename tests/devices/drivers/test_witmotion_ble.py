@@ -154,7 +154,7 @@ def test_each_sample_comes_through_at_the_rate_that_was_asked_for(radio: Virtual
     assert source.info.is_simulated
     details = source.details()["WT 0101"]
     assert not details.is_loss_seen
-    assert "losses unknown" in details.model
+    assert "losses not seen" in details.model
     assert wit.heard == [bytes.fromhex("FFAA6988B5"), bytes.fromhex("FFAA030900")]
     assert not wit.is_up
 

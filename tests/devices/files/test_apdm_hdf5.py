@@ -168,18 +168,18 @@ def test_what_is_missing_or_damaged_is_refused_where_it_is(tmp_path: Path) -> No
     del samples["Gyroscope"]
     assert '"A" has no angular rates' in refusal(version_5(tmp_path / "a.h5", {"1": ("A", stamps(), samples)}))
     short = {**still(), "Accelerometer": np.ones((39, 3))}
-    assert "b.h5, Sensors/1/Accelerometer: its values are of shape (39, 3), (40, 3) are expected" in refusal(
+    assert "b.h5, Sensors/1/Accelerometer: its values have shape (39, 3), expected (40, 3)" in refusal(
         version_5(tmp_path / "b.h5", {"1": ("A", stamps(), short)})
     )
     back = stamps()
     back[20:] -= 1_000_000
-    assert "c.h5, A, sample 21: Time steps back from" in refusal(
+    assert "c.h5, A, sample 21: Time goes back from" in refusal(
         version_5(tmp_path / "c.h5", {"1": ("A", back, still())})
     )
     assert "APDM file version 2 is not supported, only versions 3 to 5" in refusal(version_4(tmp_path / "d.h5", 2))
     whole = version_5(tmp_path / "e.h5", {"1": ("A", stamps(), still())}).read_bytes()
     (tmp_path / "f.h5").write_bytes(whole[: len(whole) // 2])
-    assert "f.h5: this is not readable as HDF5" in refusal(tmp_path / "f.h5")
+    assert "f.h5: this cannot be read as HDF5" in refusal(tmp_path / "f.h5")
     assert "it lists no sensors" in refusal(version_5(tmp_path / "g.h5", {}))
 
 

@@ -112,7 +112,7 @@ def test_units_that_are_told_become_si(tmp_path: Path) -> None:
 def test_units_that_are_told_wrongly_are_refused(tmp_path: Path) -> None:
     truth = swinging_sensor()
     held = channels("leftThigh", truth)
-    assert 'the acceleration of "leftThigh" is 1.0' in refusal(
+    assert 'the median acceleration of "leftThigh" is 1.0' in refusal(
         bids(tmp_path, [(row, values / 9.81) for row, values in held])
     )
     assert 'the angular rates of "leftThigh" are in deg/s, not in rad/s' in refusal(
@@ -137,7 +137,7 @@ def test_latencies_are_the_times_and_missing_samples_gaps(tmp_path: Path) -> Non
     trial = bids_motion_trial([bids(tmp_path, [other("LATENCY", "n/a", latency, unit="s"), *held], settings={})])
     assert [finding.key for finding in trial.sensors[0].findings] == ["doubled_stamps"]
     latency[10:] -= 1.0
-    assert "line 11: latency steps back from" in refusal(
+    assert "line 11: latency goes back from" in refusal(
         bids(tmp_path, [other("LATENCY", "n/a", latency, unit="s"), *held])
     )
     in_ms = other("LATENCY", "n/a", np.arange(300) * 10.0, unit="ms")
@@ -146,7 +146,7 @@ def test_latencies_are_the_times_and_missing_samples_gaps(tmp_path: Path) -> Non
 
 def test_a_frequency_that_nothing_tells_is_asked_for(tmp_path: Path) -> None:
     path = bids(tmp_path, channels("leftThigh", swinging_sensor()), settings={"SamplingFrequency": "n/a"})
-    assert "its sampling frequency is not told. Give it in Hz (--rate)" in refusal(path)
+    assert "its sampling frequency is missing. Give it in Hz (--rate)" in refusal(path)
     assert bids_motion_trial([path], 100.0).sensors[0].info.rate_hz == 100.0
 
 
@@ -249,18 +249,16 @@ def test_what_does_not_fit_is_refused_where_it_is(tmp_path: Path) -> None:
     path = bids(tmp_path, held)
     text = path.read_text()
     path.write_text("x\t" + text)
-    assert f"{IMU}_motion.tsv, line 1: it has 7 cells, and the table of channels 6 channels" in refusal(path)
+    assert f"{IMU}_motion.tsv, line 1: it has 7 cells, but the channel table has 6 channels" in refusal(path)
     path.write_text("\t".join(row["name"] for row, _ in held) + "\n" + text)
-    assert "line 1: it holds what is not a number" in refusal(path)
+    assert "line 1: it contains a value that is not a number" in refusal(path)
     assert "Remove its header line: BIDS has none there" in refusal(path)
     path.unlink()
-    assert f"{IMU}_motion.tsv: this file belongs to the recording and is not there" in refusal(
-        tmp_path / f"{IMU}_channels.tsv"
-    )
+    assert f"{IMU}_motion.tsv: this file of the recording is missing" in refusal(tmp_path / f"{IMU}_channels.tsv")
     assert '"leftThigh" has two "ACCEL" "x" channels' in refusal(bids(tmp_path, [*held, held[0]]))
     assert "no tracked point has three ACCEL and three GYRO channels" in refusal(bids(tmp_path, held[:3]))
     path = bids(tmp_path, held, heads=HEADS[:1] + HEADS[2:])
-    assert "line 1: there is no column component" in refusal(path)
+    assert "line 1: column component is missing" in refusal(path)
     path = bids(tmp_path, held)
     (tmp_path / f"{IMU}_motion.json").write_text("{" * 5000)
     assert "this is not readable JSON" in refusal(path)

@@ -145,7 +145,7 @@ def test_one_file_of_several_that_cannot_be_read_is_told_when_it_is_wanted(tmp_p
     write(tmp_path / "shank.csv", {"time_s": TIME_S, **named("acc_{}_m_s2", "gyr_{}_rad_s", G)})
     files = [tmp_path / "thigh.csv", tmp_path / "shank.csv"]
     assert import_with(csv_trial, files, {Site.LEFT_THIGH: "thigh"}, "walk 1").imu
-    with pytest.raises(FileRefusedError, match=r"shank.csv: the acceleration .* is said to be in m/s2"):
+    with pytest.raises(FileRefusedError, match=r"shank.csv: the acceleration .* is labelled m/s2"):
         import_with(csv_trial, files, {Site.LEFT_THIGH: "thigh", Site.LEFT_SHANK: "shank"}, "walk 1")
 
 
@@ -166,7 +166,7 @@ def test_rows_without_a_sensors_values_are_its_gaps_and_doubled_stamps_a_finding
 def test_without_times_a_rate_and_a_counter_are_asked_for(tmp_path: Path) -> None:
     columns = named("acc_{}_m_s2", "gyr_{}_rad_s")
     path = write(tmp_path / "a.csv", columns)
-    assert "nothing tells the times of its samples. Add a column time_s, time_ms or time_us, or give" in refusal(path)
+    assert "its samples have no times. Add a column time_s, time_ms or time_us, or give" in refusal(path)
     imported = shank(path, rate_hz=50.0)
     assert imported.imu[Site.LEFT_SHANK].time_s[-1] == pytest.approx((ROWS - 1) / 50.0)
     assert finding(imported, "time_from_rate").numbers == {"rate_hz": 50.0}
@@ -188,31 +188,27 @@ def test_a_clock_of_32_bits_that_turns_goes_on(tmp_path: Path) -> None:
 def test_what_names_leave_open_is_asked_for(tmp_path: Path) -> None:
     slow = named("acc_{}_m_s2", "gyr_{}")  # 3 rad/s, and it might be 3 deg/s
     assert (
-        "nothing tells whether the angular rates gyr_x, gyr_y, gyr_z are in rad/s or in deg/s. Name the columns with"
+        "it is unclear whether the angular rates gyr_x, gyr_y, gyr_z are in rad/s or in deg/s. Name the columns with"
         in refusal(write(tmp_path / "a.csv", {"time_s": TIME_S, **slow}))
     )
     counts = {"time": np.arange(float(ROWS)), **named("acc_{}_m_s2", "gyr_{}_rad_s")}
     path = write(tmp_path / "b.csv", counts)
-    assert 'nothing tells the unit of "time", which grows by 1 from one sample to the next. Name it' in refusal(path)
+    assert 'the unit of "time" is unclear; its step between samples is 1. Name it' in refusal(path)
     assert shank(path, "b", 100.0).imu[Site.LEFT_SHANK].time_s[1] == 0.01
     fine = {"time": TIME_S * 1e4, **named("acc_{}_m_s2", "gyr_{}_rad_s")}  # 0.1 ms is no unit of ours
-    assert 'nothing tells the unit of "time", which grows by 100 ' in refusal(write(tmp_path / "c.csv", fine))
+    assert 'the unit of "time" is unclear; its step between samples is 100.' in refusal(write(tmp_path / "c.csv", fine))
 
 
 def test_units_are_held_to_their_size(tmp_path: Path) -> None:
     def of(acc: str, gyr: str, acc_unit: float, gyr_unit: float) -> str:
         return refusal(write(tmp_path / "a.csv", {"time_s": TIME_S, **named(acc, gyr, acc_unit, gyr_unit)}))
 
-    assert "is said to be in m/s2, but is 0.994 in the middle, as gravity is in g" in of(
-        "acc_{}_m_s2", "gyr_{}_rad_s", G, 1.0
-    )
-    assert "is said to be in g, but is 9.74 in the middle, as gravity is in m/s2" in of(
-        "acc_{}_g", "gyr_{}_rad_s", 1.0, 1.0
-    )
-    assert "which is not gravity in m/s2, g, mg. Export acceleration in m/s2 with gravity" in of(
+    assert "is labelled m/s2, but its median of 0.994 is gravity in g" in of("acc_{}_m_s2", "gyr_{}_rad_s", G, 1.0)
+    assert "is labelled g, but its median of 9.74 is gravity in m/s2" in of("acc_{}_g", "gyr_{}_rad_s", 1.0, 1.0)
+    assert "not gravity in m/s2, g, mg. Export acceleration in m/s2 with gravity" in of(
         "acc_{}", "gyr_{}_rad_s", 3.0, 1.0
     )
-    assert "are said to be in rad/s, but reach 172, more than sensors measure" in of(
+    assert "are labelled rad/s, but reach 172, beyond the range of any sensor" in of(
         "acc_{}_g", "gyr_{}_rad_s", G, np.pi / 180
     )
     assert '"acc_x (mm)" is in "mm", expected one of m/s2, g, mg' in of("acc_{} (mm)", "gyr_{}_rad_s", 1.0, 1.0)
@@ -220,7 +216,7 @@ def test_units_are_held_to_their_size(tmp_path: Path) -> None:
         name: values - (G if "_z" in name and "acc" in name else 0.0)
         for name, values in named("free_acc_{}_m_s2", "gyr_{}_rad_s").items()
     }
-    assert "which is not gravity in m/s2. Export acceleration in m/s2 with gravity, no free or linear" in refusal(
+    assert "not gravity in m/s2. Export acceleration in m/s2 with gravity, not free or linear" in refusal(
         write(tmp_path / "b.csv", {"time_s": TIME_S, **free})
     )
     mixed = named("acc_{}_m_s2", "gyr_{}_rad_s")
@@ -244,7 +240,7 @@ def test_times_are_held_to_their_size(tmp_path: Path) -> None:
         write(path, {"time_s": empty, **columns})
     )
     coarse = np.floor(TIME_S * 10) / 10
-    assert "of 400 samples 360 have the time of the one before. Export the times with more digits" in refusal(
+    assert "360 of 400 samples repeat the previous time. Export the times with more digits" in refusal(
         write(path, {"time_s": coarse, **columns})
     )
 

@@ -46,7 +46,7 @@ def test_movella_dot_is_told_from_mt_manager_by_more_than_its_columns(tmp_path: 
 
 
 def test_what_is_not_known_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(FileRefusedError, match=r"a.csv: no format that can be imported is recognised in it.*--as"):
+    with pytest.raises(FileRefusedError, match=r"a.csv: its format is not recognised.*--as"):
         recognised([put(tmp_path / "a.csv", "time,left,right\n")])
     bare = "PacketCounter,SampleTimeFine,Acc_X,Acc_Y,Acc_Z,Gyr_X,Gyr_Y,Gyr_Z\n1,16667,0,0,9.8,0,0,0\n"
     with pytest.raises(
@@ -55,7 +55,7 @@ def test_what_is_not_known_is_refused(tmp_path: Path) -> None:
         recognised([put(tmp_path / "bare.csv", bare)])
     with pytest.raises(FileRefusedError, match="its format is not recognised"):
         recognised([put(tmp_path / "b.csv", "")])
-    with pytest.raises(FileRefusedError, match=r"b.txt: it is of apdm, a.txt of xsens-mtmanager"):
+    with pytest.raises(FileRefusedError, match=r"b.txt: this file comes from apdm, but a.txt from xsens-mtmanager"):
         recognised([put(tmp_path / "a.txt", MT), put(tmp_path / "b.txt", APDM)])
     with pytest.raises(FileRefusedError, match="this file does not exist"):
         recognised([tmp_path / "none.csv"])

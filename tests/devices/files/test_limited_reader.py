@@ -207,16 +207,16 @@ def test_an_8_gb_file_is_refused_before_it_is_read(make_session: MakeSession, re
     folder = make_session()
     sparse(folder / "walk_1" / "right_thigh.csv")
     began_s = time.monotonic()
-    with pytest.raises(FileRefusedError, match=r"walk_1/right_thigh.csv: this is 8000 MB large.*up to 1000 MB\.$"):
+    with pytest.raises(FileRefusedError, match=r"walk_1/right_thigh.csv: this file has 8000 MB.*up to 1000 MB\.$"):
         read(folder, reader)
     sparse(folder / "session.toml")
-    with pytest.raises(FileRefusedError, match=r"session.toml: this is 8000 MB large.*up to 4 MB\.$"):
+    with pytest.raises(FileRefusedError, match=r"session.toml: this file has 8000 MB.*up to 4 MB\.$"):
         read(folder, reader)
-    with pytest.raises(FileRefusedError, match=r"session.toml: this is 8000 MB large"):
+    with pytest.raises(FileRefusedError, match=r"session.toml: this file has 8000 MB"):
         write_session(read_session(make_session_beside(folder)), folder, LimitedReading(reader, nothing))
     reading = LimitedReading(reader, nothing)
     files = [exported(folder), folder / "session.toml"]
-    with pytest.raises(FileRefusedError, match=r"session.toml: this is 8000 MB large.*up to 1000 MB\.$"):
+    with pytest.raises(FileRefusedError, match=r"session.toml: this file has 8000 MB.*up to 1000 MB\.$"):
         reading.read_trial("xsens-mtmanager", files, None)
     assert time.monotonic() - began_s < 10.0  # reading one of them takes longer
 
@@ -249,7 +249,7 @@ def test_small_files_that_hold_too_much_together_are_refused(
 ) -> None:
     folder = make_session()
     monkeypatch.setattr("devices.files.session_folder.MOST_HELD_BYTES", 100)
-    with pytest.raises(FileRefusedError, match=r"^walk 1: its files hold more samples than files of their size can"):
+    with pytest.raises(FileRefusedError, match=r"^walk 1: its files contain more samples than their size allows"):
         read_session(folder)
     monkeypatch.setattr("devices.files.session_folder.MOST_HELD_BYTES", 1000)
     read_session(folder)

@@ -60,7 +60,9 @@ def test_what_people_do_and_sensors_lose_is_no_other_unit(motion: object, is_exp
 def test_the_same_in_another_unit_is_refused_with_what_to_do(motion: object, factor: float) -> None:
     assert callable(motion)
     acc, _ = motion()
-    with pytest.raises(FileRefusedError, match=r'a.csv: the acceleration of "left" is .* is not gravity') as refused:
+    with pytest.raises(
+        FileRefusedError, match=r'a.csv: the median acceleration of "left" is .*, not gravity'
+    ) as refused:
         check_magnitudes(factor * acc, None, "left", "a.csv")
     assert "m/s2" in refused.value.remedy
     with pytest.raises(FileRefusedError, match="not gravity") as of_sensor:
@@ -76,11 +78,11 @@ def test_acceleration_without_gravity_is_refused() -> None:
 
 def test_rates_beyond_every_range_are_in_another_unit() -> None:
     acc, gyr = running()
-    with pytest.raises(FileRefusedError, match=r'of "a" are in deg/s and not in rad/s. Export it again in rad/s'):
+    with pytest.raises(FileRefusedError, match=r'of "a" are in deg/s, not in rad/s. Export it again in rad/s'):
         check_magnitudes(acc, np.degrees(gyr), "a", "a.csv")
-    with pytest.raises(FileRefusedError, match=r"more than sensors measure. Export it again in deg/s"):
+    with pytest.raises(FileRefusedError, match=r"beyond the range of any sensor. Export it again in deg/s"):
         check_magnitudes(acc, np.degrees(gyr), "a", "a.csv", gyr_unit="deg/s")
-    with pytest.raises(FileRefusedError, match=r"more than sensors measure. Check the sensor's range"):
+    with pytest.raises(FileRefusedError, match=r"beyond the range of any sensor. Check the sensor's range"):
         check_magnitudes(acc, np.degrees(gyr), "a", "a.bin", is_export=False)
 
 

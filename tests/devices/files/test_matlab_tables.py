@@ -167,7 +167,7 @@ def test_units_are_held_to_their_size_and_asked_for(tmp_path: Path) -> None:
             matlab_trial([written(tmp_path / "a.mat", variables)])
         return str(caught.value)
 
-    assert "is said to be in m/s2, but is" in refusal(
+    assert "is labelled m/s2, but its median of 1.01 is gravity in g" in refusal(
         {"time_s": TIME_S, "acc": ACC / 9.8, "acc_unit": "m/s^2", "gyr": GYR}
     )
     assert "it is unclear whether the angular rates" in refusal({"time_s": TIME_S, "acc": ACC, "gyr": GYR})
@@ -186,7 +186,7 @@ def test_a_table_is_refused_with_what_to_do_in_matlab(tmp_path: Path) -> None:
     path.write_bytes(path.read_bytes() + table_object())
     assert ClosedObject("table") in read_matlab(path).values()
     with pytest.raises(
-        FileRefusedError, match=r"is a MATLAB table, which only MATLAB can open. In MATLAB turn it into"
+        FileRefusedError, match=r"is a MATLAB table, which only MATLAB can open. In MATLAB, convert a timetable"
     ):
         matlab_trial([path])
     new = written_7_3(tmp_path / "b.mat", {"fs": 100.0, "T": np.zeros((1, 6))})
@@ -200,12 +200,16 @@ def test_a_table_is_refused_with_what_to_do_in_matlab(tmp_path: Path) -> None:
 def test_other_matlab_files_are_refused_with_their_names(tmp_path: Path) -> None:
     path = written(tmp_path / "a.mat", {"speed": np.arange(4.0), "picture": np.eye(4)})
     assert recognised([path]) == "matlab"
-    with pytest.raises(FileRefusedError, match=r"a.mat: its columns do not say which .*: speed, picture. Name"):
+    with pytest.raises(
+        FileRefusedError, match=r"a.mat: its columns do not identify acceleration .*: speed, picture. Name"
+    ):
         matlab_trial([path])
     path.write_bytes(path.read_bytes()[:-40])
-    with pytest.raises(FileRefusedError, match=r"a.mat: this is not readable as a MATLAB file"):
+    with pytest.raises(FileRefusedError, match=r"a.mat: this cannot be read as a MATLAB file"):
         matlab_trial([path])
-    with pytest.raises(FileRefusedError, match=r"no MATLAB file of version 5 or later. Save it again in MATLAB"):
+    with pytest.raises(
+        FileRefusedError, match=r"this is not a MATLAB file of version 5 or later. Save it again in MATLAB"
+    ):
         matlab_trial([OF_MATLAB / "testdouble_4.2c_SOL2.mat"])
 
 

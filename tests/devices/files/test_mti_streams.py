@@ -167,7 +167,9 @@ def test_rate_and_acceleration_at_unequal_rates_keep_the_slower_one_and_say_so(
 @pytest.mark.parametrize("scale", [1 / 9.81, 9.81])
 def test_what_weighs_no_gravity_is_refused(tmp_path: Path, scale: float) -> None:
     path = written(tmp_path / "a.bin", kinds=frozenset({Item.RATE, Item.ACCELERATION}), scale=scale)
-    with pytest.raises(FileRefusedError, match=r'a\.bin: the acceleration of "0123ABCD" is .* Check the sensor'):
+    with pytest.raises(
+        FileRefusedError, match=r'a\.bin: the median acceleration of "0123ABCD" is .*, not gravity .* Check the sensor'
+    ):
         one(path)
 
 
@@ -192,7 +194,7 @@ def test_what_tells_no_motion_is_refused_with_what_to_set(tmp_path: Path) -> Non
     ):
         mti_trial([old])
     blind = written(tmp_path / "b.bin", kinds=frozenset({Item.RATE, FREE}))
-    with pytest.raises(FileRefusedError, match=r"b\.bin: gravity is taken out"):
+    with pytest.raises(FileRefusedError, match=r"b\.bin: its acceleration is without gravity"):
         mti_trial([blind])
 
 

@@ -125,7 +125,7 @@ def test_missing_frames_are_a_gap_and_a_repeated_one_is_told(tmp_path: Path) -> 
 
 def test_a_file_without_frames_is_an_empty_recording(tmp_path: Path) -> None:
     held = elements(two(), "sensorAcceleration", "sensorOrientation")
-    assert "there is no acceleration" in refusal(mvnx(tmp_path / "a.mvnx", held, index=()))
+    assert "there is no sensor acceleration" in refusal(mvnx(tmp_path / "a.mvnx", held, index=()))
     one = mvnx_trial([mvnx(tmp_path / "b.mvnx", held, index=[7])]).sensors[0]
     assert len(one.block) == 1
 
@@ -138,12 +138,12 @@ def test_sensors_are_placed_by_their_segments(tmp_path: Path) -> None:
 
 
 def test_what_is_left_out_is_named(tmp_path: Path) -> None:
-    assert "no acceleration of the sensors, or no orientation to add gravity by. Export it again from MVN" in refusal(
+    assert "no sensor acceleration, or no orientation to add gravity with. Export it again from MVN" in refusal(
         mvnx(tmp_path / "a.mvnx", elements(two(), "sensorFreeAcceleration"))
     )
     assert "there is no sensor orientation" in refusal(mvnx(tmp_path / "b.mvnx", elements(two(), "sensorAcceleration")))
     held = elements(two(), "sensorFreeAcceleration", "sensorOrientation")
-    assert "its frame rate is not told. Give it in Hz (--rate)" in refusal(mvnx(tmp_path / "c.mvnx", held, rate=""))
+    assert "its frame rate is missing. Give it in Hz (--rate)" in refusal(mvnx(tmp_path / "c.mvnx", held, rate=""))
     assert mvnx_trial([tmp_path / "c.mvnx"], 100.0).sensors[0].info.rate_hz == 100.0
     none = tmp_path / "d.mvnx"
     none.write_text('<mvnx version="4"><subject frameRate="100"><frames/></subject></mvnx>')
@@ -153,13 +153,13 @@ def test_what_is_left_out_is_named(tmp_path: Path) -> None:
 def test_other_units_and_broken_frames_are_refused(tmp_path: Path) -> None:
     held = elements(two(), "sensorAcceleration", "sensorAngularVelocity", "sensorOrientation")
     in_g = held | {"sensorAcceleration": held["sensorAcceleration"] / 9.81}
-    assert "which is not gravity" in refusal(mvnx(tmp_path / "a.mvnx", in_g))
+    assert ", not gravity" in refusal(mvnx(tmp_path / "a.mvnx", in_g))
     deg = held | {"sensorAngularVelocity": np.degrees(held["sensorAngularVelocity"])}
-    assert "in deg/s and not in rad/s" in refusal(mvnx(tmp_path / "b.mvnx", deg))
+    assert "in deg/s, not in rad/s" in refusal(mvnx(tmp_path / "b.mvnx", deg))
     short = held | {"sensorAcceleration": held["sensorAcceleration"][:, :5]}
     assert "frame 0: it has 5 values for 2 sensors, expected 6" in refusal(mvnx(tmp_path / "c.mvnx", short))
     twice = held | {"sensorOrientation": 2.0 * held["sensorOrientation"]}
-    assert "frame 0: the orientation is no rotation" in refusal(mvnx(tmp_path / "d.mvnx", twice))
+    assert "frame 0: the orientation is not a valid rotation" in refusal(mvnx(tmp_path / "d.mvnx", twice))
     assert "its frames take 3.0 s at 100 Hz, but its timestamps 6.0 s" in refusal(
         mvnx(tmp_path / "e.mvnx", held, ms_each=20.0)
     )
@@ -170,12 +170,12 @@ def test_other_units_and_broken_frames_are_refused(tmp_path: Path) -> None:
 def test_damaged_xml_is_refused_and_entities_take_no_memory(tmp_path: Path) -> None:
     path = mvnx(tmp_path / "a.mvnx", elements(two(), "sensorFreeAcceleration", "sensorOrientation"))
     path.write_text(path.read_text()[:-100])
-    assert "a.mvnx: this is no whole XML file" in refusal(path)
+    assert "a.mvnx: this is not a complete XML file" in refusal(path)
     levels = "".join(f'<!ENTITY e{k} "{f"&e{k - 1};" * 10}">' for k in range(1, 12))
     (tmp_path / "b.mvnx").write_text(
         f'<?xml version="1.0"?><!DOCTYPE mvnx [<!ENTITY e0 "0">{levels}]>'
         '<mvnx version="4"><comment>&e11;</comment></mvnx>'
     )
-    assert "b.mvnx: this is no whole XML file" in refusal(tmp_path / "b.mvnx")
+    assert "b.mvnx: this is not a complete XML file" in refusal(tmp_path / "b.mvnx")
     with pytest.raises(FileRefusedError, match="an MVNX file contains all sensors of a trial"):
         mvnx_trial([path, path])

@@ -112,17 +112,17 @@ def test_what_is_damaged_is_refused_where_it_is(tmp_path: Path) -> None:
         return sto(path, swinging_sensor(), swinging_sensor())
 
     assert "there is no header line after endheader" in refusal(edited(good(), "endheader", "end"))
-    assert "a.sto, line 6: the line of columns does not begin with time" in refusal(edited(good(), "time", "t"))
-    assert 'line 6: column "femur_l_imu" is given twice' in refusal(edited(good(), "tibia_l_imu", "femur_l_imu"))
-    assert "line 9: it has 2 cells, the heads 3" in refusal(edited(good(), "0.020000\t", "0.020000"))
-    assert "line 9: it holds what is not a number" in refusal(edited(good(), "0.020000\t", "0.020000\tx"))
+    assert "a.sto, line 6: the header line does not begin with time" in refusal(edited(good(), "time", "t"))
+    assert 'line 6: column "femur_l_imu" appears twice' in refusal(edited(good(), "tibia_l_imu", "femur_l_imu"))
+    assert "line 9: it has 2 cells, the header 3" in refusal(edited(good(), "0.020000\t", "0.020000"))
+    assert "line 9: it contains a value that is not a number" in refusal(edited(good(), "0.020000\t", "0.020000\tx"))
     times = {f"{0.01 * k:.6f}": f"{0.01 * k - 0.5:.6f}" for k in range(100, 300)}
     back = good().read_text()
     for time_s, earlier_s in times.items():
         back = back.replace(f"{time_s}\t", f"{earlier_s}\t")
     path.write_text(back)
     assert "line 107: time goes back from 0.99 to 0.5" in refusal(path)
-    assert "line 9: the orientation is no rotation" in refusal(edited(good(), "0.020000\t", "0.020000\t9"))
+    assert "line 9: the orientation is not a valid rotation" in refusal(edited(good(), "0.020000\t", "0.020000\t9"))
     assert "is not an orientation of four numbers" in refusal(edited(good(), "0.020000\t", "0.020000\t1.0,"))
     assert "its times are not evenly spaced, so angular rates cannot be derived from the orientation" in refusal(
         edited(good(), "0.020000\t", "0.025000\t")

@@ -59,7 +59,7 @@ def test_units_of_the_columns_metadata_count(tmp_path: Path) -> None:
 def test_what_is_left_open_is_asked_for(tmp_path: Path) -> None:
     slow = {**columns(), **{f"gyr_{axis}": GYR[:, k] for k, axis in enumerate("xyz")}}
     with pytest.raises(
-        FileRefusedError, match=r"a.parquet: nothing tells whether the angular rates .* rad/s or in deg/s"
+        FileRefusedError, match=r"a.parquet: it is unclear whether the angular rates .* rad/s or in deg/s"
     ):
         parquet_trial([written(tmp_path / "a.parquet", {"time_ms": TIME_MS, **slow})])
     with pytest.raises(FileRefusedError, match="its samples have no times"):
@@ -77,7 +77,7 @@ def test_other_parquet_is_not_taken_for_it(tmp_path: Path) -> None:
     path = written(tmp_path / "a.parquet", {"year": [2026], "amount": [1.0]})
     with pytest.raises(FileRefusedError, match="its format is not recognised"):
         recognised([path])
-    with pytest.raises(FileRefusedError, match=r"its columns do not say which are acceleration .*: year, amount. Name"):
+    with pytest.raises(FileRefusedError, match=r"its columns do not identify acceleration .*: year, amount. Name"):
         parquet_trial([path])
     path.write_bytes(path.read_bytes()[:-20])
     with pytest.raises(FileRefusedError, match="this is not a readable Parquet file"):

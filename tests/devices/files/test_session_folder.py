@@ -266,7 +266,7 @@ def test_delimiters_at_the_end_of_every_line_are_nothing(make_session: MakeSessi
     ("toml", "words"),
     [
         (TOML.replace("walk_1", "walk_9"), "folder of this recording is missing"),
-        (TOML.replace("walk_1", "w" * 5000), "not available"),
+        (TOML.replace("walk_1", "w" * 5000), "this cannot be read (File name too long)"),
         (b"\xff\xfe", "not UTF-8"),
         ("x = ", "session.toml: this is not TOML"),
     ],
@@ -282,9 +282,9 @@ def test_a_wrong_session_toml_is_refused(make_session: MakeSession, toml: str | 
         ("\n\n", "the file has no header line"),
         ("a,b\n1,2\n", "line 1: required columns are missing: time_s"),
         (table("0,1,1,1,1,1", columns=COLUMNS.replace("acc_y_m_s2,", "")), "columns are missing: acc_y_m_s2"),
-        (table(*ROWS, columns=COLUMNS.replace("acc_y", "acc_x")), 'line 1: column "acc_x_m_s2" is given twice'),
+        (table(*ROWS, columns=COLUMNS.replace("acc_y", "acc_x")), 'line 1: column "acc_x_m_s2" appears twice'),
         (table("0,1,1,1,1,1,1", "1,1,1,1,1,1,1", "0.5,1,1,1,1,1,1"), "line 4: the clock goes back from 1 s to 0.5 s"),
-        (table("0,1,1,1,1,1,1", "", "1,1,1,1,1,1,1", "", "0.5,1,1,1,1,1,1"), "line 6: the clock steps back"),
+        (table("0,1,1,1,1,1,1", "", "1,1,1,1,1,1,1", "", "0.5,1,1,1,1,1,1"), "line 6: the clock goes back"),
         (table("0,1,1,1,1,1,1", "1,1,x1,1,1,1,1"), 'line 3: "x1" in column acc_y_m_s2 is not a number'),
         (table("0,1,1,1,1,1,1", "1,1,0x10,1,1,1,1"), "line 3: .* is not a number"),
         (table("0;1;1;1;1;1;1", columns=COLUMNS.replace(",", ";")), "line 1: required columns are missing"),
@@ -299,8 +299,8 @@ def test_a_wrong_session_toml_is_refused(make_session: MakeSession, toml: str | 
         (table('0,1,1,1,1,1,"1'), "line 2: a quotation mark"),
         (COLUMNS.encode() + b"\n0,1,1,1,1,1,\xff\n", "line 2: this is not UTF-8"),
         ((COLUMNS + ",x").encode() + b"\n0,1,1,1,1,1,1,\xff\n", "line 2: this is not UTF-8"),
-        (table(*ROWS).replace("\n", "\r"), "line 1: a carriage return"),
-        (table("1,1,1,1,1,1,1\r0,1,1,1,1,1,1"), "row 2: the clock steps back"),
+        (table(*ROWS).replace("\n", "\r"), "line 1: there is a carriage return"),
+        (table("1,1,1,1,1,1,1\r0,1,1,1,1,1,1"), "row 2: the clock goes back"),
         (b"\xff\xd8\xff", "line 1: this is not UTF-8"),
         (b"PK\0\0", "line 1: this is not a table but binary data"),
         (b"x" * 200_000, "line 1: this is not a table but binary data"),
@@ -330,8 +330,8 @@ def test_a_text_named_parquet_is_refused(make_session: MakeSession) -> None:
 
 
 def test_a_folder_without_session_toml_is_refused(tmp_path: Path) -> None:
-    assert "it holds no session.toml" in refusal(tmp_path)
-    assert "it holds no session.toml" in refusal(tmp_path / "none")
+    assert "it contains no session.toml" in refusal(tmp_path)
+    assert "it contains no session.toml" in refusal(tmp_path / "none")
 
 
 def test_a_session_without_any_site_file_is_refused(make_session: MakeSession) -> None:
@@ -351,16 +351,16 @@ def test_links_out_of_the_session_are_refused(make_session: MakeSession, tmp_pat
     (outside / "left_thigh.csv").write_text(table(*ROWS))
     link = folder / "walk_1" / "left_thigh.csv"
     link.symlink_to(outside / "left_thigh.csv")
-    assert "walk_1/left_thigh.csv: this leads outside" in refusal(folder)
+    assert "walk_1/left_thigh.csv: this leads out of the session folder" in refusal(folder)
     (folder / "session.toml").rename(outside / "session.toml")
     (folder / "session.toml").symlink_to(outside / "session.toml")
-    assert "session.toml: this leads outside" in refusal(folder)
+    assert "session.toml: this leads out of the session folder" in refusal(folder)
     (folder / "session.toml").unlink()
     (outside / "session.toml").rename(folder / "session.toml")
     link.unlink()
     (folder / "walk_1").rmdir()
     (folder / "walk_1").symlink_to(outside)
-    assert "walk_1: this leads outside" in refusal(folder)
+    assert "walk_1: this leads out of the session folder" in refusal(folder)
     (folder / "walk_1").unlink()
     (folder / "walk_1").symlink_to(folder / "walk_1")
     assert "walk_1" in refusal(folder)

@@ -141,8 +141,10 @@ def test_units_are_held_to_the_size_of_what_was_measured(tmp_path: Path) -> None
     path = written(tmp_path / "a.csv")
     text = path.read_text(encoding="utf-8")
     path.write_text(text.replace("m/(s^2)", "g"), encoding="utf-8")
-    with pytest.raises(FileRefusedError, match=r'a.csv: the acceleration of "Shimmer_40AC" is 96.* is not gravity'):
+    with pytest.raises(
+        FileRefusedError, match=r'a.csv: the median acceleration of "Shimmer_40AC" is 96.*, not gravity'
+    ):
         shimmer_trial([path])
     path.write_text(text.replace("deg/s", "rad/s").replace("-20.0", "-200.0"), encoding="utf-8")
-    with pytest.raises(FileRefusedError, match="in deg/s and not in rad/s"):
+    with pytest.raises(FileRefusedError, match="in deg/s, not in rad/s"):
         shimmer_trial([path])

@@ -185,7 +185,7 @@ def test_files_that_lack_what_is_needed_are_refused(test_data: FindData, name: s
 def test_a_rate_that_no_file_tells_is_asked_for(test_data: FindData) -> None:
     path = test_data(FOLDER) / "MT_01200454_000-000_00B40DE4.txt"
     placement = {Site.LEFT_THIGH: "00B40DE4"}
-    with pytest.raises(FileRefusedError, match=r"its update rate is not told\. Give it in Hz \(--rate\)"):
+    with pytest.raises(FileRefusedError, match=r"its update rate is missing\. Give it in Hz \(--rate\)"):
         import_with(mtmanager_trial, [path], placement, "walk 1")
     block = import_with(mtmanager_trial, [path], placement, "walk 1", rate_hz=60.0).imu[Site.LEFT_THIGH]
     np.testing.assert_allclose(block.time_s, np.arange(4) / 60)
@@ -224,9 +224,9 @@ def test_files_that_share_no_packet_are_refused(tmp_path: Path) -> None:
 def test_files_of_two_rates_are_refused(tmp_path: Path) -> None:
     one = export(tmp_path / "a.txt", ACC_GYR, still([1, 2, 3]))
     other = export(tmp_path / "b.txt", ACC_GYR, still([1, 2, 3]), head="// Update Rate: 60.0Hz")
-    with pytest.raises(FileRefusedError, match=r"b.txt: the update rate is 60 Hz, in a.txt 100 Hz"):
+    with pytest.raises(FileRefusedError, match=r"b.txt: the update rate is 60 Hz, but 100 Hz in a.txt"):
         import_two(one, other)
-    with pytest.raises(FileRefusedError, match=r"--rate: the update rate is 50 Hz, in a.txt 100 Hz"):
+    with pytest.raises(FileRefusedError, match=r"--rate: the update rate is 50 Hz, but 100 Hz in a.txt"):
         import_with(mtmanager_trial, [one], {Site.LEFT_FOOT: "a"}, "walk 1", rate_hz=50.0)
 
 
@@ -257,18 +257,18 @@ def test_header_only_files_hold_no_samples(tmp_path: Path) -> None:
         (ACC_GYR[1:], [], "column PacketCounter is missing"),
         (ACC_GYR, still([5, 4]), "line 4: PacketCounter goes back from 5 to 4"),
         (ACC_GYR, [[70000.0, 0, 0, 9.8, 0, 0, 0]], "line 3: PacketCounter is not a whole number"),
-        (ACC_GYR, [[1.0, 0, 0, 1.0, 0, 0, 0]], "the acceleration is 1.00 in the middle, as if it were in g"),
+        (ACC_GYR, [[1.0, 0, 0, 1.0, 0, 0, 0]], "the median acceleration is 1.00, as if in g"),
         (ACC_GYR, [[1.0, 0, 0, 0.1, 0, 0, 0]], "m/s2, as if gravity had been removed"),
         (ACC_GYR, [[1.0, 0, 0, 9.8, 0, 0, 250.0]], "the angular rates are in deg/s"),
         (
             [*ACC_GYR, *MATRIX],
             [[1.0, 0, 0, 9.8, 0, 0, 0, *IDENTITY[:8], 0.9]],
-            "line 3: the orientation is no rotation",
+            "line 3: the orientation is not a valid rotation",
         ),
         (
             [*ACC_GYR, *MATRIX],
             [[1.0, 0, 0, 9.8, 0, 0, 0, *IDENTITY[:8], -1.0]],
-            "line 3: the orientation is no rotation",
+            "line 3: the orientation is not a valid rotation",
         ),
         (
             [*ACC_GYR, "Quat_q0", "Quat_q1", "Quat_q2", "Quat_q3"],

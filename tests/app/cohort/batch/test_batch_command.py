@@ -175,7 +175,7 @@ def test_what_is_no_batch_is_not_written_into(place: Path, capsys: pytest.Captur
     shutil.rmtree(place / "out" / done.FOLDER)
     before = results_in(place / "out")
     assert again(place) == 2
-    assert refusal(capsys).endswith("this is there already and is not a batch. Choose another --out.")
+    assert refusal(capsys).endswith("this already exists and is not a batch. Choose another --out.")
     assert results_in(place / "out") == before
     (place / "file").write_text("mine")
     assert main(["batch", str(place / "in"), "--out", str(place / "file"), *BARE]) == 2
@@ -224,7 +224,7 @@ def test_a_worker_that_sees_other_folders_or_has_other_software_says_so(place: P
     here = done.BatchFolder(out, read_mark(out) or "")
     same_path = done.BatchFolder(out, "the mark of the asking computer's own folder")
     for batch, folder, theirs, reason in (
-        (same_path, session, software(), "does not see OUT. FOLDER and OUT have to be on a disk that all workers see"),
+        (same_path, session, software(), "cannot access OUT. FOLDER and OUT have to be on a disk that all workers see"),
         (here, place / "elsewhere", software(), "the worker here cannot access the session folder"),
         (here, session, "older", "has another version of Gaitwright"),
     ):

@@ -187,7 +187,7 @@ def test_what_is_no_table_of_a_batch_is_refused(tmp_path: Path) -> None:
     for place, said in (
         (other, "column side is missing"),
         (broken, "this is not a readable Parquet file"),
-        (empty, "parameters.parquet: this is not there"),
+        (empty, "parameters.parquet: not found"),
         (tmp_path / "nothing.parquet", "not found"),
     ):
         with pytest.raises(FileRefusedError) as told, ParameterTable.opened(place):

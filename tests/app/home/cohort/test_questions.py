@@ -36,7 +36,7 @@ def asked(qtbot: QtBot, home: Home, table: Path) -> QuestionsPage:
 
 def test_home_leads_to_the_page_which_says_how_a_table_comes_to_be(home: Home) -> None:
     row = home.rail.rows[QUESTIONS]
-    assert row.text() == "Questions"
+    assert row.text() == "Cohort"
     row.click()
     page = home.questions.page
     assert home.current is page
@@ -124,7 +124,7 @@ def test_a_file_that_is_no_table_is_refused_in_words(
     broken.write_bytes(b"PAR1")
     home.questions.open(broken)
     qtbot.waitUntil(page.refusal.isVisible, timeout=WAIT_MS)
-    assert "broken.parquet: this cannot be read as Parquet" in page.refusal.text
+    assert "broken.parquet: this is not a readable Parquet file" in page.refusal.text
     assert "parquet written by gaitwright batch" in page.refusal.text
     assert page.question is None
     assert settings.latest_table == str(table)

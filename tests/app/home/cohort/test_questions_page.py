@@ -50,12 +50,16 @@ def shown(page: QuestionsPage) -> str:
 @pytest.mark.parametrize(
     ("said", "so", "not_so"),
     [
-        ("fewer than 3 sessions, so no interval", found(WHOLE, FEW), found(WHOLE)),
+        ("1 group has fewer than 3 sessions: no interval", found(WHOLE, FEW), found(WHOLE)),
         ("Some sessions are in several groups", found(WHOLE, FEW, sessions=12), found(WHOLE, FEW)),
-        ("They are of 5 people", found(WHOLE, patients=5), found(WHOLE)),
-        ("narrower than they should be", found(WHOLE, patients=1), found(WHOLE, patients=0)),
+        ("The sessions are from 5 people", found(WHOLE, patients=5), found(WHOLE)),
+        (
+            "All sessions are from 1 person. The intervals are therefore too narrow",
+            found(WHOLE, patients=1),
+            found(WHOLE, patients=0),
+        ),
         ("SIMULATED: 3 sessions are simulated", found(WHOLE, simulated=3), found(WHOLE)),
-        ("1 simulated session is left out", found(WHOLE, simulated_left_out=1), found(WHOLE)),
+        ("1 simulated session is excluded", found(WHOLE, simulated_left_out=1), found(WHOLE)),
         ("4 not reported", found(replace(WHOLE, withheld=4)), found(replace(WHOLE, with_care=4))),
         ("5 rated caution", found(replace(WHOLE, with_care=5)), found(replace(WHOLE, withheld=5))),
         ("6 not measured", found(replace(WHOLE, not_measured=6)), found(WHOLE)),
@@ -81,7 +85,7 @@ def test_nothing_is_judged_however_far_groups_lie_apart(page: QuestionsPage) -> 
     page.show_answer(found(WHOLE, replace(WHOLE, group="shoes", mean=20.0)))
     words = shown(page).lower()
     assert [one for one in ("better", "worse", "significant", "normal", "larger", "smaller") if one in words] == []
-    assert "whether groups differ is not judged here" in words
+    assert "groups are not tested for differences" in words
 
 
 def test_the_chart_and_the_table_have_the_same_groups(page: QuestionsPage) -> None:

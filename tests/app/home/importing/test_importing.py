@@ -73,9 +73,9 @@ def test_what_was_made_of_the_orientation_is_shown(qtbot: QtBot, home: Home, tmp
     path = tmp_path / "LFemur_20230101_101112_831.csv"
     path.write_text("\n".join([*lines, ""]))
     said = shown(read(qtbot, home, path))
-    assert "1 recording of the Movella DOT app" in said
-    told = "1 sensor · 3.0 s · 60 Hz · gravity 9.8 m/s² · gravity added by the orientation · no gaps"
-    assert f"{told} · rates derived from the orientation" in said
+    assert "1 recording of Movella DOT (files of its app)" in said
+    told = "1 sensor · 3.0 s · 60 Hz · gravity 9.8 m/s² · gravity added from orientation · no gaps"
+    assert f"{told} · angular rates derived from orientation" in said
     assert "from its name" in said
 
 
@@ -106,7 +106,7 @@ def test_nothing_is_imported_as_long_as_something_is_wrong(qtbot: QtBot, home: H
     page.code.edited.emit("P-0300")
     assert "Enter the position of at least one sensor." in shown(page)
     assert not home.bar.primary.isEnabled()
-    one, two = (choices(page)[f"Where was {name} worn?"] for name in ("one (100)", "two (101)"))
+    one, two = (choices(page)[f"Position of {name}"] for name in ("one (100)", "two (101)"))
     one.setCurrentIndex(1)
     assert home.bar.primary.isEnabled()
     two.setCurrentIndex(1)
@@ -142,8 +142,8 @@ def test_what_could_not_be_read_is_said_beside_what_was(qtbot: QtBot, home: Home
     (tmp_path / "notes.txt").write_text("to be left out\n")
     page = read(qtbot, home, good, tmp_path / "mt.txt", tmp_path / "notes.txt")
     said = shown(page)
-    assert "notes.txt: this is of no program whose files can be read. Leave it out." in said
-    assert "mt.txt: its update rate is not told." in said
+    assert "notes.txt: this file format is not supported. Leave it out." in said
+    assert "mt.txt: its update rate is missing." in said
     page.rate.set_value(100.0)
     page.read_again.click()
     qtbot.waitUntil(lambda: "1 recording of Xsens MT Manager" in shown(page), timeout=WAIT_MS)
@@ -163,10 +163,10 @@ def test_the_motion_places_the_sensors_of_a_real_walk(qtbot: QtBot, home: Home, 
     folder = test_data("vendor_exports/xsens_mtmanager")
     page = read(qtbot, home, *sorted(folder.glob("OpenSenseExample_*.txt")))
     for torso in ("00B42268", "00B42279"):
-        choices(page)[f"Where was {torso} worn?"].setCurrentIndex(7)
+        choices(page)[f"Position of {torso}"].setCurrentIndex(7)
     page.draft.place.click()
     qtbot.waitUntil(page.draft.is_right.isVisible, timeout=WAIT_MS)
-    assert "The motion puts 00B4227C, 00B4227D and 00B421EF on one leg, from the thigh down." in shown(page)
+    assert "By movement, 00B4227C, 00B4227D and 00B421EF are on one leg, from the thigh down." in shown(page)
     page.draft.is_right.click()
     assert page.draft.sites["00B4227C"] is Site.RIGHT_THIGH
     assert page.draft.sites["00B421E6"] is Site.LEFT_FOOT
@@ -177,7 +177,7 @@ def test_a_site_that_was_said_tells_the_side(qtbot: QtBot, home: Home, test_data
     folder = test_data("vendor_exports/xsens_mtmanager")
     page = read(qtbot, home, *sorted(folder.glob("OpenSenseExample_*.txt")))
     for torso in ("00B42268", "00B42279"):
-        choices(page)[f"Where was {torso} worn?"].setCurrentIndex(7)
+        choices(page)[f"Position of {torso}"].setCurrentIndex(7)
     thigh = choices(page)["Position of 00B4227C"]
     thigh.setCurrentIndex(1)  # left, whatever it was
     page.draft.place.click()

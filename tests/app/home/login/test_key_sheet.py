@@ -59,7 +59,7 @@ def test_the_saved_sheet_says_whose_key_it_is_and_since_when(
     words = file.read_text(encoding="utf-8")
     assert KEY in words.splitlines()
     assert f"Library: {tmp_path / 'clinic'}" in words.splitlines()
-    assert f"Written on {date(datetime.date.today())}." in words
+    assert f"Created on {date(datetime.date.today())}." in words
     saving.write(str(file))  # the key is not kept longer
     assert KEY not in file.read_text(encoding="utf-8")
 

@@ -60,12 +60,12 @@ def test_a_patient_whom_another_opened_today_is_deleted_with_a_warning_and_not_u
     with another_operator(folder) as elsewhere:
         elsewhere.sessions.view(visits[0])
         dialog = deletion_dialog(qtbot, home)
-        assert dialog.others.text.startswith("Opened by somebody else: ab, today ")
+        assert dialog.others.text.startswith("Opened by another user: ab, today ")
         elsewhere.sessions.create(elsewhere.sessions.get(visits[0]).patient_id, Session(()))
         with qtbot.waitSignal(home.deleting.refused, timeout=WAIT_MS) as told:
             dialog.delete.click()
         assert told.args is not None
-        assert told.args[0] == "Somebody else changed this meanwhile."
+        assert told.args[0] == "Someone else has changed this in the meantime."
     assert codes(home) == ["P-0163", "P-0147"]
 
 
@@ -78,7 +78,7 @@ def test_a_patient_who_is_being_recorded_is_deleted_with_a_warning(qtbot: QtBot,
     dialog = deletion_dialog(qtbot, home)
     assert dialog.goes.text() == "This also deletes 3 sessions and 1 recording."
     assert dialog.others.text == (
-        "A recording of this patient is running or was not stopped. Ask there before you delete."
+        "A recording of this patient is running or was not stopped. Ask them before you delete."
     )
     dialog.reject()
 

@@ -98,7 +98,7 @@ def test_a_line_says_all_of_itself_to_a_reader_of_screens(page: HomePage) -> Non
     assert said == "P-0147, 1968, male · left prosthetic, 24 Oct 2026, 5 sessions"
     page.show_sessions([session(1, "Alignment A", "recovered, needs review")])
     said = page.sessions.cells.data(page.sessions.cells.index(0, 0), Qt.ItemDataRole.AccessibleTextRole)
-    assert said == "24 Oct 2026, Alignment A, 3 recordings, recovered, needs checking"
+    assert said == "24 Oct 2026, Alignment A, 3 recordings, recovered, needs review"
 
 
 @pytest.mark.parametrize(("width", "scale"), [(1064, 1.0), (736, 1.0), (736, 0.8), (1216, 2.0)])

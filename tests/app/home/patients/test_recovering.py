@@ -34,23 +34,26 @@ def said(*reports: ReadReport) -> str:
 
 def test_a_recording_that_was_cut_short_tells_its_length_and_what_its_end_may_have_cost() -> None:
     assert said(CUT) == (
-        "The program was closed while recording. 01:14 of walk 3 was recovered. It is kept up to the last record on "
-        f"the disk. Look at it, then keep or discard. {recovery_costs()}"
+        "The program closed during recording. 01:14 of walk 3 was recovered. It is complete up to the last record on "
+        f"disk. Review it, then include or exclude it. {recovery_costs()}"
     )
-    assert "0.1 s at most in 99 of 100 cases, a power cut up to 0.5 s and what the disk" in recovery_costs()
+    assert (
+        "In 99 of 100 cases, ending the program loses at most 0.1 s. A power cut loses up to 0.5 s and any data"
+        in recovery_costs()
+    )
 
 
 def test_it_is_called_as_in_its_session_and_by_its_own_name_where_that_cannot_be_read() -> None:
     heard = [Recovered(cast(StoredRecording, Row()), 74.2, (CUT,))]
     for names, name in (({Row.id: "A2 Barefoot"}, "A2 Barefoot"), ({uuid4(): "A2 Barefoot"}, "walk 3")):
         ((what, _, _),) = _heard_messages(heard, names)
-        assert what == f"The program was closed while recording. 01:14 of {name} was recovered."
+        assert what == f"The program closed during recording. 01:14 of {name} was recovered."
 
 
 def test_one_of_which_only_the_row_was_left_open_is_whole() -> None:
-    assert "It is whole. Look at it" in said(WHOLE)
+    assert "It is complete. Review it" in said(WHOLE)
     assert recovery_costs() not in said(WHOLE)
-    assert "whole" not in said(WHOLE, CUT)
+    assert "complete." not in said(WHOLE, CUT)
     assert "They are complete" in said(WHOLE, WHOLE)
 
 
@@ -59,4 +62,4 @@ def test_records_that_are_missing_before_the_end_are_counted(missing: int, is_sa
     words = said(CUT, replace(CUT, missing_records=missing))
     assert ("missing" in words) is is_said
     assert ("4 records before it are missing and leave gaps." in words) is (missing == 4)
-    assert "2 recordings, 02:28 in all, were recovered." in words
+    assert "2 recordings, 02:28 in total, were recovered." in words

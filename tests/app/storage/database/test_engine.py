@@ -199,7 +199,7 @@ def test_errors_do_not_quote_what_was_to_be_written(tables: Database, caplog: py
             session.add(SettingRow(name="Mustermann", value="Mustermann"))
 
     write()
-    with pytest.raises(LibraryError, match="contradicts") as caught:
+    with pytest.raises(LibraryError, match="conflicts with data already in the library") as caught:
         write()
     assert "Mustermann" not in "".join(traceback.format_exception(caught.value))
     assert "Mustermann" not in caplog.text

@@ -102,7 +102,7 @@ def test_a_later_version_is_left_alone(database: Database) -> None:
     bring_up_to_date(database)
     with database.writing() as session:
         session.execute(text("UPDATE alembic_version SET version_num = '9999'"))
-    with pytest.raises(LibraryError, match="later version"):
+    with pytest.raises(LibraryError, match="newer version"):
         bring_up_to_date(database)
 
 

@@ -313,7 +313,7 @@ def test_a_recording_does_not_begin_without_room(tmp_path: Path, monkeypatch: py
     monkeypatch.setattr("shutil.disk_usage", Usage)
     JournalWriter.create(tmp_path, ID, KEY, bytes_per_s=50_000).stop()
     free -= 1
-    with pytest.raises(JournalRefusedError, match=r"needs 530 MB of free disk, and 530 MB are left\. Delete or move"):
+    with pytest.raises(JournalRefusedError, match=r"to record: 530 MB needed, 530 MB free\. Delete or move"):
         JournalWriter.create(tmp_path, ID, KEY, bytes_per_s=50_000)
     assert list(find_segments(tmp_path)[ID]) == [1]
 

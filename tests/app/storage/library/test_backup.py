@@ -300,6 +300,6 @@ def test_a_disk_that_refuses_the_copy_of_the_database_is_said_and_nothing_is_lef
         if share:  # amid the copying of the database
             raise sqlite.OperationalError("disk I/O error")
 
-    with pytest.raises(LibraryError, match=r"This folder cannot be written \(disk I/O error\)"):
+    with pytest.raises(LibraryError, match=r"This folder is not writable \(disk I/O error\)"):
         back_up(opened, tmp_path / "backups", refuse)
     assert list((tmp_path / "backups").iterdir()) == []

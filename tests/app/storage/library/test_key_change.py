@@ -147,7 +147,7 @@ def test_a_key_is_not_changed_while_something_is_being_recorded(
     opened: OpenedLibrary, slots: KeySlots, record: Record
 ) -> None:
     record("walk 1", is_stopped=False)
-    with pytest.raises(LibraryError, match="goes on or was left over"):
+    with pytest.raises(LibraryError, match="is running or was not completed"):
         change_data_key(opened, ["hk"], silent)
     assert slots.open("ab", LEAVING) == opened.data_key
 

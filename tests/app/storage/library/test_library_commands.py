@@ -14,8 +14,11 @@ from app.storage.exchange import import_session
 from app.storage.journal.disk import Room
 from app.storage.journal.payloads import Belonging
 from app.storage.journal.writer import JournalWriter
+from app.storage.keys import KeySlots
+from app.storage.layout import KEYS
 from app.storage.opened import OpenedLibrary, held_alone
 from app.storage.recovery import find_interrupted
+from app.storage.slots import Cost
 from app.storage.stored import Action, StoredRecording
 from core.samples import Recording, RecordingKind
 from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
@@ -90,6 +93,16 @@ def test_what_does_not_open_is_one_line_without_the_passphrase(
         assert said.err.count("\n") == 1
         assert "passphrase's" not in said.err
         assert PASSPHRASE not in said.err
+
+
+def test_where_there_are_several_users_the_option_that_names_one_is_told(
+    opened: OpenedLibrary, key: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert opened.data_key is not None
+    slots = KeySlots(opened.folder / KEYS, Cost(passes=1, memory_kib=64))
+    slots.add(opened.data_key, "ab", "lamp river onion seventeen cloud")
+    assert cli.main(["recover", str(opened.folder), *key]) == 2
+    assert "This library has several users. Enter your user code (--operator CODE)." in capsys.readouterr().err
 
 
 def test_a_library_that_is_in_use_is_not_recovered(

@@ -477,7 +477,7 @@ def test_what_is_at_home_with_another_content_is_neither_replaced_nor_lost(
 
 
 def test_a_backup_is_not_made_where_its_disk_was(opened: OpenedLibrary, tmp_path: Path) -> None:
-    with pytest.raises(LibraryError, match="backups is not there"):
+    with pytest.raises(LibraryError, match="The backup folder was not found"):
         back_up(opened, tmp_path / "not connected")
     assert not (tmp_path / "not connected").exists()
 
