@@ -147,7 +147,7 @@ def test_the_page_of_tests_shows_the_course_of_those_that_two_visits_have(visit:
     assert list(charts_of_tests(course, "=shoes", facts)) == [TimedProtocol.TEN_METRES]
     said = str(timed_page(request, facts))
     assert "10-metre walk, m/s" in said
-    assert "half of the error of a change of speed, 0.20 m/s" in said
+    assert "half the error of a speed change, 0.20 m/s" in said
     assert "they are not judged" not in said
     assert charts_of_tests(course, "barefoot", facts) == {}
     alone = replace(request, course=course[1:])

@@ -49,7 +49,7 @@ def test_what_has_changed_stands_beside_the_lanes(page: HomePage) -> None:
     assert "Walking speed" in found
     assert "1.12\N{NO-BREAK SPACE}m/s" in found
     assert "+0.41 since 20 Jun" in found
-    assert "larger than error (0.20 †)" in found
+    assert "beyond error (0.20 †)" in found
     assert "since last visit +0.06, inside error" in found
     assert "49°" in found
     assert page.panel.count.text() == "5 visits · Shoes, stick: 3"
@@ -211,7 +211,7 @@ def test_lanes_of_other_measures_come_and_go_with_their_goals(page: HomePage, qa
     ]
     page.panel.show_course(VISITS, [*many, Goal("ankle_range_deg", GoalOf.LEFT, 25.0, day)])
     assert len(card.rows) == 4
-    assert "Ankle range, left: at least 25°" in page.panel.count.text()
+    assert "Ankle range of motion, left: at least 25°" in page.panel.count.text()
 
 
 def test_timed_tests_have_a_course_of_their_own_where_there_are_some(qtbot: QtBot, page: HomePage) -> None:

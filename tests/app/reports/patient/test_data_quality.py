@@ -43,14 +43,14 @@ def test_a_withheld_joint_comes_first_with_why_what_to_do_and_whose_motion_mends
     slanted = recalibrated(visit.analysis, [Joint.RIGHT_KNEE], axis_sd_rad=np.deg2rad(8.0))
     gated = recalibrated(slanted, [Joint.LEFT_ANKLE], axis_sd_rad=np.deg2rad(11.0))
     found = quality_of(visit, gated)
-    assert found.first == "2 of 4 joints can be read. Read with care: right knee. Withheld: left ankle."
+    assert found.first == "2 of 4 joints: Good. Caution: right knee. Not reported: left ankle."
     first, second, *_ = found.lines
     assert (first.where, first.verdict, first.side) == ("Left ankle", Verdict.WITHHELD, Side.LEFT)
     assert first.why == "Calibration certainty is only ±11.0° (limit ±9.0°)."
     assert first.to_do.startswith("Record free motion")
     assert (second.where, second.verdict, second.side) == ("Right knee", Verdict.CARE, Side.RIGHT)
     door = door_words(found)
-    assert door.first == "Left ankle: withheld."
+    assert door.first == "Left ankle: not reported."
     assert door.then == first.to_do
     assert door.is_caution
     assert answer_of(facts(visit, gated)).then.endswith("Not reported: left ankle.")
@@ -61,13 +61,13 @@ def test_a_withheld_joint_comes_first_with_why_what_to_do_and_whose_motion_mends
     [
         ((), (), "All four joints are reported."),
         (LEG_JOINTS, (), "All joints: Caution."),
-        ((Joint.LEFT_KNEE,), (), "3 of 4 joints can be read. Read with care: left knee."),
+        ((Joint.LEFT_KNEE,), (), "3 of 4 joints: Good. Caution: left knee."),
         (
             (Joint.LEFT_KNEE, Joint.RIGHT_KNEE),
             (Joint.LEFT_ANKLE, Joint.RIGHT_ANKLE),
-            "Caution: left knee and right knee. Withheld: left ankle and right ankle.",
+            "Caution: left knee and right knee. Not reported: left ankle and right ankle.",
         ),
-        ((), (Joint.LEFT_ANKLE,), "3 of 4 joints are reported. Not reported: left ankle."),
+        ((), (Joint.LEFT_ANKLE,), "3 of 4 joints: Good. Not reported: left ankle."),
         ((), LEG_JOINTS, "No joint is reported for this walk."),
     ],
 )

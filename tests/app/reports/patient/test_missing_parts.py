@@ -133,7 +133,7 @@ def test_single_strides_that_make_no_mean_are_drawn_each_with_its_letter(
     panels = report_data(with_strides(request_of_demonstration, 2))["first_page"]["curves"]["panels"]
     assert [panel["picture"]["svg"].count(">L<") for panel in panels] == [2, 0, 2, 0]
     assert [panel["picture"]["svg"].count(">R<") for panel in panels] == [0, 2, 0, 2]
-    assert not any("Withheld" in panel["picture"]["svg"] for panel in panels)
+    assert not any("Not reported" in panel["picture"]["svg"] for panel in panels)
 
 
 def test_five_strides_make_a_mean_without_a_spread(request_of_demonstration: ReportRequest) -> None:

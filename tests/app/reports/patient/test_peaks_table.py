@@ -15,9 +15,9 @@ from tests.app.changed_analysis import recalibrated, walk_of
 MOVEMENTS = ["Flexion, stance to swing", "Flexion, loading response", "Extension, mid-stance", "Range of motion"]
 TIME = "Time of peak flexion, swing, %"
 MOVEMENTS_OF_ANKLE = [
-    "Push\u2011off",
-    "Ankle dorsiflexion, stance",
-    "Heel rocker",
+    "Plantarflexion, push-off",
+    "Dorsiflexion, stance",
+    "Plantarflexion, loading response",
     "Dorsiflexion, swing",
     "Range of motion",
 ]
@@ -44,16 +44,16 @@ def test_movements_stand_before_the_angles_of_each_joint(request_of_demonstratio
     analysis = request_of_demonstration.visit.analysis
     found = groups(request_of_demonstration, analysis)
     heads = list(found)
-    assert heads[1].startswith("Knee: angles (flexion +); whole curve vs the band: L")
+    assert heads[1].startswith("Knee: absolute angles (flexion +); whole curve vs reference: L")
     assert heads[::2] == ["Knee: movement ranges", "Ankle: movement ranges"]
     assert list(found["Knee: movement ranges"]) == [*MOVEMENTS, TIME]
     assert list(found["Ankle: movement ranges"]) == MOVEMENTS_OF_ANKLE
-    left, right, difference, error, judged_as, *_ = found["Ankle: movement ranges"]["Push\u2011off"]
+    left, right, difference, error, judged_as, *_ = found["Ankle: movement ranges"]["Plantarflexion, push-off"]
     gait = walk_of(analysis).gait
     means = [np.rad2deg(gait[s].parameters["ankle_push_off_rad"][gait[s].strides.is_used]).mean() for s in Side]
     assert [left.split(" ± ")[0], right.split(" ± ")[0]] == [f"{mean:.1f}" for mean in means]
     assert difference.replace("\u2212", "-") == f"{means[0] - means[1]:+.1f}"
-    assert judged_as == "inside"
+    assert judged_as == "within"
     assert error.endswith("\u2020")
 
 
@@ -75,12 +75,12 @@ def test_a_movement_without_extremes_is_a_dash_and_its_peak_is_named(request_of_
     assert knee["Flexion, loading response"][0] == knee["Flexion, loading response"][2] == "–"
     assert knee["Flexion, stance to swing"][0] != "–"
     heights = next(rows for head, rows in found.items() if head.startswith("Knee: absolute angles (flexion +)"))
-    assert heights["Most flexed, loading (5–30\u00a0%)"][0] == "no peak"
+    assert heights["Peak flexion, loading (5–30\u00a0%)"][0] == "no peak"
 
 
 def test_without_a_sign_the_range_alone_is_told(request_of_demonstration: ReportRequest) -> None:
     analysis = request_of_demonstration.visit.analysis
     unsure = recalibrated(analysis, [Joint.LEFT_KNEE], is_sign_certain=False, clinical_sign_margin=0.1)
     knee = groups(request_of_demonstration, unsure)["Knee: movement ranges"]
-    assert [knee[name][0] for name in MOVEMENTS[:3]] == ["withheld"] * 3
+    assert [knee[name][0] for name in MOVEMENTS[:3]] == ["not reported"] * 3
     assert "±" in knee["Range of motion"][0]
