@@ -225,7 +225,10 @@ def test_what_the_height_of_a_curve_cannot_say_is_said(charts: CycleCharts) -> N
     cycles = {Joint.LEFT_KNEE: cycle(12), Joint.RIGHT_KNEE: cycle(12), Joint.LEFT_ANKLE: cycle(12, 20)}
     unset = judged_as(height=ZERO)
     charts.show_cycles(cycles, {Joint.LEFT_KNEE: unset, Joint.RIGHT_KNEE: unset}, is_simulated=False)
-    told = "L and R: no zero. Range and shape hold, height does not. 0° is the mean of the stride."
+    told = (
+        "L and R: no standing reference. Range of motion and curve shape are valid; absolute angles are not. "
+        "0° is the mean of the gait cycle."
+    )
     assert charts.knee.note == told
     assert charts.ankle.note == ""
     charts.show_cycles(cycles, {Joint.LEFT_ANKLE: judged_as(height=SIGN, sign=SIGN)}, is_simulated=False)

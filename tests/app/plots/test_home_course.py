@@ -50,7 +50,7 @@ def test_what_has_changed_stands_beside_the_lanes(page: HomePage) -> None:
     assert "1.12\N{NO-BREAK SPACE}m/s" in found
     assert "+0.41 since 20 Jun" in found
     assert "beyond error (0.20 †)" in found
-    assert "since last visit +0.06, inside error" in found
+    assert "since last visit +0.06, within error" in found
     assert "49°" in found
     assert page.panel.count.text() == "5 visits · Shoes, stick: 3"
     assert page.panel.next.text() == "Next: write the report of 14 Nov."
