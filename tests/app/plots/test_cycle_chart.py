@@ -232,7 +232,7 @@ def test_what_the_height_of_a_curve_cannot_say_is_said(charts: CycleCharts) -> N
     assert charts.knee.note == told
     assert charts.ankle.note == ""
     charts.show_cycles(cycles, {Joint.LEFT_ANKLE: judged_as(height=SIGN, sign=SIGN)}, is_simulated=False)
-    assert charts.ankle.note.startswith("L: sign unsure. The curve may be upside down.")
+    assert charts.ankle.note.startswith("L: sign unclear, flexion or extension. The curve may be inverted.")
 
 
 def test_a_side_without_a_whole_stride_is_no_trouble(charts: CycleCharts) -> None:

@@ -51,9 +51,9 @@ def test_what_is_missing_is_said_with_its_reason_and_nothing_else_is() -> None:
     assert why_sentence(silent).startswith("Distance not reported: the L foot sensor had no signal ")
     assert "from 50.0 to 55.0 s" in why_sentence(silent)
     taped = replace(silent, protocol=TimedProtocol.TEN_METRES, distance_m=10.0, is_end_by_key=True)
-    assert why_sentence(taped).startswith("Distance from the sensors not reported: the L foot sensor had no signal ")
+    assert why_sentence(taped).startswith("Sensor distance not reported: the L foot sensor had no signal ")
     unfinished = replace(TEN, end_s=math.nan, missing=(NotMeasured.NOT_FINISHED,))
-    assert why_sentence(unfinished) == "Time not reported: the recording ended before the test did."
+    assert why_sentence(unfinished) == "Time not reported: the recording ended before the test."
     assert len({reason_words(one) for one in NotMeasured}) == len(NotMeasured)
 
 
