@@ -123,7 +123,7 @@ def test_the_report_has_a_page_of_tests_where_there_were_some(visit: AnalysedVis
         "Distance not reported",
         "Third 3",
         "Lap 2",
-        "start: first step after 1 s of standing still",
+        "start: first step after standing still for 1 s",
     ):
         assert words in said
     without = ReportRequest(AnalysedVisit(*with_test(visit, None)), ("walk 2",), MADE_AT, "1.2.3")

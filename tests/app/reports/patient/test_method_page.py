@@ -51,7 +51,7 @@ def test_the_page_of_the_method_says_how_it_was_measured(request_of_demonstratio
     }.items():
         assert words in told[title], title
     assert (
-        "Standing reference: this patient's posture on this day, or the goniometer value entered for it"
+        "Standing reference: this patient's posture on this day, or the goniometer value entered."
         in told["Calibration"]
     )
     assert "gaps up to 0.05 s are bridged" in told["Angles"]
