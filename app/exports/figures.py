@@ -19,6 +19,7 @@ from core.verdicts.model import Assessment, Verdict
 from core.verdicts.quantities import OF_HIPS, PARAMETERS, assessment_of
 
 SIMULATED = "SIMULATED: nobody was measured."
+IN_ASCII = str.maketrans({"\N{DEGREE SIGN}": " deg", "\N{PLUS-MINUS SIGN}": "+/-", "\N{MINUS SIGN}": "-"})
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,5 +115,5 @@ def status_in_ascii(recording: RecordingAnalysis, joint: Joint) -> str:
     """A joint's status and why, in letters that every format takes."""
     status, reasons = joint_status(recording, joint) or "not_measured", why_status(recording, joint)
     told = f"{status}: {reasons}" if reasons else status
-    plain = unicodedata.normalize("NFKD", told.replace("\N{DEGREE SIGN}", " deg"))
+    plain = unicodedata.normalize("NFKD", told.translate(IN_ASCII))
     return plain.encode("ascii", "ignore").decode("ascii")

@@ -69,7 +69,7 @@ def name_of_view(analysis: Analysis, joint: Joint) -> str:
     name = joint.replace("_", " ")
     if Place.HEIGHT in found:
         return f"{name}: {'dorsiflexion' if joint.kind is JointKind.ANKLE else 'flexion'}, °"
-    return f"{name}: shape, no zero, °" if Place.SHAPE in found else f"{name}: {WITHHELD}"
+    return f"{name}: shape, no standing reference, °" if Place.SHAPE in found else f"{name}: not reported"
 
 
 def document(analysis: Analysis, timelines: Mapping[str, str]) -> str:
@@ -77,7 +77,7 @@ def document(analysis: Analysis, timelines: Mapping[str, str]) -> str:
 
     Walks come first.
     """
-    lines = ["# What may be read", "", PURPOSE]
+    lines = ["# Data quality", "", PURPOSE]
     walks = {recording.name for recording in analysis.recordings if recording.kind is RecordingKind.WALKING}
     in_order = sorted(all_that_is_said(analysis), key=lambda one: one.recording not in walks)
     for recording, said in groupby(in_order, key=lambda one: one.recording):
@@ -86,5 +86,5 @@ def document(analysis: Analysis, timelines: Mapping[str, str]) -> str:
             verdict = one.assessment.verdict.replace("_", " ")
             lines.append(f"| {one.subject} | {one.quantity} | {verdict} | {why(one.assessment)} |")
     slipped = [side for side in Side if any(is_slipped(r, side).any() for r in analysis.recordings)]
-    lines += ["", *(f"A strap of the {side} leg slipped: from then on its curves are withheld." for side in slipped)]
-    return "\n".join([*lines, "", "Withheld curves lie under /withheld, grey, in no view until they are added to one."])
+    lines += ["", *(f"Strap moved on the {side} leg: from then on its curves are not reported." for side in slipped)]
+    return "\n".join([*lines, "", "Curves not reported lie under /withheld, grey, in no view until added to one."])

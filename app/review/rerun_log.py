@@ -355,7 +355,7 @@ def _blueprint(session: Session, analysis: Analysis, timeline: str | None) -> rr
             top = rrb.Horizontal(_leg_view(session, analysis), top, column_shares=[LEGS_WIDTH, PANEL_WIDTH])
         tabs += [rrb.Vertical(top, curves, row_shares=[LEGS_HEIGHT, CURVES_HEIGHT], name=name)]
     if analysis.recordings:
-        tabs += [rrb.TextDocumentView(origin="/may_be_read", name="What may be read")]
+        tabs += [rrb.TextDocumentView(origin="/may_be_read", name="Data quality")]
     if sides := _sides_with_gait(analysis):
         axis = rrb.archetypes.TimeAxis(link=rrb.components.LinkAxis.LinkToGlobal)
         lanes = [rrb.StateTimelineView(origin=f"/phases/{s}", name=f"{s} phases", time_view=axis) for s in sides]

@@ -31,19 +31,19 @@ class Said(StrEnum):
 Doubts = dict[tuple[Side, str], Said]
 
 NUMBER = r"\u2212?\d+\.\d+(?: ± \d+\.\d+)?(?: \*)?"
-CELL = rf"({NUMBER}|withheld|not measured|no peak|–)"
+CELL = rf"({NUMBER}|not reported|not measured|no peak|–)"
 PEAKS = {  # rows of the table on page two by the beginning of their names, in each group
     "knee": {
-        "Most flexed, loading (5–30 %)": "knee_loading_peak_deg",
-        "Least flexed, stance (25–60 %)": "knee_stance_minimum_deg",
-        "Most flexed, swing (55–90 %)": "knee_swing_peak_deg",
+        "Peak flexion, loading (5–30 %)": "knee_loading_peak_deg",
+        "Least flexion, stance (25–60 %)": "knee_stance_minimum_deg",
+        "Peak flexion, swing (55–90 %)": "knee_swing_peak_deg",
         "Range of motion": "knee_range_deg",
     },
     "ankle": {
-        "Most plantarflexed, loading (0–20 %)": "ankle_loading_plantarflexion_deg",
-        "Most dorsiflexed, stance (20–60 %)": "ankle_stance_dorsiflexion_deg",
-        "Most plantarflexed, push\u2011off (50–80 %)": "ankle_push_off_plantarflexion_deg",
-        "Most dorsiflexed, swing (70–95 %)": "ankle_swing_dorsiflexion_deg",
+        "Peak plantarflexion, loading (0–20 %)": "ankle_loading_plantarflexion_deg",
+        "Peak dorsiflexion, stance (20–60 %)": "ankle_stance_dorsiflexion_deg",
+        "Peak plantarflexion, push-off (50–80 %)": "ankle_push_off_plantarflexion_deg",
+        "Peak dorsiflexion, swing (70–95 %)": "ankle_swing_dorsiflexion_deg",
         "Range of motion": "ankle_range_deg",
     },
 }
@@ -67,7 +67,7 @@ def said_in_report(pdf: bytes) -> Doubts:
     for name, column in TIMES.items():
         found |= _row(times, rf"{re.escape(name)} {CELL} {CELL} ", column)
     for name, column in OF_BOTH.items():
-        match = re.search(rf"{re.escape(name)} (\d+(?:\.\d+)?(?: \*)?|withheld|not measured) ", times)
+        match = re.search(rf"{re.escape(name)} (\d+(?:\.\d+)?(?: \*)?|not reported|not measured) ", times)
         assert match is not None, f"page three has no row {name}"
         found |= {(side, column): _in_report(match[1]) for side in Side}
     knee, _, ankle = pages[1].partition("Ankle: movement ranges")
@@ -84,7 +84,7 @@ def _row(text: str, pattern: str, column: str) -> Doubts:
 
 
 def _in_report(cell: str) -> Said:
-    if cell == "withheld":
+    if cell == "not reported":
         return Said.WITHHELD
     if cell in ("not measured", "–"):
         return Said.NOT_MEASURED
@@ -92,14 +92,14 @@ def _in_report(cell: str) -> Said:
 
 
 ON_SCREEN = {  # rows of the tables beside the charts, peaks with the heading above them
-    "Knee, Loading peak": "knee_loading_peak_deg",
-    "Knee, Stance minimum": "knee_stance_minimum_deg",
-    "Knee, Swing peak": "knee_swing_peak_deg",
-    "Knee, Range": "knee_range_deg",
-    "Ankle, Stance dorsiflexion": "ankle_stance_dorsiflexion_deg",
-    "Ankle, Push-off plantarflexion": "ankle_push_off_plantarflexion_deg",
-    "Ankle, Swing dorsiflexion": "ankle_swing_dorsiflexion_deg",
-    "Ankle, Range": "ankle_range_deg",
+    "Knee, Peak flexion, loading": "knee_loading_peak_deg",
+    "Knee, Least flexion, stance": "knee_stance_minimum_deg",
+    "Knee, Peak flexion, swing": "knee_swing_peak_deg",
+    "Knee, Range of motion": "knee_range_deg",
+    "Ankle, Peak dorsiflexion, stance": "ankle_stance_dorsiflexion_deg",
+    "Ankle, Peak plantarflexion, push-off": "ankle_push_off_plantarflexion_deg",
+    "Ankle, Peak dorsiflexion, swing": "ankle_swing_dorsiflexion_deg",
+    "Ankle, Range of motion": "ankle_range_deg",
     "Walking speed": "speed_m_s",
     "Cadence": "cadence_steps_min",
     "Stride time": "stride_time_s",

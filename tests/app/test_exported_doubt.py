@@ -39,7 +39,7 @@ WALK = "walk 1"
 SIDES = ("left", "right")
 FIGURES = {  # what a person calls it, its column
     "knee range": "knee_range_deg",
-    "knee peak flexion, swing": "knee_swing_peak_deg",
+    "knee swing peak": "knee_swing_peak_deg",
     "knee peak time": "knee_swing_peak_percent",
     "ankle range": "ankle_range_deg",
     "ankle dorsiflexion": "ankle_stance_dorsiflexion_deg",
@@ -94,13 +94,13 @@ CASES = {
     "sign unknown": Case(
         WalkerSettings(seed=4, recordings=(STOOD, STIFF), stiff_knee_side=Side.LEFT),
         {"left knee swing peak": WITHHELD, "left knee peak time": WITHHELD, "left knee curve": WITHHELD},
-        "does not tell flexion from extension",
+        "Flexion and extension could not be distinguished",
     ),
     "not neighbours": Case(
         WalkerSettings(seed=4, recordings=(STOOD, WALKED)),
         {"* knee *": WITHHELD, "* ankle *": WITHHELD, "* stance": CARE, "* length": CARE, "* step time": CARE}
         | {"cadence": CARE, "speed": CARE, "double support": WITHHELD},
-        "do not move as neighbours",
+        "Sensor positions could not be confirmed",
         with_swapped_shanks,
     ),
     "two clocks": Case(
@@ -154,7 +154,7 @@ def rows_of(path: Path) -> list[dict[str, str]]:
 
 CSV_STATUS = {  # which column of status a figure stands under
     "knee range": "knee_shape_status",
-    "knee peak flexion, swing": "knee_height_status",
+    "knee swing peak": "knee_height_status",
     "ankle range": "ankle_shape_status",
     "ankle dorsiflexion": "ankle_height_status",
     "stance": "timing_status",
@@ -329,7 +329,7 @@ def in_mot(out: Path) -> dict[str, str]:
         coordinate = next(coordinate for coordinate, of in MOT.items() if of == joint)
         where, status = comments[coordinate].split(":")[0].split(", ")
         assert (where == "here") == (coordinate in names)
-        assert where in ("here", "excluded")
+        assert where in ("here", "left out")
         said[name] = status if coordinate in names else SHAPE if status == "no_zero" else WITHHELD
     return said
 
@@ -412,7 +412,7 @@ def words_of_mot(out: Path) -> str:
     if path.exists():
         return path.read_text(encoding="ascii")
     lines = (out / NOT_WRITTEN).read_text(encoding="utf-8").splitlines()
-    (line,) = (line for line in lines if line.startswith(f"{WALK}, mot: No angle of it can be given as a pose."))
+    (line,) = (line for line in lines if line.startswith(f"{WALK}, mot: It has no angle to export as a pose."))
     return line
 
 

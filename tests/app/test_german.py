@@ -67,17 +67,8 @@ ALIKE = {
         "Signal",
         "Firmware",
     ),
-    *(
-        "Details",
-        "optional",
-        "Status",
-        "Position",
-        "Ref. [1]",
-        "Ref. [2]",
-        "ROM",
-        "{movement} ({high} minus {low})",
-        "in {part}",
-    ),
+    *("ROM", "Ref. [1]", "Ref. [2]", "Details", "optional", "Status", "Position", "in {part}"),
+    "{movement} ({high} minus {low})",
     "{count}\N{NO-BREAK SPACE}in\N{NO-BREAK SPACE}{part}",
 }
 UNITS = {"mm", "cm", "kg", "Hz", "SD", "min"}
@@ -239,10 +230,7 @@ def test_a_fraction_has_a_comma_and_what_only_looks_like_one_its_point() -> None
     assert (fixed(-0.04, 1), signed(0.0, 1), signed(2.5, 1)) == ("0,0", "0,0", "+2,5")
     use_language("en")
     assert (figure_text(1.25, ".2f"), figure_text(1.25, ".2f", "de")) == ("1.25", "1,25")
-    assert (
-        tr("Walking speed {first} and {second} m/s.").format(first=1.05, second=1.1)
-        == "Walking speed 1.05 and 1.1 m/s."
-    )
+    assert tr("Walking speed {first} and {second} m/s.").format(first=1.05, second=1.1) == "Walking speed 1.05 and 1.1 m/s."
     assert spoken_in("de")("{value} degrees").format(value=1.5) == "1,5 Grad"
 
 
@@ -254,7 +242,7 @@ WITH_POINTS = (  # files, drawings and what a terminal prints: read by programs,
         "app/reports/agreement/tables.py",
     ),
     *("app/exports/csv_report.py", "app/summary/targets.py", "app/cli/compare.py", "app/summary/alignments.py"),
-    "app/cohort/study/groups.py",
+    *("app/cohort/study/groups.py", "app/summary/drawn_legs.py", "app/system/tables.py"),
 )
 
 

@@ -14,7 +14,7 @@ from core.parameters import ANKLE_RANGE, KNEE_RANGE
 from core.samples import FloatArray
 from core.verdicts.quantities import EXCURSIONS_BY_COLUMN
 
-WIDTH, HEIGHT, TOP, FOOT = 85.5 * MM, 38 * MM, 16.0, 14.0
+WIDTH, HEIGHT, TOP, FOOT = 85.5 * MM, 35 * MM, 16.0, 14.0
 CAP = 2.2
 TOE_OFF_PERCENT = 61  # of the schematic walk
 

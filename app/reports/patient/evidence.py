@@ -242,7 +242,7 @@ def error_table() -> list[Block]:
             tr("Two walks, same attachment"),
             tr("strides, drift, synchronisation; walk to walk"),
         ),
-        (ComparisonKind.LEGS, tr("Left vs right"), tr("the same; attachment of each leg, event bias")),
+        (ComparisonKind.LEGS, tr("Left vs right"), tr("the same; attachment per leg, event bias")),
         (ComparisonKind.STRAPPINGS, tr("Sensors reattached"), tr("the same; attachment")),
         (ComparisonKind.VISITS, tr("Two visits"), tr("the same; attachment, another day")),
     )

@@ -135,8 +135,8 @@ def _calibration(facts: Facts) -> str:
     return tr(
         "Gyroscope offsets: {rest}. Joint axes, as both sensors of a joint measure them, come from "
         "{motion}. No set posture, magnetic field or tape measure is used. Standing reference: this "
-        "patient's posture on this day, or the goniometer value entered for it. An error in it shifts "
-        "the whole curve but not its range of motion or shape."
+        "patient's posture on this day, or the goniometer value entered. An error in it shifts the whole "
+        "curve, not its range of motion or shape."
     ).format(rest=rest, motion=motion)
 
 

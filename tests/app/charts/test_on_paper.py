@@ -104,14 +104,14 @@ def test_what_is_withheld_is_hatched_with_its_reason_and_has_no_curve() -> None:
     why = "81° of range; walking has no more than 60°. Foot and shank sensor do not move as neighbours."
     drawn = draw(replace(MARKED, withheld=why), WIDTH)
     words = re.findall(r">([^<>]+)</text>", drawn.svg)
-    at = words.index("Withheld")
+    at = words.index("Not reported")
     assert why in " ".join(words[at:])
     assert "<path" not in drawn.svg
     assert uprights(drawn.svg) == []
     assert "SIMULATED" not in words
     assert ">SIMULATED</text>" in draw(replace(MARKED, withheld=why, is_simulated=True), WIDTH).svg
-    assert drawn.alt == f"Knee. Withheld. {why}"
-    assert "Withheld" not in draw(MARKED, WIDTH).svg
+    assert drawn.alt == f"Knee. Not reported. {why}"
+    assert "Not reported" not in draw(MARKED, WIDTH).svg
 
 
 def test_hatching_stays_inside_the_plot() -> None:

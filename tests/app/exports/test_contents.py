@@ -71,7 +71,7 @@ def test_the_first_sheet_tells_who_was_measured_and_how(book: Any) -> None:
         "affected side": "left",
         "prosthetic side": "right",
         "session": "2026-11-21T10:00:00+01:00",
-        "operator": "HK",
+        "user": "HK",
         "surface": "corridor",
         "notes": "=2+3",
         "method": "robust",
@@ -87,7 +87,7 @@ def test_what_was_not_typed_has_no_row(visit: tuple[Session, Analysis], tmp_path
     rows = openpyxl.load_workbook(tmp_path / "some.xlsx")["About"].iter_rows(values_only=True)
     names = {row[0] for row in rows}
     assert names.isdisjoint({"patient", "birth year", "sex", "height, m", "weight, kg", "device", "aids", "surface"})
-    assert {"session", "operator", "notes", "method", "software", "use"} <= names
+    assert {"session", "user", "notes", "method", "software", "use"} <= names
 
 
 def test_sheets_can_be_read_on_a_screen(book: Any) -> None:

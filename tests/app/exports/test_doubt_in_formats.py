@@ -72,9 +72,9 @@ def test_a_c3d_names_a_shape_and_leaves_out_what_may_be_mirrored_or_is_withheld(
     said = read["parameters"]["PROCESSING"]["STATUS"]["value"]
     assert [text.split(":")[0] for text in said] == ["left_knee", "right_knee", "left_ankle", "right_ankle"]
     assert said[0] == "left_knee: read"
-    assert said[1].startswith("right_knee: range_only: The motion does not tell flexion from extension")
-    assert said[2].startswith("left_ankle: no_zero: No zero was set")
-    assert said[3].startswith("right_ankle: withheld: The joint's axis is known to 12.0 deg only")
+    assert said[1].startswith("right_knee: range_only: Flexion and extension could not be distinguished (margin 0.10, required 0.25)")
+    assert said[2].startswith("left_ankle: no_zero: There is no standing reference")
+    assert said[3].startswith("right_ankle: withheld: Calibration certainty is only +/-12.0 deg")
 
 
 def test_a_motion_file_leaves_out_what_is_no_pose_and_says_why(mixed: RecordingAnalysis, tmp_path: Path) -> None:
@@ -85,9 +85,9 @@ def test_a_motion_file_leaves_out_what_is_no_pose_and_says_why(mixed: RecordingA
     lines = head.splitlines()
     assert "knee_angle_l is here, read" in lines
     for begin in (
-        "knee_angle_r is left out, range_only: The motion does not tell",
-        "ankle_angle_l is left out, no_zero: No zero was set",
-        "ankle_angle_r is left out, withheld: The joint's axis",
+        "knee_angle_r is left out, range_only: Flexion and extension could not be",
+        "ankle_angle_l is left out, no_zero: There is no standing reference",
+        "ankle_angle_r is left out, withheld: Calibration certainty is only",
     ):
         assert [line for line in lines if line.startswith(begin)], begin
 
@@ -143,9 +143,9 @@ def test_a_withheld_figure_has_its_reason_in_place_of_a_value(
     (coding,) = one["dataAbsentReason"]["coding"]
     assert coding["system"] == "http://terminology.hl7.org/CodeSystem/data-absent-reason"
     assert coding["code"] == "error"
-    assert one["dataAbsentReason"]["text"].startswith("The joint's axis is known to 12.0° only")
+    assert one["dataAbsentReason"]["text"].startswith("Calibration certainty is only ±12.0°")
     assert {part["code"]["coding"][0]["code"] for part in one["component"]} == {"side", "strides_used"}
-    assert found["knee_swing_peak_deg", "right leg"]["dataAbsentReason"]["text"].startswith("The motion does not tell")
+    assert found["knee_swing_peak_deg", "right leg"]["dataAbsentReason"]["text"].startswith("Flexion and extension could not be distinguished")
     assert found["knee_range_deg", "right leg"]["status"] == "final"
     assert not any({"interpretation", "referenceRange"} & set(one) for one in found.values())
 
@@ -186,7 +186,7 @@ def test_under_ten_strides_nothing_is_final(
     assert {one["status"] for one in told.values()} == {status}
     for one in told.values():
         notes = [note["text"] for note in one["note"]]
-        assert any(text.startswith(f"Few strides ({used} used, 10 wanted)") for text in notes) == (status != "final")
+        assert any(text.startswith(f"Few strides ({used} used, 10 required)") for text in notes) == (status != "final")
         assert component(one, "strides_used")["valueInteger"] == used
 
 
@@ -228,5 +228,5 @@ def test_a_workbook_has_no_number_where_a_figure_is_withheld(
     about = {row[0]: str(row[1]) for row in book["About"].iter_rows(values_only=True)}
     name = mixed.name
     assert about[f"{name}, left knee, shape"] == "read"
-    assert about[f"{name}, right ankle, shape"].startswith("withheld: The joint's axis is known to 12.0° only")
+    assert about[f"{name}, right ankle, shape"].startswith("withheld: Calibration certainty is only ±12.0°")
     assert about[f"{name}, both legs, between"] == "read"

@@ -82,13 +82,13 @@ def test_what_is_withheld_leaves_no_empty_file_and_a_line_why(
     analysis = replace(visit[1], recordings=recordings)
     lines = export_from_folder(visit[0], analysis, [Format.C3D, Format.MOT, Format.XLSX], tmp_path)
     assert [str(path.relative_to(tmp_path)) for path in tmp_path.rglob("*")] == ["gaitwright.xlsx"]
-    why = "The joint's axis is known to 12.0° only (9.0° wanted). Record free motion, or move longer and in more "
+    why = "Calibration certainty is only ±12.0° (limit ±9.0°). Record free motion, or move longer and in more "
     why += "directions."
     assert lines == [
-        f"free motion, c3d: Neither angles nor events of it can be given. {why}",
-        f"walk 1, c3d: Neither angles nor events of it can be given. {why}",
-        f"free motion, mot: No angle of it can be given as a pose. {why}",
-        f"walk 1, mot: No angle of it can be given as a pose. {why}",
+        f"free motion, c3d: It has neither angles nor events to export. {why}",
+        f"walk 1, c3d: It has neither angles nor events to export. {why}",
+        f"free motion, mot: It has no angle to export as a pose. {why}",
+        f"walk 1, mot: It has no angle to export as a pose. {why}",
     ]
     assert export_from_folder(*visit, [Format.C3D, Format.MOT, Format.BIDS], tmp_path) == []
 
@@ -96,7 +96,7 @@ def test_what_is_withheld_leaves_no_empty_file_and_a_line_why(
 def test_recordings_without_samples_are_no_set_of_data(visit: tuple[Session, Analysis], tmp_path: Path) -> None:
     bare = replace(visit[0], recordings=tuple(replace(r, is_kept=False) for r in visit[0].recordings))
     lines = export_from_folder(bare, visit[1], [Format.BIDS], tmp_path)
-    assert lines == ["bids-motion: No recording that was kept holds samples."]
+    assert lines == ["bids-motion: No included recording has samples."]
     assert list(tmp_path.rglob("*")) == []
 
 

@@ -123,7 +123,7 @@ def test_the_report_has_a_page_of_tests_where_there_were_some(visit: AnalysedVis
         "Distance not reported",
         "Third 3",
         "Lap 2",
-        "start: first step after 1 s of standing still",
+        "start: first step after standing still for 1 s",
     ):
         assert words in said
     without = ReportRequest(AnalysedVisit(*with_test(visit, None)), ("walk 2",), MADE_AT, "1.2.3")
@@ -147,7 +147,7 @@ def test_the_page_of_tests_shows_the_course_of_those_that_two_visits_have(visit:
     assert list(charts_of_tests(course, "=shoes", facts)) == [TimedProtocol.TEN_METRES]
     said = str(timed_page(request, facts))
     assert "10-metre walk, m/s" in said
-    assert "half of the error of a change of speed, 0.20 m/s" in said
+    assert "half the error of a speed change, 0.20 m/s" in said
     assert "they are not judged" not in said
     assert charts_of_tests(course, "barefoot", facts) == {}
     alone = replace(request, course=course[1:])

@@ -125,7 +125,7 @@ def test_of_a_withheld_joint_no_mean_is_drawn_but_why(charts: CycleCharts, look:
     assert colour_at(chart, 72, 60).name() == look.theme.colours.surface.lower()
     assert [side for side, panel in charts.knee.withheld.items() if panel.isVisible()] == [Side.LEFT]
     said = charts.knee.withheld[Side.LEFT].text
-    assert said.startswith("Withheld. The two sensors do not move as neighbours (margin 1.05, 1.30 wanted).")
+    assert said.startswith("Not reported. Sensor positions could not be confirmed (margin 1.05, required 1.30).")
     assert "record free motion" not in said  # what to do stands beneath, once for all
     assert said in charts.knee.in_words()
     assert list(toe_off_labels(chart.described.curves)) == [Side.RIGHT]
@@ -152,7 +152,7 @@ def test_of_fewer_than_three_strides_each_is_drawn_in_grey_and_no_mean(
     charts.set_band_shown(False)
     charts.show_cycles({Joint.LEFT_KNEE: cycle(2)}, {Joint.LEFT_KNEE: judged_as(FEW, FEW)}, is_simulated=False)
     chart = charts.knee.chart
-    assert "Few strides (2 used, 3 wanted)" in charts.knee.withheld[Side.LEFT].text
+    assert "Few strides (2 used, 3 required)" in charts.knee.withheld[Side.LEFT].text
     highest = float(chart.cycles[Side.LEFT].strides_deg.max())
     assert colour_at(chart, 72, highest).name() != look.theme.colours.surface.lower()
     assert colour_at(chart, 72, 60).name() == look.theme.colours.surface.lower()
@@ -165,10 +165,10 @@ def test_care_stands_in_the_key_of_its_leg(charts: CycleCharts) -> None:
     assert {chip.verdict for chip in chips.values()} == {Verdict.CARE}
     charts.show_cycles(cycles, {Joint.RIGHT_KNEE: slanted}, is_simulated=False)
     assert {side: chip.verdict for side, chip in chips.items()} == {Side.LEFT: Verdict.READ, Side.RIGHT: Verdict.CARE}
-    assert "Right leg: read with care." in charts.knee.in_words()
+    assert "Right leg: caution." in charts.knee.in_words()
     charts.show_cycles(cycles, {}, is_simulated=False)
     assert {chip.verdict for chip in chips.values()} == {Verdict.READ}
-    assert "care" not in charts.knee.in_words()
+    assert "caution" not in charts.knee.in_words()
 
 
 def test_without_a_height_curves_are_drawn_about_their_mean_and_without_the_band(
@@ -225,11 +225,14 @@ def test_what_the_height_of_a_curve_cannot_say_is_said(charts: CycleCharts) -> N
     cycles = {Joint.LEFT_KNEE: cycle(12), Joint.RIGHT_KNEE: cycle(12), Joint.LEFT_ANKLE: cycle(12, 20)}
     unset = judged_as(height=ZERO)
     charts.show_cycles(cycles, {Joint.LEFT_KNEE: unset, Joint.RIGHT_KNEE: unset}, is_simulated=False)
-    told = "L and R: no zero. Range and shape hold, height does not. 0° is the mean of the stride."
+    told = (
+        "L and R: no standing reference. Range of motion and curve shape are valid; absolute angles are not. "
+        "0° is the mean of the gait cycle."
+    )
     assert charts.knee.note == told
     assert charts.ankle.note == ""
     charts.show_cycles(cycles, {Joint.LEFT_ANKLE: judged_as(height=SIGN, sign=SIGN)}, is_simulated=False)
-    assert charts.ankle.note.startswith("L: sign unsure. The curve may be upside down.")
+    assert charts.ankle.note.startswith("L: sign unclear, flexion or extension. The curve may be inverted.")
 
 
 def test_a_side_without_a_whole_stride_is_no_trouble(charts: CycleCharts) -> None:
@@ -284,7 +287,7 @@ def test_a_difference_has_dots_at_its_ends_and_a_bar_in_free_space(charts: Cycle
         picture.pixelColor(round(at.x()), round(at.y())).name() == look.theme.colours.surface.lower()
     )  # right: outlined
     assert is_like(colour_at(chart, 72, 40), look.theme.curve(Side.LEFT))
-    assert "L 20° under R, larger than the measurement error; loading too." in charts.knee.in_words()
+    assert "L 20° under R, beyond measurement error; loading too." in charts.knee.in_words()
     assert "L 20° under R" not in charts.ankle.in_words()
 
 

@@ -53,7 +53,7 @@ def test_what_has_changed_stands_beside_the_lanes(page: HomePage) -> None:
     assert "since last visit +0.06, within error" in found
     assert "49°" in found
     assert page.panel.count.text() == "5 visits · Shoes, stick: 3"
-    assert page.panel.next.text() == "Next: write the report of 14 Nov."
+    assert page.panel.next.text() == "Next: write the report for 14 Nov."
 
 
 def test_one_condition_is_shown_by_itself(page: HomePage) -> None:

@@ -106,7 +106,7 @@ def test_what_is_withheld_of_a_hip_is_empty_and_its_status_says_so(tmp_path: Pat
         assert any(row[name] for row in strides if row["side"] == "right")
     assert any(row["pelvis_drop_deg"] for row in left)  # the other hip gives the pelvis its frame
     verdicts = json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))["walks"]["walk 1"]["verdicts"]
-    assert "could not be confirmed" in json.dumps(verdicts)
+    assert "Sensor positions could not be confirmed" in json.dumps(verdicts)
 
 
 def test_the_summary_tells_the_clock_and_the_hips(results: Path) -> None:
@@ -150,7 +150,7 @@ def test_real_tissue_that_parts_the_hips_is_withheld_in_words() -> None:
     ("wrong", "gate", "told"),
     [
         ({"margin": 1.4}, "pairing", "1.40"),
-        ({"disagreement": 0.31}, "hip_disagreement", "31 %"),
+        ({"disagreement": 0.31}, "hip_disagreement", "by 31 %"),
         ({"centre_proximal_m": np.array([0.0, 0.0, 0.44])}, "hip_centre", "0.44 m"),
         ({"centre_distal_m": np.array([0.03, 0.0, 0.0])}, "hip_centre", "0.03 m"),
         ({"centres_apart_m": 0.31}, "hips_apart", "0.31 m"),

@@ -102,8 +102,8 @@ def test_a_visit_that_cannot_be_read_is_a_gap_and_the_change_counts_from_the_fir
     low, high = knee.band or (math.nan, math.nan)
     assert (low + high) / 2 == pytest.approx(40.0)
     assert lane_in_words(knee, visits).startswith(
-        "Knee, stance to swing, left: not readable on 20 Feb, 40 degrees on 20 Mar, not readable on 20 Apr, "
-        "60 degrees on 20 May. +20 since 20 Mar, larger than error (9."
+        "Knee flexion, stance to swing, left: not reported on 20 Feb, 40 degrees on 20 Mar, not reported on 20 Apr, "
+        "60 degrees on 20 May. +20 since 20 Mar, beyond error (9."
     )
 
 
@@ -190,13 +190,13 @@ def difference(
 )
 def test_each_judgement_has_its_words(found: Difference, said: str) -> None:
     assert judged_in_words(found, KNEE_LANE) == said
-    assert since_last_in_words(found, KNEE_LANE) == f"last visit +3°, {said.split(' (', maxsplit=1)[0]}"
+    assert since_last_in_words(found, KNEE_LANE) == f"since last visit +3°, {said.split(' (', maxsplit=1)[0]}"
 
 
 def test_what_is_drawn_is_explained_and_nothing_else() -> None:
     two = lanes([visit(1, shoes(40.0)), visit(2, shoes(60.0))])
     said = key_in_words(two)
-    assert said.startswith("Whisker: half of the error of a change. Grey: first visit ± error. †")
+    assert said.startswith("Whisker: half the error of a change. Grey: first visit ± error. †")
     assert key_in_words(lanes([visit(1, shoes())])) == "Whisker: half the error of a change."
     assert key_in_words(lanes([visit(1, shoes(strides=5))])) == ""  # under ten strides nothing is judged
 
@@ -209,14 +209,14 @@ def test_what_is_next_is_the_first_that_holds() -> None:
     recovered = undecided_step(UUID(int=7), datetime.date(2026, 11, 2))
     gated_and_unwritten = latest(90, Joint.LEFT_KNEE, has_report=False)
     assert next_step(recovered, gated_and_unwritten, TODAY) == NextStep(
-        "keep or discard the walk of 2 Nov.", "Look", UUID(int=7)
+        "include or exclude the walk of 2 Nov.", "Review", UUID(int=7)
     )
     assert undecided_step(UUID(int=7), None).sentence == "include or exclude the last walk."
     assert next_step(None, latest(1, Joint.LEFT_KNEE, Joint.LEFT_ANKLE, has_report=False), TODAY) == NextStep(
-        "left knee and left ankle could not be read on 22 Nov: see why.", "Look", UUID(int=1)
+        "check left knee and left ankle, not reported on 22 Nov.", "Review", UUID(int=1)
     )
     assert next_step(None, latest(90, has_report=False), TODAY) == NextStep(
-        "write the report of 25 Aug.", "Open", UUID(int=1)
+        "write the report for 25 Aug.", "Open", UUID(int=1)
     )
     assert next_step(None, latest(56), TODAY) == NextStep("the last visit was 8 weeks ago.")
     assert next_step(None, latest(55), TODAY) is None
@@ -247,12 +247,12 @@ def test_a_lane_holds_its_goals_and_the_leg_that_they_are_of() -> None:
     assert (knee.goals, knee.goal_values) == ((right,), [72.0])
     assert max(knee.values) == 72.0
     assert [line.side for line in knee.lines] == [Side.LEFT, Side.RIGHT]
-    assert lane_in_words(knee, visits).endswith("Goal: Knee, stance to swing, right: at least 72°.")
+    assert lane_in_words(knee, visits).endswith("Goal: Knee flexion, stance to swing, right: at least 72°.")
     before = replace(right, agreed=datetime.date(2026, 3, 19))  # the day before the last visit
     told = lane_in_words(lane(lanes(visits, goals=[before]), KNEE_LANE), visits)
-    assert told.endswith("right: at least 72°. Short of it by more than the error (9.3°).")
+    assert told.endswith("right: at least 72°. Not reached, beyond measurement error (±9.3°).")
     same_day = replace(right, agreed=datetime.date(2026, 3, 20))
-    assert "Short" not in lane_in_words(lane(lanes(visits, goals=[same_day]), KNEE_LANE), visits)
+    assert "Not reached" not in lane_in_words(lane(lanes(visits, goals=[same_day]), KNEE_LANE), visits)
     apart = goal(STANCE_LANE.column, GoalOf.BETWEEN, 2.0)
     stance = lane(lanes(visits, goals=[apart]), STANCE_LANE)
     assert stance.goal_values == [2.0, -2.0]
@@ -270,7 +270,7 @@ def test_a_goal_that_is_reached_is_next_after_the_report_and_before_a_long_time(
     near = reached_at([goal(SPEED_LANE.column, GoalOf.WALK, 0.95)], shoes(speed_m_s=1.0))
     said = next_step(None, replace(latest(), reached=near), TODAY)
     assert said is not None
-    assert said.sentence.endswith("inside error, not told from the goal.")
+    assert said.sentence.endswith("measured 1.00\N{NO-BREAK SPACE}m/s, within error, so not certain.")
     unwritten = next_step(None, replace(latest(has_report=False), reached=reached), TODAY)
     assert unwritten is not None
     assert unwritten.verb == "Open"
@@ -307,15 +307,15 @@ def test_the_lane_of_a_test_has_whiskers_and_a_verdict_where_an_error_is_known_o
     assert up.band is None
     space = "\N{NO-BREAK SPACE}"
     assert changes_since_in_words(ten, visits) == (
-        f"+0.34{space}m/s since 20 Mar, larger than error (0.20 †). "
-        f"+0.45{space}m/s since 20 Feb, larger than error (0.20 †)."
+        f"+0.34{space}m/s since 20 Mar, beyond error (0.20 †). "
+        f"+0.45{space}m/s since 20 Feb, beyond error (0.20 †)."
     )
     minus = "\N{MINUS SIGN}"
     assert changes_since_in_words(up, visits) == (
         f"{minus}4.0{space}s since 20 Mar, not judged. {minus}10.0{space}s since 20 Feb, not judged."
     )
     assert changes_since_in_words(lanes(visits[:1], kinds=(UP_AND_GO,))[0], visits[:1]) == ""
-    assert lane_in_words(up, visits).startswith("Timed up and go: 30.0 seconds on 20 Feb, 24.0 seconds on 20 Mar")
+    assert lane_in_words(up, visits).startswith("Timed Up and Go: 30.0 seconds on 20 Feb, 24.0 seconds on 20 Mar")
 
 
 def test_a_goal_of_a_test_is_reached_where_the_test_was_done_and_told_of_speed_alone() -> None:

@@ -149,22 +149,14 @@ def test_a_sentence_says_goal_value_error_and_standing() -> None:
         value: goal_sentence(GoalFigure(knee(50.0), value, 9.2, Verdict.READ)) for value in (40.0, 49.0, 51.0, 60.0)
     }
     assert said == {
-        40.0: (
-            "Goal: Knee flexion, stance to swing, left: at least 50°; measured 40.0°, not "
-            "reached, beyond measurement error (±9.2°)."
-        ),
-        49.0: (
-            "Goal: Knee flexion, stance to swing, left: at least 50°; measured 49.0°, not "
-            "reached, but within measurement error (±9.2°)."
-        ),
-        51.0: (
-            "Goal: Knee flexion, stance to swing, left: at least 50°; measured 51.0°, "
-            "reached, but within measurement error (±9.2°)."
-        ),
-        60.0: (
-            "Goal: Knee flexion, stance to swing, left: at least 50°; measured 60.0°, "
-            "reached, beyond measurement error (±9.2°)."
-        ),
+        40.0: "Goal: Knee flexion, stance to swing, left: at least 50°; measured 40.0°, not reached, "
+        "beyond measurement error (±9.2°).",
+        49.0: "Goal: Knee flexion, stance to swing, left: at least 50°; measured 49.0°, not reached, "
+        "but within measurement error (±9.2°).",
+        51.0: "Goal: Knee flexion, stance to swing, left: at least 50°; measured 51.0°, reached, "
+        "but within measurement error (±9.2°).",
+        60.0: "Goal: Knee flexion, stance to swing, left: at least 50°; measured 60.0°, reached, "
+        "beyond measurement error (±9.2°).",
     }
 
 

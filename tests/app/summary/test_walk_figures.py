@@ -64,7 +64,7 @@ def named(figures: tuple[Figure, ...], name: str) -> Figure:
 
 def test_a_peak_is_the_mean_over_the_strides_used_alone(analysis: Analysis) -> None:
     few = walk_of(with_few_strides(analysis, left=4))
-    peak = named(peak_figures(alone(few), reference_curves())["knee"], "Swing peak").sides[Side.LEFT]
+    peak = named(peak_figures(alone(few), reference_curves())["knee"], "Peak flexion, swing").sides[Side.LEFT]
     cycles_deg = np.rad2deg(few.gait[Side.LEFT].cycles[Joint.LEFT_KNEE][:4])
     assert peak.n == 4
     assert peak.mean == pytest.approx(float(cycles_deg[:, 55:91].max(axis=1).mean()))
@@ -75,16 +75,16 @@ def test_the_band_of_a_peak_stands_where_the_groups_mean_curve_has_its_own(walk:
     group = reference_curves()
     at = 55 + int(np.argmax(group.knee_mean_deg[55:91]))
     low, high = group.knee_mean_deg[at] - group.knee_sd_deg[at], group.knee_mean_deg[at] + group.knee_sd_deg[at]
-    assert named(found["knee"], "Swing peak").band == pytest.approx((low, high))
+    assert named(found["knee"], "Peak flexion, swing").band == pytest.approx((low, high))
     assert named(found["knee"], "At initial contact").band == pytest.approx((-2.556, 3.963), abs=1e-3)
-    assert named(found["ankle"], "Range").band is None  # a mean curve has no spread of ranges
+    assert named(found["ankle"], "Range of motion").band is None  # a mean curve has no spread of ranges
     assert all(figure.band is None for figures in peak_figures(alone(walk), None).values() for figure in figures)
 
 
 def test_without_a_zero_only_what_needs_none_is_told(analysis: Analysis) -> None:
     walk = walk_of(recalibrated(analysis, [Joint.LEFT_KNEE], zero=ZeroKind.NONE))
     for figure in peak_figures(alone(walk), reference_curves())["knee"]:
-        holds = figure.name in ("Range", "Time of peak flexion, swing, %")
+        holds = figure.name in ("Range of motion", "Time of peak flexion, swing, %")
         assert (Side.LEFT in figure.sides) is holds, figure.name
         assert dict(figure.unknown) == ({} if holds else {Side.LEFT: NO_ZERO})
         assert Side.RIGHT in figure.sides
@@ -93,7 +93,7 @@ def test_without_a_zero_only_what_needs_none_is_told(analysis: Analysis) -> None
 def test_of_a_joint_that_may_be_mirrored_only_the_range_is_told(analysis: Analysis) -> None:
     walk = walk_of(recalibrated(analysis, [Joint.RIGHT_ANKLE], is_sign_certain=False))
     for figure in peak_figures(alone(walk), reference_curves())["ankle"]:
-        expected = {} if figure.name == "Range" else {Side.RIGHT: MAY_BE_MIRRORED}
+        expected = {} if figure.name == "Range of motion" else {Side.RIGHT: MAY_BE_MIRRORED}
         assert dict(figure.unknown) == expected, figure.name
 
 
@@ -186,12 +186,12 @@ def test_a_curve_without_its_height_keeps_its_shape(walk: RecordingAnalysis) -> 
 def test_strides_left_out_are_counted_with_their_reasons(walk: RecordingAnalysis) -> None:
     few = with_used(walk, Side.LEFT, 1)
     left_out = len(walk.gait[Side.LEFT].strides) - 1
-    assert strides_in_words(alone(few), Side.LEFT) == f"L: 1 stride used, {left_out} left out (turning)."
+    assert strides_in_words(alone(few), Side.LEFT) == f"L: 1 stride used, {left_out} excluded (turning)."
     reason = (Reason.GAP, *few.gait[Side.LEFT].strides.reason[1:])
     strides = replace(few.gait[Side.LEFT].strides, reason=reason)
     gait = replace(few.gait[Side.LEFT], strides=strides)
     said = strides_in_words(alone(replace(few, gait={Side.LEFT: gait})), Side.LEFT)
-    assert said == f"L: 0 strides used, {left_out + 1} left out ({left_out} turning, 1 with missing samples)."
+    assert said == f"L: 0 strides used, {left_out + 1} excluded ({left_out} turning, 1 with missing samples)."
 
 
 @pytest.mark.parametrize("reason", [reason for reason in Reason if reason is not Reason.USED])
@@ -199,7 +199,7 @@ def test_every_reason_to_leave_a_stride_out_has_its_words(walk: RecordingAnalysi
     gait = walk.gait[Side.LEFT]
     strides = replace(gait.strides, reason=(reason,) * len(gait.strides))
     said = strides_in_words(alone(replace(walk, gait={Side.LEFT: replace(gait, strides=strides)})), Side.LEFT)
-    assert said.startswith(f"L: 0 strides used, {len(gait.strides)} left out (")
+    assert said.startswith(f"L: 0 strides used, {len(gait.strides)} excluded (")
     assert "_" not in said
 
 
@@ -237,7 +237,7 @@ def test_strides_left_out_by_hand_are_said_in_words_in_the_summary_and_in_every_
     found = leave_out(analysis, [told])
     (left,) = (recording for recording in found.recordings if recording.gait)
     assert by_hand_in_words(walk) == ""
-    assert by_hand_in_words(left) == f"2 of {len(strides)} right strides left out by hand."
+    assert by_hand_in_words(left) == f"2 of {len(strides)} right strides excluded by hand."
     summary = summarise(found)
     right = summary["walks"]["walk 1"]["right"]
     before = summarise(analysis)["walks"]["walk 1"]["right"]
@@ -245,7 +245,7 @@ def test_strides_left_out_by_hand_are_said_in_words_in_the_summary_and_in_every_
     assert right["strides_left_out"] == before["strides_left_out"] + 2
     assert right["knee_range_deg_mean"] != before["knee_range_deg_mean"]
     assert [f["text"] for f in summary["findings"] if f["key"] == "strides_left_out_by_hand"] == [
-        f"Walk 1: 2 of {len(strides)} right strides left out by hand."
+        f"Walk 1: Of {len(strides)} right strides, 2 were excluded by hand."
     ]
     header, rows = gait_tables(left)["strides"]
     reasons = [row[header.index("reason")] for row in rows if row[header.index("used")] == "false"]

@@ -35,7 +35,7 @@ def test_a_list_says_each_thing_that_was_done() -> None:
 
 
 def test_a_line_says_it_in_a_row_and_since_when() -> None:
-    line = "Foot, front screw ½ turn out, +2° plantar; foot 4 mm back; pylon +3 mm; pylon: new clamp"
+    line = "Foot, anterior screw ½ turn out, +2° plantar; foot 4 mm posterior; pylon +3 mm; pylon: new clamp"
     assert change_in_words(B) == line
     assert since_in_words(B) == f"Changed from Alignment A: {line}"
     assert (change_in_words(None), since_in_words(None)) == ("", "")
@@ -44,7 +44,7 @@ def test_a_line_says_it_in_a_row_and_since_when() -> None:
 def test_what_is_to_be_done_to_return_turns_every_direction_round() -> None:
     back = changed_between({"Alignment A": None, "Alignment B": B}, "Alignment B", "Alignment A")
     assert back is not None
-    said = "Foot, front screw ½ turn in; foot 4 mm forward; pylon \N{MINUS SIGN}3 mm; pylon: take back: new clamp"
+    said = "Foot, anterior screw ½ turn in; foot 4 mm anterior; pylon \N{MINUS SIGN}3 mm; pylon: undo: new clamp"
     assert to_do_in_words(back) == said
 
 
@@ -52,7 +52,7 @@ def test_what_is_to_be_done_to_return_turns_every_direction_round() -> None:
     ("change", "words"),
     [
         (PartChange(FRONT, angle_deg=-1.5), "+1.5° dorsal"),
-        (PartChange(ProsthesisPart.FOOT_ROTATION, angle_deg=-3.0), "+3° toes in"),
+        (PartChange(ProsthesisPart.FOOT_ROTATION, angle_deg=-3.0), "+3° toe-in"),
         (PartChange(ProsthesisPart.SOCKET_OUTER_SCREW, angle_deg=1.0), "+1° abduction"),
         (PartChange(ProsthesisPart.SOCKET_INNER_SCREW, shift_mm=-2.0), "2 mm medial"),
         (PartChange(ProsthesisPart.KNEE_UNIT, angle_deg=-1.0), "\N{MINUS SIGN}1°"),

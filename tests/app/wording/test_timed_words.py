@@ -38,7 +38,7 @@ def test_the_result_is_what_the_test_is_made_for() -> None:
     assert result_sentence(TEN) == "10-metre walk: 1.12 m/s, 8.9 s."
     assert result_sentence(TWO) == "2-minute walk: 132 m, 1.10 m/s."
     chair = replace(TEN, protocol=TimedProtocol.SIT_TO_STAND, distance_m=math.nan)
-    assert result_sentence(chair) == "5 ×: 8.9 s. sit to stand"
+    assert result_sentence(chair) == "5 × sit to stand: 8.9 s."
     assert result_sentence(replace(TWO, distance_m=math.nan)) == "2-minute walk: distance not measured."
     assert result_sentence(replace(TEN, end_s=math.nan)) == "10-metre walk: time not measured."
 
@@ -48,19 +48,19 @@ def test_what_is_missing_is_said_with_its_reason_and_nothing_else_is() -> None:
     silent = replace(
         TWO, distance_m=math.nan, missing=(NotMeasured.SILENT,), silences=(Silence(Site.LEFT_FOOT, 50.0, 55.0),)
     )
-    assert why_sentence(silent).startswith("The distance is not told: the sensor at the ")
+    assert why_sentence(silent).startswith("Distance not reported: the L foot sensor had no signal ")
     assert "from 50.0 to 55.0 s" in why_sentence(silent)
     taped = replace(silent, protocol=TimedProtocol.TEN_METRES, distance_m=10.0, is_end_by_key=True)
-    assert why_sentence(taped).startswith("The sensors' distance is not told: the sensor at the ")
+    assert why_sentence(taped).startswith("Sensor distance not reported: the L foot sensor had no signal ")
     unfinished = replace(TEN, end_s=math.nan, missing=(NotMeasured.NOT_FINISHED,))
-    assert why_sentence(unfinished) == "Time not reported: the recording ended before the test did."
+    assert why_sentence(unfinished) == "Time not reported: the recording ended before the test."
     assert len({reason_words(one) for one in NotMeasured}) == len(NotMeasured)
 
 
 @pytest.mark.parametrize(("own_m", "is_allowed"), [(10.3, True), (9.71, True), (10.31, False), (9.6, False)])
 def test_the_tape_is_compared_where_a_key_told_where_it_is(own_m: float, is_allowed: bool) -> None:
     keyed = replace(TEN, is_end_by_key=True, sensor_distance_m=own_m)
-    assert f"{own_m:.2f} m, {own_m - 10.0:+.2f} m from the tape's 10.00 m" in tape_sentence(keyed)
+    assert f"{own_m:.2f} m, {own_m - 10.0:+.2f} m from the tape (10.00 m)" in tape_sentence(keyed)
     assert ("Check the position of the tape" in tape_sentence(keyed)) is not is_allowed
     assert tape_sentence(replace(keyed, is_end_by_key=False)) == ""
     assert tape_sentence(replace(keyed, sensor_distance_m=math.nan)) == ""
@@ -83,12 +83,12 @@ def test_strides_on_stairs_are_told_apart_where_there_are_some() -> None:
     strides = tuple(StairStride(Side.LEFT, 0.0, 1.5, climb_m) for climb_m in (0.3, 0.3, -0.3))
     told = stairs_sentence(replace(TEN, protocol=TimedProtocol.STAIRS, stairs=strides))
     assert told == (
-        "Stair strides, excluded from walking means: strides up: 2, 1.50 s each; strides down: 1, 1.50 s each."
+        "Stair strides, excluded from walking means: strides up: 2, mean 1.50 s; strides down: 1, mean 1.50 s."
     )
 
 
 def test_an_error_that_was_not_verified_has_a_dagger() -> None:
-    assert error_words(KnownError("time_s", 0.0, 0.2, paper="us", is_verified=True)) == "Time: up to 0.2 s, us."
+    assert error_words(KnownError("time_s", 0.0, 0.2, paper="us", is_verified=True)) == "Time error: up to 0.2 s, us."
     assert error_words(KnownError("distance_m", 16.0, 39.0, paper="a paper")) == "Distance error: 16–39 m†, a paper."
     every = [error_words(one) for known in DEFINITIONS.values() for one in known.errors]
     assert all(every)
@@ -98,7 +98,7 @@ def test_a_planned_test_is_told_with_its_keys() -> None:
     assert planned_words(None) == "no test"
     assert planned_words(PlannedTest(TimedProtocol.TEN_METRES)) == "10-metre walk"
     keyed = PlannedTest(TimedProtocol.TEN_METRES, 3.0, 12.25)
-    assert planned_words(keyed) == "10-metre walk, key at the start: 3.0 s, key at the end: 12.2 s"
+    assert planned_words(keyed) == "10-metre walk, start key at 3.0 s, end key at 12.2 s"
     assert len({name_of_test(one) for one in TimedProtocol}) == len(TimedProtocol)
 
 
@@ -109,4 +109,4 @@ def test_the_known_errors_are_told_in_german_with_a_comma() -> None:
     finally:
         use_language("en")
     assert not re.search(r"\b(worst|simulated|minutes|rater)\b", every)
-    assert "bis zu 1,2 %, im schlechtesten von 60 simulierten Verläufen" in every
+    assert "bis zu 1,2 %, schlechtester von 60 simulierten Durchgängen" in every

@@ -38,20 +38,20 @@ def with_finding(request: ReportRequest, finding: Finding) -> ReportRequest:
 def test_the_page_of_the_method_says_how_it_was_measured(request_of_demonstration: ReportRequest) -> None:
     told = said(with_sensors(request_of_demonstration, dict.fromkeys(Site, MTI)))
     for title, words in {
-        "Sensors": "6 × MTi, firmware 4.2, set to 100 Hz, 100.0 Hz by their stamps, on thigh, shank and foot of both",
-        "Calibration": "from the patient's own free movement, the ankle's axis from the walks too: no posture",
+        "Sensors": "6 × MTi, firmware 4.2, set to 100 Hz, 100.0 Hz by time stamps, on thigh, shank and foot of both",
+        "Calibration": "from the patient's own free motion, for the ankle also from the walks. No set posture",
         "Angles": (
-            "VQF (Laidig, Seel 2023) forward and back, without magnetometer, time constant 3 s, from "
-            "rates of instants. An angle is the turn of the lower segment vs the upper one about the "
-            "joint's own axis: one of its three"
+            "VQF (Laidig, Seel 2023), forward and backward, without magnetometer, time constant 3 s, from "
+            "instantaneous angular rates. A joint angle is the rotation of the lower segment relative to the upper one about "
+            "the joint's own axis. It is one of three"
         ),
-        "Events and strides": "Contact and toe\u2011off: from the pitch of the feet, of feet that hardly roll",
+        "Events and strides": "Initial contact and toe\u2011off: from foot pitch; for feet that hardly roll",
         "Accuracy": "Not tested on patients, after knee replacement or on real prostheses",
         "Software": "Gaitwright 9.8.7, the robust method",
     }.items():
         assert words in told[title], title
     assert (
-        "Standing reference: this patient's posture on this day, or the goniometer value entered for it"
+        "Standing reference: this patient's posture on this day, or the goniometer value entered."
         in told["Calibration"]
     )
     assert "gaps up to 0.05 s are bridged" in told["Angles"]
@@ -59,9 +59,9 @@ def test_the_page_of_the_method_says_how_it_was_measured(request_of_demonstratio
 
 def test_what_no_sensor_told_is_said_to_be_unknown(request_of_demonstration: ReportRequest) -> None:
     told = said(with_sensors(request_of_demonstration, {}))
-    assert told["Sensors"].startswith("6 × sensor whose model is not told, 100.0 Hz by their stamps, on ")
+    assert told["Sensors"].startswith("6 × sensor of unknown model, 100.0 Hz by time stamps, on ")
     assert "The measuring range is not in the recording" in told["Sensors"]
-    assert "from rates of a kind that is not told" in told["Angles"]
+    assert "from angular rates of unknown kind" in told["Angles"]
     differing = {site: replace(MTI, model=f"model {k}") for k, site in enumerate(Site)}
     assert said(with_sensors(request_of_demonstration, differing))["Sensors"].startswith("6 sensors of 6 models, ")
     unlike = {site: replace(MTI, rate_hz=60.0 if site.side is Side.LEFT else 120.0) for site in Site}
@@ -118,9 +118,9 @@ def test_the_calibration_is_that_of_the_walk(request_of_demonstration: ReportReq
         analysis = replace(visit.analysis, calibrations=calibrations)
         return said(replace(request_of_demonstration, visit=AnalysedVisit(visit.session, analysis)))
 
-    assert "Rates at rest: from standing or other still moments." in said(request_of_demonstration)["Calibration"]
-    assert "from the walks themselves" in changed(axis_source=AxisSource.WALKING)["Calibration"]
-    assert "Rates at rest: unknown" in changed(gyro_bias_distal_rad_s=None)["Calibration"]
+    assert "Gyroscope offsets: from standing or other moments at rest." in said(request_of_demonstration)["Calibration"]
+    assert "come from the walks, as no free motion was recorded" in changed(axis_source=AxisSource.WALKING)["Calibration"]
+    assert "Gyroscope offsets: unknown" in changed(gyro_bias_distal_rad_s=None)["Calibration"]
     published = replace(visit.analysis, method=Method.PUBLISHED)
     told = said(replace(request_of_demonstration, visit=AnalysedVisit(visit.session, published)))
     assert "equation 15 of the published method" in told["Angles"]

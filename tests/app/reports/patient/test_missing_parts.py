@@ -60,7 +60,7 @@ def readable(request: ReportRequest) -> dict[str, list[str]]:
     return rows | {label: [said] for label, _, said in told["wide"]}
 
 
-READ, CARE, WITHHELD = "good", "caution", "withheld"
+READ, CARE, WITHHELD = "Good", "Caution", "Not reported"
 
 
 def beside(request: ReportRequest, joint: str) -> list[str]:
@@ -74,7 +74,7 @@ def test_without_a_zero_no_height_is_told(request_of_demonstration: ReportReques
     request = without_zero(request_of_demonstration)
     pages = shown(request)
     assert readable(request)["Left knee"] == [READ, WITHHELD, READ]
-    assert "Absolute angle of all joints: No zero was set, so heights say nothing." in pages[0]
+    assert "Absolute angle of all joints: There is no standing reference, so absolute angles are not reported." in pages[0]
     assert "none: no absolute angles" in pages[0]
     assert "Knee range of motion" in pages[0]
     assert "° vs reference" not in pages[0]
@@ -82,7 +82,7 @@ def test_without_a_zero_no_height_is_told(request_of_demonstration: ReportReques
     assert (
         "It is shifted to the level of each curve to compare shape; the absolute angle is shown beside it"
     ) in pages[0]  # a shape needs no zero
-    assert "degrees from the mean of the stride" in pages[1]
+    assert "degrees from its mean" in pages[1]
     assert "No reference: without a standing reference there are no absolute angles to compare" in pages[1]
     assert "At initial contact" not in pages[1]
 
@@ -94,7 +94,7 @@ def test_one_leg_alone_is_not_compared(request_of_demonstration: ReportRequest) 
     assert list(readable(request)) == ["Left knee", "Left ankle", "Distance"]
     assert "Right knee" not in pages[0]
     assert "Stride time, s 1.08 ± 0.01 not measured – – – –" in pages[2]
-    assert "Range over the stride 61.7 ± 0.8 not measured – – – " in pages[1]
+    assert "Range of motion 61.7 ± 0.8 not measured – – – " in pages[1]
     assert "against" not in pages[0].split("Summary")[1].split("Data quality")[0]
 
 
@@ -120,10 +120,10 @@ def test_two_strides_make_no_mean_and_no_number(request_of_demonstration: Report
     request = with_strides(request_of_demonstration, 2)
     pages = shown(request)
     assert readable(request)["Right knee"] == [WITHHELD] * 3
-    assert "Both legs: Few strides (2 used, 3 wanted). Let the patient walk longer." in pages[0]
+    assert "Both legs: Few strides (2 used, 3 required). Let the patient walk longer." in pages[0]
     assert "±" not in pages[1].split("Range of motion")[1].split("Windows in brackets")[0]
-    assert "Range over the stride withheld withheld – – – " in pages[1]
-    assert "exceeds" not in pages[1].split("Windows in brackets")[0]
+    assert "Range of motion not reported not reported – – – " in pages[1]
+    assert "beyond" not in pages[1].split("Windows in brackets")[0]
     assert beside(request, "Left knee") == ["Let the patient walk longer."]
 
 
@@ -133,7 +133,7 @@ def test_single_strides_that_make_no_mean_are_drawn_each_with_its_letter(
     panels = report_data(with_strides(request_of_demonstration, 2))["first_page"]["curves"]["panels"]
     assert [panel["picture"]["svg"].count(">L<") for panel in panels] == [2, 0, 2, 0]
     assert [panel["picture"]["svg"].count(">R<") for panel in panels] == [0, 2, 0, 2]
-    assert not any("Withheld" in panel["picture"]["svg"] for panel in panels)
+    assert not any("Not reported" in panel["picture"]["svg"] for panel in panels)
 
 
 def test_five_strides_make_a_mean_without_a_spread(request_of_demonstration: ReportRequest) -> None:
@@ -144,7 +144,7 @@ def test_five_strides_make_a_mean_without_a_spread(request_of_demonstration: Rep
     assert swing[1]["grey"] is swing[2]["grey"] is True
     assert "±" not in swing[1]["said"]
     assert swing[1]["said"].endswith("*")
-    assert "Both legs: Few strides (5 used, 10 wanted)." in shown(request)[0]
+    assert "Both legs: Few strides (5 used, 10 required)." in shown(request)[0]
 
 
 def test_one_short_leg_does_not_hide_the_other(request_of_demonstration: ReportRequest) -> None:
@@ -152,8 +152,8 @@ def test_one_short_leg_does_not_hide_the_other(request_of_demonstration: ReportR
     pages = shown(request)
     assert readable(request)["Left knee"] == [WITHHELD] * 3
     assert readable(request)["Right knee"] == [READ] * 3
-    assert "Left leg: Few strides (2 used, 3 wanted)." in pages[0]
-    assert re.search(r"Range over the stride withheld \d+\.\d ± \d\.\d – – –", pages[1])
+    assert "Left leg: Few strides (2 used, 3 required)." in pages[0]
+    assert re.search(r"Range of motion not reported \d+\.\d ± \d\.\d – – –", pages[1])
 
 
 def test_no_stride_at_all_still_makes_a_report_of_one_page(request_of_demonstration: ReportRequest) -> None:
@@ -168,24 +168,24 @@ def test_an_axis_beyond_its_limit_is_marked_and_a_worse_one_withheld(request_of_
     request = with_joints(request_of_demonstration, axis_sd_rad=np.deg2rad(8.0))
     pages = shown(request)
     assert readable(request)["Left knee"] == readable(request)["Right ankle"] == [CARE, CARE, READ]
-    assert "All joints: The joint's axis is known to 8.0° only (6.5° wanted). Record free motion" in pages[0]
+    assert "All joints: Calibration certainty is only ±8.0° (limit ±6.5°). Record free motion" in pages[0]
     assert "0.9 *" in pages[1]
     assert "*: caution; reason on page 1." in pages[1]
     request = with_joints(request_of_demonstration, Joint.LEFT_ANKLE, axis_sd_rad=np.deg2rad(9.5))
     pages = shown(request)
     assert readable(request)["Left ankle"] == [WITHHELD, WITHHELD, READ]
     assert readable(request)["Left knee"] == [READ] * 3
-    assert "Left ankle: The joint's axis is known to 9.5° only (9.0° wanted)." in pages[0]
+    assert "Left ankle: Calibration certainty is only ±9.5° (limit ±9.0°)." in pages[0]
     assert beside(request, "Left ankle")[0].startswith("Record free motion")
     assert "*" not in pages[1]
 
 
 def test_an_uncertain_sign_leaves_the_range_alone(request_of_demonstration: ReportRequest) -> None:
     pages = shown(with_joints(request_of_demonstration, Joint.LEFT_KNEE, is_sign_certain=False))
-    assert "All of left knee but the range: The motion does not tell flexion from extension" in pages[0]
+    assert "All values of left knee except range of motion: Flexion and extension could not be distinguished" in pages[0]
     assert "Not drawn: left knee, not reported." in pages[1]
-    assert "loading (5–30 %) withheld 14.0" in pages[1]
-    assert re.search(r"Range over the stride 61\.7 ± 0\.8 63\.0", pages[1])
+    assert "loading (5–30 %) not reported 14.0" in pages[1]
+    assert re.search(r"Range of motion 61\.7 ± 0\.8 63\.0", pages[1])
 
 
 def test_sensors_that_are_no_neighbours_leave_no_number_of_their_joint(
@@ -200,16 +200,16 @@ def test_sensors_that_are_no_neighbours_leave_no_number_of_their_joint(
     assert told["Right ankle"] == [WITHHELD, WITHHELD, CARE]
     assert told["Left knee"] == told["Left ankle"] == [READ] * 3
     assert (told["Left vs right"], told["Distance"]) == ([READ], [CARE])
-    said = "Right ankle: The two sensors do not move as neighbours (margin 1.05, 1.50 wanted)."
+    said = "Right ankle: Sensor positions could not be confirmed (margin 1.05, required 1.50)."
     assert said in pages[0].split("Key values")[0]
     assert said in pages[0].split("Summary")[1].split("Data quality")[0]  # the caveat
     assert said in pages[1]
-    assert re.search(r"Ankle push\u2011off, ° \d+\.\d ± \d\.\d withheld – – no band", pages[0])
+    assert re.search(r"Ankle plantarflexion, push-off, ° \d+\.\d ± \d\.\d not reported – – no reference", pages[0])
     ankle = pages[1].split("Ankle: movement ranges")[1].split("Windows in brackets")[0]
-    assert ankle.count("withheld") == 10  # four movements, the range, five angles
+    assert ankle.count("not reported") == 10  # four movements, the range, five angles
     assert "Not drawn: right ankle, not reported." in pages[1]
-    assert "Double support, % of stride not reported" in pages[2]
-    assert "withheld" not in "".join(usual[:3])
+    assert "Double support (% gait cycle) not reported" in pages[2]
+    assert "not reported" not in "".join(usual[:3]).casefold()
 
 
 def test_a_child_and_a_crawl_stand_beside_no_band(request_of_demonstration: ReportRequest) -> None:
@@ -232,10 +232,10 @@ def test_visits_with_different_zeros_are_compared_in_shape_and_range_only(
     assert (
         "The standing reference is missing or of another kind: only range of motion and timing are compared."
     ) in page
-    assert "Left: knee, degrees from the mean (flexion +)" in page
+    assert "Left: knee, degrees from its mean (flexion +)" in page
     assert "Reference mean, ±1 SD" not in page
-    assert "Knee: most flexed, swing withheld 58.8 ± 0.9 – – not reported" in page
-    assert re.search(r"Knee: range over the stride 61\.7 ± 0\.8 61\.7 ± 0\.8 0\.0 \d+\.\d inside error", page)
+    assert "Peak knee flexion, swing not reported 58.8 ± 0.9 – – not reported" in page
+    assert re.search(r"Knee range of motion 61\.7 ± 0\.8 61\.7 ± 0\.8 0\.0 \d+\.\d within error", page)
     assert "degrees (flexion +" in shown(replace(request_of_demonstration, earlier=visit))[4]
 
 
@@ -254,7 +254,7 @@ def test_gaps_and_slips_are_said(request_of_demonstration: ReportRequest) -> Non
     assert readable(request)["Left ankle"][:2] == [CARE, CARE]
     remarks = pages[3].split("Data quality findings")[1]
     assert "Gaps over 50 ms take 4.2 % of the strides used (1.0 % at most)." in remarks
-    assert "Right leg: A strap slipped from 2.0 s on" in remarks
+    assert "Right leg: Strap moved; strides from 2.0 s on are excluded." in remarks
     assert "more finding on page 4" in pages[0] or "more findings on page 4" in pages[0]
 
 
@@ -263,7 +263,7 @@ def test_clocks_that_cannot_be_compared_are_said(request_of_demonstration: Repor
     pages, usual = shown(request), shown(request_of_demonstration)
     assert len(pages) == len(usual)
     assert readable(request)["Left knee"][:2] == [WITHHELD, WITHHELD]
-    assert "All joints: The motion does not show how far the two sensors' clocks are apart." in pages[0]
+    assert "All joints: The two sensors could not be synchronised from the movement." in pages[0]
     assert "not resolvable" in pages[0]
     assert "not resolvable" not in usual[0]
 

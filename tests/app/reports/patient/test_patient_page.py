@@ -156,5 +156,5 @@ def test_what_was_agreed_is_said_plainly_and_reached_only_where_it_is_by_more_th
     german = replace(request_of_demonstration, patient_language="de")
     speed = Goal("speed_m_s", GoalOf.WALK, 1.5, day)
     assert goals_on_page(german, speed) == [
-        "Ganggeschwindigkeit: mindestens 1,5 Meter in einer Sekunde. Das haben wir am 30. September vereinbart."
+        "Gehgeschwindigkeit: mindestens 1,5 Meter in einer Sekunde. Das haben wir am 30. September vereinbart."
     ]

@@ -44,7 +44,7 @@ def test_movements_stand_before_the_angles_of_each_joint(request_of_demonstratio
     analysis = request_of_demonstration.visit.analysis
     found = groups(request_of_demonstration, analysis)
     heads = list(found)
-    assert heads[1].startswith("Knee: absolute angles (flexion +); whole curve vs")
+    assert heads[1].startswith("Knee: absolute angles (flexion +); whole curve vs reference: L")
     assert heads[::2] == ["Knee: movement ranges", "Ankle: movement ranges"]
     assert list(found["Knee: movement ranges"]) == [*MOVEMENTS, TIME]
     assert list(found["Ankle: movement ranges"]) == MOVEMENTS_OF_ANKLE
