@@ -12,7 +12,7 @@ from app.wizard.visit import Visit
 from devices.search import SearchResult
 
 NETWORK = STREAMS + "192.0.2.9"
-WARNING = "This asks every computer in the network of 192.0.2.9"
+WARNING = "This asks every computer on the network of 192.0.2.9"
 
 
 @pytest.fixture

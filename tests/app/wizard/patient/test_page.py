@@ -119,7 +119,7 @@ def test_a_code_in_use_is_said_and_offered(page: PatientPage) -> None:
     page.open_pressed.connect(opened.append)
     type_into(page.code.line_edit, "P-0147")
     page.show_code_taken("P-0147")
-    assert "P-0147 already already exists. Open it, or choose another code." in page.code.line_edit.accessibleName()
+    assert "P-0147 already exists. Open it, or choose another code." in page.code.line_edit.accessibleName()
     button = next(one for one in page.findChildren(QAbstractButton) if one.text() == "Open this patient")
     assert button.isVisible()
     QTest.keyClick(button, Qt.Key.Key_Return)

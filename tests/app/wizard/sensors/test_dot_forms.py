@@ -75,8 +75,8 @@ def test_space_turns_a_tick_and_enter_goes_on(form: DotForm, qtbot: QtBot) -> No
 @pytest.mark.parametrize(
     ("record_hz", "said", "unsaid"),
     [
-        (120, "synchronised once more", "Data lost in radio transmission are missing"),
-        (60, "Its curves come once it is fetched.", "synchronised once more"),
+        (120, "synchronised again before the first walk", "Data lost in radio transmission are missing"),
+        (60, "Curves appear once the walk is fetched.", "synchronised again before the first walk"),
         (0, "Data lost in radio transmission are missing", "fetched"),
     ],
 )

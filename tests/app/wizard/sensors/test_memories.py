@@ -60,7 +60,7 @@ def look(qtbot: QtBot, step: SensorsStep) -> None:
 
 def wait(qtbot: QtBot, step: SensorsStep) -> None:
     assert step.memories.is_busy
-    assert "Wait until" in step.cannot_leave
+    assert step.cannot_leave == "The sensors are being queried. Wait, or cancel."
     qtbot.waitUntil(lambda: not step.memories.is_busy, timeout=WAIT_MS)
     assert step.cannot_leave == ""
 

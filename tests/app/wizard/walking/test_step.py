@@ -278,7 +278,7 @@ def test_a_silent_sensor_is_said_and_so_is_its_return(
     with qtbot.waitSignal(visit.recordings.begun, timeout=PATIENCE_MS):
         step.on_intent(RUN)
     source.silence("DEMO-right_foot")
-    qtbot.waitUntil(lambda: "R foot has been silent" in step.page.notice.text, timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: "R foot: no signal for" in step.page.notice.text, timeout=PATIENCE_MS)
     assert "right ankle, right phases" in step.page.notice.text
     source.wake("DEMO-right_foot")
     qtbot.waitUntil(lambda: "R foot is back after" in step.page.notice.text, timeout=PATIENCE_MS)
