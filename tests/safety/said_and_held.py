@@ -132,7 +132,7 @@ def _of_settings(page: Any, held: HeldLibrary) -> Iterator[str]:
     operators = held.ask("SELECT COUNT(*) FROM operators")[0][0]
     if page.operators.isVisible() and page.operators.rows.count() != operators:
         yield f"settings list {page.operators.rows.count()} operators, held are {operators}"
-    said = re.match(r"Backups go to (.+)\.$", page.backup_folder.text())
+    said = re.match(r"Backup folder: (.+)\.$", page.backup_folder.text())
     kept = held.ask("SELECT value FROM settings WHERE name = 'backup_folder'")
     if page.backup_folder.isVisible() and said is not None and (not kept or said[1] not in str(kept[0][0])):
         yield f"settings say {said[0]!r}, held is {kept}"

@@ -83,8 +83,8 @@ def test_a_withheld_hip_has_a_panel_for_a_curve_and_the_door_names_it(page: Resu
     assert frame.chart.withheld == {Side.LEFT}
     assert "Sensor positions could not be confirmed" in frame.withheld[Side.LEFT].text
     assert frame.withheld[Side.RIGHT].text == ""
-    assert page.door.words.startswith("Left hip: withheld.")
-    assert rows_of(page.cycles.hips.table)["Range"][0] == "withheld"
+    assert page.door.words.startswith("Left hip: not reported.")
+    assert rows_of(page.cycles.hips.table)["Range of motion"][0] == "not reported"
 
 
 def test_without_a_pelvis_nothing_of_hips_is_there(page: ResultPage) -> None:

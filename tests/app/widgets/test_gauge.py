@@ -167,7 +167,7 @@ def test_an_ankles_gauge_tells_readers_of_screens_what_it_judges(qtbot: QtBot, l
         "Left ankle, axis found while walking, centre 6.0 mm, under 10 mm required, Enough movement for centre"
     )
     assert said[Joint.LEFT_KNEE] == (
-        "Left knee, axis 1.0°, under 1.5° required, centre 6.0 mm, under 10 mm required, Enough motion"
+        "Left knee, axis 1.0°, under 1.5° required, centre 6.0 mm, under 10 mm required, Enough movement"
     )
 
 

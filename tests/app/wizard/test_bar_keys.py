@@ -25,8 +25,8 @@ from app.wizard.wizard import Wizard
 from app.workers.library_controller import LibraryController
 from core.samples import Session
 
-TEXTS = {"Enter": "Go on", "Space": "Record again", "L": "Repeat left", "R": "Repeat right", "D": "Discard"}
-KEYS = {"Enter": Qt.Key.Key_Return, "Space": Qt.Key.Key_Space, "L": Qt.Key.Key_L, "R": Qt.Key.Key_R, "D": Qt.Key.Key_D}
+TEXTS = {"Enter": "Go on", "Space": "Record again", "L": "Repeat left", "R": "Repeat right", "X": "Exclude"}
+KEYS = {"Enter": Qt.Key.Key_Return, "Space": Qt.Key.Key_Space, "L": Qt.Key.Key_L, "R": Qt.Key.Key_R, "X": Qt.Key.Key_X}
 WAIT_MS = 60_000
 
 

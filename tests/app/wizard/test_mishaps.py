@@ -176,7 +176,7 @@ def test_what_is_said_of_a_late_disk_follows_its_counters(
     assert "5 data packets were lost so far" in said()
     now[0] = fine
     monkeypatch.setattr(acquisition, "lost", dict)
-    assert said() == "The disk answered late, and answers again. Nothing was lost by it."
+    assert said() == "The disk was slow and now responds again. No data were lost because of this."
     recording = step.bar().recording
     assert recording is not None
     assert "Saved continuously." in recording.note

@@ -466,11 +466,11 @@ def test_what_is_said_of_a_pelvis_costs_the_hips_alone(page: SensorsPage) -> Non
         "Pelvis: no signal for 4 s. Switch the sensor off and on, or continue without hip angles; knees and ankles are not affected."
     )
     page.show_sensors(seven(*Site, s0A09={"silent_s": 4.0}))
-    assert page.notice.text.endswith("go on without left knee and hip angles.")
+    assert page.notice.text.endswith("continue without left knee and hip angles.")
     page.show_sensors(seven(*Site))
     page.assign(SEVENTH, None)
     page.show_sensors(seven(*LEG_SITES))
-    assert page.notice.text == "No sensor on the pelvis: no hip angles. Knees, ankles and steps stay as they are."
+    assert page.notice.text == "No sensor on the pelvis: no hip angles. Knees, ankles and steps are not affected."
 
 
 def test_without_a_pelvis_nothing_is_said_of_hips(page: SensorsPage) -> None:

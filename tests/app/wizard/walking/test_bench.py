@@ -262,7 +262,7 @@ def test_a_walk_after_the_return_stands_beside_the_first_and_changes_nothing_tha
     assert state is not None
     assert [(row.letter, row.title) for row in state.rows][-1] == ("A2", "Repeat A")
     assert shown(bench) == ("A2", "A")
-    assert state.answer.first.startswith("With A2 the prosthetic side has 6.0° more than with A:")
+    assert state.answer.first.endswith(" range of motion with A2, 6.0° more than with A (60.0°).")
     assert sentence_of(bench, 1) == before
     assert bench.chain.next_letter == "D"
 
@@ -412,7 +412,7 @@ def test_each_curve_says_what_may_be_read_of_it(page: WalkingPage, bench: Bench)
     unsure = {**calibrations(), Joint.LEFT_KNEE: axis}
     doubted = replace(state.parts[0], walks=(judged_walk(walk(), unsure),))
     page.bench.show_state(replace(state, parts=[doubted, *state.parts[1:]]))
-    assert [frame.verdict.text() for frame in page.bench.frames] == ["caution", "read"]
+    assert [frame.verdict.text() for frame in page.bench.frames] == ["Caution", "Good"]
 
 
 def test_the_next_change_is_told_by_keys_and_reads_as_it_prints(page: WalkingPage, bench: Bench) -> None:
@@ -428,7 +428,7 @@ def test_the_next_change_is_told_by_keys_and_reads_as_it_prints(page: WalkingPag
             QTest.keyClick(card.steppers[name], key)
     assert card.written.text() == "Recorded as: Foot, anterior screw ½ turn out, +2° plantar"
     assert card.next_title.text() == "D: changed from C"
-    assert card.steppers["turns"].accessibleName() == "Turns: ½ out"
+    assert card.steppers["turns"].accessibleName() == "Screw turns: ½ out"
     card.parts.setCurrentIndex(list(ProsthesisPart).index(PYLON))
     QTest.keyClicks(card.words.line_edit, "clamp")
     assert bench.entry.parts[-1] == PartChange(PYLON, text="clamp")
