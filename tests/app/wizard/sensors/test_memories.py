@@ -145,7 +145,7 @@ def test_what_a_closed_visit_left_in_the_sensors_is_fetched_where_the_session_go
     assert told_lines(opened) == [["2 sensors", "Not fetched: Shoes."]]
     bar = opened.bar()
     assert bar.primary is not None
-    assert bar.primary.text == "Fetch it"
+    assert bar.primary.text == "Fetch walk"
     press(opened)
     wait(qtbot, opened)
     qtbot.waitUntil(lambda: len(recordings.walks) == 2, timeout=WAIT_MS)
