@@ -765,7 +765,7 @@ def test_what_a_visit_that_was_left_recorded_while_it_was_gone_is_in_its_session
     writer.stop()
     with qtbot.waitSignal(home.recovering.recovered, timeout=WAIT_MS):
         elsewhere.rename(folder)
-    assert home.banner.text == "The library is back. 1 recording made meanwhile was added."
+    assert home.banner.text == "The library is available again. 1 recording made meanwhile was added."
     home.banner.dismiss.click()
     assert home.banner.isHidden()
     assert [one.details.name for one in library.sessions.get(session_id).recordings] == ["walk 1"]
@@ -798,14 +798,14 @@ def test_what_comes_home_under_the_cover_is_in_its_session_after_the_passphrase(
             writer.mark(Belonging(session_id, told).text())
         with qtbot.waitSignal(window.controller.back, timeout=WAIT_MS):
             elsewhere.rename(folder)
-        assert page.banner.text == "The library is back. 1 recording made meanwhile was added."
+        assert page.banner.text == "The library is available again. 1 recording made meanwhile was added."
     assert len(list(state.library.recordings.glob("*.journal"))) == 2
     assert not state.library.data_key
     with qtbot.waitSignal(home.recovering.recovered, timeout=WAIT_MS):
         page.passphrase.set_text(PASSPHRASE)
         QTest.keyClick(page.passphrase.line_edit, Qt.Key.Key_Return)
     assert not window.is_covered
-    assert home.banner.text == "The library is back. 1 recording made meanwhile was added."
+    assert home.banner.text == "The library is available again. 1 recording made meanwhile was added."
     assert sorted(one.details.name for one in library.sessions.get(session_id).recordings) == ["walk 1", "walk 2"]
 
 

@@ -22,12 +22,12 @@ LINES = [
 ]
 SIZES = [(1016, 540), (744, 420)]
 HELD = [
-    HeldLine("today 10:32", 6, "Kept: A Shoes.", is_kept=True),
+    HeldLine("today 10:32", 6, "Saved: A Shoes.", is_kept=True),
     HeldLine("today 10:40", 5, "Not fetched: A2 Shoes.", is_kept=False, can_fetch=True),
 ]
 SYNCHRONISING = ProgressShown(
     "The sensors are being synchronised",
-    "The sensors compare their clocks by themselves. Leave them where they are. About 20 s are left.",
+    "The sensors are comparing their clocks. Leave them where they are. About 20 s left.",
     0.4,
     tuple(SensorLine(f"DOT 0A2{number}", LineState.NOW, "comparing clocks") for number in range(7)),
     stop="Cancel",

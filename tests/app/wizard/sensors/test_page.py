@@ -289,9 +289,9 @@ def test_what_wants_a_look_is_said(page: SensorsPage, changes: dict[str, object]
 
 def test_a_refusal_goes_before_all_else_and_is_seen_without_a_source(page: SensorsPage) -> None:
     page.show_no_source()
-    page.tell("COM7 is used by another program.", "Close that program, then search again.")
+    page.tell("COM7 is in use by another program.", "Close that program, then search again.")
     assert page.nothing.isVisible()
-    assert "COM7 is used by another program. Close that program, then search again." in _texts_of(page.nothing)
+    assert "COM7 is in use by another program. Close that program, then search again." in _texts_of(page.nothing)
 
 
 def test_the_sources_take_the_focus_as_soon_as_they_are_offered(qtbot: QtBot) -> None:
