@@ -647,7 +647,7 @@ def test_every_word_fits(
         home, entry = window.home, window.entry
         assert home is not None
         entry.log_in.show_operators(("hk", "vi"), ("hk",), "vi", can_remember=True)
-        entry.log_in.refuse("This passphrase does not open the library. Type it again, or use the recovery key.", 5.0)
+        entry.log_in.refuse("This passphrase does not open the library. Enter it again, or use the recovery key.", 5.0)
         entry.first_start.make.click()
         showings: list[tuple[str, Callable[[], object]]] = [
             ("home", lambda: window._show(home)),
@@ -695,17 +695,15 @@ def test_a_library_that_was_here_and_is_missing_is_not_made_anew(
     assert entry is not None
     page = entry.first_start
     assert window.screens.currentWidget() is page
-    said = (
-        f"It was in {folder}, and is not there now. Connect its disk, or put its folder back: it then opens by itself."
-    )
-    assert page.missing_lead.text() == said
+    told = "Connect its disk, or restore its folder. It then opens automatically."
+    assert page.missing_lead.text() == f"It was in {folder} and is no longer there. {told}"
     page.show_missing(str(folder), 2)
     assert "2 recordings stay on this computer until their library is back." in page.missing_lead.text()
     assert page.look_again.isVisible()
     assert not page.make.isVisible()
     assert page.look_again.hasFocus()
     page.look_again.click()
-    assert page.banner.text == "The library is still missing. Connect its disk, or put its folder back."
+    assert page.banner.text == "The library is still missing. Connect its disk, or restore its folder."
     assert not folder.exists()
     page.make_another.click()
     assert page.make.isVisible()
@@ -733,7 +731,7 @@ def test_a_library_that_goes_is_said_at_home_and_so_is_its_return(
     assert home is not None
     elsewhere = folder.with_name("renamed")
     folder.rename(elsewhere)
-    qtbot.waitUntil(lambda: home.banner.text.startswith(f"The library is gone from {folder}."), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: home.banner.text.startswith(f"The library is no longer in {folder}."), timeout=WAIT_MS)
     window.lock()
     entry = window.entry
     assert entry is not None
@@ -767,7 +765,7 @@ def test_what_a_visit_that_was_left_recorded_while_it_was_gone_is_in_its_session
     writer.stop()
     with qtbot.waitSignal(home.recovering.recovered, timeout=WAIT_MS):
         elsewhere.rename(folder)
-    assert home.banner.text == "The library is back. 1 recording made meanwhile was added."
+    assert home.banner.text == "The library is available again. 1 recording made meanwhile was added."
     home.banner.dismiss.click()
     assert home.banner.isHidden()
     assert [one.details.name for one in library.sessions.get(session_id).recordings] == ["walk 1"]
@@ -800,14 +798,14 @@ def test_what_comes_home_under_the_cover_is_in_its_session_after_the_passphrase(
             writer.mark(Belonging(session_id, told).text())
         with qtbot.waitSignal(window.controller.back, timeout=WAIT_MS):
             elsewhere.rename(folder)
-        assert page.banner.text == "The library is back. 1 recording made meanwhile was added."
+        assert page.banner.text == "The library is available again. 1 recording made meanwhile was added."
     assert len(list(state.library.recordings.glob("*.journal"))) == 2
     assert not state.library.data_key
     with qtbot.waitSignal(home.recovering.recovered, timeout=WAIT_MS):
         page.passphrase.set_text(PASSPHRASE)
         QTest.keyClick(page.passphrase.line_edit, Qt.Key.Key_Return)
     assert not window.is_covered
-    assert home.banner.text == "The library is back. 1 recording made meanwhile was added."
+    assert home.banner.text == "The library is available again. 1 recording made meanwhile was added."
     assert sorted(one.details.name for one in library.sessions.get(session_id).recordings) == ["walk 1", "walk 2"]
 
 

@@ -346,10 +346,10 @@ def test_a_port_is_exclusive_where_it_would_not_be_so_by_itself(
 @pytest.mark.parametrize(
     ("platform", "device", "problem", "said"),
     [
-        ("win32", "COM7", "could not open port 'COM7': PermissionError(13, 'Access is denied.')", "used by another"),
-        ("win32", "COM7", "could not open port 'COM7': FileNotFoundError(2, 'not found')", "is not there"),
-        ("darwin", "/dev/cu.usbserial-7", OSError(errno.EACCES, "Permission denied"), "used by another"),
-        ("darwin", "/dev/cu.usbserial-7", OSError(errno.ENOENT, "No such file"), "is not there"),
+        ("win32", "COM7", "could not open port 'COM7': PermissionError(13, 'Access is denied.')", "in use by another"),
+        ("win32", "COM7", "could not open port 'COM7': FileNotFoundError(2, 'not found')", "was not found"),
+        ("darwin", "/dev/cu.usbserial-7", OSError(errno.EACCES, "Permission denied"), "in use by another"),
+        ("darwin", "/dev/cu.usbserial-7", OSError(errno.ENOENT, "No such file"), "was not found"),
     ],
 )
 def test_a_port_that_does_not_open_says_why_on_each_system(

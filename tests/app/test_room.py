@@ -23,7 +23,7 @@ def parts(look: ThemeNotifier) -> list[QWidget]:
     field = QLineEdit()
     field.setPlaceholderText("kept out of exports")
     options = [
-        ("mean", "Mean cycle", "There are no averages; correct this and record the walk again"),
+        ("mean", "Mean cycle", "all strides"),
         ("walk", "Whole walk", "second by second"),
     ]
     return [

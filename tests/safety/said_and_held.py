@@ -23,12 +23,12 @@ if TYPE_CHECKING:
     from app.wizard.wizard import Wizard
 
 READ_BACK = "('closed', 'recovered')"
-KEPT = re.compile(r"(\d+) kept")
+KEPT = re.compile(r"(\d+) included")
 STOOD = re.compile("([\\d.]+) s, standing reference")
-WORN = re.compile(r"(\d) of 6 worn")
-SAVED_AS = re.compile(r"Saved as (.+)\. Saving again asks where\.")
+WORN = re.compile(r"(\d) of 6 assigned")
+SAVED_AS = re.compile(r"Saved as (.+)\. Saving again asks for the folder\.")
 RECOVERED_ONE = re.compile(r"\d+:\d\d of (.+) was recovered\.")
-RECOVERED_MANY = re.compile(r"(\d+) recordings were recovered\.")
+RECOVERED_MANY = re.compile(r"(\d+) recordings, .+ in total, were recovered\.")
 LENGTH = re.compile(r"^(?:.* · )?(\d+):(\d\d)$")
 PATIENTS = """
     SELECT p.code, COUNT(s.id) FROM patients p LEFT JOIN sessions s ON s.patient_id = p.id AND s.deleted_at IS NULL
@@ -132,7 +132,7 @@ def _of_settings(page: Any, held: HeldLibrary) -> Iterator[str]:
     operators = held.ask("SELECT COUNT(*) FROM operators")[0][0]
     if page.operators.isVisible() and page.operators.rows.count() != operators:
         yield f"settings list {page.operators.rows.count()} operators, held are {operators}"
-    said = re.match(r"Backups go to (.+)\.$", page.backup_folder.text())
+    said = re.match(r"Backup folder: (.+)\.$", page.backup_folder.text())
     kept = held.ask("SELECT value FROM settings WHERE name = 'backup_folder'")
     if page.backup_folder.isVisible() and said is not None and (not kept or said[1] not in str(kept[0][0])):
         yield f"settings say {said[0]!r}, held is {kept}"
@@ -170,7 +170,7 @@ def _of_rail(wizard: "Wizard", visit: "Visit", held: HeldLibrary) -> Iterator[st
     for place in (4, 5):
         if (said := KEPT.search(notes[place])) is not None and int(said[1]) != kept and not is_recording:
             yield f"the rail says {notes[place]!r} at step {place + 1}, held are {kept} walks kept"
-    if "keep or discard" in notes[4] and all(_is_answered(row) for row in walks):
+    if "include or exclude" in notes[4] and all(_is_answered(row) for row in walks):
         yield "the rail asks whether a walk is kept, held is none that is not decided"
     if notes[5] == "" and kept and not is_recording:
         yield f"the rail says of no result, held are {kept} walks kept"

@@ -208,7 +208,7 @@ def framed(look: ThemeNotifier, name: str) -> WizardShell:
     tile = partial(SensorTile, name="0A22", battery=0.84, rate_hz=100.0, lost_share=0.0, silent_s=0.0)
     shell.strip.show_tiles({site: tile(site, is_moving=True, is_worn=True) for site in LEG_SITES})
     shell.set_strip_mode(StripMode.SHOWN if step in WITH_TILES else StripMode.FOLDED)
-    note = tr("Stopping now leaves the left knee with range only, without absolute angles.")
+    note = tr("If you stop now, angles are unreliable for the left knee.")
     stop = idle(tr("Stop early"), tr("Space"), Icon.STOP, is_wished=False)
     shell.bar.show_state(BarState(stop, quiet=(idle(tr("Repeat one leg"), icon=Icon.REPEAT),), note=note))
     if name == "recording":

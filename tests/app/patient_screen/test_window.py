@@ -59,7 +59,7 @@ def test_its_words_say_the_value_and_how_many_reached(window: PatientWindow) -> 
 
 def test_while_it_waits_no_value_is_shown_not_even_old_ones(window: PatientWindow, look: ThemeNotifier) -> None:
     window.show_view(PatientView(KNEE, TEN, is_waiting=True))
-    assert window.accessibleName() == "Left knee: bend it as you swing. Target 55°. Please wait"
+    assert window.accessibleName() == "Left knee: bend it as you swing. Target 55°. One moment"
     image = picture(window)
     assert not any(is_leg(image, look, x, y) for x in range(80, 1200, 4) for y in (468, 712))
     window.show_view(PatientView(KNEE, TEN))

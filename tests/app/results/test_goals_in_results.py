@@ -106,6 +106,6 @@ def test_between_visits_the_goal_stands_behind_the_name_and_is_dotted_in_the_tre
             assert trend.goals == ()
     assert marked == {
         f"Walking speed, m/s goal 1.20{SPACE}m/s": (1.2,),
-        "Ankle push-off goal R 30°": (30.0,),
-        "Ankle rocker goal L 12°": (12.0,),
+        "Ankle plantarflexion, push-off goal R 30°": (30.0,),
+        "Ankle dorsiflexion, stance goal L 12°": (12.0,),
     }

@@ -81,10 +81,10 @@ def test_a_withheld_hip_has_a_panel_for_a_curve_and_the_door_names_it(page: Resu
     show(page, with_hip(hip_analysis(), Joint.LEFT_HIP, margin=1.2))
     frame = page.cycles.charts.hip
     assert frame.chart.withheld == {Side.LEFT}
-    assert "do not move as neighbours" in frame.withheld[Side.LEFT].text
+    assert "Sensor positions could not be confirmed" in frame.withheld[Side.LEFT].text
     assert frame.withheld[Side.RIGHT].text == ""
-    assert page.door.words.startswith("Left hip: withheld.")
-    assert rows_of(page.cycles.hips.table)["Range"][0] == "withheld"
+    assert page.door.words.startswith("Left hip: not reported.")
+    assert rows_of(page.cycles.hips.table)["Range of motion"][0] == "not reported"
 
 
 def test_without_a_pelvis_nothing_of_hips_is_there(page: ResultPage) -> None:
@@ -162,7 +162,7 @@ def test_figures_of_hip_and_pelvis_have_a_card_that_says_what_is_not_told(page: 
     assert page.cycles.hips.isVisible()
     rows = rows_of(page.cycles.hips.table)
     assert rows["Obliquity, range"][0][0].isdigit()
-    assert rows["Tilt, range"][0] == "withheld"
+    assert rows["Tilt, range"][0] == "not reported"
     assert "it cannot be separated from measurement error" in page.cycles.hips.note.text()
     assert not [name for name in rows if "otation" in name and "ip" in name.split(",")[0]]
 
@@ -172,7 +172,7 @@ def test_behind_q_stand_six_joints_the_pelvis_and_how_each_hip_was_found(page: R
     QTest.keyClick(page, Qt.Key.Key_Q)
     quality = page.quality
     assert quality.first.text() == "All six joints are reported."
-    assert "the right leg's clock was 40 ms late, ± 5 ms" in quality.in_order.text()
+    assert "from hip movement: the right leg was 40 ms late, ± 5 ms" in quality.in_order.text()
     quality.engineering.click()
     assert quality.hip_facts.isVisible()
     said = quality.figure.accessibleDescription().casefold() + quality.figure.accessibleName().casefold()

@@ -164,7 +164,7 @@ def test_what_was_left_out_by_hand_is_said_wherever_figures_stand(
     assert line is not None
     found = without(session, analysis, line)
     (walk,) = (recording for recording in found.recordings if recording.gait)
-    said = f"1 of {len(walk.gait[Side.LEFT].strides)} left strides left out by hand."
+    said = f"1 of {len(walk.gait[Side.LEFT].strides)} left strides excluded by hand."
     page.show_visit(AnalysedVisit(session, found), can_choose=True)
     assert page.strides.note.text() == said
     assert not page.cycles.by_hand.isVisible()
@@ -226,10 +226,10 @@ def test_every_cell_of_a_stride_is_said_and_the_mark_is_a_box_to_tick(
     line = strides.lines[row]
     heard = [str(strides.cells.index(row, column).data(said)) for column in range(strides.cells.columnCount())]
     assert heard[STRIDE] == heard[STATE] == heard[KNEE_SHAPE] == f"Left stride {line.number}, used"
-    assert heard[1:3] == [f"at (s): {line.start_s:.1f}", f"takes (s): {line.end_s - line.start_s:.2f}"]
+    assert heard[1:3] == [f"start (s): {line.start_s:.1f}", f"duration (s): {line.end_s - line.start_s:.2f}"]
     ticked = Qt.ItemDataRole.CheckStateRole
     assert strides.cells.index(row, STRIDE).data(ticked) == Qt.CheckState.Checked
     assert strides.cells.index(row, STATE).data(ticked) is None
     page.show_visit(AnalysedVisit(session, without(session, analysis, line)), can_choose=True)
     assert strides.cells.index(row, STRIDE).data(ticked) == Qt.CheckState.Unchecked
-    assert str(strides.cells.index(row, STRIDE).data(said)) == f"Left stride {line.number}, left out by hand"
+    assert str(strides.cells.index(row, STRIDE).data(said)) == f"Left stride {line.number}, excluded by hand"

@@ -58,7 +58,7 @@ def test_each_place_is_found_where_it_is_drawn(figure: BodyFigure, is_legs_only:
 def test_the_figure_says_its_places(figure: BodyFigure) -> None:
     figure.show_worn({Site.LEFT_THIGH: SensorMark.WORN, Site.RIGHT_FOOT: SensorMark.SILENT})
     figure.emphasise(Site.LEFT_SHANK)
-    assert figure.accessibleDescription() == "L thigh: worn; R foot: silent; marked: L shank"
+    assert figure.accessibleDescription() == "L thigh: worn; R foot: no signal; marked: L shank"
 
 
 @pytest.mark.parametrize("size", [(32, 56), (190, 400)])

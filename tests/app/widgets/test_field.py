@@ -95,7 +95,7 @@ def test_what_has_no_room_is_told_and_what_was_written_elsewhere_is_kept_whole(
     shown(qtbot, window, field)
     QTest.keyClicks(field.line_edit, "P-01478")
     assert field.text == "P-014"
-    assert field.line_edit.accessibleName() == "Code, There is room for 5 characters."
+    assert field.line_edit.accessibleName() == "Code, At most 5 characters."
     QTest.keyClick(field.line_edit, Qt.Key.Key_Backspace)
     assert not field.is_wrong
     field.set_text("P-0147 of another clinic")

@@ -150,7 +150,7 @@ def test_a_gauge_is_told_to_readers_of_screens(qtbot: QtBot, look: ThemeNotifier
     qtbot.addWidget(gauge)
     gauge.show_face(gauge_face(Joint.LEFT_KNEE, state(11, 34), HUMAN, is_now=True))
     assert gauge.accessibleName() == (
-        "Left knee, axis 11°, under 1.5° needed, centre 34 mm, under 10 mm needed, move now"
+        "Left knee, axis 11°, under 1.5° required, centre 34 mm, under 10 mm required, move now"
     )
     gauge.show_face(GaugeFace(GaugeState.ABSENT, note="No foot sensor: no left ankle angle."))
     assert gauge.accessibleName() == "Left knee, No foot sensor: no left ankle angle."
@@ -164,10 +164,10 @@ def test_an_ankles_gauge_tells_readers_of_screens_what_it_judges(qtbot: QtBot, l
         gauge.show_face(gauge_face(joint, state(1, 6, is_closed=True), HUMAN, is_now=False))
         said[joint] = gauge.accessibleName()
     assert said[Joint.LEFT_ANKLE] == (
-        "Left ankle, axis found while walking, centre 6.0 mm, under 10 mm needed, Enough motion for its centre"
+        "Left ankle, axis found while walking, centre 6.0 mm, under 10 mm required, Enough movement for centre"
     )
     assert said[Joint.LEFT_KNEE] == (
-        "Left knee, axis 1.0°, under 1.5° needed, centre 6.0 mm, under 10 mm needed, Enough motion"
+        "Left knee, axis 1.0°, under 1.5° required, centre 6.0 mm, under 10 mm required, Enough movement"
     )
 
 

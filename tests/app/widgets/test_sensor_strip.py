@@ -78,7 +78,7 @@ def test_each_tile_is_a_part_of_its_own_for_a_screen_reader(strip: SensorStrip) 
     assert names == [
         "R thigh, 100 Hz · 0.0 % lost, moving",
         "R shank, 100 Hz · 0.0 % lost, moving",
-        "R foot, silent 3 s",
+        "R foot, no signal 3 s",
         "L thigh, 100 Hz · 0.0 % lost, moving",
         "L shank, 100 Hz · 0.0 % lost, still",
         "L foot, 100 Hz · 0.0 % lost, moving",
@@ -193,7 +193,7 @@ def test_the_button_says_in_one_sentence_how_the_sensors_are() -> None:
     assert sentence({}) == "No sensors yet"
     assert sentence(fine()) == "6 sensors, all connected"
     assert sentence(fine() | {Site.LEFT_FOOT: unused}) == "5 sensors, all connected"
-    assert sentence(fine() | {FOOT: foot}) == "R foot: silent 3 s"
+    assert sentence(fine() | {FOOT: foot}) == "R foot: no signal 3 s"
     assert sentence(fine() | {FOOT: foot, Site.LEFT_THIGH: thigh}) == "Check 2 of 6 sensors"
 
 
@@ -255,4 +255,4 @@ def test_arrows_go_over_the_pelvis(strip: SensorStrip) -> None:
 
 def test_a_silent_pelvis_is_named_in_the_sentence() -> None:
     assert sentence(SEVEN) == "7 sensors, all connected"
-    assert sentence(SEVEN | {Site.PELVIS: tile(Site.PELVIS, silent_s=3.2)}) == "Pelvis: silent 3 s"
+    assert sentence(SEVEN | {Site.PELVIS: tile(Site.PELVIS, silent_s=3.2)}) == "Pelvis: no signal 3 s"

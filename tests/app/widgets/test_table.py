@@ -135,7 +135,7 @@ def test_a_text_of_two_lines_asks_for_their_height(look: ThemeNotifier) -> None:
 
 
 def test_a_table_is_as_high_as_its_rows_and_shares_all_of_its_width(qtbot: QtBot, look: ThemeNotifier) -> None:
-    table = table_of(qtbot, look, [row("Knee range", "+2.0"), row("Knee peak flexion, swing", "−12.1", is_marked=True)])
+    table = table_of(qtbot, look, [row("Knee range", "+2.0"), row("Peak knee flexion, swing", "−12.1", is_marked=True)])
     assert table.height() == 32 + 2 * 28
     widths = [table.columnWidth(column) for column in range(3)]
     needed = table.needed_widths

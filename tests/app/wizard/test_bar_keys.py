@@ -21,12 +21,13 @@ from app.storage.exchange import import_session
 from app.widgets.action_bar import BarAction, BarState
 from app.wizard import wizard as wizard_module
 from app.wizard.step import StepId
+from app.wizard.walking.step import WalkingStep
 from app.wizard.wizard import Wizard
 from app.workers.library_controller import LibraryController
 from core.samples import Session
 
-TEXTS = {"Enter": "Go on", "Space": "Record again", "L": "Repeat left", "R": "Repeat right", "D": "Discard"}
-KEYS = {"Enter": Qt.Key.Key_Return, "Space": Qt.Key.Key_Space, "L": Qt.Key.Key_L, "R": Qt.Key.Key_R, "D": Qt.Key.Key_D}
+TEXTS = {"Enter": "Go on", "Space": "Record again", "L": "Repeat left", "R": "Repeat right", "X": "Exclude"}
+KEYS = {"Enter": Qt.Key.Key_Return, "Space": Qt.Key.Key_Space, "L": Qt.Key.Key_L, "R": Qt.Key.Key_R, "X": Qt.Key.Key_X}
 WAIT_MS = 60_000
 
 
@@ -134,6 +135,29 @@ def test_it_does_so_on_pages_that_are_full_of_results(
         pressed = watched(wizard, number, monkeypatch)
         assert misses(wizard, pressed) == [], wizard.steps[number].title
     qtbot.waitUntil(lambda: visit.preview.is_idle, timeout=WAIT_MS)
+
+
+def test_i_and_k_include_the_walk_just_stopped_x_and_d_exclude_it(
+    wizard: Wizard, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    wizard.begin(None)
+    step = wizard.steps[StepId.WALKING]
+    assert isinstance(step, WalkingStep)
+    kept: list[bool] = []
+    monkeypatch.setattr(step, "_keep", lambda _walk, *, is_kept: kept.append(is_kept))
+    monkeypatch.setattr(wizard_module, "DEAF_S", 0.0)
+    monkeypatch.setattr(type(step), "cannot_enter", "")
+    wizard.go_to(StepId.WALKING)
+    button = wizard.shell.bar.back
+    button.setFocus()
+    keys = (Qt.Key.Key_I, Qt.Key.Key_K, Qt.Key.Key_X, Qt.Key.Key_D)
+    for key in keys:
+        QTest.keyClick(button, key)
+    assert kept == []  # there is no walk to include
+    monkeypatch.setattr(type(step), "_asked", property(lambda _step: object()))
+    for key in keys:
+        QTest.keyClick(button, key)
+    assert kept == [True, True, False, False]
 
 
 def test_with_shift_space_and_enter_press_what_has_the_focus(wizard: Wizard, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -44,7 +44,7 @@ def test_nothing_is_lost_yet_only_while_the_disk_is_late_and_every_counter_is_no
 ) -> None:
     said = " ".join(trouble_message(Trouble.DISK_SLOW, status, lost))
     assert ("No data lost so far" in said) is is_said
-    assert ("answers late" in said) is (status is LATE)
+    assert ("responds slowly" in said) is (status is LATE)
 
 
 def test_a_late_disk_that_answers_again_says_what_it_cost() -> None:
@@ -60,7 +60,7 @@ def test_a_late_disk_that_answers_again_says_what_it_cost() -> None:
 def test_what_was_dropped_is_counted(trouble: Trouble) -> None:
     what, then = trouble_message(trouble, DROPPING)
     assert "The disk did not respond for too long, so samples were lost" in what
-    assert then.startswith("7 packets of samples were dropped so far, and stay gaps. ")
+    assert then.startswith("7 data packets were lost so far and stay gaps. ")
 
 
 @pytest.mark.parametrize("trouble", sorted(ENDS))
@@ -101,8 +101,8 @@ def standstill(lost: dict[str, int], now_s: float = 75.0, *, are_heard: bool = T
 
 def test_a_standstill_that_cost_samples_says_so() -> None:
     assert standstill({"a": 4005, "b": 2000}) == (
-        "Gaitwright stood still for 20 s, 0:41 into the recording. "
-        "Samples were lost and stay gaps, counted when the recording is read back."
+        "Gaitwright stalled for 20 s, 0:41 into the recording. "
+        "Samples were lost and stay gaps. They are counted when the recording is loaded."
     )
     assert "were lost" in standstill({"a": 5, "b": 1})
     assert "were lost" not in standstill({"a": 5, "b": 0})
@@ -123,4 +123,4 @@ def test_a_standstill_of_before_or_long_ago_is_not_told_and_sleep_is_called_so()
     assert standstill_message(STOOD, 72.0, 75.0, {}, True, True) == NOTHING
     assert standstill_message(STOOD, 10.0, 72.0 + STANDSTILL_TOLD_S, {}, True, True) == NOTHING
     asleep = replace(STOOD, asleep_s=19.0)
-    assert standstill_message(asleep, 10.0, 75.0, {}, True, True)[0].startswith("The computer slept for 20 s")
+    assert standstill_message(asleep, 10.0, 75.0, {}, True, True)[0].startswith("The computer was asleep for 20 s")

@@ -206,7 +206,7 @@ def test_amid_the_results(qtbot: QtBot, start_again: Start, untouched_library: P
     check_corrections(qtbot, wizard, told)
     step = wizard.current
     assert isinstance(step, ResultsStep)
-    qtbot.waitUntil(lambda: step.note == "1 kept" and step.state is StepState.DONE, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: step.note == "1 included" and step.state is StepState.DONE, timeout=WAIT_MS)
 
 
 @pytest.mark.parametrize("point", [Point.REPORT, Point.SAVING])

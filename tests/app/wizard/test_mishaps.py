@@ -117,7 +117,7 @@ def test_a_library_that_stays_busy_does_not_hold_the_visit_for_ever(
     recordings.refused.connect(lambda *words: told.append(words))
     recordings.stop()
     qtbot.waitUntil(lambda: recordings.is_idle, timeout=WAIT_MS)
-    assert "when Gaitwright starts again" in told[-1][1]
+    assert "when Gaitwright next starts" in told[-1][1]
     with pytest.raises(RuntimeError):
         acquisition.stop_recording()  # it has been, at once
 
@@ -158,7 +158,7 @@ def test_what_is_said_of_a_late_disk_follows_its_counters(
         recordings.meet(Trouble.DISK_SLOW)
     assert told.args == [
         "The disk responds slowly.",
-        "Nothing is lost yet. Close programs that copy or download to it.",
+        "No data lost so far. Close programs that copy or download to this disk.",
     ]
 
     def said() -> str:
@@ -173,10 +173,10 @@ def test_what_is_said_of_a_late_disk_follows_its_counters(
     monkeypatch.setattr(acquisition, "lost", lambda: {"DEMO-left_foot": 400})
     assert "No data lost so far" not in said()
     now[0] = replace(fine, stuck_s=3.0, dropped_records=5)
-    assert "5 packets of samples were dropped so far" in said()
+    assert "5 data packets were lost so far" in said()
     now[0] = fine
     monkeypatch.setattr(acquisition, "lost", dict)
-    assert said() == "The disk answered late, and answers again. Nothing was lost by it."
+    assert said() == "The disk was slow and now responds again. No data were lost because of this."
     recording = step.bar().recording
     assert recording is not None
     assert "Saved continuously." in recording.note
@@ -267,7 +267,7 @@ def test_a_new_calibration_that_is_broken_off_is_asked_for_again(qtbot: QtBot, l
     assert standing.details.is_restrapped_before
     step = WalkingStep(ThemeNotifier(), looked_at)
     assert not step.bar().others[0].is_enabled  # nobody has moved since
-    assert "Stand still and move freely" in step.bar().note
+    assert "Repeat standing still and free motion" in step.bar().note
     record(qtbot, looked_at, RecordingKind.FREE_MOTION, 1.0)
     assert step.bar().others[0].is_enabled
 

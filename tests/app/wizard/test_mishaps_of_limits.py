@@ -11,7 +11,7 @@ from core.body import Side, Site
 from core.samples import RecordingKind
 from tests.app.wizard.begun_visit import begin, record
 
-SAID = "Right ankle: the foot has no ankle joint. Its angle is that of the foot vs the shank."
+SAID = "Right ankle: The foot has no ankle joint. Its angle is the foot relative to the shank."
 
 
 def said(visit: Visit) -> list[str]:

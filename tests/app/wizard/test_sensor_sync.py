@@ -15,8 +15,8 @@ DONE, NOW, TO_DO = LineState.DONE, LineState.NOW, LineState.TO_DO
     [
         (SyncStage.PREPARING, "", "Connecting to the sensors."),
         (SyncStage.PREPARING, "DOT 0002", "DOT 0002 is being set up."),
-        (SyncStage.WAITING, "", "The sensors are comparing their clocks automatically. Leave them where they are."),
-        (SyncStage.CONNECTING, "DOT 0001", "DOT 0001 is asked how it went."),
+        (SyncStage.WAITING, "", "The sensors are comparing their clocks. Leave them where they are."),
+        (SyncStage.CONNECTING, "DOT 0001", "Checking the result of DOT 0001."),
         (SyncStage.LISTENING, "", "Comparing the sensor clocks."),
     ],
 )

@@ -66,7 +66,7 @@ def test_the_pelvis_stays_where_sides_are_changed() -> None:
         (tuple(Site), ""),
         (
             tuple(site for site in Site if site is not Site.LEFT_THIGH),
-            "No sensor at L thigh: no angles for left knee, left hip.",
+            "No sensor at L thigh: no angles for left knee and left hip.",
         ),
         (LEG_SITES, ""),  # nobody asked for hips
         (LEG_SITES[1:], "No sensor at L thigh: no angles for left knee."),

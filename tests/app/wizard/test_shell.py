@@ -51,7 +51,7 @@ def fine() -> dict[Site, SensorTile]:
 
 
 def stop_early() -> BarState:
-    note = tr("Stopping now leaves the left knee with range only, without absolute angles.")
+    note = tr("If you stop now, angles are unreliable for the left knee.")
     stop = idle(tr("Stop early"), tr("Space"), Icon.STOP, is_wished=False)
     return BarState(stop, quiet=(idle(tr("Repeat one leg"), icon=Icon.REPEAT),), note=note)
 
@@ -76,7 +76,7 @@ def filled(look: ThemeNotifier) -> WizardShell:
         ("Stand still", "skipped, in report", StepState.SKIPPED),
         (
             "Free motion",
-            "enough motion for 1 of 2 knees, 2 of 2 ankle centres; left knee: no hinge",
+            "enough movement for 1 of 2 knees, 2 of 2 ankle centres; left knee: not a hinge",
             StepState.ATTENTION,
         ),
         ("Walking", "3 walks, L 52, R 49", StepState.CURRENT),
@@ -260,10 +260,10 @@ def test_the_folded_strip_opens_by_itself_when_a_sensor_turns_bad_and_only_then(
     shell.set_strip_mode(StripMode.FOLDED)
     shell.strip.show_tiles(fine() | {Site.RIGHT_FOOT: tile(Site.RIGHT_FOOT, silent_s=3.4)})
     qtbot.waitUntil(shell.strip.isVisible, timeout=2000)
-    assert shell.header.fold.text() == "R foot: silent 3 s"
+    assert shell.header.fold.text() == "R foot: no signal 3 s"
     shell.header.fold.setChecked(False)
     shell.strip.show_tiles(fine() | {Site.RIGHT_FOOT: tile(Site.RIGHT_FOOT, silent_s=4.4)})
-    qtbot.waitUntil(lambda: shell.header.fold.text() == "R foot: silent 4 s", timeout=2000)
+    qtbot.waitUntil(lambda: shell.header.fold.text() == "R foot: no signal 4 s", timeout=2000)
     assert not shell.strip.isVisible()
 
 
@@ -285,7 +285,7 @@ def test_a_banner_that_comes_while_recording_pushes_nothing(shell: WizardShell) 
     shell.bar.show_state(recording())
     settle()
     before = page.mapTo(shell, page.rect().topLeft())
-    shell.banner.tell("R foot has been silent for 2 s", "Recording continues.")
+    shell.banner.tell("R foot: no signal for 2 s", "Recording continues.")
     settle()
     assert page.mapTo(shell, page.rect().topLeft()) == before
     shell.banner.hide()

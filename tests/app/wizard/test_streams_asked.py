@@ -12,7 +12,7 @@ from app.wizard.visit import Visit
 from devices.search import SearchResult
 
 NETWORK = STREAMS + "192.0.2.9"
-WARNING = "This asks every computer in the network of 192.0.2.9"
+WARNING = "This asks every computer on the network of 192.0.2.9"
 
 
 @pytest.fixture
@@ -55,7 +55,7 @@ def test_it_is_said_whom_it_asks_and_asked_when_it_is_chosen_once_more(
     with qtbot.waitSignal(visit.refused, timeout=5000) as refused:
         step.page.source_chosen.emit(NETWORK)
     assert asked == ["192.0.2.9"]
-    assert refused.args[0] == "No stream of motion was found."
+    assert refused.args[0] == "No motion stream found."
     assert WARNING not in said(step)
 
 

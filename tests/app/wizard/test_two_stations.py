@@ -188,9 +188,7 @@ def test_other_fields_of_a_patient_are_merged_without_a_question_and_told(
     ours.patient.commit()
     qtbot.waitUntil(lambda: bool(ear.heard), timeout=WAIT_MS)
     (heard,) = ear.heard
-    assert heard.startswith(
-        "Saved. DEMO-9 was also changed at another station meanwhile. Body height: 180 cm (H. Keller, today "
-    )
+    assert heard.startswith("Saved. DEMO-9 was also changed at another workstation. Height: 180 cm (H. Keller, today ")
     assert wizard.asked.dialog is None
     assert (other.told.height_m, other.told.aids) == (1.80, "frame")
     assert ours.patient.details == other.told

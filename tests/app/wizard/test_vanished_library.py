@@ -86,7 +86,7 @@ def test_renamed_amid_a_walk_it_goes_on_and_is_read_back_whole(
     recordings.refused.connect(lambda *words: refused.append(words))
     recordings.stop()
     qtbot.waitUntil(lambda: bool(refused), timeout=WAIT_MS)
-    assert refused[0][0] == f"The library is gone from {folder}."
+    assert refused[0][0] == f"The library is no longer in {folder}."
     qtbot.wait(100)
     assert not recordings.is_idle
     assert not folder.exists()
@@ -110,7 +110,7 @@ def test_renamed_between_two_walks_the_next_begins_all_the_same(
     with qtbot.waitSignal(recordings.troubled, timeout=WAIT_MS) as said:
         start_walk(qtbot, looked_at)
     assert said.args is not None
-    assert said.args[0] == "The library can no longer be written where it was, and the recording goes on."
+    assert said.args[0] == "The library folder is no longer available; recording continues."
     qtbot.wait(200)
     recordings.stop()
     qtbot.waitUntil(
@@ -198,7 +198,7 @@ def test_a_whole_day_on_which_the_disk_comes_and_goes(
     qtbot.wait(300)
     began_s = time.monotonic()
     folder.rename(elsewhere)
-    qtbot.waitUntil(lambda: "encrypted as always" in notice_of(wizard), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: "stored encrypted on this computer" in notice_of(wizard), timeout=WAIT_MS)
     assert time.monotonic() - began_s < 2.0
     qtbot.wait(300)
     visit.recordings.stop()
@@ -211,13 +211,13 @@ def test_a_whole_day_on_which_the_disk_comes_and_goes(
     again = open_window()
     assert again.entry is not None
     assert again.entry.first_start.look_again.isVisible()
-    assert "2 recordings are kept on this computer" in again.entry.first_start.missing_lead.text()
+    assert "2 recordings stay on this computer" in again.entry.first_start.missing_lead.text()
     assert not folder.exists()
     elsewhere.rename(folder)
     log_in(qtbot, again)
     home = again.home
     assert home is not None
-    qtbot.waitUntil(lambda: "while the library was gone" in home.banner.text, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: "while the library was missing" in home.banner.text, timeout=WAIT_MS)
     assert again.controller.state is not None
     library = again.controller.state.library.library
     (line,) = library.sessions.list()

@@ -130,12 +130,12 @@ def test_at_the_end_it_says_whether_the_motion_is_enough_or_all_only_as_good_as_
     ("joints", "finds"),
     [
         ((Joint.LEFT_KNEE, Joint.RIGHT_KNEE), ""),
-        ((Joint.LEFT_KNEE, Joint.LEFT_ANKLE), " It finds the ankle's axis."),
-        (LEG_JOINTS, " It finds the ankles' axes."),
+        ((Joint.LEFT_KNEE, Joint.LEFT_ANKLE), " It determines the ankle axis."),
+        (LEG_JOINTS, " It determines the ankle axes."),
     ],
 )
 def test_walking_is_said_to_find_the_axes_of_ankles_that_wear_sensors(joints: tuple[Joint, ...], finds: str) -> None:
-    assert last_hint(motion(dict.fromkeys(joints, ENOUGH))).how == f"Walking comes next, by itself.{finds}"
+    assert last_hint(motion(dict.fromkeys(joints, ENOUGH))).how == f"Walking follows automatically.{finds}"
 
 
 def test_a_joint_that_is_no_hinge_is_said_in_place_of_enough_motion() -> None:
@@ -143,7 +143,7 @@ def test_a_joint_that_is_no_hinge_is_said_in_place_of_enough_motion() -> None:
     one, both = all_four | {Joint.LEFT_KNEE: LOOSE}, dict.fromkeys(LEG_JOINTS, LOOSE)
     said = last_hint(motion(one), PROSTHETIC)
     assert said.sentence == "Left knee: not a hinge"
-    assert said.how == "The angle is the part about the main axis. Walking comes next, by itself."
+    assert said.how == "The angle is the rotation about the main axis. Walking follows automatically."
     assert recorded_hint(motion(one), PROSTHETIC).sentence == "Left knee: not a hinge"
     assert last_hint(motion(both), frozenset(Side)).sentence == "2 joints: not hinges"
     assert last_hint(motion(one)).sentence == "Enough movement"  # of a living knee none is expected
@@ -161,7 +161,7 @@ def test_the_rail_says_which_joints_have_enough_motion_and_an_ankle_by_its_centr
 
 def test_a_joint_that_is_no_hinge_is_named_and_not_counted() -> None:
     loose = motion(dict.fromkeys(LEG_JOINTS, ENOUGH) | {Joint.LEFT_KNEE: LOOSE})
-    said = "enough motion for 1 of 2 knees, 2 of 2 ankle centres; left knee: no hinge"
+    said = "enough movement for 1 of 2 knees, 2 of 2 ankle centres; left knee: not a hinge"
     assert enough_for(loose, PROSTHETIC) == said
     assert enough_for(loose, frozenset()) == "enough movement"
 
@@ -204,20 +204,20 @@ def test_stopping_before_a_joint_is_found_costs_its_angles() -> None:
 def test_a_joint_that_is_nearly_there_is_told_with_both_figures_and_what_helps() -> None:
     nearly = motion({Joint.LEFT_KNEE: state(3.8, 9)})
     assert price_of_stopping(nearly) == (
-        "Left knee: 3.8°, 1.5° wanted. Go on and the report says so, or move the left leg for 5 more seconds."
+        "Left knee: 3.8°, limit 1.5°. Move the left leg for 5 more seconds, or continue: the report then states this."
     )
 
 
 def test_moving_on_is_not_proposed_where_it_brings_nothing() -> None:
     assert price_of_stopping(motion({Joint.RIGHT_ANKLE: state(9, 18, is_plateau=True)})) == (
-        "Right ankle: 18 mm, 10 mm wanted. Go on and the report says so."
+        "Right ankle: 18 mm, limit 10 mm. If you continue, the report states this."
     )
 
 
 def test_a_replayed_patient_who_has_ended_is_not_asked_to_move() -> None:
     nearly = motion({Joint.LEFT_KNEE: state(3.8, 9)})
     said = price_of_stopping(nearly, can_move=False)
-    assert said == "Left knee: 3.8°, 1.5° wanted. Go on and the report says so."
+    assert said == "Left knee: 3.8°, limit 1.5°. If you continue, the report states this."
 
 
 def test_of_a_prosthesis_more_is_wanted() -> None:
@@ -227,7 +227,7 @@ def test_of_a_prosthesis_more_is_wanted() -> None:
 
 def test_a_joint_without_gauge_says_why() -> None:
     worn = set(LEG_SITES) - {Site.RIGHT_FOOT}
-    assert absent_note(Joint.RIGHT_ANKLE, worn, ()) == "R foot without sensor: no right ankle angle."
+    assert absent_note(Joint.RIGHT_ANKLE, worn, ()) == "No sensor on R foot: no right ankle angle."
     assert absent_note(Joint.RIGHT_KNEE, worn, ()) == ""
     assert absent_note(Joint.LEFT_ANKLE, worn, {Side.LEFT}).startswith("Foot without ankle joint: nothing to calibrate")
     assert absent_note(Joint.LEFT_KNEE, worn, {Side.LEFT}) == ""
@@ -248,7 +248,9 @@ def test_hips_never_keep_anybody_from_walking() -> None:
     assert enough_for(still_open, frozenset()) == "enough movement"
     hint = last_hint(still_open)
     assert hint.sentence == "Enough movement"
-    assert hint.how == "Walking comes next, by itself. It finds the ankles' axes and, with a turn, the hips."
+    assert (
+        hint.how == "Walking follows automatically. It determines the ankle axes and, with a turn, calibrates the hips."
+    )
 
 
 def test_the_walk_is_not_said_to_show_hips_that_are_shown_or_not_worn() -> None:
@@ -284,5 +286,5 @@ def test_the_hint_of_the_hips_can_be_read_from_two_metres() -> None:
 
 def test_a_hip_says_which_sensor_it_lacks() -> None:
     worn = {Site.PELVIS, Site.LEFT_SHANK, Site.RIGHT_THIGH}
-    assert absent_note(Joint.LEFT_HIP, worn, ()) == "L thigh without sensor: no left hip angle."
+    assert absent_note(Joint.LEFT_HIP, worn, ()) == "No sensor on L thigh: no left hip angle."
     assert absent_note(Joint.RIGHT_HIP, worn, {Side.RIGHT}) == ""

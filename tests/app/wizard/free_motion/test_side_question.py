@@ -30,7 +30,7 @@ def test_both_legs_moved_at_once_is_said_only_where_both_moved(
 ) -> None:
     what, _, answers = asked(*shanks, lead_s=lead_s).words
     assert ("Both legs moved at once" in what) is is_said
-    assert "A on its shank?" in what
+    assert "has A on the shank?" in what
     assert answers == SIDES
 
 
@@ -86,4 +86,4 @@ def test_a_leg_that_nobody_was_asked_about_is_asked_about() -> None:
     question.answer(0)
     question.look(chains("C", "D"), {})
     assert question.told is None
-    assert "wears C" in question.words[0]
+    assert "has C on the shank?" in question.words[0]

@@ -101,7 +101,7 @@ def test_a_plateau_is_said_and_left_to_the_therapist(
     ticks(qtbot, step, lambda: step.page.band.hint.sentence == "Certainty no longer rises")
     assert not step._settled.isActive()
     bar = step.bar()
-    assert bar.note == "Left knee: 3.8°, 1.5° wanted. Go on and the report says so."
+    assert bar.note == "Left knee: 3.8°, limit 1.5°. If you continue, the report states this."
     assert [verb.text for verb in bar.quiet] == ["Repeat left"]
 
 
@@ -130,7 +130,7 @@ def test_a_replay_that_has_ended_is_said_and_is_recorded_again_from_its_beginnin
     assert bar.primary is not None
     assert bar.primary.text == "Continue to walking"
     assert [verb.text for verb in bar.others] == ["Record again"]
-    assert bar.note == "Left knee: 3.8°, 1.5° wanted. Go on and the report says so."
+    assert bar.note == "Left knee: 3.8°, limit 1.5°. If you continue, the report states this."
     press(step, "Record again")
     ticks(qtbot, step, lambda: len(visit.recordings.every) == 1 and visit.recordings.has_begun)
     assert not visit.recordings.every[0].details.is_kept
@@ -213,7 +213,7 @@ def test_leaving_before_its_end_keeps_what_has_moved_unless_another_is_in_force(
     assert len(kept.read_back.imu) == len(LEG_SITES)
     assert note.startswith("enough movement for")
     assert note.endswith("of 2 ankle centres")
-    assert told.args[0] == f"Free motion was left before its end and is kept: {note}."
+    assert told.args[0] == f"Free motion was left early and is used: {note}."
     step.enter()
     assert not visit.recordings.is_recording
     press(step, "Record again")
@@ -246,7 +246,7 @@ def test_a_knee_that_is_no_hinge_is_not_counted_as_enough_but_named(
     with qtbot.waitSignal(step.done, timeout=PATIENCE_MS):  # more motion would not make it one
         ticks(qtbot, step, lambda: GaugeState.LOOSE in states(step.page))
         assert step.page.band.hint.sentence == "Left knee: not a hinge"
-    assert step.note == "enough motion for 1 of 2 knees, 2 of 2 ankle centres; left knee: no hinge"
+    assert step.note == "enough movement for 1 of 2 knees, 2 of 2 ankle centres; left knee: not a hinge"
     assert step.state is StepState.ATTENTION
     assert Sound.READY not in heard
 
@@ -268,7 +268,7 @@ def test_a_missing_foot_sensor_and_a_foot_without_joint_have_no_gauge(
     visit.sensors.assign_all({name: site for name, site in worn.items() if site is not Site.RIGHT_FOOT})
     visit.record.set_limits(Limits(without_ankle=frozenset({Side.LEFT})))
     step.enter()
-    assert step.page.gauges[Joint.RIGHT_ANKLE].face.note == "R foot without sensor: no right ankle angle."
+    assert step.page.gauges[Joint.RIGHT_ANKLE].face.note == "No sensor on R foot: no right ankle angle."
     assert step.page.gauges[Joint.LEFT_ANKLE].face.note.startswith("Foot without ankle joint")
     ticks(qtbot, step, lambda: visit.recordings.is_recording and step.page.band.hint.sentence != "Move either leg")
     assert step.page.gauges[Joint.LEFT_ANKLE].face.state is GaugeState.ABSENT
@@ -310,7 +310,7 @@ def test_labels_that_are_kept_are_not_asked_about_again(qtbot: QtBot, step: Free
     visit.sensors.doubt(swapped(*pair))
     step.enter()
     assert step.page.question.notice.text == (
-        "L thigh and L shank look swapped. Angles would be wrong: left knee, left ankle."
+        "L thigh and L shank look swapped. Angles would be wrong: left knee and left ankle."
     )
     visit.sensors.keep_labels()
     step.enter()
@@ -402,21 +402,21 @@ def test_two_legs_that_begin_together_are_told_apart_by_asking(
     question, unplaced = step.page.question, step._unplaced
     assert unplaced is not None
     step.labels.ask_for_side(together)
-    assert question.notice.text == f"Both legs moved at once. Which one wears {shanks[0]} on its shank?"
+    assert question.notice.text == f"Both legs moved at once. Which leg has {shanks[0]} on the shank?"
     step.page.answered.emit(1)
     assert step.labels.named is None  # the library knows it of the left leg
-    assert question.notice.text == f"Earlier {shanks[0]} was worn on the left leg. Which leg wears it now?"
+    assert question.notice.text == f"{shanks[0]} was on the left leg before. Which leg is it on now?"
     step.page.answered.emit(1)
     assert unplaced._answer == (shanks[0], Side.RIGHT)
     for _ in range(3):
         step.labels.ask_for_side(together)  # the estimator has not taken it yet
-    assert question.notice.text == f"Understood: {shanks[0]} is on the right leg."
+    assert question.notice.text == f"{shanks[0]} set to the right leg."
     assert [button.text() for button in question.buttons if not button.isHidden()] == ["Undo"]
     step.page.answered.emit(1)
     assert step.labels.named is None
     assert "Both legs moved at once" in question.notice.text
     step.page.answered.emit(0)
-    assert question.notice.text == f"Understood: {shanks[0]} is on the left leg."
+    assert question.notice.text == f"{shanks[0]} set to the left leg."
 
 
 def test_a_leg_that_was_named_wrongly_changes_places_when_that_is_undone(
@@ -433,7 +433,7 @@ def test_a_leg_that_was_named_wrongly_changes_places_when_that_is_undone(
     for number in (1, 0):
         step.page.answered.emit(number)
     assert visit.sensors.site_of == worn
-    assert step.page.question.notice.text == f"Understood: {shank} is on the left leg."
+    assert step.page.question.notice.text == f"{shank} set to the left leg."
     step._stop()
     ticks(qtbot, step, step.page.question.isHidden)
 

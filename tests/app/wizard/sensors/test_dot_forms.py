@@ -22,12 +22,12 @@ LINES = [
 ]
 SIZES = [(1016, 540), (744, 420)]
 HELD = [
-    HeldLine("today 10:32", 6, "Kept: A Shoes.", is_kept=True),
+    HeldLine("today 10:32", 6, "Saved: A Shoes.", is_kept=True),
     HeldLine("today 10:40", 5, "Not fetched: A2 Shoes.", is_kept=False, can_fetch=True),
 ]
 SYNCHRONISING = ProgressShown(
     "The sensors are being synchronised",
-    "The sensors compare their clocks by themselves. Leave them where they are. About 20 s are left.",
+    "The sensors are comparing their clocks. Leave them where they are. About 20 s left.",
     0.4,
     tuple(SensorLine(f"DOT 0A2{number}", LineState.NOW, "comparing clocks") for number in range(7)),
     stop="Cancel",
@@ -75,8 +75,8 @@ def test_space_turns_a_tick_and_enter_goes_on(form: DotForm, qtbot: QtBot) -> No
 @pytest.mark.parametrize(
     ("record_hz", "said", "unsaid"),
     [
-        (120, "synchronised once more", "Data lost in radio transmission are missing"),
-        (60, "Its curves come once it is fetched.", "synchronised once more"),
+        (120, "synchronised again before the first walk", "Data lost in radio transmission are missing"),
+        (60, "Curves appear once the walk is fetched.", "synchronised again before the first walk"),
         (0, "Data lost in radio transmission are missing", "fetched"),
     ],
 )

@@ -60,7 +60,7 @@ def look(qtbot: QtBot, step: SensorsStep) -> None:
 
 def wait(qtbot: QtBot, step: SensorsStep) -> None:
     assert step.memories.is_busy
-    assert "Wait until" in step.cannot_leave
+    assert step.cannot_leave == "The sensors are being queried. Wait, or cancel."
     qtbot.waitUntil(lambda: not step.memories.is_busy, timeout=WAIT_MS)
     assert step.cannot_leave == ""
 
@@ -97,7 +97,7 @@ def test_what_is_kept_is_erased_after_a_second_press(
 ) -> None:
     walk_in_memory(qtbot, visit, is_fetched=True)
     look(qtbot, opened)
-    assert told_lines(opened) == [["2 sensors", "Kept: A Shoes."]]
+    assert told_lines(opened) == [["2 sensors", "Saved: A Shoes."]]
     bar = opened.bar()
     assert bar.primary is not None
     assert bar.primary.text == "Back to the sensors"
@@ -145,7 +145,7 @@ def test_what_a_closed_visit_left_in_the_sensors_is_fetched_where_the_session_go
     assert told_lines(opened) == [["2 sensors", "Not fetched: Shoes."]]
     bar = opened.bar()
     assert bar.primary is not None
-    assert bar.primary.text == "Fetch it"
+    assert bar.primary.text == "Fetch walk"
     press(opened)
     wait(qtbot, opened)
     qtbot.waitUntil(lambda: len(recordings.walks) == 2, timeout=WAIT_MS)
@@ -155,7 +155,7 @@ def test_what_a_closed_visit_left_in_the_sensors_is_fetched_where_the_session_go
     assert [len(block) for block in fetched.read_back.imu.values()] == [
         len(dot.memory.files[0].ticks) for dot in radio.dots
     ]
-    assert told_lines(opened) == [["2 sensors", "Kept: A Shoes."]]
+    assert told_lines(opened) == [["2 sensors", "Saved: A Shoes."]]
 
 
 def test_what_is_not_of_this_library_is_not_fetched_and_is_named_before_it_is_lost(

@@ -242,7 +242,7 @@ def test_shaken_sensors_take_the_places_in_turn(page: SensorsPage, assigned: lis
 def test_two_shaken_at_once_tell_nothing(page: SensorsPage) -> None:
     page.show_way(Way.SHAKE)
     page.show_shaken_together(["0A22", "0A2C"])
-    assert page.notice.text == "Both 0A22 and 0A2C were shaken. Shake one at a time."
+    assert page.notice.text == "0A22 and 0A2C were both shaken. Shake one at a time."
     page.show_shaken_together([])
     assert "Shake the left thigh sensor." in page.notice.text
 
@@ -270,13 +270,13 @@ def test_a_foot_that_no_sensor_is_left_for_costs_the_ankle(page: SensorsPage) ->
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"silent_s": 3.2}, "R foot has been silent for 3 s. Switch it off and on, or go on without right ankle"),
-        ({"battery": 0.11}, "R foot has 11 % battery. Charge it after this patient."),
-        ({"battery": 0.03}, "R foot has 3 % battery. It may fall silent during a walk: charge it first."),
-        ({"lost_share": 0.024}, "R foot: 2.4 % of the samples were lost. Bring the receiver nearer"),
+        ({"silent_s": 3.2}, "R foot: no signal for 3 s. Switch the sensor off and on, or continue without right ankle"),
+        ({"battery": 0.11}, "R foot: battery at 11 %. Charge it after this patient."),
+        ({"battery": 0.03}, "R foot: battery at 3 %. It may stop during a walk. Charge it first."),
+        ({"lost_share": 0.024}, "R foot: 2.4 % of the samples were lost. Move the receiver closer"),
         (
             {"lost_share": 0.06, "has_memory": True},
-            "R foot: 6.0 % of the samples were lost. Bring this computer nearer, or",
+            "R foot: 6.0 % of the samples were lost. Move this computer closer, or",
         ),
     ],
 )
@@ -289,9 +289,9 @@ def test_what_wants_a_look_is_said(page: SensorsPage, changes: dict[str, object]
 
 def test_a_refusal_goes_before_all_else_and_is_seen_without_a_source(page: SensorsPage) -> None:
     page.show_no_source()
-    page.tell("COM7 is used by another program.", "Close that program, then search again.")
+    page.tell("COM7 is in use by another program.", "Close that program, then search again.")
     assert page.nothing.isVisible()
-    assert "COM7 is used by another program. Close that program, then search again." in _texts_of(page.nothing)
+    assert "COM7 is in use by another program. Close that program, then search again." in _texts_of(page.nothing)
 
 
 def test_the_sources_take_the_focus_as_soon_as_they_are_offered(qtbot: QtBot) -> None:
@@ -463,21 +463,22 @@ def test_what_is_said_of_a_pelvis_costs_the_hips_alone(page: SensorsPage) -> Non
     assert page.notice.text == "All seven are assigned and connected."
     page.show_sensors(seven(*Site, s0A3E={"silent_s": 4.0}))
     assert page.notice.text == (
-        "Pelvis has been silent for 4 s. Switch it off and on, or go on without hip angles; knees and ankles stay."
+        "Pelvis: no signal for 4 s. Switch the sensor off and on, or continue without hip angles; "
+        "knees and ankles are not affected."
     )
     page.show_sensors(seven(*Site, s0A09={"silent_s": 4.0}))
-    assert page.notice.text.endswith("go on without left knee and hip angles.")
+    assert page.notice.text.endswith("continue without left knee and hip angles.")
     page.show_sensors(seven(*Site))
     page.assign(SEVENTH, None)
     page.show_sensors(seven(*LEG_SITES))
-    assert page.notice.text == "No sensor on the pelvis: no hip angles. Knees, ankles and steps stay as they are."
+    assert page.notice.text == "No sensor on the pelvis: no hip angles. Knees, ankles and steps are not affected."
 
 
 def test_without_a_pelvis_nothing_is_said_of_hips(page: SensorsPage) -> None:
     page.show_sensors(rows(*LEG_SITES))
     assert page.notice.text == "All six are assigned and connected."
     page.show_sensors(rows(*LEG_SITES, s0A09={"silent_s": 4.0}))
-    assert page.notice.text.endswith("go on without left knee angles.")
+    assert page.notice.text.endswith("continue without left knee angles.")
 
 
 @pytest.mark.parametrize("is_from_behind", [False, True])

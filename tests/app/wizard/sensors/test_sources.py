@@ -93,7 +93,7 @@ def test_a_search_looks_anew_and_opens_whatever_is_there() -> None:
     ("found", "what"),
     [
         (SearchResult(), "No sensor found"),
-        (SearchResult((), (REFUSED,)), "COM7 is used"),
+        (SearchResult((), (REFUSED,)), "COM7 is in use"),
         (SearchResult((), (REFUSED,) * 2), "No sensor"),
     ],
 )
@@ -167,7 +167,7 @@ def test_a_patient_with_one_prosthesis_is_simulated_with_it(sides: tuple[Side, .
     ("deaf", "said"),
     [
         (None, "search again$"),
-        (BluetoothMissingError("a", "b"), "need Gaitwright's extra bluetooth$"),
+        (BluetoothMissingError("a", "b"), "need gaitwright\\[bluetooth\\]$"),
         (SourceRefusedError("a", "b"), "once Bluetooth is switched on$"),
     ],
 )

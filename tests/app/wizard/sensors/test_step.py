@@ -68,7 +68,7 @@ def test_sensors_are_placed_by_keys_and_told_to_the_library(
         page.list.select(sensor)
         assert step.on_intent(Intent(KeyAction.LABEL, list(Site).index(site) + 1))
     assert visit.sensors.site_of == worn
-    assert step.note == "6 of 6 worn"
+    assert step.note == "6 of 6 assigned"
     assert step.state is StepState.DONE
     verb = step.bar().primary
     assert verb is not None
@@ -118,7 +118,7 @@ def test_a_silent_sensor_is_asked_for_again_and_keeps_its_place(
     assert bar.primary is not None
     assert bar.primary.text == "Reconnect R foot"
     assert [verb.text for verb in bar.others] == ["Continue without right ankle"]
-    assert "R foot has been silent" in step.page.notice.text
+    assert "R foot: no signal for" in step.page.notice.text
     source.wake(foot)
     with qtbot.waitSignal(visit.sensors.opened, timeout=10_000):
         press(step)

@@ -33,6 +33,8 @@ from tests.app.room import words_cut
 from tests.app.wizard.walking.bench_material import OF_B, OF_C, PYLON, WALKED, bench_visit, recording
 from tests.core.verdicts.built_walk import calibrations, judged_walk, leg, walk
 
+ROM = "has 70.0° range of motion"
+
 
 def part(letter: str, **changes: Any) -> Part:
     found = calibrations()
@@ -93,10 +95,12 @@ def test_what_is_discarded_is_no_part_of_the_chain() -> None:
 def test_the_sentence_tells_the_prosthetic_sides_change_with_both_values() -> None:
     outcome, first, then = told_of(part("B", left=leg(Side.LEFT, knee_range_deg=70.0)), part("A"))
     assert outcome is Outcome.DIFFERS
-    assert first.startswith("With B the prosthetic side has 10.0° more than with A: knee")
-    assert "70.0° vs 60.0°" in first
+    assert first == "Prosthetic-side knee has 70.0° range of motion with B, 10.0° more than with A (60.0°)."
     assert then.startswith("Beyond measurement error (±")
-    assert "The sound side does not change beyond error. Sensors stayed on. Speed 1.18 and 1.18 m/s." in then
+    assert (
+        "The sound side does not change beyond measurement error. Sensors stayed on. Walking speed 1.18 and 1.18 m/s."
+        in then
+    )
 
 
 def swinging(range_deg: float, swing_deg: float) -> SideGait:
@@ -106,20 +110,18 @@ def swinging(range_deg: float, swing_deg: float) -> SideGait:
     return replace(found, parameters={**found.parameters, **swing})
 
 
-@pytest.mark.parametrize(
-    ("swing_deg", "told"), [(68.0, "knee flexion, stance to swing"), (58.5, "knee range"), (48.0, "knee range")]
-)
+@pytest.mark.parametrize(("swing_deg", "told"), [(68.0, "flexes 68.0° from stance to swing"), (58.5, ROM), (48.0, ROM)])
 def test_of_a_range_and_the_excursion_that_makes_it_the_excursion_is_told(swing_deg: float, told: str) -> None:
     """Not where the excursion hardly changes, nor where it changes the other way and less."""
     _, first, _ = told_of(part("B", left=swinging(70.0, swing_deg)), part("A", left=swinging(59.0, 57.0)))
-    assert f": {told}, " in first
+    assert first.startswith(f"Prosthetic-side knee {told} with B, ")
 
 
 def test_where_only_the_sound_side_changes_no_sentence_is_of_the_prosthetic_one() -> None:
     outcome, first, then = told_of(part("B", right=leg(Side.RIGHT, knee_range_deg=70.0)), part("A"))
     assert outcome is Outcome.NOTHING
-    assert first == "The prosthetic side is similar with A and B: knee range 60.0° and 60.0°."
-    assert then.startswith("The change of 0.0° is ambiguous: measurement error: anything from −")
+    assert first == "Prosthetic side: knee range of motion is similar with A and with B, 60.0° and 60.0°."
+    assert then.startswith("The change of 0.0° may be measurement error: likely between −")
     assert "The sound side also changes beyond measurement error." in then
 
 
@@ -145,15 +147,15 @@ def test_a_change_that_the_table_marks_is_told_with_its_error_however_little_it_
     assert not row.difference.is_worth_a_sentence
     outcome, first, then = told_of(one, other)
     assert outcome is Outcome.DIFFERS
-    assert first.startswith("With B the prosthetic side has 3.5° more than with A: knee range, 63.5° against 60.0°.")
+    assert first == "Prosthetic-side knee has 63.5° range of motion with B, 3.5° more than with A (60.0°)."
     assert then.startswith("Just beyond measurement error (±")
 
 
 def test_what_may_be_error_is_told_with_what_fits() -> None:
     outcome, first, then = told_of(part("B", left=leg(Side.LEFT, knee_range_deg=61.0)), part("A"))
     assert outcome is Outcome.NOTHING
-    assert first == "The prosthetic side is similar with A and B: knee range 60.0° and 61.0°."
-    assert then.startswith("The change of +1.0° is ambiguous: measurement error: anything from −1.")
+    assert first == "Prosthetic side: knee range of motion is similar with A and with B, 60.0° and 61.0°."
+    assert then.startswith("The change of +1.0° may be measurement error: likely between −1.")
 
 
 @pytest.mark.parametrize("is_biased", [True, False])
@@ -257,9 +259,9 @@ def test_a_walk_after_the_return_stands_beside_the_first_and_changes_nothing_tha
     bench.begun()
     state = bench.state()
     assert state is not None
-    assert [(row.letter, row.title) for row in state.rows][-1] == ("A2", "A again")
+    assert [(row.letter, row.title) for row in state.rows][-1] == ("A2", "Repeat A")
     assert shown(bench) == ("A2", "A")
-    assert state.answer.first.startswith("With A2 the prosthetic side has 6.0° more than with A:")
+    assert state.answer.first.endswith(" range of motion with A2, 6.0° more than with A (60.0°).")
     assert sentence_of(bench, 1) == before
     assert bench.chain.next_letter == "D"
 
@@ -404,12 +406,12 @@ def test_each_curve_says_what_may_be_read_of_it(page: WalkingPage, bench: Bench)
     state = bench.state()
     assert state is not None
     page.bench.show_state(state)
-    assert [frame.verdict.text() for frame in page.bench.frames] == ["read", "read"]
+    assert [frame.verdict.text() for frame in page.bench.frames] == ["Good", "Good"]
     axis = replace(calibrations()[Joint.LEFT_KNEE], axis_sd_rad=np.deg2rad(8.0))
     unsure = {**calibrations(), Joint.LEFT_KNEE: axis}
     doubted = replace(state.parts[0], walks=(judged_walk(walk(), unsure),))
     page.bench.show_state(replace(state, parts=[doubted, *state.parts[1:]]))
-    assert [frame.verdict.text() for frame in page.bench.frames] == ["caution", "read"]
+    assert [frame.verdict.text() for frame in page.bench.frames] == ["Caution", "Good"]
 
 
 def test_the_next_change_is_told_by_keys_and_reads_as_it_prints(page: WalkingPage, bench: Bench) -> None:
@@ -423,9 +425,9 @@ def test_the_next_change_is_told_by_keys_and_reads_as_it_prints(page: WalkingPag
     ):
         for _ in range(times):
             QTest.keyClick(card.steppers[name], key)
-    assert card.written.text() == "Recorded as: Foot, front screw ½ turn out, +2° plantar"
+    assert card.written.text() == "Recorded as: Foot, anterior screw ½ turn out, +2° plantar"
     assert card.next_title.text() == "D: changed from C"
-    assert card.steppers["turns"].accessibleName() == "Turns: ½ out"
+    assert card.steppers["turns"].accessibleName() == "Screw turns: ½ out"
     card.parts.setCurrentIndex(list(ProsthesisPart).index(PYLON))
     QTest.keyClicks(card.words.line_edit, "clamp")
     assert bench.entry.parts[-1] == PartChange(PYLON, text="clamp")

@@ -65,7 +65,7 @@ def test_the_chooser_names_it_with_its_test_and_with_no_other(qtbot: QtBot, look
     chooser = TimedChooser(look)
     qtbot.addWidget(chooser)
     chooser.show_before({UP: "3 Oct: 11.4 s"})
-    assert chooser.box.itemText(1 + list(TimedProtocol).index(UP)) == "Timed up and go · 3 Oct: 11.4 s"
+    assert chooser.box.itemText(1 + list(TimedProtocol).index(UP)) == "Timed Up and Go · 3 Oct: 11.4 s"
     chooser.show_before({TEN: "3 Oct: 1.00 m/s"})
     assert chooser.box.itemText(1 + list(TimedProtocol).index(UP)) == "Timed Up and Go"
 
@@ -95,10 +95,10 @@ def test_the_result_tells_what_has_changed_and_draws_it(qtbot: QtBot, look: Them
     space, error = "\N{NO-BREAK SPACE}", "error (0.20 †)"
     assert view.first.text() == "10-metre walk: 1.12 m/s, 8.9 s."
     assert view.then.text() == (
-        f"+0.06{space}m/s since 20 Jul, inside {error}. +0.41{space}m/s since 20 Jun, larger than {error}."
+        f"+0.06{space}m/s since 20 Jul, within {error}. +0.41{space}m/s since 20 Jun, beyond {error}."
     )
     assert view.course.isVisible()
-    assert "larger than error (0.20 †)" in [text.text() for text in view.course.findChildren(Text)]
+    assert "beyond error (0.20 †)" in [text.text() for text in view.course.findChildren(Text)]
 
 
 def test_a_first_test_has_no_course_and_nothing_is_said_of_a_change(qtbot: QtBot, look: ThemeNotifier) -> None:

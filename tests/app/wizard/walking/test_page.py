@@ -148,17 +148,17 @@ def test_a_message_moves_nothing_while_a_walk_is_recorded(page: WalkingPage, qtb
     page.show_walks((RECORDING,))
     QApplication.processEvents()
     before = page.charts.geometry()
-    page.show_message("R foot has been silent for 2 s", "Recording continues.")
+    page.show_message("R foot: no signal for 2 s", "Recording continues.")
     QApplication.processEvents()
     assert page.charts.geometry() == before
-    assert "R foot has been silent for 2 s" in texts(page)
+    assert "R foot: no signal for 2 s" in texts(page)
     page.show_message("")
-    assert "R foot has been silent for 2 s" not in texts(page)
+    assert "R foot: no signal for 2 s" not in texts(page)
 
 
 def test_a_stopped_walk_is_kept_or_discarded(page: WalkingPage, qtbot: QtBot) -> None:
     page.show_walks((KEPT, ASKING), "L 12, R 11 strides")
-    assert {"Include 12 strides", "Discard", "L 12, R 11 strides", "include or exclude?"} <= set(texts(page))
+    assert {"Include 12 strides", "Exclude", "L 12, R 11 strides", "include or exclude?"} <= set(texts(page))
     with qtbot.waitSignal(page.keep_pressed) as kept:
         page.stopped.keep.click()
     assert kept.args == ["3"]
@@ -171,7 +171,7 @@ def test_a_stopped_walk_is_kept_or_discarded(page: WalkingPage, qtbot: QtBot) ->
 
 def test_what_was_discarded_can_come_back(page: WalkingPage, qtbot: QtBot) -> None:
     page.show_walks((KEPT, DISCARDED))
-    (undo,) = [one for one in page.walks.buttons if one.accessibleName().startswith("Keep")]
+    (undo,) = [one for one in page.walks.buttons if one.accessibleName().startswith("Include")]
     assert undo.accessibleName() == "Include B Shoes again"
     with qtbot.waitSignal(page.undo_pressed) as undone:
         QTest.keyClick(undo, Qt.Key.Key_Return)
@@ -293,7 +293,7 @@ def test_a_provisional_ankle_is_said(page: WalkingPage) -> None:
 def test_rows_are_read_with_their_state(page: WalkingPage) -> None:
     page.show_walks((KEPT, DISCARDED, RECORDING))
     names = [row.accessibleName() for row in page.walks.findChildren(QWidget) if hasattr(row, "field")]
-    assert names == ["A, Barefoot, 18 strides, kept", "B, Shoes, excluded", "C, AFO, recording"]
+    assert names == ["A, Barefoot, 18 strides, included", "B, Shoes, excluded", "C, AFO, recording"]
 
 
 @pytest.mark.parametrize("is_compact", [False, True])

@@ -220,7 +220,7 @@ def test_reasons_are_said_in_words_of_what_is_gated_only() -> None:
     assert [*reasons.values()] == ["These sensors have not been still yet. Let the patient stand still first."]
     assert (TargetMeasure.KNEE_SWING_PEAK, Side.RIGHT) in reasons
     assert reasons_against(LEG_SITES, ALL, {}, frozenset())[TargetMeasure.KNEE_SWING_PEAK, Side.LEFT].startswith(
-        "It needs both sensors and a free motion"
+        "The knee angle is not known yet. It needs both sensors and a free motion."
     )
 
 

@@ -115,7 +115,7 @@ def test_space_starts_and_stops_and_keeps(
     assert not step.cannot_leave
     bar = step.bar()
     assert bar.primary is not None
-    assert (bar.primary.text, [one.text for one in bar.others]) == ("Keep A", ["A again"])
+    assert (bar.primary.text, [one.text for one in bar.others]) == ("Include A", ["Repeat A"])
     for _ in range(2):
         QTest.keyClick(step.page.bench.alignments.steppers["turns"], Qt.Key.Key_Plus)
     assert [one.text for one in step.bar().others] == ["Walk with B"]
@@ -221,6 +221,19 @@ def test_a_walk_is_discarded_and_comes_back(
     qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=PATIENCE_MS)
 
 
+@pytest.mark.parametrize("action", [KeyAction.IDENTIFY, KeyAction.KEEP])
+def test_i_includes_the_walk_just_stopped_as_k_does_and_nothing_else(
+    qtbot: QtBot, step: WalkingStep, visit: Visit, patient_time: PatientTime, action: KeyAction
+) -> None:
+    assert not step.on_intent(Intent(action))
+    walk(qtbot, step, visit, patient_time, 2.0)
+    assert states(step) == [("A", "Alignment A", WalkState.ASKING)]
+    assert step.on_intent(Intent(action))
+    qtbot.waitUntil(lambda: states(step) == [("A", "Alignment A", WalkState.KEPT)], timeout=PATIENCE_MS)
+    assert not step.on_intent(Intent(action))
+    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=PATIENCE_MS)
+
+
 def test_space_pressed_twice_at_the_end_keeps_what_the_patient_reached(
     qtbot: QtBot, step: WalkingStep, visit: Visit, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -278,7 +291,7 @@ def test_a_silent_sensor_is_said_and_so_is_its_return(
     with qtbot.waitSignal(visit.recordings.begun, timeout=PATIENCE_MS):
         step.on_intent(RUN)
     source.silence("DEMO-right_foot")
-    qtbot.waitUntil(lambda: "R foot has been silent" in step.page.notice.text, timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: "R foot: no signal for" in step.page.notice.text, timeout=PATIENCE_MS)
     assert "right ankle, right phases" in step.page.notice.text
     source.wake("DEMO-right_foot")
     qtbot.waitUntil(lambda: "R foot is back after" in step.page.notice.text, timeout=PATIENCE_MS)

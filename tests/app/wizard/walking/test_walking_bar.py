@@ -82,7 +82,7 @@ def told(bar: WalkingBar) -> list[str]:
 def test_at_the_bench_discard_discards_also_while_clocks_drift(
     visit: Any, walks: SimpleNamespace, bar: WalkingBar
 ) -> None:
-    assert told(bar) == ["Walks", "Discard"]
+    assert told(bar) == ["Walks", "Exclude"]
     bar.state("Shoes").quiet[1].run()
     assert walks.pressed == ["discard"]
     visit.recordings.walks[-1].is_decided = True
@@ -92,19 +92,19 @@ def test_at_the_bench_discard_discards_also_while_clocks_drift(
 def test_at_the_bench_it_says_what_the_next_walk_is_walked_with(visit: Any, bench: Bench, bar: WalkingBar) -> None:
     visit.recordings.walks[-1].is_decided = True
     again = bar.state("Shoes")
-    assert [one.text for one in again.others] == ["Return to A", "C again"]
+    assert [one.text for one in again.others] == ["Return to A", "Repeat C"]
     bench.entry.step("turns", 1)
     visit.recordings.walks[-1].is_decided = False
     asked = bar.state("Shoes")
     assert [one.text for one in asked.others] == ["Return to A", "Walk with D"]
     assert asked.primary is not None
-    assert (asked.primary.text, asked.note) == ("Keep C", "")
+    assert (asked.primary.text, asked.note) == ("Include C", "")
 
 
 def test_beside_the_list_of_walks_the_clocks_can_be_synchronised(visit: Any, bench: Bench, bar: WalkingBar) -> None:
     bench.is_wished = False
     visit.recordings.walks[-1].is_decided = True
-    assert told(bar) == ["Bench", "Synchronise again", "Patient screen"]
+    assert told(bar) == ["Alignment", "Synchronise again", "Patient screen"]
     assert bar.state("Shoes").quiet[1] is SYNCHRONISE
 
 
@@ -112,8 +112,8 @@ def test_beside_the_list_of_walks_the_clocks_can_be_synchronised(visit: Any, ben
     ("kind", "is_stopping", "primary", "note"),
     [
         (RecordingKind.WALKING, True, "Start walk", "The walk is being loaded."),
-        (RecordingKind.FREE_MOTION, True, "Start walk", "Free motion: being read back"),
-        (RecordingKind.FREE_MOTION, False, "Start walk", "Free motion: being read back"),
+        (RecordingKind.FREE_MOTION, True, "Start walk", "Free motion: being loaded"),
+        (RecordingKind.FREE_MOTION, False, "Start walk", "Free motion: being loaded"),
     ],
 )
 def test_what_another_step_recorded_is_not_called_a_walk(
