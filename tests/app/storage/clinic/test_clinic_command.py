@@ -39,7 +39,7 @@ def test_a_library_goes_to_the_server_a_station_joins_and_it_comes_back(
     assert main(["clinic", "join", second]) == 2
     assert str(shared_place) in capsys.readouterr().err
     assert main(["clinic", "join", second, "--journals", str(shared_place)]) == 0
-    assert "This computer is a workstation of" in capsys.readouterr().out
+    assert "is a station of postgresql://" in capsys.readouterr().out
     monkeypatch.delenv(DATABASE_VARIABLE)  # from here on the station's own file names the server
     assert main(["clinic", "status", second, *key]) == 0
     assert "All recordings were transferred." in capsys.readouterr().out
