@@ -39,13 +39,13 @@ def test_a_library_goes_to_the_server_a_station_joins_and_it_comes_back(
     assert main(["clinic", "join", second]) == 2
     assert str(shared_place) in capsys.readouterr().err
     assert main(["clinic", "join", second, "--journals", str(shared_place)]) == 0
-    assert "This computer is a workstation of" in capsys.readouterr().out
+    assert "is a station of postgresql://" in capsys.readouterr().out
     monkeypatch.delenv(DATABASE_VARIABLE)  # from here on the station's own file names the server
     assert main(["clinic", "status", second, *key]) == 0
     assert "All recordings were transferred." in capsys.readouterr().out
     assert main(["clinic", "back", second, *key, "--out", str(tmp_path / "copy"), "--copy"]) == 0
     assert main(["clinic", "back", str(folder), *key, "--out", back]) == 0
-    assert "Have its database and recordings removed once you are sure" in capsys.readouterr().out
+    assert "remove its database and recordings once you are sure" in capsys.readouterr().out
     assert main(["clinic", "status", second, *key]) == 2
     assert "no longer on the clinic's server" in capsys.readouterr().err
     for place in (back, str(tmp_path / "copy")):
