@@ -12,7 +12,7 @@ from itertools import groupby
 
 import numpy as np
 
-from app.summary.status import NO_ZERO, WITH_HEIGHT, WITHHELD, all_that_is_said, is_slipped, joint_status, why
+from app.summary.status import NO_ZERO, WITH_HEIGHT, all_that_is_said, is_slipped, joint_status, why
 from app.wording.translation import PURPOSE
 from core.body import Joint, JointKind, Side
 from core.results import Analysis, RecordingAnalysis

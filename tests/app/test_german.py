@@ -230,7 +230,10 @@ def test_a_fraction_has_a_comma_and_what_only_looks_like_one_its_point() -> None
     assert (fixed(-0.04, 1), signed(0.0, 1), signed(2.5, 1)) == ("0,0", "0,0", "+2,5")
     use_language("en")
     assert (figure_text(1.25, ".2f"), figure_text(1.25, ".2f", "de")) == ("1.25", "1,25")
-    assert tr("Walking speed {first} and {second} m/s.").format(first=1.05, second=1.1) == "Walking speed 1.05 and 1.1 m/s."
+    assert (
+        tr("Walking speed {first} and {second} m/s.").format(first=1.05, second=1.1)
+        == "Walking speed 1.05 and 1.1 m/s."
+    )
     assert spoken_in("de")("{value} degrees").format(value=1.5) == "1,5 Grad"
 
 

@@ -168,7 +168,11 @@ def test_every_refusal_of_the_devices_is_a_sentence_of_the_catalogue(monkeypatch
         for call, said in catalogue.refused(file):
             fields = {field for text in said for _, field, *_ in Formatter().parse(text) if field}
             count += 1
-            if len(said) != (1 if ast.unparse(call.func) == "ExpectedError" else 2) or not gathered.issuperset(said) or fields != {one.arg for one in call.keywords}:
+            if (
+                len(said) != (1 if ast.unparse(call.func) == "ExpectedError" else 2)
+                or not gathered.issuperset(said)
+                or fields != {one.arg for one in call.keywords}
+            ):
                 found.append(f"{file.relative_to(ROOT).as_posix()}:{call.lineno}")
     assert count > 50
     assert found == []

@@ -72,7 +72,9 @@ def test_a_c3d_names_a_shape_and_leaves_out_what_may_be_mirrored_or_is_withheld(
     said = read["parameters"]["PROCESSING"]["STATUS"]["value"]
     assert [text.split(":")[0] for text in said] == ["left_knee", "right_knee", "left_ankle", "right_ankle"]
     assert said[0] == "left_knee: read"
-    assert said[1].startswith("right_knee: range_only: Flexion and extension could not be distinguished (margin 0.10, required 0.25)")
+    assert said[1].startswith(
+        "right_knee: range_only: Flexion and extension could not be distinguished (margin 0.10, required 0.25)"
+    )
     assert said[2].startswith("left_ankle: no_zero: There is no standing reference")
     assert said[3].startswith("right_ankle: withheld: Calibration certainty is only +/-12.0 deg")
 
@@ -145,7 +147,9 @@ def test_a_withheld_figure_has_its_reason_in_place_of_a_value(
     assert coding["code"] == "error"
     assert one["dataAbsentReason"]["text"].startswith("Calibration certainty is only ±12.0°")
     assert {part["code"]["coding"][0]["code"] for part in one["component"]} == {"side", "strides_used"}
-    assert found["knee_swing_peak_deg", "right leg"]["dataAbsentReason"]["text"].startswith("Flexion and extension could not be distinguished")
+    assert found["knee_swing_peak_deg", "right leg"]["dataAbsentReason"]["text"].startswith(
+        "Flexion and extension could not be distinguished"
+    )
     assert found["knee_range_deg", "right leg"]["status"] == "final"
     assert not any({"interpretation", "referenceRange"} & set(one) for one in found.values())
 

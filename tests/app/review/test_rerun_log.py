@@ -373,13 +373,17 @@ def test_beside_the_legs_stands_the_answer_with_a_verdict_for_each_joint(walk: t
     [
         (
             {"shape": SIGN},
-            "- **Left knee: not reported.** The left leg and foot are shown in grey. Flexion and extension could not be",
+            "- **Left knee: not reported.** The left leg and foot are shown in grey. Flexion and extension could not",
             True,
         ),
-        ({"height": BAD}, "- **Left knee: no standing reference.** The left leg and foot are shown in grey. There is no standing", True),
+        (
+            {"height": BAD},
+            "- **Left knee: no standing reference.** The left leg and foot are shown in grey. There is no standing",
+            True,
+        ),
         (
             {"sign": SIGN},
-            "- **Left knee: sign unclear.** The left leg and foot are shown in grey. Flexion and extension could not be",
+            "- **Left knee: sign unclear.** The left leg and foot are shown in grey. Flexion and extension could not",
             True,
         ),
         (

@@ -113,7 +113,9 @@ def test_without_a_viewer_or_a_screen_a_sentence_says_so(tmp_path: Path, monkeyp
     monkeypatch.delenv("DISPLAY")
     monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
     monkeypatch.setattr(sys, "platform", "linux")
-    assert why_not(tmp_path).startswith("Rerun needs a display, and there is none here. Open session.rrd from the results")
+    assert why_not(tmp_path).startswith(
+        "Rerun needs a display, and there is none here. Open session.rrd from the results"
+    )
     with pytest.raises(ViewerRefusedError, match="rrd from the results on a computer that has one"):
         Viewer(tmp_path, tmp_path / "rerun").open(*EMPTY)
     assert list(tmp_path.iterdir()) == []

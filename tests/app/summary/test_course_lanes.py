@@ -306,8 +306,7 @@ def test_the_lane_of_a_test_has_whiskers_and_a_verdict_where_an_error_is_known_o
     assert up.band is None
     space = "\N{NO-BREAK SPACE}"
     assert changes_since_in_words(ten, visits) == (
-        f"+0.34{space}m/s since 20 Mar, beyond error (0.20 †). "
-        f"+0.45{space}m/s since 20 Feb, beyond error (0.20 †)."
+        f"+0.34{space}m/s since 20 Mar, beyond error (0.20 †). +0.45{space}m/s since 20 Feb, beyond error (0.20 †)."
     )
     minus = "\N{MINUS SIGN}"
     assert changes_since_in_words(up, visits) == (

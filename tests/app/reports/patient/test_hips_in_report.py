@@ -65,7 +65,9 @@ def with_clock(offset_s: float, sd_s: float, status: ClockStatus, tie: ClockTie 
 def test_six_joints_are_counted_and_the_late_clock_is_told() -> None:
     found = data_quality(hip_facts())
     assert found.first == "All six joints are reported."
-    assert "left and right sensors synchronised from hip movement: the right leg was 40 ms late, ± 5 ms" in found.in_order
+    assert (
+        "left and right sensors synchronised from hip movement: the right leg was 40 ms late, ± 5 ms" in found.in_order
+    )
     assert found.lines == ()
 
 
@@ -105,7 +107,12 @@ def test_how_the_legs_have_one_time_is_said(
 @pytest.mark.parametrize(
     ("offset_s", "sd_s", "status", "wanted"),
     [
-        (0.04, 0.005, ClockStatus.FOUND, "offset found from hip movement. The right leg was 40 ms late, 1 SD 5 ms; corrected."),
+        (
+            0.04,
+            0.005,
+            ClockStatus.FOUND,
+            "offset found from hip movement. The right leg was 40 ms late, 1 SD 5 ms; corrected.",
+        ),
         (-0.004, 0.005, ClockStatus.FOUND, "offset found from hip movement. The left leg was 4 ms late, 1 SD 5 ms."),
         (0.001, 0.005, ClockStatus.PROVEN, "synchronised, confirmed."),
         (

@@ -74,7 +74,9 @@ def test_without_a_zero_no_height_is_told(request_of_demonstration: ReportReques
     request = without_zero(request_of_demonstration)
     pages = shown(request)
     assert readable(request)["Left knee"] == [READ, WITHHELD, READ]
-    assert "Absolute angle of all joints: There is no standing reference, so absolute angles are not reported." in pages[0]
+    assert (
+        "Absolute angle of all joints: There is no standing reference, so absolute angles are not reported." in pages[0]
+    )
     assert "none: no absolute angles" in pages[0]
     assert "Knee range of motion" in pages[0]
     assert "° vs reference" not in pages[0]
@@ -95,7 +97,7 @@ def test_one_leg_alone_is_not_compared(request_of_demonstration: ReportRequest) 
     assert "Right knee" not in pages[0]
     assert "Stride time, s 1.08 ± 0.01 not measured – – – –" in pages[2]
     assert "Range of motion 61.7 ± 0.8 not measured – – – " in pages[1]
-    assert "against" not in pages[0].split("Summary")[1].split("Data quality")[0]
+    assert not re.search(r"similar|\bvs\b|\bright\b", pages[0].split("Summary")[1].split("Data quality")[0])
 
 
 def test_without_a_foot_sensor_a_line_stands_in_place_of_the_ankle(request_of_demonstration: ReportRequest) -> None:
@@ -182,7 +184,9 @@ def test_an_axis_beyond_its_limit_is_marked_and_a_worse_one_withheld(request_of_
 
 def test_an_uncertain_sign_leaves_the_range_alone(request_of_demonstration: ReportRequest) -> None:
     pages = shown(with_joints(request_of_demonstration, Joint.LEFT_KNEE, is_sign_certain=False))
-    assert "All values of left knee except range of motion: Flexion and extension could not be distinguished" in pages[0]
+    assert (
+        "All values of left knee except range of motion: Flexion and extension could not be distinguished" in pages[0]
+    )
     assert "Not drawn: left knee, not reported." in pages[1]
     assert "loading (5–30 %) not reported 14.0" in pages[1]
     assert re.search(r"Range of motion 61\.7 ± 0\.8 63\.0", pages[1])
