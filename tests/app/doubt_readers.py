@@ -73,7 +73,8 @@ def said_in_report(pdf: bytes) -> Doubts:
     knee, _, ankle = pages[1].partition("Ankle: movement ranges")
     for kind, group in (("knee", knee), ("ankle", ankle)):
         for name, column in PEAKS[kind].items() if group else ():
-            found |= _row(group, rf"{re.escape(name)} {CELL} {CELL} ", column)
+            words = re.sub(r"(\\-|–)", r"\1 ?", re.escape(name))  # a narrow column breaks a name at its dashes
+            found |= _row(group, rf"{words} {CELL} {CELL} ", column)
     return found
 
 

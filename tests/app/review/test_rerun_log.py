@@ -373,10 +373,7 @@ def test_beside_the_legs_stands_the_answer_with_a_verdict_for_each_joint(walk: t
     [
         (
             {"shape": SIGN},
-            (
-                "- **Left knee: not reported.** The left leg and foot are shown in grey. Flexion and "
-                "extension could not be"
-            ),
+            "- **Left knee: not reported.** The left leg and foot are shown in grey. Flexion and extension could not",
             True,
         ),
         (
@@ -386,10 +383,7 @@ def test_beside_the_legs_stands_the_answer_with_a_verdict_for_each_joint(walk: t
         ),
         (
             {"sign": SIGN},
-            (
-                "- **Left knee: sign unclear.** The left leg and foot are shown in grey. Flexion and "
-                "extension could not be"
-            ),
+            "- **Left knee: sign unclear.** The left leg and foot are shown in grey. Flexion and extension could not",
             True,
         ),
         (

@@ -42,8 +42,8 @@ def test_the_page_of_the_method_says_how_it_was_measured(request_of_demonstratio
         "Calibration": "from the patient's own free motion, for the ankle also from the walks. No set posture",
         "Angles": (
             "VQF (Laidig, Seel 2023), forward and backward, without magnetometer, time constant 3 s, from "
-            "instantaneous angular rates. A joint angle is the rotation of the lower segment relative to "
-            "the upper one about the joint's own axis. It is one of three"
+            "instantaneous angular rates. A joint angle is the rotation of the lower segment relative to the upper one "
+            "about the joint's own axis. It is one of three"
         ),
         "Events and strides": "Initial contact and toe\u2011off: from foot pitch; for feet that hardly roll",
         "Accuracy": "Not tested on patients, after knee replacement or on real prostheses",
