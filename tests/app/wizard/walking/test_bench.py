@@ -33,7 +33,6 @@ from tests.app.room import words_cut
 from tests.app.wizard.walking.bench_material import OF_B, OF_C, PYLON, WALKED, bench_visit, recording
 from tests.core.verdicts.built_walk import calibrations, judged_walk, leg, walk
 
-
 ROM = "has 70.0° range of motion"
 
 
