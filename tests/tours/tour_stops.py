@@ -273,8 +273,8 @@ BENCH: tuple[Stop, ...] = (  # three alignments of one prosthesis, by keys
         offers("Repeat A"),
         (
             *(*part_chosen(PYLON), "to Height", *pressed("plus", 3), *part_chosen(FRONT_SCREW)),
-            *("to Angle", *pressed("plus", 4), "to Turn", *pressed("plus", 4), "to Shift", *pressed("plus", 4)),
-            *(*part_chosen(KNEE_UNIT), "to Turn", *pressed("plus", 12)),
+            *("to Angle", *pressed("plus", 4), "to Screw turns", *pressed("plus", 4), "to Shift", *pressed("plus", 4)),
+            *(*part_chosen(KNEE_UNIT), "to Screw turns", *pressed("plus", 12)),
         ),
     ),
     Stop("33-b-told", offers("Walk with B"), ("press space",), lingers_s=1.0),

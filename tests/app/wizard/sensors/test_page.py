@@ -463,8 +463,8 @@ def test_what_is_said_of_a_pelvis_costs_the_hips_alone(page: SensorsPage) -> Non
     assert page.notice.text == "All seven are assigned and connected."
     page.show_sensors(seven(*Site, s0A3E={"silent_s": 4.0}))
     assert page.notice.text == (
-        "Pelvis: no signal for 4 s. Switch the sensor off and on, or continue without hip angles; "
-        "knees and ankles are not affected."
+        "Pelvis: no signal for 4 s. Switch the sensor off and on, "
+        "or continue without hip angles; knees and ankles are not affected."
     )
     page.show_sensors(seven(*Site, s0A09={"silent_s": 4.0}))
     assert page.notice.text.endswith("continue without left knee and hip angles.")
